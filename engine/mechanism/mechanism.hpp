@@ -1,0 +1,197 @@
+// A mechanism as a person builds it: bodies, joints, forces and drives, as plain values.
+//
+// Everything is given in the world frame at the drawn pose (metres, kilograms, radians, newtons,
+// seconds; right-handed). Copying a Mechanism is how undo, background solving and tests work.
+// Names are the links between parts: a joint names its bodies, a gear its joints.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <compare>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flyball {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Quat = Eigen::Quaterniond;
+
+// The name under which joints and forces refer to the fixed world.
+inline constexpr std::string_view ground_name = "ground";
+
+enum class ShapeType { sphere, box, cylinder, capsule };
+
+// How a body looks; no influence on the mechanics. World coordinates of the drawn pose.
+struct Shape {
+  ShapeType type = ShapeType::sphere;
+  double radius = 0;                                    // m; sphere, cylinder, capsule
+  Vec3 size = Vec3::Zero();                             // m; box, full edge lengths along the body axes
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();          // m; cylinder, capsule: ends of the centre line
+  std::optional<Vec3> at;                               // m; sphere, box: centre, default the mass centre
+  std::optional<std::array<double, 3>> color;           // sRGB, 0 to 1; default from the palette
+  bool operator==(const Shape&) const = default;
+};
+
+struct Body {
+  std::string name;
+  std::string description;
+  double mass = 0;                                      // kg, zero allowed
+  Vec3 position = Vec3::Zero();                         // m, mass centre
+  std::array<double, 6> inertia{};                      // kg m^2: xx yy zz xy xz yz of the tensor itself, body
+                                                        // axes, about the mass centre
+  Quat rotation = Quat::Identity();                     // body axes in the drawn pose
+  std::vector<Shape> shapes;                            // empty: derived from the joints
+  bool operator==(const Body& o) const {
+    return name == o.name && description == o.description && mass == o.mass && position == o.position &&
+           inertia == o.inertia && rotation.coeffs() == o.rotation.coeffs() && shapes == o.shapes;
+  }
+};
+
+enum class JointType {
+  revolute,    // axis; [angle]
+  prismatic,   // axis; [slide]
+  cylindrical, // axis; [angle, slide]
+  universal,   // axis on the parent, axis2 on the child; [angle, angle]
+  spherical,   // rotation vector
+  planar,      // axis the normal, axis2 the in-plane x axis; [x, y, angle]
+  free,        // [translation, rotation vector]
+  fixed,       // none
+  distance,    // points, length; always cut
+  gear,        // joints, ratio, offset: q_b = ratio q_a + offset; always cut
+};
+
+struct CoordinateSpring {
+  double stiffness = 0; // N/m or N m/rad
+  double free = 0;      // m or rad, value of the coordinate at which the spring is slack
+  bool operator==(const CoordinateSpring&) const = default;
+};
+
+// A one-sided spring that acts beyond its limit.
+struct Stop {
+  std::optional<double> lower, upper; // m or rad
+  double stiffness = 0;               // N/m or N m/rad
+  bool operator==(const Stop&) const = default;
+};
+
+struct Drive {
+  double speed = 0; // rad/s or m/s, constant
+  bool operator==(const Drive&) const = default;
+};
+
+// What is known of one coordinate of a joint.
+struct Coordinate {
+  double drawn = 0; // rad or m: the label of the drawn pose; moves nothing
+  std::optional<CoordinateSpring> spring;
+  double damping = 0; // N m s/rad or N s/m
+  std::optional<Stop> stop;
+  std::optional<Drive> drive;
+  bool operator==(const Coordinate&) const = default;
+};
+
+struct Joint {
+  std::string name;
+  std::string description;
+  JointType type = JointType::revolute;
+  std::array<std::string, 2> bodies;             // parent, child; not for gears
+  Vec3 at = Vec3::Zero();                        // m; not for distance and gear
+  Vec3 axis = Vec3::UnitZ();                     // any length; by type, see JointType
+  Vec3 axis2 = Vec3::UnitX();                    // any length; universal and planar
+  std::vector<Coordinate> coordinates;           // coordinate_count(type) of them
+  std::optional<bool> cut;                       // true: close a loop here; absent: the program chooses
+  std::array<Vec3, 2> points{Vec3::Zero(), Vec3::Zero()}; // m; distance: on the first body, on the second
+  std::optional<double> length;                  // m; distance; default the drawn distance
+  std::array<std::string, 2> joints;             // gear: a, b ("name", or "name.index" where a joint has several)
+  double ratio = 1;                              // gear: q_b = ratio q_a + offset
+  std::optional<double> offset;                  // gear; default from the drawn values
+  bool operator==(const Joint&) const = default;
+};
+
+enum class ForceType { spring, force, torque, drag };
+enum class ForceFrame { world, body };
+
+// A force beside the joints; which fields count depends on the type.
+struct Force {
+  std::string name;
+  std::string description;
+  ForceType type = ForceType::spring;
+  std::array<std::string, 2> bodies;             // spring
+  std::array<Vec3, 2> points{Vec3::Zero(), Vec3::Zero()}; // m; spring: on the first body, on the second
+  double stiffness = 0;                          // N/m; spring
+  std::optional<double> free_length;             // m; spring; default the drawn distance
+  double damping = 0;                            // N s/m; spring, along its line
+  std::string body;                              // force, torque, drag
+  std::optional<Vec3> at;                        // m; force, torque, drag; default the mass centre
+  Vec3 vector = Vec3::Zero();                    // N or N m; force, torque
+  ForceFrame frame = ForceFrame::world;          // whether `vector` is in world or in body axes
+  double linear = 0;                             // N s/m; drag, in air at rest in the world
+  double quadratic = 0;                          // N s^2/m^2; drag
+  bool operator==(const Force&) const = default;
+};
+
+enum class SliderScale { linear, log };
+
+struct Slider {
+  std::string parameter; // an address, see address.hpp
+  double from = 0, to = 1;
+  SliderScale scale = SliderScale::linear;
+  std::string description;
+  bool operator==(const Slider&) const = default;
+};
+
+struct Simulation {
+  double duration = 10; // s
+  bool damped = true;
+  std::string description;
+  bool operator==(const Simulation&) const = default;
+};
+
+// Orbit camera: looks at `target` from `distance`, azimuth about the world's up axis, elevation above
+// the horizon. Absent: the whole mechanism in view.
+struct Camera {
+  Vec3 target = Vec3::Zero(); // m
+  double distance = 1;        // m
+  double azimuth = 0;         // rad
+  double elevation = 0;       // rad
+  bool operator==(const Camera&) const = default;
+};
+
+struct Mechanism {
+  std::string name;
+  std::string description;
+  Vec3 gravity = Vec3::Zero(); // m/s^2
+  std::vector<Body> bodies;
+  std::vector<Joint> joints;
+  std::vector<Force> forces;
+  std::vector<Slider> sliders;
+  Simulation simulation;
+  std::optional<Camera> camera;
+  bool operator==(const Mechanism&) const = default;
+};
+
+// Number of coordinates of a joint of this type; zero for fixed, distance and gear.
+int coordinate_count(JointType type);
+// Whether coordinate `i` of a joint of this type is an angle (rad) rather than a length (m).
+bool is_angle(JointType type, int i);
+// The word used for a type in scene files and messages.
+std::string_view type_name(JointType type);
+std::string_view type_name(ForceType type);
+std::string_view type_name(ShapeType type);
+
+// Index in the mechanism's list, or -1; body_index also returns -1 for "ground".
+int body_index(const Mechanism& mechanism, std::string_view name);
+int joint_index(const Mechanism& mechanism, std::string_view name);
+int force_index(const Mechanism& mechanism, std::string_view name);
+
+// The gear's end "name" or "name.index", as a joint's index in the list and a coordinate's index in the joint;
+// joint -1 where there is no such coordinate.
+struct CoordinateReference {
+  int joint = -1;
+  int coordinate = 0;
+};
+CoordinateReference find_coordinate(const Mechanism& mechanism, std::string_view name);
+
+} // namespace flyball
