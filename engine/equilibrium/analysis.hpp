@@ -1,0 +1,58 @@
+// A mechanism opened for solving again and again while its numbers move: the convenient front of
+// system/ and equilibrium/ for the command line and the window.
+#pragma once
+
+#include "engine/equilibrium/solution.hpp"
+#include "engine/mechanism/mechanism.hpp"
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace flyball {
+
+struct SolveOptions {
+  bool nearest = false;        // the plain Newton-Raphson answer, stable or not
+  bool warm = false;           // start from this analysis' last converged answer instead of the drawn pose
+  bool details = true;         // eigenvalues, reactions and drive torques; not needed by a sweep
+  int modes = 0;               // eigenvalues asked for where there are more than 200 coordinates
+  std::vector<std::pair<std::string, double>> start; // "joint" or "joint.index" = value, over the drawn pose
+  const std::atomic<bool>* cancel = nullptr;         // polled between iterations; then not_converged
+};
+
+// What was compiled and what was left out, for `flyball check`.
+struct SystemSummary {
+  std::vector<std::string> in, left_out; // passes, in words
+  int bodies = 0, free_coordinates = 0, driven_coordinates = 0, constraint_equations = 0;
+  std::vector<std::string> tree_joints, cut_joints, implicit_joints;
+  std::vector<std::string> notes;        // choices worth telling: "the bearing was cut so that ..."
+};
+
+class Analysis {
+public:
+  // Compiles. Throws SceneError (validate first for all mistakes at once).
+  explicit Analysis(const Mechanism& mechanism);
+  ~Analysis();
+  Analysis(Analysis&&) noexcept;
+  Analysis& operator=(Analysis&&) noexcept;
+
+  // Takes new numbers. Cheap where only numbers changed; recompiles where parts or topology did. Keeps the last answer
+  // as a warm start where it still fits.
+  void update(const Mechanism& mechanism);
+
+  Solution solve(const SolveOptions& options = {});
+
+  SystemSummary summary() const;
+
+  // Poses of all bodies at time t (s) after the drawn drive phase: drives turn, the other coordinates stand
+  // at their last answer (at the drawn pose before there is one).
+  std::vector<Pose> poses_at(double t) const;
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace flyball

@@ -1,0 +1,89 @@
+// What a solve found, by names and in plain numbers: for the command line, the panels and tests. Nothing in
+// it refers back to the compiled system.
+#pragma once
+
+#include "engine/mechanism/pose.hpp"
+
+#include <complex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flyball {
+
+enum class Status {
+  converged,       // a steady state, or with `stable == false` an unstable one
+  not_converged,   // no answer, though one may exist; `message` says what was tried
+  no_steady_state, // the balance turns with the drives: no constant coordinates can hold it
+  infeasible,      // the loops cannot be closed
+};
+
+// The safety net that caught a Newton-Raphson run which did not arrive by itself.
+enum class Net { damped, homotopy, descent };
+
+enum class StabilityReason {
+  minimum,         // strict minimum of the amended potential on the constraints
+  asymptotic,      // all eigenvalues to the left
+  gyroscopic_only, // not a minimum, but the eigenvalues lie on the imaginary axis: any damping destabilises it
+  neutral,         // stable but for directions that nothing resists
+  marginal,        // eigenvalues too close to the axis to tell, or a singular state (a fold or branch point)
+  unstable,
+};
+
+std::string_view word(Status status);
+std::string_view word(Net net);
+std::string_view word(StabilityReason reason);
+
+struct CoordinateSolution {
+  std::string joint;
+  int index = 0, count = 1; // which of the joint's coordinates
+  bool angle = false;       // rad rather than m
+  bool driven = false;      // then `value` is at the drawn drive phase and `error` is zero
+  double value = 0;         // rad or m
+  double error = 0;         // estimated absolute error, rad or m
+};
+
+struct JointMultipliers {
+  std::string joint;          // a cut joint
+  std::vector<double> values; // N or N m, one per constraint equation
+};
+
+struct DriveTorque {
+  std::string joint;
+  int index = 0, count = 1;
+  bool angle = true;    // N m rather than N
+  double value = 0;     // by the drive, positive along the coordinate
+  bool varying = false; // changes with the phase of the drives; `value` is at the drawn phase
+};
+
+// What the parent exerts on the child through a joint, its spring, stop, damper and drive included.
+struct Reaction {
+  std::string joint;
+  Vec3 force = Vec3::Zero();  // N, world axes at the drawn drive phase
+  Vec3 torque = Vec3::Zero(); // N m, about `at` as carried by the child
+  bool varying = false;       // changes with the phase of the drives
+};
+
+struct Solution {
+  Status status = Status::not_converged;
+  std::string message;                         // always a sentence
+  std::vector<CoordinateSolution> coordinates; // in the scene's order; empty where there is no answer
+  std::vector<JointMultipliers> multipliers;
+  double residual = 0;                         // largest scaled equation of eq. 23
+  int iterations = 0;
+  std::vector<double> history;                 // scaled residual at the start and after each iteration
+  std::optional<Net> net;
+  double run_time_s = 0;                       // from the start to the accepted answer
+  std::optional<bool> stable;
+  std::optional<StabilityReason> stability_reason;
+  std::optional<std::vector<std::complex<double>>> eigenvalues; // 1/s, of the linearised motion
+  std::vector<std::string> neutral;            // joints that take part in a direction nothing resists
+  std::vector<DriveTorque> drive_torques;
+  std::vector<Reaction> reactions;
+  bool reactions_nonunique = false;            // redundant loops: the minimum-norm multipliers
+  std::vector<Pose> poses;                     // in the order of the bodies, at the drawn drive phase
+  std::optional<double> condition;             // 2-norm, of the scaled equations
+};
+
+} // namespace flyball
