@@ -13,8 +13,8 @@ namespace flyball {
 
 // The number at an address. Throws SceneError naming the part that does not exist and what does.
 double get_parameter(const Mechanism& mechanism, std::string_view address);
-// Changes it. Does not validate the mechanism as a whole; throws SceneError like get_parameter, and for a value that is
-// not finite.
+// Changes it. Does not validate the mechanism as a whole; throws SceneError like get_parameter, and for a
+// value that is not finite.
 void set_parameter(Mechanism& mechanism, std::string_view address, double value);
 // Unit of the number, as shown to a person: "rad/s", "N/m", "kg", "" where it has none.
 std::string parameter_unit(const Mechanism& mechanism, std::string_view address);

@@ -10,14 +10,14 @@ namespace flyball {
 // ("joints.spin.axis") or by JSON position for parts without a name ("joints[2].type"); `expected` says
 // what would be right. The command line and the panels put the file before it.
 class SceneError : public std::runtime_error {
-public:
+ public:
   SceneError(std::string where, std::string expected)
       : std::runtime_error(where.empty() ? expected : where + ": " + expected), where_(std::move(where)),
         expected_(std::move(expected)) {}
   const std::string& where() const { return where_; }
   const std::string& expected() const { return expected_; }
 
-private:
+ private:
   std::string where_, expected_;
 };
 

@@ -28,23 +28,24 @@ enum class ShapeType { sphere, box, cylinder, capsule };
 // How a body looks; no influence on the mechanics. World coordinates of the drawn pose.
 struct Shape {
   ShapeType type = ShapeType::sphere;
-  double radius = 0;                                    // m; sphere, cylinder, capsule
-  Vec3 size = Vec3::Zero();                             // m; box, full edge lengths along the body axes
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();          // m; cylinder, capsule: ends of the centre line
-  std::optional<Vec3> at;                               // m; sphere, box: centre, default the mass centre
-  std::optional<std::array<double, 3>> color;           // sRGB, 0 to 1; default from the palette
+  double radius = 0;                           // m; sphere, cylinder, capsule
+  Vec3 size = Vec3::Zero();                    // m; box, full edge lengths along the body axes
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero(); // m; cylinder, capsule: ends of the centre line
+  std::optional<Vec3> at;                      // m; sphere, box: centre, default the mass centre
+  std::optional<std::array<double, 3>> color;  // sRGB, 0 to 1; default from the palette
+  std::string description{};
   bool operator==(const Shape&) const = default;
 };
 
 struct Body {
   std::string name;
   std::string description;
-  double mass = 0;                                      // kg, zero allowed
-  Vec3 position = Vec3::Zero();                         // m, mass centre
-  std::array<double, 6> inertia{};                      // kg m^2: xx yy zz xy xz yz of the tensor itself, body
-                                                        // axes, about the mass centre
-  Quat rotation = Quat::Identity();                     // body axes in the drawn pose
-  std::vector<Shape> shapes;                            // empty: derived from the joints
+  double mass = 0;                  // kg, zero allowed
+  Vec3 position = Vec3::Zero();     // m, mass centre
+  std::array<double, 6> inertia{};  // kg m^2: xx yy zz xy xz yz of the tensor itself, body
+                                    // axes, about the mass centre
+  Quat rotation = Quat::Identity(); // body axes in the drawn pose
+  std::vector<Shape> shapes;        // empty: derived from the joints
   bool operator==(const Body& o) const {
     return name == o.name && description == o.description && mass == o.mass && position == o.position &&
            inertia == o.inertia && rotation.coeffs() == o.rotation.coeffs() && shapes == o.shapes;
@@ -67,6 +68,7 @@ enum class JointType {
 struct CoordinateSpring {
   double stiffness = 0; // N/m or N m/rad
   double free = 0;      // m or rad, value of the coordinate at which the spring is slack
+  std::string description{};
   bool operator==(const CoordinateSpring&) const = default;
 };
 
@@ -74,11 +76,13 @@ struct CoordinateSpring {
 struct Stop {
   std::optional<double> lower, upper; // m or rad
   double stiffness = 0;               // N/m or N m/rad
+  std::string description{};
   bool operator==(const Stop&) const = default;
 };
 
 struct Drive {
   double speed = 0; // rad/s or m/s, constant
+  std::string description{};
   bool operator==(const Drive&) const = default;
 };
 
@@ -96,17 +100,17 @@ struct Joint {
   std::string name;
   std::string description;
   JointType type = JointType::revolute;
-  std::array<std::string, 2> bodies;             // parent, child; not for gears
-  Vec3 at = Vec3::Zero();                        // m; not for distance and gear
-  Vec3 axis = Vec3::UnitZ();                     // any length; by type, see JointType
-  Vec3 axis2 = Vec3::UnitX();                    // any length; universal and planar
-  std::vector<Coordinate> coordinates;           // coordinate_count(type) of them
-  std::optional<bool> cut;                       // true: close a loop here; absent: the program chooses
+  std::array<std::string, 2> bodies;   // parent, child; not for gears
+  Vec3 at = Vec3::Zero();              // m; not for distance and gear
+  Vec3 axis = Vec3::UnitZ();           // any length; by type, see JointType
+  Vec3 axis2 = Vec3::UnitX();          // any length; universal and planar
+  std::vector<Coordinate> coordinates; // coordinate_count(type) of them
+  std::optional<bool> cut;             // true: close a loop here; absent: the program chooses
   std::array<Vec3, 2> points{Vec3::Zero(), Vec3::Zero()}; // m; distance: on the first body, on the second
-  std::optional<double> length;                  // m; distance; default the drawn distance
-  std::array<std::string, 2> joints;             // gear: a, b ("name", or "name.index" where a joint has several)
-  double ratio = 1;                              // gear: q_b = ratio q_a + offset
-  std::optional<double> offset;                  // gear; default from the drawn values
+  std::optional<double> length;                           // m; distance; default the drawn distance
+  std::array<std::string, 2> joints; // gear: a, b ("name", or "name.index" where a joint has several)
+  double ratio = 1;                  // gear: q_b = ratio q_a + offset
+  std::optional<double> offset;      // gear; default from the drawn values
   bool operator==(const Joint&) const = default;
 };
 
@@ -118,17 +122,17 @@ struct Force {
   std::string name;
   std::string description;
   ForceType type = ForceType::spring;
-  std::array<std::string, 2> bodies;             // spring
+  std::array<std::string, 2> bodies;                      // spring
   std::array<Vec3, 2> points{Vec3::Zero(), Vec3::Zero()}; // m; spring: on the first body, on the second
-  double stiffness = 0;                          // N/m; spring
-  std::optional<double> free_length;             // m; spring; default the drawn distance
-  double damping = 0;                            // N s/m; spring, along its line
-  std::string body;                              // force, torque, drag
-  std::optional<Vec3> at;                        // m; force, torque, drag; default the mass centre
-  Vec3 vector = Vec3::Zero();                    // N or N m; force, torque
-  ForceFrame frame = ForceFrame::world;          // whether `vector` is in world or in body axes
-  double linear = 0;                             // N s/m; drag, in air at rest in the world
-  double quadratic = 0;                          // N s^2/m^2; drag
+  double stiffness = 0;                                   // N/m; spring
+  std::optional<double> free_length;                      // m; spring; default the drawn distance
+  double damping = 0;                                     // N s/m; spring, along its line
+  std::string body;                                       // force, torque, drag
+  std::optional<Vec3> at;                                 // m; force, torque, drag; default the mass centre
+  Vec3 vector = Vec3::Zero();                             // N or N m; force, torque
+  ForceFrame frame = ForceFrame::world;                   // whether `vector` is in world or in body axes
+  double linear = 0;                                      // N s/m; drag, in air at rest in the world
+  double quadratic = 0;                                   // N s^2/m^2; drag
   bool operator==(const Force&) const = default;
 };
 
@@ -156,6 +160,7 @@ struct Camera {
   double distance = 1;        // m
   double azimuth = 0;         // rad
   double elevation = 0;       // rad
+  std::string description{};
   bool operator==(const Camera&) const = default;
 };
 
@@ -169,6 +174,7 @@ struct Mechanism {
   std::vector<Slider> sliders;
   Simulation simulation;
   std::optional<Camera> camera;
+  std::string view_description{}; // of the `view` object, which holds the camera
   bool operator==(const Mechanism&) const = default;
 };
 
@@ -180,18 +186,39 @@ bool is_angle(JointType type, int i);
 std::string_view type_name(JointType type);
 std::string_view type_name(ForceType type);
 std::string_view type_name(ShapeType type);
+std::string_view type_name(ForceFrame frame);
+std::string_view type_name(SliderScale scale);
+
+// Whether coordinate `i` is a component of a rotation vector, whose rate is no angular velocity and so can
+// be neither driven nor geared.
+bool is_rotation_vector(JointType type, int i);
+// Whether joints of this type have the field `at`, `axis` or `axis2`.
+bool has_at(JointType type);
+bool has_axis(JointType type);
+bool has_axis2(JointType type);
+
+// Whether a body, joint or force may be called so: not empty, not "ground", without dots (addresses) and
+// control characters.
+bool is_usable_name(std::string_view name);
 
 // Index in the mechanism's list, or -1; body_index also returns -1 for "ground".
 int body_index(const Mechanism& mechanism, std::string_view name);
 int joint_index(const Mechanism& mechanism, std::string_view name);
 int force_index(const Mechanism& mechanism, std::string_view name);
 
-// The gear's end "name" or "name.index", as a joint's index in the list and a coordinate's index in the joint;
-// joint -1 where there is no such coordinate.
+// The gear's end "name" or "name.index", as a joint's index in the list and a coordinate's index in the
+// joint; joint -1 where there is no such coordinate.
 struct CoordinateReference {
   int joint = -1;
   int coordinate = 0;
 };
 CoordinateReference find_coordinate(const Mechanism& mechanism, std::string_view name);
+// "name", or "name.index" where the joint has several coordinates: the inverse of find_coordinate.
+std::string coordinate_name(const Joint& joint, int i);
+
+// What an optional field stands for while it is absent: the drawn distance of the points, and for a gear's
+// offset q_b - ratio q_a of the drawn values.
+double drawn_distance(const std::array<Vec3, 2>& points);
+double drawn_offset(const Mechanism& mechanism, const Joint& gear);
 
 } // namespace flyball

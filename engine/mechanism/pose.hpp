@@ -18,13 +18,15 @@ struct Pose {
 inline std::vector<Pose> drawn_poses(const Mechanism& mechanism) {
   std::vector<Pose> poses;
   poses.reserve(mechanism.bodies.size());
-  for (const Body& b : mechanism.bodies) poses.push_back({b.position, b.rotation.normalized()});
+  for (const Body& b : mechanism.bodies)
+    poses.push_back({b.position, b.rotation.normalized()});
   return poses;
 }
 
 // Where a point fixed in `body` (-1: ground), given in world coordinates of the drawn pose, is when the
 // bodies stand in `poses` (m, world).
-inline Vec3 carried_point(const Mechanism& mechanism, std::span<const Pose> poses, int body, const Vec3& drawn) {
+inline Vec3 carried_point(const Mechanism& mechanism, std::span<const Pose> poses, int body,
+                          const Vec3& drawn) {
   if (body < 0) return drawn;
   const auto i = static_cast<std::size_t>(body);
   const Body& b = mechanism.bodies[i];
@@ -32,7 +34,8 @@ inline Vec3 carried_point(const Mechanism& mechanism, std::span<const Pose> pose
 }
 
 // The same for a direction.
-inline Vec3 carried_vector(const Mechanism& mechanism, std::span<const Pose> poses, int body, const Vec3& drawn) {
+inline Vec3 carried_vector(const Mechanism& mechanism, std::span<const Pose> poses, int body,
+                           const Vec3& drawn) {
   if (body < 0) return drawn;
   const auto i = static_cast<std::size_t>(body);
   return poses[i].rotation * (mechanism.bodies[i].rotation.normalized().conjugate() * drawn);

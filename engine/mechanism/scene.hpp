@@ -10,17 +10,20 @@
 
 namespace flyball {
 
-// Reads and validates. Throws SceneError naming the place and what was expected; for text that is not
+// Reads and validates; throws SceneError naming the place and what was expected; for text that is not
 // JSON the place is the line and column.
 Mechanism read_scene(std::string_view text);
-// The same from a file; the error's `where` starts with the file's path. Also throws SceneError where the file
-// cannot be read.
+// Reads without validating (see validate.hpp), for whoever wants to show or mend an unfinished mechanism.
+Mechanism parse_scene(std::string_view text);
+// The same from a file ("-": standard input); the error's `where` starts with the file's path. Also throws
+// SceneError where the file cannot be read.
 Mechanism load_scene(const std::filesystem::path& file);
 
 // Text that read_scene turns back into an equal value; keys at their default are left out, numbers read back
-// exactly, short arrays stay on one line.
+// exactly, short arrays and objects stay on one line. Throws SceneError for a number that is not finite.
 std::string write_scene(const Mechanism& mechanism);
-// Writes beside the file and renames, so that a reader never sees half a scene. Throws SceneError.
+// Writes beside the file and renames, so that a reader never sees half a scene (see file.hpp). Throws
+// SceneError.
 void save_scene(const Mechanism& mechanism, const std::filesystem::path& file);
 
 } // namespace flyball

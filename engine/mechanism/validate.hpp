@@ -8,7 +8,9 @@
 
 namespace flyball {
 
-// Every mistake in the mechanism, in order of appearance; empty when it can be compiled and solved.
+// The mistakes, in three rounds, of which a later one makes sense only where the earlier finds none: names
+// and numbers that are none; single parts, in order of appearance; the mechanism as a whole. Empty when it
+// can be compiled and solved.
 std::vector<SceneError> find_mistakes(const Mechanism& mechanism);
 // Throws the first of them.
 void validate(const Mechanism& mechanism);

@@ -1,0 +1,67 @@
+#include "app/cli/command.hpp"
+#include "app/cli/editor.hpp"
+#include "app/cli/report_error.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <fmt/format.h>
+
+namespace flyball::cli {
+
+namespace {
+
+// A word that is no file is most likely a subcommand with a slip of the finger.
+int open_editor(const CLI::App& app, const std::string& scene, const EditorOptions& options) {
+  std::error_code ignored;
+  if (!scene.empty() && scene.find('.') == std::string::npos && !std::filesystem::exists(scene, ignored)) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({}))
+      names.push_back(command->get_name());
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    return report_error(
+        fmt::format("there is no file or subcommand {}{}", scene, did_you_mean(scene, views)));
+  }
+  return run_editor(scene, options);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Builds mechanisms, drives some of their joints at constant speed and shows at once where "
+               "everything else settles.\nWithout a subcommand it opens the window.",
+               "flyball");
+  app.set_version_flag("--version", "flyball " FLYBALL_VERSION);
+  app.footer("Example: flyball governor.json");
+  app.require_subcommand(0, 1);
+
+  int exit_code = exit_done;
+  EditorOptions options;
+  std::string scene, theme = "light";
+  app.add_option("scene", scene, "Scene file to open (default: the governor)");
+  app.add_option("--scale", options.scale, "Pixels a point has (default: as the display says)")
+      ->check(CLI::Range(0.5, 4.0));
+  app.add_option("--theme", theme, "Colours of the window")
+      ->check(CLI::IsMember({"light", "dark"}))
+      ->capture_default_str();
+  app.add_option("--state-file", options.state_file)->group("");
+
+  add_render(app, exit_code);
+
+  try {
+    app.parse(argc, argv);
+    options.dark = theme == "dark";
+    if (app.get_subcommands().empty()) exit_code = open_editor(app, scene, options);
+    return exit_code;
+  } catch (const CLI::ParseError& error) {
+    return report_usage(app, error);
+  } catch (const SceneError& error) {
+    return report_error(error);
+  } catch (const std::exception& error) {
+    return report_error(error.what());
+  }
+}
+
+} // namespace
+
+} // namespace flyball::cli
+
+int main(int argc, char** argv) {
+  return flyball::cli::run(argc, argv);
+}

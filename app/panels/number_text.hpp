@@ -1,0 +1,32 @@
+// Numbers as a person reads them: no more digits than are known, and a unit that can be typed too.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace flyball {
+
+struct NumberStyle {
+  int most_digits = 12; // significant
+  // Below this a number is round-off and told as "< 1e-16": computers differ in it. Pictures that are to come out the
+  // same everywhere raise it, and leave out run times.
+  double noise = 1e-16;
+  bool run_times = true;
+};
+
+// The value down to the decimal place in which the error has its first digit. An error that is zero or not
+// finite says nothing: most_digits then.
+std::string value_text(double value, double error, const NumberStyle& style);
+// A magnitude: two digits, "3.1e-14"; below the noise "< 1e-16".
+std::string magnitude_text(double value, const NumberStyle& style);
+// At most `digits` significant digits, without trailing zeros.
+std::string short_text(double value, int digits = 6);
+// "2.4 µs", "13 ms", "1.2 s".
+std::string duration_text(double seconds, const NumberStyle& style);
+
+// What was typed, in `unit` ("rad/s", "N/m", ...): a number alone, or with a unit of the same kind ("105 rpm",
+// "2 kN/m"). Nothing where it cannot be understood or is not finite.
+std::optional<double> parse_quantity(std::string_view text, std::string_view unit);
+
+} // namespace flyball

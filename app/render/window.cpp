@@ -1,0 +1,123 @@
+#include "app/render/window.hpp"
+
+#include "app/render/gl.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace flyball {
+
+namespace {
+
+std::string glfw_error() {
+  const char* words = nullptr;
+  glfwGetError(&words);
+  return words ? words : "unknown error";
+}
+
+// GLFW is global by nature; windows and probes share it, the last one out closes it.
+class GlfwSession {
+ public:
+  GlfwSession() {
+    if (count_ == 0 && !glfwInit()) throw GlError("no window: " + glfw_error());
+    ++count_;
+  }
+  ~GlfwSession() {
+    if (--count_ == 0) glfwTerminate();
+  }
+  GlfwSession(const GlfwSession&) = delete;
+  GlfwSession& operator=(const GlfwSession&) = delete;
+
+ private:
+  inline static int count_ = 0;
+};
+
+struct DestroyWindow {
+  void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+};
+
+} // namespace
+
+struct Window::State {
+  GlfwSession session;
+  std::unique_ptr<GLFWwindow, DestroyWindow> window;
+};
+
+bool display_available(std::string* reason) {
+  try {
+    const GlfwSession session;
+    return true;
+  } catch (const GlError& error) {
+    if (reason) *reason = error.what();
+    return false;
+  }
+}
+
+Window::Window(const std::string& title, int width, int height) : state_(std::make_unique<State>()) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  state_->window.reset(glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr));
+  if (!state_->window) throw GlError("no window: " + glfw_error());
+  glfwMakeContextCurrent(state_->window.get());
+  if (!gladLoadGL(reinterpret_cast<GLADloadfunc>(glfwGetProcAddress)))
+    throw GlError("no window: the functions of OpenGL 3.3 could not be loaded");
+  glfwSwapInterval(1);
+}
+
+Window::~Window() = default;
+Window::Window(Window&&) noexcept = default;
+Window& Window::operator=(Window&&) noexcept = default;
+
+GLFWwindow* Window::handle() const {
+  return state_->window.get();
+}
+
+Window::Size Window::size() const {
+  Size size;
+  glfwGetWindowSize(handle(), &size.width, &size.height);
+  return size;
+}
+
+Window::Size Window::framebuffer_size() const {
+  Size size;
+  glfwGetFramebufferSize(handle(), &size.width, &size.height);
+  return size;
+}
+
+float Window::content_scale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(handle(), &x, &y);
+  return x;
+}
+
+bool Window::should_close() const {
+  return glfwWindowShouldClose(handle());
+}
+void Window::set_should_close(bool close) {
+  glfwSetWindowShouldClose(handle(), close);
+}
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(handle(), title.c_str());
+}
+void Window::swap() {
+  glfwSwapBuffers(handle());
+}
+
+void Window::wait_events(double seconds) {
+  if (seconds > 0)
+    glfwWaitEventsTimeout(seconds);
+  else
+    glfwPollEvents();
+}
+
+std::string Window::description() const {
+  return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ", OpenGL " +
+         reinterpret_cast<const char*>(glGetString(GL_VERSION));
+}
+
+} // namespace flyball

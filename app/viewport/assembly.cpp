@@ -1,0 +1,257 @@
+#include "app/viewport/assembly.hpp"
+
+#include "app/viewport/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <unordered_map>
+
+namespace flyball {
+
+namespace {
+
+Vec3 direction(const Vec3& v, const Vec3& otherwise) {
+  const double length = v.stableNorm();
+  return length > 0 && std::isfinite(length) ? Vec3(v / length) : otherwise;
+}
+
+Bounds shape_bounds(const Body& body) {
+  Bounds bounds;
+  for (const Shape& shape : body.shapes) {
+    const bool line = shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule;
+    // A box and the flat ends of a cylinder are taken along the world's axes: near enough for glyphs.
+    Vec3 around = Vec3::Constant(shape.radius);
+    if (shape.type == ShapeType::box) around = 0.5 * shape.size;
+    if (shape.type == ShapeType::cylinder) {
+      const Vec3 along = (shape.to - shape.from).stableNormalized();
+      around = shape.radius * (Vec3::Ones() - along.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+    }
+    for (const Vec3& p : {line ? shape.from : shape.at.value_or(body.position),
+                          line ? shape.to : shape.at.value_or(body.position)}) {
+      bounds.add(Vec3(p - around));
+      bounds.add(Vec3(p + around));
+    }
+  }
+  return bounds;
+}
+
+SceneScale scale_of(const Assembly& assembly) {
+  SceneScale scale;
+  scale.up = up_axis(assembly.mechanism);
+  std::vector<double> lengths;
+  bool all_shaped = true;
+  for (std::size_t i = 0; i < assembly.mechanism.bodies.size(); ++i) {
+    const Body& body = assembly.mechanism.bodies[i];
+    Bounds reach;
+    reach.add(body.position);
+    for (const Attachment& a : assembly.attachments[i])
+      reach.add(a.at);
+    if (reach.radius() > 0) lengths.push_back(2 * reach.radius());
+    scale.bounds.add(reach);
+    scale.bounds.add(shape_bounds(body));
+    all_shaped = all_shaped && !body.shapes.empty();
+  }
+  for (const Joint& joint : assembly.mechanism.joints) {
+    if (joint.type == JointType::gear) continue;
+    if (joint.type != JointType::distance) {
+      scale.bounds.add(joint.at);
+      continue;
+    }
+    for (const Vec3& p : joint.points)
+      scale.bounds.add(p);
+    if (const double length = (joint.points[0] - joint.points[1]).stableNorm(); length > 0)
+      lengths.push_back(length);
+  }
+  for (const Force& force : assembly.mechanism.forces)
+    if (force.type == ForceType::spring)
+      for (const Vec3& p : force.points)
+        scale.bounds.add(p);
+
+  const double size = 2 * scale.bounds.radius();
+  if (!(size > 0) || !std::isfinite(size)) {
+    scale.unit = 0.05;
+    return scale;
+  }
+  scale.unit = 0.035 * size;
+  if (!lengths.empty()) {
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    scale.unit = std::clamp(0.1 * *middle, 1e-6 * size, scale.unit);
+  }
+  if (all_shaped) scale.unit *= 0.75; // whoever gave the shapes wants to see them
+  return scale;
+}
+
+} // namespace
+
+Assembly::Assembly(const Mechanism& built, std::span<const Pose> in_poses)
+    : mechanism(built), poses(in_poses), attachments(built.bodies.size()) {
+  std::unordered_map<std::string_view, int> index;
+  for (std::size_t i = 0; i < built.bodies.size(); ++i)
+    index.emplace(built.bodies[i].name, static_cast<int>(i));
+  const auto find = [&](std::string_view name) {
+    const auto found = index.find(name);
+    return found == index.end() ? -1 : found->second;
+  };
+  const auto attach = [&](int body, const Attachment& a) {
+    if (body >= 0 && a.at.allFinite()) attachments[static_cast<std::size_t>(body)].push_back(a);
+  };
+  joint_bodies.reserve(built.joints.size());
+  for (std::size_t i = 0; i < built.joints.size(); ++i) {
+    const Joint& joint = built.joints[i];
+    joint_bodies.push_back({find(joint.bodies[0]), find(joint.bodies[1])});
+    if (joint.type == JointType::gear || joint.type == JointType::free) continue;
+    for (int end = 0; end < 2; ++end) {
+      const auto e = static_cast<std::size_t>(end);
+      attach(joint_bodies.back()[e],
+             {joint.type == JointType::distance ? joint.points[e] : joint.at, static_cast<int>(i), end});
+    }
+  }
+  for (const Force& force : built.forces) {
+    const bool spring = force.type == ForceType::spring;
+    force_bodies.push_back(
+        {find(spring ? force.bodies[0] : force.body), spring ? find(force.bodies[1]) : -1});
+    if (spring)
+      for (std::size_t e = 0; e < 2; ++e)
+        attach(force_bodies.back()[e], {force.points[e], -1, static_cast<int>(e)});
+  }
+  scale = scale_of(*this);
+}
+
+CoordinateAxis coordinate_axis(const Joint& joint, std::size_t coordinate) {
+  const int i = static_cast<int>(coordinate);
+  const Vec3 axis = direction(joint.axis, Vec3::UnitZ());
+  CoordinateAxis result{axis, 0, i < coordinate_count(joint.type) && is_angle(joint.type, i)};
+  switch (joint.type) {
+  case JointType::universal:
+    if (i == 1) result = {direction(joint.axis2, Vec3::UnitX()), 1, true};
+    break;
+  case JointType::planar: {
+    const Vec3 x = direction(joint.axis2 - axis * axis.dot(joint.axis2), axis.unitOrthogonal());
+    if (i == 0) result.axis = x;
+    if (i == 1) result.axis = axis.cross(x);
+    break;
+  }
+  case JointType::spherical:
+  case JointType::free: result.axis = Vec3::Unit(i % 3); break;
+  default: break;
+  }
+  return result;
+}
+
+double coordinate_value(const Assembly& assembly, std::size_t index, std::size_t coordinate) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  const auto [parent, child] = assembly.joint_bodies[index];
+  const CoordinateAxis along = coordinate_axis(joint, coordinate);
+  const Vec3 axis = assembly.vector(along.end == 0 ? parent : child, along.axis);
+  const double drawn = joint.coordinates[coordinate].drawn;
+  if (!along.angle)
+    return drawn + axis.dot(assembly.point(child, joint.at) - assembly.point(parent, joint.at));
+  const Vec3 across = along.axis.unitOrthogonal();
+  const Vec3 from = assembly.vector(parent, across), to = assembly.vector(child, across);
+  return drawn + std::atan2(axis.dot(from.cross(to)), from.dot(to));
+}
+
+SlideRange slide_range(const Coordinate& c, double unit) {
+  SlideRange range{c.drawn, c.drawn, c.drawn - 6 * unit};
+  const auto include = [&](double value) {
+    range.from = std::min(range.from, value);
+    range.to = std::max(range.to, value);
+  };
+  if (c.spring) {
+    include(c.spring->free);
+    // A spring as long as its coordinate starts at zero; otherwise the label says nothing about its length.
+    const bool from_zero =
+        c.drawn * c.spring->free > 0 && std::min(std::abs(c.drawn), std::abs(c.spring->free)) > 2 * unit;
+    const double length = std::max(6 * unit, 1.6 * std::abs(c.drawn - c.spring->free));
+    range.anchor = from_zero ? 0 : std::min(c.drawn, c.spring->free) - length;
+    include(range.anchor);
+  } else if (c.damping > 0) {
+    include(range.anchor);
+  }
+  if (c.stop && c.stop->lower) include(*c.stop->lower);
+  if (c.stop && c.stop->upper) include(*c.stop->upper);
+  if (range.to - range.from < unit) {
+    include(c.drawn - 5 * unit);
+    include(c.drawn + 5 * unit);
+  }
+  return range;
+}
+
+std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {
+  if (body < 0) return std::nullopt;
+  const auto b = static_cast<std::size_t>(body);
+  const std::vector<Attachment>& attachments = assembly.attachments[b];
+  const double unit = assembly.scale.unit;
+  for (const Attachment& bearing : attachments) {
+    if (bearing.joint < 0 || attachments.size() < 2) continue;
+    const Joint& joint = assembly.joint(bearing.joint);
+    const auto j = static_cast<std::size_t>(bearing.joint);
+    const bool on_ground = assembly.joint_bodies[j][0] < 0 || assembly.joint_bodies[j][1] < 0;
+    if (!on_ground || (joint.type != JointType::revolute && joint.type != JointType::cylindrical)) continue;
+
+    Shaft shaft{joint.at, direction(joint.axis, Vec3::UnitZ()), 0, 0, bearing.joint};
+    if (shaft.direction.dot(assembly.scale.up) < 0) shaft.direction = -shaft.direction;
+    const auto off_axis = [&](const Vec3& p) {
+      return (p - shaft.origin).cross(shaft.direction).norm() > 0.6 * unit;
+    };
+    const auto include = [&](const Vec3& p) {
+      const double along = shaft.direction.dot(p - shaft.origin);
+      shaft.from = std::min(shaft.from, along);
+      shaft.to = std::max(shaft.to, along);
+    };
+    if (off_axis(assembly.mechanism.bodies[b].position) ||
+        std::any_of(attachments.begin(), attachments.end(),
+                    [&](const Attachment& a) { return off_axis(a.at); }))
+      continue;
+    include(assembly.mechanism.bodies[b].position);
+    for (const Attachment& a : attachments) {
+      include(a.at);
+      if (a.joint < 0) continue;
+      const Joint& other = assembly.joint(a.joint);
+      if (other.type != JointType::prismatic && other.type != JointType::cylindrical) continue;
+      const std::size_t slide = other.type == JointType::cylindrical ? 1 : 0;
+      const Vec3 axis = direction(other.axis, Vec3::UnitZ());
+      if (slide >= other.coordinates.size() || axis.cross(shaft.direction).norm() > 1e-3) continue;
+      const Coordinate& c = other.coordinates[slide];
+      const SlideRange range = slide_range(c, unit);
+      for (const double value : {range.from, range.to})
+        include(other.at + (value - c.drawn) * axis);
+    }
+    if (const Bounds shapes = shape_bounds(assembly.mechanism.bodies[b]); !shapes.empty) {
+      const Vec3 half = 0.5 * (shapes.upper - shapes.lower);
+      const double middle = shaft.direction.dot(shapes.center() - shaft.origin);
+      const double reach = shaft.direction.cwiseAbs().dot(half);
+      shaft.from = middle - reach;
+      shaft.to = middle + reach;
+      return shaft;
+    }
+    shaft.from -= 7 * unit;
+    shaft.to += 2.2 * unit;
+    return shaft;
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+bool on_shaft(const Assembly& assembly, const Joint& joint, int body) {
+  const std::optional<Shaft> shaft = shaft_of(assembly, body);
+  return shaft && direction(joint.axis, Vec3::UnitZ()).cross(shaft->direction).norm() < 1e-3;
+}
+
+} // namespace
+
+int slider_end(const Assembly& assembly, std::size_t joint) {
+  const auto [parent, child] = assembly.joint_bodies[joint];
+  return child < 0 || on_shaft(assembly, assembly.mechanism.joints[joint], child) ? 0 : 1;
+}
+
+bool slides_on_shaft(const Assembly& assembly, std::size_t joint) {
+  const auto [parent, child] = assembly.joint_bodies[joint];
+  const Joint& j = assembly.mechanism.joints[joint];
+  return on_shaft(assembly, j, parent) || on_shaft(assembly, j, child);
+}
+
+} // namespace flyball

@@ -1,0 +1,69 @@
+// A mechanism made ready for drawing: names resolved, every body's points of attachment, the glyphs' size.
+#pragma once
+
+#include "app/viewport/scene_list.hpp"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace flyball {
+
+// Where something holds a body (m, drawn pose).
+struct Attachment {
+  Vec3 at = Vec3::Zero();
+  int joint = -1; // in the mechanism's list; -1 for the end of a spring
+  int end = 0;    // 0: the body is the joint's first, 1: its second
+};
+
+struct Assembly {
+  const Mechanism& mechanism;
+  std::span<const Pose> poses;
+  std::vector<std::array<int, 2>> joint_bodies;     // -1: ground
+  std::vector<std::array<int, 2>> force_bodies;     // spring: both; others: the body, then -1
+  std::vector<std::vector<Attachment>> attachments; // by body
+  SceneScale scale;
+
+  Assembly(const Mechanism& built, std::span<const Pose> in_poses);
+
+  Vec3 point(int body, const Vec3& drawn) const { return carried_point(mechanism, poses, body, drawn); }
+  Vec3 vector(int body, const Vec3& drawn) const { return carried_vector(mechanism, poses, body, drawn); }
+  const Joint& joint(int index) const { return mechanism.joints[static_cast<std::size_t>(index)]; }
+};
+
+// One coordinate of a joint: along or about what, as drawn and fixed in the joint's parent (or child, for
+// the second axis of a universal joint).
+struct CoordinateAxis {
+  Vec3 axis = Vec3::UnitZ(); // unit length, drawn pose
+  int end = 0;               // 0: fixed in the parent, 1: in the child
+  bool angle = false;
+};
+CoordinateAxis coordinate_axis(const Joint& joint, std::size_t coordinate);
+
+// The coordinate's value in the poses, for springs' colours: the drawn value plus how far the child has moved
+// along or turned about the axis (within half a turn).
+double coordinate_value(const Assembly& assembly, std::size_t joint, std::size_t coordinate);
+
+// Values a slide is likely to take (m, its coordinate): drawn, slack, its stops.
+struct SlideRange {
+  double from = 0, to = 0;
+  double anchor = 0; // where the other end of its spring and damper sits
+};
+SlideRange slide_range(const Coordinate& coordinate, double unit);
+
+// A body that turns about an axis of ground through all its points: drawn as a shaft.
+struct Shaft {
+  Vec3 origin = Vec3::Zero();     // m, drawn pose
+  Vec3 direction = Vec3::UnitY(); // unit length, not downwards
+  double from = 0, to = 0;        // m, its ends along `direction`
+  int joint = -1;                 // that it turns in
+};
+std::optional<Shaft> shaft_of(const Assembly& assembly, int body);
+
+// Which end of a prismatic or cylindrical joint is drawn as the slider (0 or 1); the other is its rail.
+int slider_end(const Assembly& assembly, std::size_t joint);
+// Whether the slider is drawn as a collar round a shaft rather than as a block.
+bool slides_on_shaft(const Assembly& assembly, std::size_t joint);
+
+} // namespace flyball

@@ -1,0 +1,270 @@
+#include "app/viewport/glyphs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+struct Place {
+  int parent = -1, child = -1;
+  Vec3 at;          // m, world, as carried by the parent
+  Vec3 there;       // the same as carried by the child
+  Vec3 axis, axis2; // unit length, world
+  double unit = 0;
+};
+
+Place place_of(const Assembly& assembly, std::size_t index) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  Place p;
+  p.parent = assembly.joint_bodies[index][0];
+  p.child = assembly.joint_bodies[index][1];
+  p.at = assembly.point(p.parent, joint.at);
+  p.there = assembly.point(p.child, joint.at);
+  p.axis = assembly.vector(p.parent, coordinate_axis(joint, 0).axis);
+  if (joint.type == JointType::planar) p.axis = assembly.vector(p.parent, joint.axis.stableNormalized());
+  p.axis2 = assembly.vector(joint.type == JointType::universal ? p.child : p.parent,
+                            joint.axis2.stableNormalized());
+  p.unit = assembly.scale.unit;
+  return p;
+}
+
+// The side of a joint at which ground holds it: below if the axis leans upwards, otherwise behind.
+Vec3 ground_side(const Vec3& axis, const Vec3& up) {
+  return axis.dot(up) < -0.3 ? axis : Vec3(-axis);
+}
+
+// Hinges on one pin stand side by side: which of how many this one is.
+struct Rank {
+  int index = 0, count = 1;
+};
+
+Rank rank_on_pin(const Assembly& assembly, std::size_t index) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  const auto [parent, child] = assembly.joint_bodies[index];
+  const int body = parent >= 0 ? parent : child;
+  Rank rank{0, 0};
+  if (body < 0) return {};
+  for (const Attachment& a : assembly.attachments[static_cast<std::size_t>(body)]) {
+    if (a.joint < 0) continue;
+    const Joint& other = assembly.joint(a.joint);
+    if (other.type != JointType::revolute || (other.at - joint.at).norm() > 0.5 * assembly.scale.unit ||
+        other.axis.stableNormalized().cross(joint.axis.stableNormalized()).norm() > 0.1)
+      continue;
+    if (a.joint < static_cast<int>(index)) ++rank.index;
+    ++rank.count;
+  }
+  return rank;
+}
+
+void draw_revolute(Sketch& sketch, const Assembly& assembly, std::size_t index, const Place& p,
+                   const Palette& colors) {
+  const double u = p.unit;
+  const bool on_ground = p.parent < 0 || p.child < 0;
+  for (const int body : {p.parent, p.child}) {
+    const auto shaft = shaft_of(assembly, body);
+    if (!shaft || shaft->joint != static_cast<int>(index)) continue;
+    // A shaft stands in its bearing at its lower end.
+    const Vec3 foot = shaft->origin + shaft->from * shaft->direction;
+    sketch.pen.color = colors.metal;
+    if (assembly.mechanism.bodies[static_cast<std::size_t>(body)].shapes.empty())
+      sketch.tube(foot + 1.0 * u * shaft->direction, shaft->direction, 0.95 * u, 1.35 * u, 0.2 * u);
+    return draw_anchor(sketch, foot - 0.42 * u * shaft->direction, shaft->direction, 2.7 * u, colors);
+  }
+  if (shaft_of(assembly, p.parent) || shaft_of(assembly, p.child)) {
+    // The shaft's head is the knuckle already.
+    sketch.pen.color = colors.metal_dark;
+    return sketch.disc(p.at, p.axis, 1.75 * u, 0.62 * u, 0.2 * u);
+  }
+  const Rank rank = rank_on_pin(assembly, index);
+  const double half = rank.count > 1 ? 0.5 * u : 0.8 * u;
+  const Vec3 knuckle = p.at + (rank.index - 0.5 * (rank.count - 1)) * 1.08 * u * p.axis;
+  const double reach = 0.54 * u * rank.count + 0.7 * u;
+  sketch.pen.color = colors.metal;
+  sketch.tube(knuckle, p.axis, half, 0.98 * u, 0.14 * u);
+  sketch.pen.color = colors.metal_dark;
+  sketch.disc(p.at, p.axis, reach, 0.5 * u, 0.16 * u);
+  if (!on_ground) return;
+  const Vec3 side = ground_side(p.axis, assembly.scale.up);
+  sketch.pen.color = colors.metal;
+  sketch.cylinder(p.at + 0.8 * u * side, p.at + 1.9 * u * side, 0.85 * u, 0.1 * u);
+  draw_anchor(sketch, p.at + 2.2 * u * side, -side, 2.2 * u, colors);
+}
+
+void draw_prismatic(Sketch& sketch, const Assembly& assembly, std::size_t index, const Place& p,
+                    const Palette& colors) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  const double u = p.unit;
+  const int end = slider_end(assembly, index);
+  const Vec3 slider = end == 1 ? p.there : p.at, rail = end == 1 ? p.at : p.there;
+  sketch.pen.color = colors.metal_dark;
+  const bool round = joint.type == JointType::cylindrical || slides_on_shaft(assembly, index);
+  const int slider_body = assembly.joint_bodies[index][static_cast<std::size_t>(end)];
+  if (slider_body >= 0 && !assembly.mechanism.bodies[static_cast<std::size_t>(slider_body)].shapes.empty())
+    sketch.tube(slider, p.axis, 1.9 * u, 1.1 * u, 0.1 * u);
+  else
+    for (const double side : {-1.0, 1.0}) {
+      if (round)
+        sketch.tube(slider + side * 1.25 * u * p.axis, p.axis, 0.22 * u, 1.5 * u, 0.08 * u);
+      else
+        sketch.box(slider + side * 1.65 * u * p.axis, frame_along(p.axis, assembly.scale.up),
+                   {0.9 * u, 0.9 * u, 0.2 * u}, 0.08 * u);
+    }
+  if (assembly.joint_bodies[index][end == 1 ? 0 : 1] >= 0 || joint.coordinates.empty()) return;
+  const Coordinate& c = joint.coordinates.back();
+  const SlideRange range = slide_range(c, u);
+  const Vec3 from = rail + (range.from - c.drawn - 2.2 * u) * p.axis,
+             to = rail + (range.to - c.drawn + 2.2 * u) * p.axis;
+  sketch.pen.color = colors.metal;
+  sketch.cylinder(from, to, 0.45 * u, 0.1 * u);
+  draw_anchor(sketch, from, p.axis, 1.7 * u, colors);
+  draw_anchor(sketch, to, -p.axis, 1.7 * u, colors);
+}
+
+void draw_universal(Sketch& sketch, const Place& p, const Palette& colors) {
+  const double u = p.unit;
+  for (const Vec3& axis : {p.axis, p.axis2}) {
+    sketch.pen.color = colors.metal;
+    sketch.disc(p.at, axis, 1.5 * u, 0.36 * u, 0.1 * u);
+    sketch.pen.color = colors.metal_dark;
+    for (const double side : {-1.0, 1.0})
+      sketch.disc(p.at + side * 1.35 * u * axis, axis, 0.3 * u, 0.62 * u, 0.1 * u);
+  }
+  sketch.pen.color = colors.metal;
+  sketch.sphere(p.at, 0.62 * u);
+}
+
+void draw_spherical(Sketch& sketch, const Assembly& assembly, const Place& p, const Palette& colors) {
+  const double u = p.unit;
+  Vec3 bottom = -assembly.scale.up;
+  if (p.parent >= 0) {
+    const Vec3 hub = assembly.poses[static_cast<std::size_t>(p.parent)].position - p.at;
+    if (hub.norm() > 0.5 * u) bottom = hub.normalized();
+  }
+  sketch.pen.color = colors.metal;
+  sketch.sphere(p.at, 0.85 * u);
+  sketch.pen.color = colors.metal_dark;
+  sketch.bowl(p.at, bottom, 1.25 * u);
+  if (p.parent < 0) draw_anchor(sketch, p.at + 1.6 * u * bottom, -bottom, 2 * u, colors);
+}
+
+void draw_distance(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  const auto [first, second] = assembly.joint_bodies[index];
+  const double u = assembly.scale.unit;
+  const Vec3 a = assembly.point(first, joint.points[0]), b = assembly.point(second, joint.points[1]);
+  sketch.pen.role = Role::link;
+  sketch.pen.color = colors.metal;
+  sketch.rod(a, b, 0.32 * u);
+  sketch.pen.color = colors.metal_dark;
+  sketch.sphere(a, 0.68 * u);
+  sketch.sphere(b, 0.68 * u);
+  for (const auto& [body, at] : {std::pair(first, a), std::pair(second, b)})
+    if (body < 0) draw_anchor(sketch, at, -assembly.scale.up, 1.6 * u, colors);
+}
+
+void draw_gear(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
+  const double u = assembly.scale.unit;
+  std::array<Vec3, 2> ends;
+  for (std::size_t e = 0; e < 2; ++e) {
+    const int other = find_coordinate(assembly.mechanism, assembly.mechanism.joints[index].joints[e]).joint;
+    if (other < 0 || assembly.joint(other).type == JointType::gear) return;
+    const Place p = place_of(assembly, static_cast<std::size_t>(other));
+    ends[e] = p.at + 1.7 * u * p.axis;
+    sketch.pen.color = colors.metal_dark;
+    sketch.gear(ends[e], p.axis, 0.28 * u, 2.1 * u);
+  }
+  // Dots tell which two joints turn together.
+  const int dots = std::clamp(static_cast<int>((ends[1] - ends[0]).norm() / (1.3 * u)), 0, 60);
+  for (int i = 1; i < dots; ++i)
+    sketch.sphere(ends[0] + (ends[1] - ends[0]) * (double(i) / dots), 0.2 * u);
+}
+
+} // namespace
+
+void draw_anchor(Sketch& sketch, const Vec3& at, const Vec3& normal, double radius, const Palette& colors) {
+  const Pen before = sketch.pen;
+  sketch.pen.surface = Surface::hatched;
+  sketch.pen.role = Role::anchor;
+  sketch.pen.color = colors.metal;
+  sketch.disc(at, normal, 0.16 * radius, radius, 0.04 * radius);
+  sketch.pen = before;
+}
+
+void draw_joint(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  sketch.pen = {colors.metal, Surface::metal, Role::joint, {PartKind::joint, static_cast<int>(index)}};
+  if (joint.type == JointType::distance) return draw_distance(sketch, assembly, index, colors);
+  if (joint.type == JointType::gear) return draw_gear(sketch, assembly, index, colors);
+  const Place p = place_of(assembly, index);
+  const double u = p.unit;
+  switch (joint.type) {
+  case JointType::revolute: return draw_revolute(sketch, assembly, index, p, colors);
+  case JointType::prismatic:
+  case JointType::cylindrical: return draw_prismatic(sketch, assembly, index, p, colors);
+  case JointType::universal: draw_universal(sketch, p, colors); break;
+  case JointType::spherical: return draw_spherical(sketch, assembly, p, colors);
+  case JointType::planar:
+    sketch.box(p.at - 0.3 * u * p.axis, frame_along(p.axis, p.axis2), {5 * u, 5 * u, 0.14 * u}, 0.1 * u);
+    sketch.pen.color = colors.metal_dark;
+    sketch.disc(p.there, p.axis, 0.25 * u, 1.2 * u, 0.1 * u);
+    break;
+  case JointType::fixed:
+    sketch.pen.color = colors.metal_dark;
+    sketch.box(p.at, Quat::Identity(), Vec3::Constant(0.75 * u), 0.12 * u);
+    break;
+  default: return;
+  }
+  if (p.parent < 0) draw_anchor(sketch, p.at - 1.5 * u * assembly.scale.up, assembly.scale.up, 2 * u, colors);
+}
+
+void draw_cut_mark(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  if (joint.type == JointType::gear) return;
+  const double u = assembly.scale.unit;
+  sketch.pen = {colors.cut, Surface::plain, Role::cut_mark, {PartKind::joint, static_cast<int>(index)}};
+  if (joint.type != JointType::distance) {
+    const Place p = place_of(assembly, index);
+    return sketch.ring(p.there, p.axis, 1.9 * u, 0.2 * u, true);
+  }
+  const auto [first, second] = assembly.joint_bodies[index];
+  const Vec3 a = assembly.point(first, joint.points[0]), b = assembly.point(second, joint.points[1]);
+  const Vec3 along = (b - a).stableNormalized();
+  if (!(along.norm() > 0)) return;
+  // The double bar that breaks a line in drawings.
+  for (const double side : {-1.0, 1.0})
+    sketch.disc(0.5 * (a + b) + side * 0.38 * u * along, along, 0.13 * u, 0.95 * u, 0.08 * u);
+}
+
+void draw_drives(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  const double u = assembly.scale.unit;
+  sketch.pen = {colors.accent, Surface::plain, Role::drive, {PartKind::joint, static_cast<int>(index)}};
+  for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+    if (!joint.coordinates[i].drive) continue;
+    const double speed = joint.coordinates[i].drive->speed;
+    const Place p = place_of(assembly, index);
+    const CoordinateAxis along = coordinate_axis(joint, i);
+    const Vec3 axis = assembly.vector(along.end == 0 ? p.parent : p.child, along.axis);
+    const Vec3 forward = speed < 0 ? Vec3(-axis) : axis;
+    // The head is turned to the front, where it is seen.
+    const Vec3 front = Vec3(0.5, 0.3, 0.8) + 0.01 * axis.unitOrthogonal();
+    const Vec3 start = forward.cross(front);
+    if (!along.angle) {
+      const Vec3 beside = p.there + 2.6 * u * axis.unitOrthogonal();
+      sketch.arrow(beside - 2.5 * u * forward, beside + 2.5 * u * forward, 0.24 * u);
+      continue;
+    }
+    Vec3 center = p.at + 1.9 * u * axis;
+    for (const int body : {p.parent, p.child})
+      if (const auto shaft = shaft_of(assembly, body); shaft && shaft->joint == static_cast<int>(index))
+        center = shaft->origin + (shaft->from + 3.4 * u) * shaft->direction;
+    if (speed == 0)
+      sketch.ring(center, axis, 2.7 * u, 0.2 * u, false);
+    else
+      sketch.turn(center, forward, start, 2.7 * u, 0.24 * u);
+  }
+}
+
+} // namespace flyball

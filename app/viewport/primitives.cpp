@@ -1,0 +1,282 @@
+#include "app/viewport/primitives.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+constexpr double tau = 2 * std::numbers::pi;
+
+class Builder {
+ public:
+  std::uint32_t add(const Vec3& core, const Vec3& normal) {
+    const Vec3 n = normal.normalized();
+    mesh.vertices.push_back(
+        {{float(core.x()), float(core.y()), float(core.z())}, {float(n.x()), float(n.y()), float(n.z())}});
+    return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  }
+
+  // Vertices lie in rows of `columns`; neighbours are joined.
+  void grid(std::uint32_t first, int rows, int columns) {
+    for (int r = 0; r + 1 < rows; ++r)
+      for (int c = 0; c + 1 < columns; ++c) {
+        const auto a = first + static_cast<std::uint32_t>(r * columns + c), b = a + 1;
+        const auto d = a + static_cast<std::uint32_t>(columns), e = d + 1;
+        mesh.indices.insert(mesh.indices.end(), {a, b, e, a, e, d});
+      }
+  }
+
+  // Turns every triangle to the side its normals point to; drops those without area.
+  PrimitiveMesh finish() {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      std::array<Vec3, 3> p;
+      Vec3 outward = Vec3::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const PrimitiveVertex& v = mesh.vertices[mesh.indices[i + k]];
+        const Vec3 n(v.normal[0], v.normal[1], v.normal[2]);
+        p[k] = Vec3(v.core[0], v.core[1], v.core[2]) + 0.11 * n;
+        outward += n;
+      }
+      const Vec3 area = (p[1] - p[0]).cross(p[2] - p[0]);
+      if (area.norm() < 1e-9) continue;
+      const bool turned = area.dot(outward) < 0;
+      kept.insert(kept.end(),
+                  {mesh.indices[i], mesh.indices[i + (turned ? 2 : 1)], mesh.indices[i + (turned ? 1 : 2)]});
+    }
+    mesh.indices = std::move(kept);
+    return std::move(mesh);
+  }
+
+  PrimitiveMesh mesh;
+};
+
+// A point of an outline turned about z: radius and height of the core, direction of the normal.
+struct Profile {
+  double radius, height, normal_radius, normal_height;
+};
+
+void arc_profile(std::vector<Profile>& profile, double radius, double height, double from, double to,
+                 int steps) {
+  for (int i = 0; i <= steps; ++i) {
+    const double a = from + (to - from) * i / steps;
+    profile.push_back({radius, height, std::cos(a), std::sin(a)});
+  }
+}
+
+PrimitiveMesh lathe(const std::vector<Profile>& profile, int sides) {
+  Builder b;
+  for (const Profile& p : profile)
+    for (int i = 0; i <= sides; ++i) {
+      const double a = tau * i / sides;
+      const Vec3 out(std::cos(a), std::sin(a), 0);
+      b.add(p.radius * out + p.height * Vec3::UnitZ(),
+            p.normal_radius * out + p.normal_height * Vec3::UnitZ());
+    }
+  b.grid(0, static_cast<int>(profile.size()), sides + 1);
+  return b.finish();
+}
+
+constexpr double quarter = std::numbers::pi / 2;
+
+PrimitiveMesh turned_solid(Primitive primitive, int sides, int rounding) {
+  std::vector<Profile> p;
+  switch (primitive) {
+  case Primitive::sphere: arc_profile(p, 0, 0, -quarter, quarter, 2 * rounding); break;
+  case Primitive::capsule:
+    arc_profile(p, 0, -1, -quarter, 0, rounding);
+    arc_profile(p, 0, 1, 0, quarter, rounding);
+    break;
+  case Primitive::cylinder:
+    p.push_back({0, -1, 0, -1});
+    arc_profile(p, 1, -1, -quarter, 0, rounding / 2);
+    arc_profile(p, 1, 1, 0, quarter, rounding / 2);
+    p.push_back({0, 1, 0, 1});
+    break;
+  case Primitive::tube:
+    arc_profile(p, 1, -1, -quarter, 0, rounding / 2);
+    arc_profile(p, 1, 1, 0, quarter, rounding / 2);
+    arc_profile(p, tube_hole, 1, quarter, 2 * quarter, rounding / 2);
+    arc_profile(p, tube_hole, -1, 2 * quarter, 3 * quarter, rounding / 2);
+    p.push_back(p.front());
+    break;
+  case Primitive::cone: p = {{0, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 1, 0.42}, {0, 1, 1, 0.42}}; break;
+  default: { // bowl
+    constexpr double inner = 0.84;
+    for (int i = 0; i <= rounding; ++i) {
+      const double a = -quarter + quarter * i / rounding;
+      p.push_back({std::cos(a), std::sin(a), std::cos(a), std::sin(a)});
+    }
+    p.push_back({1, 0, 0, 1});
+    p.push_back({inner, 0, 0, 1});
+    for (int i = rounding; i >= 0; --i) {
+      const double a = -quarter + quarter * i / rounding;
+      p.push_back({inner * std::cos(a), inner * std::sin(a), -std::cos(a), -std::sin(a)});
+    }
+    break;
+  }
+  }
+  return lathe(p, sides);
+}
+
+// A curve with the two directions its round cross-section lies in.
+struct CurvePoint {
+  Vec3 at, across, along;
+};
+
+void sweep(Builder& b, const std::function<CurvePoint(double)>& curve, double from, double to, int steps,
+           int sides, bool capped) {
+  const auto first = static_cast<std::uint32_t>(b.mesh.vertices.size());
+  const auto row = [&](const CurvePoint& c, double bulge) {
+    const Vec3 tangent = c.across.cross(c.along);
+    for (int k = 0; k <= sides; ++k) {
+      const double a = tau * k / sides;
+      b.add(c.at,
+            std::cos(bulge) * (std::cos(a) * c.across + std::sin(a) * c.along) + std::sin(bulge) * tangent);
+    }
+  };
+  int rows = 0;
+  const auto cap = [&](double t, double sign, bool opening) {
+    for (int i = 0; i < 3; ++i, ++rows)
+      row(curve(t), sign * quarter * (opening ? 3 - i : i + 1) / 3);
+  };
+  // `across` x `along` points forwards or backwards along the curve, whichever it is caps bulge outwards.
+  const CurvePoint start = curve(from);
+  const Vec3 ahead = curve(from + 1e-4 * (to - from)).at - start.at;
+  const double forward = start.across.cross(start.along).dot(ahead) < 0 ? -1 : 1;
+  if (capped) cap(from, -forward, true);
+  for (int i = 0; i <= steps; ++i, ++rows)
+    row(curve(from + (to - from) * i / steps), 0);
+  if (capped) cap(to, forward, false);
+  b.grid(first, rows, sides + 1);
+}
+
+CurvePoint circle(double t) {
+  const double a = tau * t;
+  const Vec3 out(std::cos(a), std::sin(a), 0);
+  return {out, out, Vec3::UnitZ()};
+}
+
+// A straight lead on the axis at each end, then the turns.
+CurvePoint hooked_coil(double t) {
+  constexpr double lead = 0.08;
+  const double turn = (t - lead) / (1 - 2 * lead);
+  const double a = tau * coil_turns * std::clamp(turn, 0.0, 1.0);
+  const double grown = std::clamp(std::min(turn, 1 - turn) * coil_turns * 2.5, 0.0, 1.0);
+  const Vec3 out(std::cos(a), std::sin(a), 0);
+  const Vec3 at = grown * grown * (3 - 2 * grown) * out + t * Vec3::UnitZ();
+  const bool straight = turn < 0 || turn > 1;
+  return {at, out, straight ? Vec3(Vec3::UnitZ().cross(out)) : Vec3(Vec3::UnitZ())};
+}
+
+// The first and the last turn lie flat, as in a ground compression spring.
+CurvePoint flat_ended_coil(double t) {
+  constexpr double flat = 0.9 / coil_turns;
+  const double a = tau * coil_turns * t;
+  const double u = std::clamp((t - 0.5 * flat) / (1 - flat), 0.0, 1.0);
+  const Vec3 out(std::cos(a), std::sin(a), 0);
+  return {out + (0.03 + 0.94 * u) * Vec3::UnitZ(), out, Vec3::UnitZ()};
+}
+
+CurvePoint flat_spiral(double t) {
+  constexpr double turns = 3.25;
+  const double a = tau * turns * (t - 1), r = 0.18 + 0.82 * t;
+  const Vec3 out(std::cos(a), std::sin(a), 0);
+  return {r * out, out, Vec3::UnitZ()};
+}
+
+PrimitiveMesh rounded_box(int rounding) {
+  Builder b;
+  const int columns = 2 * rounding + 2;
+  const auto coordinate = [&](int i) {
+    if (i <= rounding) return std::tan(-0.5 * quarter * (rounding - i) / rounding);
+    return std::tan(0.5 * quarter * (i - rounding - 1) / rounding);
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const auto first = static_cast<std::uint32_t>(b.mesh.vertices.size());
+      for (int i = 0; i < columns; ++i)
+        for (int j = 0; j < columns; ++j) {
+          Vec3 normal, core;
+          normal[axis] = core[axis] = side;
+          normal[(axis + 1) % 3] = coordinate(i);
+          normal[(axis + 2) % 3] = coordinate(j);
+          core[(axis + 1) % 3] = i <= rounding ? -1 : 1;
+          core[(axis + 2) % 3] = j <= rounding ? -1 : 1;
+          b.add(core, normal);
+        }
+      b.grid(first, columns, columns);
+    }
+  return b.finish();
+}
+
+PrimitiveMesh toothed_disc() {
+  constexpr int teeth = 14;
+  constexpr double root = 0.8, hole = 0.42;
+  std::vector<Vec3> outline;
+  for (int i = 0; i < teeth; ++i)
+    for (const auto& [phase, radius] : {std::pair(0.0, root), {0.3, root}, {0.42, 1.0}, {0.88, 1.0}}) {
+      const double a = tau * (i + phase) / teeth;
+      outline.emplace_back(radius * std::cos(a), radius * std::sin(a), 0);
+    }
+  Builder b;
+  const auto quad = [&](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s, const Vec3& normal) {
+    const std::uint32_t first = b.add(p, normal);
+    b.add(q, normal);
+    b.add(s, normal);
+    b.add(r, normal);
+    b.grid(first, 2, 2);
+  };
+  const Vec3 z = Vec3::UnitZ();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec3 &p = outline[i], &q = outline[(i + 1) % outline.size()];
+    const Vec3 inner_p = hole * p.normalized(), inner_q = hole * q.normalized();
+    quad(p - z, q - z, q + z, p + z, (q - p).cross(z));
+    quad(inner_p - z, inner_q - z, inner_q + z, inner_p + z, -(inner_p + inner_q));
+    for (const double side : {-1.0, 1.0})
+      quad(p + side * z, q + side * z, inner_q + side * z, inner_p + side * z, side * z);
+  }
+  return b.finish();
+}
+
+PrimitiveMesh swept(Primitive primitive, bool fine) {
+  Builder b;
+  const int around = fine ? 10 : 5;
+  const int circle_steps = fine ? 64 : 24, coil_steps = static_cast<int>(coil_turns) * (fine ? 28 : 10);
+  switch (primitive) {
+  case Primitive::ring: sweep(b, circle, 0, 1, circle_steps, around, false); break;
+  case Primitive::arc: sweep(b, circle, 0, 0.75, circle_steps, around, true); break;
+  case Primitive::broken_ring:
+    for (int i = 0; i < 4; ++i)
+      sweep(b, circle, 0.25 * i + 0.04, 0.25 * i + 0.21, circle_steps / 4, around, true);
+    break;
+  case Primitive::coil: sweep(b, hooked_coil, 0, 1, coil_steps, around, true); break;
+  case Primitive::open_coil: sweep(b, flat_ended_coil, 0, 1, coil_steps, around, true); break;
+  default: sweep(b, flat_spiral, 0, 1, 2 * circle_steps, around, true); break;
+  }
+  return b.finish();
+}
+
+} // namespace
+
+PrimitiveMesh primitive_mesh(Primitive primitive, int detail) {
+  const auto level = static_cast<std::size_t>(std::clamp(detail, 0, 2));
+  const int sides = std::array{8, 16, 40}[level], rounding = std::array{2, 4, 10}[level];
+  switch (primitive) {
+  case Primitive::box: return rounded_box(detail > 1 ? 4 : 1);
+  case Primitive::gear: return toothed_disc();
+  case Primitive::ring:
+  case Primitive::arc:
+  case Primitive::broken_ring:
+  case Primitive::coil:
+  case Primitive::open_coil:
+  case Primitive::spiral: return swept(primitive, detail > 1);
+  default: return turned_solid(primitive, sides, rounding);
+  }
+}
+
+} // namespace flyball

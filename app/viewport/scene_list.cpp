@@ -1,0 +1,135 @@
+#include "app/viewport/scene_list.hpp"
+
+#include "app/viewport/assembly.hpp"
+#include "app/viewport/body_form.hpp"
+#include "app/viewport/glyphs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// Where everything would sink to if the drives on ground turned through all their phases.
+double lowest_point(const Assembly& assembly, const Bounds& drawn) {
+  const Vec3& up = assembly.scale.up;
+  // Along a slanted axis the box around the box is as far as one looks.
+  const Vec3 half = 0.5 * (drawn.upper - drawn.lower);
+  double low = up.dot(drawn.center()) - up.cwiseAbs().dot(half);
+  for (std::size_t j = 0; j < assembly.mechanism.joints.size(); ++j) {
+    const Joint& joint = assembly.mechanism.joints[j];
+    if (joint.type != JointType::revolute && joint.type != JointType::cylindrical) continue;
+    if (assembly.joint_bodies[j][0] >= 0 && assembly.joint_bodies[j][1] >= 0) continue;
+    if (joint.coordinates.empty() || !joint.coordinates[0].drive) continue;
+    const Vec3 axis = joint.axis.stableNormalized();
+    const double tilt = axis.cross(up).norm();
+    if (tilt < 1e-3) continue;
+    double reach = 0;
+    const auto include = [&](int body, const Vec3& at) {
+      reach = std::max(reach, (assembly.point(body, at) - joint.at).cross(axis).norm());
+    };
+    for (std::size_t b = 0; b < assembly.mechanism.bodies.size(); ++b) {
+      include(static_cast<int>(b), assembly.mechanism.bodies[b].position);
+      for (const Attachment& a : assembly.attachments[b])
+        include(static_cast<int>(b), a.at);
+    }
+    low = std::min(low, up.dot(joint.at) - tilt * (reach + 2.5 * assembly.scale.unit));
+  }
+  return low;
+}
+
+bool listed(std::span<const std::string> names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void add_bodies(const Assembly& assembly, std::span<const Color> colors, std::vector<Instance>& list) {
+  for (std::size_t i = 0; i < assembly.mechanism.bodies.size(); ++i) {
+    std::vector<Instance> solids = body_form(assembly, i, colors[i]);
+    carry(assembly, i, solids);
+    list.insert(list.end(), solids.begin(), solids.end());
+  }
+}
+
+bool finite(const Instance& instance) {
+  return instance.position.allFinite() && instance.rotation.coeffs().allFinite() &&
+         instance.extent.allFinite() && std::isfinite(instance.round);
+}
+
+} // namespace
+
+SceneScale scene_scale(const Mechanism& mechanism) {
+  const std::vector<Pose> drawn = drawn_poses(mechanism);
+  return Assembly(mechanism, drawn).scale;
+}
+
+Bounds instance_bounds(const Instance& instance) {
+  const Mat3 r = instance.rotation.toRotationMatrix();
+  const Vec3& e = instance.extent;
+  Vec3 low = -e, high = e;
+  switch (instance.primitive) {
+  case Primitive::cone:
+  case Primitive::coil:
+  case Primitive::open_coil: low.z() = 0; break;
+  case Primitive::bowl: high.z() = 0; break;
+  case Primitive::ring:
+  case Primitive::arc:
+  case Primitive::broken_ring:
+  case Primitive::spiral: low.z() = high.z() = 0; break;
+  default: break;
+  }
+  const Vec3 center = instance.position + r * (0.5 * (low + high));
+  const Vec3 half = r.cwiseAbs() * (0.5 * (high - low)) + Vec3::Constant(instance.round);
+  Bounds bounds;
+  bounds.add(Vec3(center - half));
+  bounds.add(Vec3(center + half));
+  return bounds;
+}
+
+SceneList build_scene(const Mechanism& mechanism, std::span<const Pose> poses, const SceneOptions& options) {
+  const std::vector<Pose> drawn = drawn_poses(mechanism);
+  if (poses.size() != drawn.size()) poses = drawn;
+  const Assembly assembly(mechanism, poses);
+  const Palette& colors = palette(options.theme);
+  SceneList scene;
+  scene.scale = assembly.scale;
+  add_bodies(assembly, body_colors(mechanism, options.theme), scene.instances);
+  Sketch sketch(scene.instances);
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
+    if (options.joints) draw_joint(sketch, assembly, j, colors);
+    if (options.joints && listed(options.cut_joints, mechanism.joints[j].name))
+      draw_cut_mark(sketch, assembly, j, colors);
+    if (options.drives) draw_drives(sketch, assembly, j, colors);
+    if (options.forces) draw_joint_forces(sketch, assembly, j, colors);
+  }
+  if (options.forces)
+    for (std::size_t f = 0; f < mechanism.forces.size(); ++f)
+      draw_force(sketch, assembly, f, colors);
+
+  std::erase_if(scene.instances, [](const Instance& instance) { return !finite(instance); });
+  for (const Instance& instance : scene.instances)
+    scene.bounds.add(instance_bounds(instance));
+  Bounds all = scene.bounds;
+  all.add(scene.scale.bounds);
+  scene.floor = all.empty ? 0 : lowest_point(assembly, all) - 0.04 * scene.scale.unit;
+  return scene;
+}
+
+std::vector<Instance> build_ghost(const Mechanism& mechanism, std::span<const Pose> poses, Color color) {
+  std::vector<Instance> list;
+  if (poses.size() != mechanism.bodies.size()) return list;
+  const Assembly assembly(mechanism, poses);
+  add_bodies(assembly, std::vector<Color>(mechanism.bodies.size(), color), list);
+  Sketch sketch(list);
+  const Palette& colors = palette(Theme::light);
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
+    if (mechanism.joints[j].type == JointType::distance) draw_joint(sketch, assembly, j, colors);
+  std::erase_if(list, [](const Instance& i) { return !finite(i) || i.role == Role::anchor; });
+  for (Instance& instance : list) {
+    instance.color = color;
+    instance.surface = Surface::plain;
+  }
+  return list;
+}
+
+} // namespace flyball

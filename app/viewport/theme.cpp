@@ -1,0 +1,56 @@
+#include "app/viewport/theme.hpp"
+
+namespace flyball {
+
+namespace {
+
+constexpr std::array<Color, 6> body_colors = {okabe_ito::sky_blue, okabe_ito::orange, okabe_ito::green,
+                                              okabe_ito::yellow,   okabe_ito::purple, rgb(0x9AA3AD)};
+
+constexpr Palette light = {
+    .background_top = rgb(0xFBFCFD),
+    .background_bottom = rgb(0xE2E7EC),
+    .grid = rgb(0x5B6B7C, 0.34f),
+    .accent = okabe_ito::blue,
+    .metal = rgb(0xA9B1BA),
+    .metal_dark = rgb(0x59626D),
+    .ghost = rgb(0x6C7681, 0.36f),
+    .motion = rgb(0xE69F00, 0.42f),
+    .tension = okabe_ito::vermillion,
+    .compression = okabe_ito::blue,
+    .slack = rgb(0x8C949D),
+    .cut = rgb(0xA8487E),
+    .force = rgb(0x30363D),
+    .bodies = body_colors,
+    .axis_x = okabe_ito::vermillion,
+    .axis_y = okabe_ito::green,
+    .axis_z = okabe_ito::blue,
+};
+
+constexpr Palette dark = {
+    .background_top = rgb(0x23282F),
+    .background_bottom = rgb(0x14171B),
+    .grid = rgb(0xA9BACB, 0.20f),
+    .accent = rgb(0x4DA6E8),
+    .metal = rgb(0xAEB6BF),
+    .metal_dark = rgb(0x66707B),
+    .ghost = rgb(0xB6C0CA, 0.22f),
+    .motion = rgb(0xE69F00, 0.40f),
+    .tension = rgb(0xE8762B),
+    .compression = rgb(0x3E93D6),
+    .slack = rgb(0x9AA3AD),
+    .cut = rgb(0xE08DBB),
+    .force = rgb(0xE6EBF0),
+    .bodies = body_colors,
+    .axis_x = rgb(0xE8762B),
+    .axis_y = rgb(0x1DB58A),
+    .axis_z = rgb(0x4DA6E8),
+};
+
+} // namespace
+
+const Palette& palette(Theme theme) {
+  return theme == Theme::light ? light : dark;
+}
+
+} // namespace flyball

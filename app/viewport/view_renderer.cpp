@@ -1,0 +1,326 @@
+#include "app/viewport/view_renderer.hpp"
+
+#include "app/render/shader.hpp"
+#include "app/viewport/shadow_map.hpp"
+#include "app/viewport/sketch.hpp"
+#include "app/viewport/solid_meshes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+void set_matrix(const ShaderProgram& program, const char* name, const Mat4& matrix) {
+  const Eigen::Matrix4f m = matrix.cast<float>();
+  program.set_matrix(name, std::span<const float, 16>(m.data(), 16));
+}
+
+void set_vector(const ShaderProgram& program, const char* name, const Vec3& v) {
+  program.set(name, float(v.x()), float(v.y()), float(v.z()));
+}
+
+void set_color(const ShaderProgram& program, const char* name, const Color& c) {
+  program.set(name, c.r, c.g, c.b, c.a);
+}
+
+// The camera in view units: it looks at the origin from a distance of one.
+ViewCamera in_view_units(const ViewCamera& camera) {
+  ViewCamera unit = camera;
+  unit.target = Vec3::Zero();
+  unit.distance = 1;
+  return unit;
+}
+
+// What one picture's passes share, in view units.
+struct Stage {
+  ViewUnits units;
+  ViewCamera camera;
+  ViewSize size;
+  Mat4 view_projection;
+  Vec3 up, key;
+  Vec3 center; // of the solids
+  double radius = 0, floor_reach = 0, floor_height = 0;
+  const Palette* colors = nullptr;
+
+  Stage(const ViewFrame& frame, const SceneList& scene, const Framebuffer& target)
+      : units{frame.camera.target, frame.camera.distance},
+        camera(in_view_units(frame.camera)), size{double(target.width()), double(target.height())},
+        up(frame.camera.up), colors(&palette(frame.theme)) {
+    const Bounds& bounds = scene.bounds;
+    center = bounds.empty ? Vec3(Vec3::Zero()) : Vec3((bounds.center() - units.origin) / units.length);
+    radius = std::clamp(bounds.empty ? 0.3 : bounds.radius() / units.length, 1e-6, 1e6);
+    floor_reach = std::min(5 * radius, 60.0);
+    floor_height = bounds.empty ? up.dot(-units.origin) / units.length
+                                : (scene.floor - up.dot(units.origin)) / units.length;
+    view_projection = camera.projection_matrix(size, center, floor_reach + 2 * radius) * camera.view_matrix();
+    // From behind the viewer's left shoulder as one looks from the front, whatever way up is.
+    ViewCamera front = camera;
+    front.azimuth = 0;
+    key = (0.62 * front.right() * -1 + 1.35 * up + 0.55 * up.cross(-front.right()).normalized()).normalized();
+  }
+  Vec3 floor_center() const { return center + (floor_height - up.dot(center)) * up; }
+  bool floor_in_view(const Vec3& eye) const {
+    return (eye - floor_center()).norm() < 50 * floor_reach &&
+           std::abs(up.dot(eye - floor_center())) > 1e-6 * radius;
+  }
+};
+
+std::vector<Instance> of_part(const SceneList& scene, PartId part) {
+  std::vector<Instance> found;
+  if (part.kind == PartKind::none) return found;
+  for (const Instance& instance : scene.instances)
+    if (instance.part == part) found.push_back(instance);
+  return found;
+}
+
+std::vector<Instance> triad(const Palette& colors, const Mechanism* mechanism) {
+  std::vector<Instance> list;
+  Sketch sketch(list);
+  const std::array<Color, 3> hues{colors.axis_x, colors.axis_y, colors.axis_z};
+  for (int i = 0; i < 3; ++i) {
+    sketch.pen.color = hues[static_cast<std::size_t>(i)];
+    sketch.arrow(Vec3::Zero(), Vec3::Unit(i), 0.045);
+  }
+  sketch.pen.color = colors.metal;
+  sketch.sphere(Vec3::Zero(), 0.1);
+  if (mechanism && mechanism->gravity.stableNorm() > 0) {
+    sketch.pen.color = colors.slack;
+    sketch.arrow(Vec3::Zero(), 0.75 * mechanism->gravity.stableNormalized(), 0.03);
+  }
+  return list;
+}
+
+} // namespace
+
+struct ViewRenderer::State {
+  ShaderProgram background{"background.vert", "background.frag"}, depth{"depth.vert", "depth.frag"},
+      lit{"lit.vert", "lit.frag"}, outline{"outline.vert", "outline.frag"}, floor{"floor.vert", "floor.frag"};
+  SolidMeshes meshes;
+  InstanceBatches solids, translucent, marked, axes;
+  GlVertexArray none = make_vertex_array(); // for vertices the shader makes up
+  std::optional<ShadowMap> shadow;          // made when first needed
+  ViewReport report;
+
+  void draw_background(const Stage& stage);
+  void draw_shadow(const Stage& stage);
+  void set_shadow(const ShaderProgram& program, bool on) const;
+  void use_lit(const Stage& stage, const ViewFrame& frame, const SceneList& scene, bool shadowed, bool glass);
+  void draw_outline(const Stage& stage, const ViewFrame& frame, std::span<const Instance> part, Color ink,
+                    float width);
+  void draw_floor(const Stage& stage, const ViewFrame& frame, bool shadowed);
+  void draw_translucent(const Stage& stage, const ViewFrame& frame, const SceneList& scene,
+                        std::span<const Pose> poses, Color color, float push);
+  void draw_triad(const Stage& stage, const ViewFrame& frame, const SceneList& scene);
+};
+
+void ViewRenderer::State::draw_background(const Stage& stage) {
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  background.use();
+  const Color &top = stage.colors->background_top, &bottom = stage.colors->background_bottom;
+  background.set("top", top.r, top.g, top.b);
+  background.set("bottom", bottom.r, bottom.g, bottom.b);
+  glBindVertexArray(none.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  ++report.draw_calls;
+  report.passes.push_back("background");
+}
+
+void ViewRenderer::State::draw_shadow(const Stage& stage) {
+  if (!shadow) shadow.emplace();
+  shadow->begin(stage.center, stage.radius, stage.key);
+  depth.use();
+  set_matrix(depth, "view_projection", shadow->matrix());
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5f, 3);
+  report.draw_calls += meshes.draw(solids);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  report.passes.push_back("shadow");
+}
+
+void ViewRenderer::State::set_shadow(const ShaderProgram& program, bool on) const {
+  program.set("shadow_map", 0);
+  program.set("shadow_on", on ? 1.f : 0.f);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, on ? shadow->texture() : 0);
+  if (!on) return;
+  program.set("shadow_texel", 1.f / ShadowMap::size);
+  set_matrix(program, "shadow_matrix", shadow->lookup_matrix());
+}
+
+void ViewRenderer::State::use_lit(const Stage& stage, const ViewFrame& frame, const SceneList& scene,
+                                  bool shadowed, bool glass) {
+  lit.use();
+  set_matrix(lit, "view_projection", stage.view_projection);
+  set_vector(lit, "eye", stage.camera.eye());
+  set_vector(lit, "backward", stage.camera.backward());
+  lit.set("perspective", stage.camera.orthographic ? 0.f : 1.f);
+  set_vector(lit, "up", stage.up);
+  set_vector(lit, "key", stage.key);
+  lit.set("stripe", float(0.72 * scene.scale.unit / stage.units.length));
+  lit.set("normal_bias", shadowed ? float(1.6 * shadow->texel()) : 0.f);
+  lit.set("lightness", frame.theme == Theme::light ? 1.f : 0.f);
+  lit.set("glass", glass ? 1.f : 0.f);
+  set_shadow(lit, shadowed);
+}
+
+void ViewRenderer::State::draw_outline(const Stage& stage, const ViewFrame& frame,
+                                       std::span<const Instance> part, Color ink, float width) {
+  if (part.empty()) return;
+  marked.set(part, stage.units);
+  outline.use();
+  set_matrix(outline, "view_projection", stage.view_projection);
+  set_vector(outline, "eye", stage.camera.eye());
+  outline.set("perspective", stage.camera.orthographic ? 0.f : 1.f);
+  outline.set("pixel", float(stage.camera.pixel_size(stage.size)));
+  outline.set("width", width * frame.options.scale);
+  set_color(outline, "ink", ink);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT);
+  report.draw_calls += meshes.draw(marked);
+  glDisable(GL_CULL_FACE);
+  if (report.passes.back() != "outline") report.passes.push_back("outline");
+}
+
+void ViewRenderer::State::draw_floor(const Stage& stage, const ViewFrame& frame, bool shadowed) {
+  const Vec3 center = stage.floor_center();
+  ViewCamera front = stage.camera;
+  front.azimuth = 0;
+  const Vec3 a = front.right(), b = stage.up.cross(a);
+  const double metres = stage.units.length;
+  // A cell of the fine grid is about a twentieth of what is in view.
+  const double level = std::log10(0.045 * metres);
+  const double cell = std::pow(10.0, std::floor(level));
+  const Vec3 world = center * metres + stage.units.origin;
+  const auto phase = [&](const Vec3& side) { return float(std::fmod(world.dot(side), 100 * cell) / metres); };
+
+  floor.use();
+  set_matrix(floor, "view_projection", stage.view_projection);
+  set_vector(floor, "center", center);
+  set_vector(floor, "side_a", a);
+  set_vector(floor, "side_b", b);
+  floor.set("reach", float(stage.floor_reach));
+  floor.set("origin", phase(a), phase(b));
+  floor.set("cell", float(cell / metres));
+  floor.set("fading", float(level - std::floor(level)));
+  floor.set("weight", frame.options.scale);
+  floor.set("shade", frame.theme == Theme::light ? 0.30f : 0.45f);
+  floor.set("lines", frame.options.grid ? 1.f : 0.f);
+  floor.set("above", stage.camera.elevation >= 0 ? 1.f : 0.f);
+  set_color(floor, "ink", stage.colors->grid);
+  set_shadow(floor, shadowed);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  glBindVertexArray(none.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  ++report.draw_calls;
+  report.passes.push_back("grid");
+}
+
+void ViewRenderer::State::draw_translucent(const Stage& stage, const ViewFrame& frame, const SceneList& scene,
+                                           std::span<const Pose> poses, Color color, float push) {
+  translucent.set(build_ghost(*frame.mechanism, poses, color), stage.units);
+  use_lit(stage, frame, scene, false, true);
+  // Only the nearest surface is blended: depth first, then colour where the depth is the same. Pushed back a
+  // little, so that it does not flicker through solids it coincides with.
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(push, 4 * push);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  report.draw_calls += meshes.draw(translucent);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthFunc(GL_EQUAL);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  report.draw_calls += meshes.draw(translucent);
+  glDisable(GL_BLEND);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  report.instances += translucent.count();
+}
+
+void ViewRenderer::State::draw_triad(const Stage& stage, const ViewFrame& frame, const SceneList& scene) {
+  const auto side = static_cast<int>(76 * frame.options.scale);
+  const auto gap = static_cast<int>(10 * frame.options.scale);
+  if (stage.size.width < 4 * side || stage.size.height < 4 * side) return;
+  glViewport(gap, gap, side, side);
+  glScissor(gap, gap, side, side);
+  glEnable(GL_SCISSOR_TEST);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
+  Stage corner = stage;
+  corner.camera.orthographic = true;
+  corner.camera.field_of_view = 2 * std::atan(1.2);
+  corner.view_projection =
+      corner.camera.projection_matrix({1, 1}, Vec3::Zero(), 2) * corner.camera.view_matrix();
+  axes.set(triad(*stage.colors, frame.mechanism), ViewUnits{});
+  use_lit(corner, frame, scene, false, false);
+  report.draw_calls += meshes.draw(axes);
+  report.passes.push_back("triad");
+}
+
+ViewRenderer::ViewRenderer() : state_(std::make_unique<State>()) {}
+ViewRenderer::~ViewRenderer() = default;
+ViewRenderer::ViewRenderer(ViewRenderer&&) noexcept = default;
+ViewRenderer& ViewRenderer::operator=(ViewRenderer&&) noexcept = default;
+
+SceneList scene_of(const ViewFrame& frame) {
+  if (!frame.mechanism) return {};
+  return build_scene(*frame.mechanism, frame.poses,
+                     {.theme = frame.theme,
+                      .joints = frame.options.joints,
+                      .drives = frame.options.drives,
+                      .forces = frame.options.forces,
+                      .cut_joints = frame.cut_joints});
+}
+
+ViewReport ViewRenderer::draw(const ViewFrame& frame, Framebuffer& target) {
+  State& s = *state_;
+  s.report = {};
+  const SceneList scene = scene_of(frame);
+  const Stage stage(frame, scene, target);
+  s.solids.set(scene.instances, stage.units);
+  s.report.instances = s.solids.count();
+  const bool floor = (frame.options.grid || frame.options.shadow) && stage.floor_in_view(stage.camera.eye());
+  const bool shadowed = frame.options.shadow && floor && s.solids.count() > 0;
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_CULL_FACE);
+  glDepthFunc(GL_LESS);
+  if (shadowed) s.draw_shadow(stage);
+
+  target.bind();
+  glDepthMask(GL_TRUE);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  s.draw_background(stage);
+  glEnable(GL_DEPTH_TEST);
+  if (s.solids.count() > 0) {
+    s.use_lit(stage, frame, scene, shadowed, false);
+    s.report.draw_calls += s.meshes.draw(s.solids);
+    s.report.passes.push_back("solid");
+    if (!(frame.hovered == frame.selected))
+      s.draw_outline(stage, frame, of_part(scene, frame.hovered),
+                     mix(stage.colors->accent, stage.colors->slack, 0.5f), 1.5f);
+    s.draw_outline(stage, frame, of_part(scene, frame.selected), stage.colors->accent, 2.5f);
+  }
+  if (floor) s.draw_floor(stage, frame, shadowed);
+  if (frame.mechanism && !frame.motion.empty()) {
+    s.draw_translucent(stage, frame, scene, frame.motion, stage.colors->motion, 1);
+    s.report.passes.push_back("motion");
+  }
+  if (frame.mechanism && !frame.ghost.empty()) {
+    s.draw_translucent(stage, frame, scene, frame.ghost, stage.colors->ghost, 2);
+    s.report.passes.push_back("ghost");
+  }
+  if (frame.options.triad) s.draw_triad(stage, frame, scene);
+  glDisable(GL_DEPTH_TEST);
+  check_gl("drawing the view");
+  target.resolve();
+  return s.report;
+}
+
+} // namespace flyball

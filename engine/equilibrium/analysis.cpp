@@ -1,0 +1,226 @@
+#include "engine/equilibrium/analysis.hpp"
+
+#include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/refine.hpp"
+#include "engine/equilibrium/report.hpp"
+#include "engine/equilibrium/stability.hpp"
+#include "engine/mechanism/error.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+// Parts and connections, as opposed to numbers: what a compiled system depends on.
+bool same_topology(const Mechanism& a, const Mechanism& b) {
+  if (a.bodies.size() != b.bodies.size() || a.joints.size() != b.joints.size() || a.forces.size() != b.forces.size())
+    return false;
+  for (std::size_t i = 0; i < a.bodies.size(); ++i)
+    if (a.bodies[i].name != b.bodies[i].name) return false;
+  for (std::size_t i = 0; i < a.joints.size(); ++i) {
+    const Joint &x = a.joints[i], &y = b.joints[i];
+    if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.cut != y.cut || x.joints != y.joints ||
+        x.coordinates.size() != y.coordinates.size())
+      return false;
+    for (std::size_t k = 0; k < x.coordinates.size(); ++k) {
+      const Coordinate &c = x.coordinates[k], &d = y.coordinates[k];
+      if (c.spring.has_value() != d.spring.has_value() || c.stop.has_value() != d.stop.has_value() ||
+          c.drive.has_value() != d.drive.has_value() || (c.damping != 0) != (d.damping != 0))
+        return false;
+    }
+  }
+  for (std::size_t i = 0; i < a.forces.size(); ++i) {
+    const Force &x = a.forces[i], &y = b.forces[i];
+    if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.body != y.body || x.frame != y.frame ||
+        (x.damping != 0) != (y.damping != 0))
+      return false;
+  }
+  return true;
+}
+
+// Whether the drives carry the loops along at the drawn pose: each cut joint that they open counts.
+int loops_opened(const System& system, const Mechanism& mechanism) {
+  if (system.rows == 0 || system.drives.empty()) return 0;
+  Parameters p;
+  bind(system, mechanism, p);
+  if (!p.moving) return 0;
+  Scaling scaling;
+  set_scaling(system, p, scaling);
+  Configuration<double> q;
+  drawn_configuration(system, p, q);
+  Kinematics<double> k;
+  Residual<double> r;
+  const Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.rows);
+  const Eigen::VectorXd fastest = [&] {
+    double rate = 0;
+    for (const DrivenCoordinate& d : system.drives) {
+      const auto l = static_cast<std::size_t>(d.link);
+      rate = std::max(rate, std::abs(p.links[l].speed) / (system.links[l].type == LinkType::revolute ? 1 : p.length));
+    }
+    return Eigen::VectorXd::Constant(1, rate);
+  }();
+  Eigen::VectorXd before, after;
+  const double turn = 0.05 / fastest[0];
+  forward<double>(system, p, q, 0, k);
+  evaluate_residual<double>(system, p, q, lambda, k, r);
+  before = r.phi;
+  forward<double>(system, p, q, turn, k);
+  evaluate_residual<double>(system, p, q, lambda, k, r);
+  after = r.phi;
+  int opened = 0;
+  for (const CutJoint& cut : system.cuts) {
+    double change = 0;
+    for (int i = cut.first_row; i < cut.first_row + static_cast<int>(cut.rows.size()); ++i)
+      change = std::max(change, std::abs(after[i] - before[i]) * scaling.row[i]);
+    opened += change > 1e-6;
+  }
+  return opened;
+}
+
+// The cuts by preference, or the nearest others with which the drives carry the loops along: a joint that must turn at a
+// constant rate has to be cut.
+System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& notes) {
+  System best = compile(mechanism);
+  int opened = loops_opened(best, mechanism);
+  if (opened == 0) return best;
+  std::deque<CutChoice> queue;
+  std::vector<std::vector<int>> seen;
+  const auto enqueue = [&](const System& from) {
+    for (CutChoice& c : neighbouring_cuts(mechanism, from)) {
+      std::ranges::sort(c.cut);
+      if (std::ranges::find(seen, c.cut) != seen.end()) continue;
+      seen.push_back(c.cut);
+      queue.push_back(std::move(c));
+    }
+  };
+  enqueue(best);
+  for (int tried = 0; tried < 500 && !queue.empty() && opened > 0; ++tried) {
+    const CutChoice choice = std::move(queue.front());
+    queue.pop_front();
+    System other;
+    try {
+      other = compile(mechanism, choice);
+    } catch (const SceneError&) {
+      continue; // not admissible: a drive would be cut
+    }
+    const int count = loops_opened(other, mechanism);
+    if (count < opened) {
+      opened = count;
+      best = other;
+    }
+    enqueue(other);
+  }
+  if (opened == 0)
+    for (const CutJoint& cut : best.cuts) {
+      const Joint& j = mechanism.joints[static_cast<std::size_t>(cut.joint)];
+      if (j.cut != true && coordinate_count(j.type) > 0)
+        notes.push_back("The loop is cut at " + j.name + ", which turns or slides at a constant rate in the steady state.");
+    }
+  return best;
+}
+
+} // namespace
+
+struct Analysis::State {
+  Mechanism mechanism;
+  System system;
+  Parameters parameters;
+  Scaling scaling;
+  std::vector<std::string> notes;
+  Workspace workspace;
+  Found found;
+  std::vector<double> history;
+  Eigen::VectorXd error;
+  Eigen::VectorXd drawn, answer, start;
+  bool answered = false;
+
+  void bind_numbers() {
+    bind(system, mechanism, parameters);
+    set_scaling(system, parameters, scaling);
+    drawn_configuration(system, parameters, drawn);
+  }
+};
+
+Analysis::Analysis(const Mechanism& mechanism) : state_(std::make_unique<State>()) {
+  state_->mechanism = mechanism;
+  state_->system = compile_for_drives(mechanism, state_->notes);
+  state_->bind_numbers();
+}
+Analysis::~Analysis() = default;
+Analysis::Analysis(Analysis&&) noexcept = default;
+Analysis& Analysis::operator=(Analysis&&) noexcept = default;
+
+void Analysis::update(const Mechanism& mechanism) {
+  State& s = *state_;
+  if (!same_topology(s.mechanism, mechanism)) {
+    *this = Analysis(mechanism);
+    return;
+  }
+  s.mechanism = mechanism;
+  s.bind_numbers();
+}
+
+Solution Analysis::solve(const SolveOptions& options) {
+  State& s = *state_;
+  const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
+  const bool warm = options.warm && s.answered && options.start.empty();
+  s.start = warm ? s.answer : s.drawn;
+  for (const auto& [name, value] : options.start) set_start(s.system, s.parameters, name, value, s.start);
+
+  const auto begin = std::chrono::steady_clock::now();
+  find_equilibrium(problem, s.start, options.nearest, warm, s.workspace, s.history, s.found);
+  if (s.found.status == Status::converged) refine(problem, s.found.z, s.found.newton, s.workspace, s.error);
+  Existence existence;
+  if (s.found.status == Status::converged)
+    existence = check_existence(problem, s.found.z.q, sample_phases(s.system, s.parameters), s.workspace);
+  const bool steady = s.found.status == Status::converged && existence.holds;
+  Stability stability;
+  if (steady) stability = find_stability(problem, s.found.z, false, s.workspace);
+  const auto end = std::chrono::steady_clock::now();
+
+  Solution out;
+  out.run_time_s = std::chrono::duration<double>(end - begin).count();
+  out.iterations = s.found.iterations;
+  out.history = s.history;
+  out.net = s.found.net;
+  out.status = steady ? Status::converged : s.found.status == Status::converged ? Status::no_steady_state : s.found.status;
+  if (!steady) {
+    const ReportInput input{s.mechanism, problem, s.found, existence, stability};
+    out.message = failure_message(input, s.workspace);
+    out.residual = s.history.empty() ? 0 : s.history.back();
+    return out;
+  }
+  s.answer = s.found.z.q;
+  s.answered = true;
+  if (options.details) {
+    const bool many = s.system.nv > 200 && options.modes == 0;
+    stability = find_stability(problem, s.found.z, !many, s.workspace);
+    if (many)
+      stability.eigenvalues.reset();
+    else if (options.modes > 0 && stability.eigenvalues && stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
+      stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
+  }
+  const ReportInput input{s.mechanism, problem, s.found, existence, stability};
+  report(input, s.error, options.details, s.workspace, out);
+  return out;
+}
+
+SystemSummary Analysis::summary() const {
+  SystemSummary out = summarize(state_->mechanism, state_->system, state_->parameters);
+  out.notes.insert(out.notes.end(), state_->notes.begin(), state_->notes.end());
+  return out;
+}
+
+std::vector<Pose> Analysis::poses_at(double t) const {
+  State& s = *state_;
+  std::vector<Pose> poses;
+  forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, s.workspace.kinematics);
+  body_poses(s.system, s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  return poses;
+}
+
+} // namespace flyball

@@ -1,0 +1,36 @@
+// The range and the null space of the constraint Jacobian, found by column-pivoted Householder QR of its transpose.
+// Loops are often redundantly constrained, so the rank is found, not assumed.
+#pragma once
+
+#include <Eigen/QR>
+
+namespace flyball {
+
+class ConstraintSpace {
+public:
+  // `jacobian` is scaled: (rows, n). Pivots below `tolerance` times the largest count as zero.
+  void factor(const Eigen::MatrixXd& jacobian, double tolerance);
+
+  int size() const { return n_; }
+  int rows() const { return rows_; }
+  int rank() const { return rank_; }
+  // Orthonormal basis of the null space: (n, n - rank).
+  const Eigen::MatrixXd& basis() const { return basis_; }
+
+  // The shortest y with jacobian y = rhs on the independent rows.
+  void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& y) const;
+  // A multiplier vector that best fits jacobian^T lambda = rhs, zero on dependent rows; allocation-free.
+  void multipliers(const Eigen::VectorXd& rhs, Eigen::VectorXd& lambda) const;
+  // The same of least norm.
+  Eigen::VectorXd least_norm_multipliers(const Eigen::VectorXd& rhs) const;
+
+private:
+  int n_ = 0, rows_ = 0, rank_ = 0;
+  Eigen::MatrixXd transposed_;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  Eigen::MatrixXd basis_;
+  mutable Eigen::VectorXd work_;
+  Eigen::VectorXd apply_work_;
+};
+
+} // namespace flyball

@@ -1,0 +1,24 @@
+// Downhill on the amended potential to a stable state: Newton steps with negative curvature turned round, on the
+// manifold of closed loops, within a trust region.
+#pragma once
+
+#include "engine/equilibrium/newton.hpp"
+
+namespace flyball {
+
+enum class DescentEnd {
+  minimum,   // strict, or flat only along directions without stiffness
+  unbounded, // the potential falls without end
+  stalled,   // no step lowers it: not a potential after all, or rounding
+  cancelled,
+};
+
+struct DescentOutcome {
+  DescentEnd end = DescentEnd::stalled;
+  int iterations = 0;
+};
+
+// From z.q, whose loops must be closed; never raises the potential. Appends the scaled residual to `history`.
+DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::vector<double>* history);
+
+} // namespace flyball

@@ -1,0 +1,28 @@
+// Whether a balance found at one phase of the drives holds at every phase: only then is it a steady state.
+#pragma once
+
+#include "engine/equilibrium/newton.hpp"
+
+#include <string>
+
+namespace flyball {
+
+struct Existence {
+  bool holds = true;
+  bool loops_open = false; // a constraint cannot be kept; else the forces do not stay balanced
+  double phase = 0;        // s, where it fails worst
+  double violation = 0;    // scaled
+  int worst_cut = -1;      // loops_open: in System::cuts
+};
+
+// Times (s) along q_D(t) at which to look: for each drive several turns at angles where no low harmonic vanishes together.
+// Empty where the mechanism's shape alone makes every phase alike.
+std::vector<double> sample_phases(const System& system, const Parameters& parameters);
+
+// At each phase Phi must vanish and the force balance must lie in the range of Phi_q^T.
+Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases, Workspace& w);
+
+// What turns with the drives, as a phrase: "the weight of bob", "the force push", "the inertia of rotor".
+std::string blame(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q, double phase, Workspace& w);
+
+} // namespace flyball

@@ -1,0 +1,240 @@
+#include "engine/equilibrium/find_equilibrium.hpp"
+
+#include "engine/equilibrium/descent.hpp"
+#include "engine/equilibrium/homotopy.hpp"
+
+#include <random>
+
+namespace flyball {
+namespace {
+
+// Direction rows vanish for an axis turned right round, too; such a loop is closed the wrong way.
+bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
+  for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
+    const CutJoint& cut = problem.system.cuts[c];
+    for (const ConstraintRow& row : cut.rows) {
+      if (row.type != RowType::direction || row.w == 3) continue;
+      const Mat3 r = k.at(cut.ends.a).R.transpose() * k.at(cut.ends.b).R;
+      const auto& f = problem.parameters.cuts[c].frame;
+      for (int axis : {row.u, row.w}) {
+        const Vec3& e = f[static_cast<std::size_t>(axis)];
+        if ((axis == 2 || cut.type == JointType::fixed || cut.type == JointType::prismatic) && e.dot(r * e) < 0)
+          return false;
+      }
+    }
+  }
+  return true;
+}
+
+class Search {
+public:
+  Search(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
+         std::vector<double>& history, Found& found)
+      : p_(problem), start_(start), nearest_(nearest), warm_(warm), w_(w), history_(history), found_(found) {}
+
+  void run() {
+    found_.status = Status::not_converged;
+    found_.message.clear();
+    found_.net.reset();
+    found_.iterations = 0;
+    found_.open_cut = -1;
+    history_.clear();
+    if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, {}, &history_); })) return;
+    if (p_.cancelled()) return cancelled();
+    if (!close_loops()) return;
+    if (!arrived_) {
+      if (attempt(assembled_, Net::damped, [&](Unknowns& z) { return newton(p_, z, w_, {200, true}, &history_); }))
+        return;
+      if (p_.cancelled()) return cancelled();
+    }
+    if (!arrived_ && p_.parameters.moving) {
+      if (attempt(assembled_, Net::homotopy, [&](Unknowns& z) { return homotopy(p_, z, w_, &history_); })) return;
+      if (p_.cancelled()) return cancelled();
+    }
+    if (p_.system.conservative && !nearest_ && go_downhill()) return;
+    if (p_.cancelled()) return cancelled();
+    settle_for_unstable();
+  }
+
+private:
+  // Runs a solver from q; true when its answer stands.
+  template <class Solver>
+  bool attempt(const Eigen::VectorXd& q, std::optional<Net> net, Solver solver) {
+    found_.z.q = q;
+    found_.z.lambda.setZero(p_.system.rows);
+    const NewtonOutcome outcome = solver(found_.z);
+    found_.iterations += outcome.iterations;
+    if (!outcome.converged || !closed_the_right_way(p_, w_.kinematics)) return false;
+    arrived_ = true;
+    found_.newton = outcome;
+    found_.net = net;
+    if (!acceptable(outcome)) {
+      if (candidate_.q.size() == 0) {
+        candidate_ = found_.z;
+        candidate_outcome_ = outcome;
+        candidate_net_ = net;
+      }
+      return false;
+    }
+    found_.status = Status::converged;
+    return true;
+  }
+
+  // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems without a
+  // potential have no such order; their eigenvalues judge.
+  bool acceptable(const NewtonOutcome& outcome) {
+    if (nearest_ || !p_.symmetric()) return true;
+    factor(p_, found_.z, w_);
+    unstable_ = !w_.hessian.positive_definite() && !only_flat();
+    if (unstable_) return false;
+    if (warm_) return outcome.largest_step < 1;
+    if (outcome.largest_step > 1) return false;
+    const Potential end = amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics);
+    const Eigen::VectorXd* from = &start_;
+    if (p_.system.rows > 0) {
+      assembled_ = start_;
+      if (!assemble(p_, assembled_, 0, w_)) return true;
+      from = &assembled_;
+    }
+    forward<double>(p_.system, p_.parameters, *from, 0, w_.kinematics);
+    const Potential begin = amended_potential(p_.system, p_.parameters, *from, w_.kinematics);
+    return end.value <= begin.value + 1e-12 * (begin.magnitude + end.magnitude);
+  }
+
+  bool only_flat() {
+    return w_.hessian.singular() && w_.hessian.eigenvalues()[0] > -ReducedHessian::zero;
+  }
+
+  void cancelled() {
+    found_.status = Status::not_converged;
+    found_.message = "The solve was cancelled.";
+  }
+
+  // Fills assembled_ or says that it cannot be done.
+  bool close_loops() {
+    assembled_ = start_;
+    if (assemble(p_, assembled_, 0, w_)) return true;
+    // Gauss-Newton can stall: try from a few places around the start before calling it infeasible.
+    record_opening();
+    std::mt19937 random(12345);
+    std::uniform_real_distribution<double> spread(-0.7, 0.7);
+    for (int i = 0; i < 12 && !p_.cancelled(); ++i) {
+      assembled_ = start_;
+      w_.step.resize(p_.system.nv);
+      for (Eigen::Index k = 0; k < w_.step.size(); ++k) w_.step[k] = spread(random) * p_.scaling.column[k];
+      retract<double>(p_.system, w_.step, assembled_);
+      if (assemble(p_, assembled_, 0, w_) && closed_the_right_way(p_, w_.kinematics)) return true;
+    }
+    found_.status = Status::infeasible;
+    return false;
+  }
+
+  void record_opening() {
+    for (std::size_t c = 0; c < p_.system.cuts.size(); ++c) {
+      const CutJoint& cut = p_.system.cuts[c];
+      for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+        const auto row = static_cast<Eigen::Index>(cut.first_row) + static_cast<Eigen::Index>(r);
+        const double open = std::abs(w_.residual.phi[row]) * p_.scaling.row[row];
+        if (open <= found_.opening && found_.open_cut >= 0) continue;
+        found_.opening = open;
+        found_.open_cut = static_cast<int>(c);
+      }
+    }
+  }
+
+  bool go_downhill() {
+    found_.net = Net::descent;
+    const bool from_saddle = arrived_ && unstable_ && below_start();
+    if (const DescentEnd end = descend_from(from_saddle ? candidate_.q : assembled_); end != DescentEnd::minimum) {
+      fell_ = end == DescentEnd::unbounded;
+      return false;
+    }
+    const Eigen::VectorXd bottom = found_.z.q;
+    const NewtonOutcome outcome = newton(p_, found_.z, w_, {}, &history_);
+    found_.iterations += outcome.iterations;
+    if (!outcome.converged || outcome.largest_step > 0.2) return false;
+    found_.newton = outcome;
+    if (p_.symmetric()) {
+      factor(p_, found_.z, w_);
+      if (!w_.hessian.positive_definite() && !only_flat()) return false;
+      // Newton may have been right all along, by a way that had to be checked.
+      if (arrived_ && !unstable_ && candidate_.q.size() > 0 && same(candidate_.q, found_.z.q)) {
+        found_.net = candidate_net_;
+        found_.newton = candidate_outcome_;
+      }
+    }
+    if (arrived_ && unstable_)
+      found_.message = from_saddle ? "Newton-Raphson arrived at an unstable state; stepped off it and went downhill."
+                                   : "Newton-Raphson arrived at an unstable state above the start; went downhill from the start.";
+    found_.status = Status::converged;
+    return true;
+  }
+
+  DescentEnd descend_from(const Eigen::VectorXd& q) {
+    found_.z.q = q;
+    const DescentOutcome outcome = descend(p_, found_.z, w_, &history_);
+    found_.iterations += outcome.iterations;
+    return outcome.end;
+  }
+
+  bool below_start() {
+    forward<double>(p_.system, p_.parameters, candidate_.q, 0, w_.kinematics);
+    const Potential there = amended_potential(p_.system, p_.parameters, candidate_.q, w_.kinematics);
+    forward<double>(p_.system, p_.parameters, assembled_, 0, w_.kinematics);
+    const Potential here = amended_potential(p_.system, p_.parameters, assembled_, w_.kinematics);
+    return there.value <= here.value + 1e-12 * (here.magnitude + there.magnitude);
+  }
+
+  bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    for (const Link& link : p_.system.links) {
+      if (link.v < 0) continue;
+      if (link.type == LinkType::spherical) {
+        if (std::abs(a.segment<4>(link.q).dot(b.segment<4>(link.q))) < 1 - 1e-12) return false;
+      } else if (std::abs(a[link.q] - b[link.q]) > 1e-6 * p_.scaling.column[link.v]) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Nothing better was found: an unstable answer is an answer, said to be one.
+  void settle_for_unstable() {
+    if (candidate_.q.size() > 0) {
+      found_.z = candidate_;
+      found_.newton = candidate_outcome_;
+      found_.net = candidate_net_;
+      found_.status = Status::converged;
+      found_.message = unstable_ ? fell_ ? "The potential falls without end from here; no stable state was found."
+                                         : "No stable state was found downhill from here."
+                                 : "A stable state, but the start may lie in the basin of another.";
+      return;
+    }
+    found_.status = Status::not_converged;
+    found_.net.reset();
+    found_.message = "Newton-Raphson, its damped form";
+    if (p_.parameters.moving) found_.message += ", homotopy from rest";
+    if (p_.system.conservative && !nearest_) found_.message += ", descent of the potential";
+    found_.message += fell_ ? " found no equilibrium: the potential falls without end." : " found no equilibrium from this start.";
+  }
+
+  const Problem& p_;
+  const Eigen::VectorXd& start_;
+  const bool nearest_, warm_;
+  Workspace& w_;
+  std::vector<double>& history_;
+  Found& found_;
+  Eigen::VectorXd assembled_;
+  Unknowns candidate_;
+  NewtonOutcome candidate_outcome_;
+  std::optional<Net> candidate_net_;
+  bool arrived_ = false, unstable_ = false, fell_ = false;
+};
+
+} // namespace
+
+void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
+                      std::vector<double>& history, Found& found) {
+  Search(problem, start, nearest, warm, w, history, found).run();
+}
+
+} // namespace flyball

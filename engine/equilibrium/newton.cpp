@@ -1,0 +1,192 @@
+#include "engine/equilibrium/newton.hpp"
+
+namespace flyball {
+namespace {
+
+// Dependent rows have pivots of the size by which the loops are open; closed, of rounding.
+double rank_tolerance(const Problem& problem, const Eigen::VectorXd& phi) {
+  const double open = phi.size() > 0 ? phi.cwiseProduct(problem.scaling.row).lpNorm<Eigen::Infinity>() : 0;
+  return std::clamp(10 * open, 1e-10, 1e-3);
+}
+
+void apply_step(const Problem& problem, const Eigen::VectorXd& scaled_step, double fraction, Eigen::VectorXd& q,
+                Workspace& w) {
+  w.step = fraction * scaled_step.cwiseProduct(problem.scaling.column);
+  retract<double>(problem.system, w.step, q);
+}
+
+// What is left of the force balance when the best multipliers have been found; f is without constraint forces.
+double merit(const Problem& problem, Workspace& w) {
+  w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
+  double sum = 0;
+  const double size = std::max(1e-300, w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff());
+  w.reduced_rhs.noalias() = w.constraints.basis().transpose() * w.scaled_force;
+  sum += (w.reduced_rhs / size).squaredNorm();
+  sum += w.residual.phi.cwiseProduct(problem.scaling.row).squaredNorm();
+  return std::sqrt(sum);
+}
+
+} // namespace
+
+void evaluate(const Problem& problem, const Unknowns& z, double t, Workspace& w) {
+  forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
+  evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
+  evaluate_magnitudes(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.magnitudes);
+}
+
+double scaled_residual(const Problem& problem, const Workspace& w) {
+  double worst = 0;
+  for (Eigen::Index i = 0; i < w.residual.f.size(); ++i)
+    if (w.residual.f[i] != 0) worst = std::max(worst, std::abs(w.residual.f[i]) / w.magnitudes.force[i]);
+  for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
+    worst = std::max(worst, std::abs(w.residual.phi[i]) * problem.scaling.row[i]);
+  return std::isfinite(w.residual.f.sum() + w.residual.phi.sum()) ? worst : std::numeric_limits<double>::infinity();
+}
+
+void factor_constraints(const Problem& problem, Workspace& w) {
+  w.scaled_jacobian.resize(problem.system.rows, problem.system.nv);
+  for (int j = 0; j < problem.system.nv; ++j)
+    for (int i = 0; i < problem.system.rows; ++i)
+      w.scaled_jacobian(i, j) = w.linearization.constraint(i, j) * problem.scaling.row[i] * problem.scaling.column[j];
+  w.constraints.factor(w.scaled_jacobian, rank_tolerance(problem, w.residual.phi));
+}
+
+void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
+  linearize(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.linearization);
+  factor_constraints(problem, w);
+  const int n = problem.system.nv;
+  w.scaled_stiffness.resize(n, n);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      w.scaled_stiffness(i, j) = w.linearization.stiffness(i, j) * problem.scaling.column[i] * problem.scaling.column[j];
+  // Below this a stiffness is rounding: the forces behind it, per radian or reach.
+  const double rounding = 1e-15;
+  if (w.constraints.rank() == 0) {
+    w.noise = rounding * w.magnitudes.force.cwiseProduct(problem.scaling.column);
+    w.hessian.factor(w.scaled_stiffness, w.noise, problem.symmetric());
+    return;
+  }
+  const Eigen::MatrixXd& basis = w.constraints.basis();
+  w.product.noalias() = w.scaled_stiffness * basis;
+  w.reduced.noalias() = basis.transpose() * w.product;
+  w.noise.resize(basis.cols());
+  for (Eigen::Index k = 0; k < basis.cols(); ++k) {
+    double size = 0;
+    for (int i = 0; i < n; ++i)
+      size += basis(i, k) * basis(i, k) * w.magnitudes.force[i] * problem.scaling.column[i];
+    w.noise[k] = rounding * size;
+  }
+  w.hessian.factor(w.reduced, w.noise, problem.symmetric());
+}
+
+void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::VectorXd& phi, Workspace& w,
+                 Eigen::VectorXd& scaled_step, Eigen::VectorXd& lambda) {
+  w.scaled_force = f.cwiseProduct(problem.scaling.column);
+  if (w.constraints.rank() == 0) {
+    w.reduced_rhs = -w.scaled_force;
+    w.hessian.solve(w.reduced_rhs, scaled_step);
+    lambda.setZero(problem.system.rows);
+    return;
+  }
+  w.scaled_phi = -phi.cwiseProduct(problem.scaling.row);
+  w.constraints.solve(w.scaled_phi, w.range_step);
+  w.target = -w.scaled_force;
+  w.target.noalias() -= w.scaled_stiffness * w.range_step;
+  const Eigen::MatrixXd& basis = w.constraints.basis();
+  w.reduced_rhs.noalias() = basis.transpose() * w.target;
+  w.hessian.solve(w.reduced_rhs, w.reduced_step);
+  scaled_step = w.range_step;
+  scaled_step.noalias() += basis * w.reduced_step;
+  // Multipliers that balance what the step leaves: jacobian^T lambda = -(f + K step).
+  w.target = -w.scaled_force;
+  w.target.noalias() -= w.scaled_stiffness * scaled_step;
+  w.constraints.multipliers(w.target, w.scaled_lambda);
+  lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
+}
+
+NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const NewtonSettings& settings,
+                     std::vector<double>* history) {
+  NewtonOutcome outcome;
+  w.zero_lambda.setZero(problem.system.rows);
+  evaluate(problem, z, 0, w);
+  double previous_step = 0;
+  for (int i = 0;; ++i) {
+    const double residual = scaled_residual(problem, w);
+    if (history) history->push_back(residual);
+    outcome.iterations = i;
+    if (outcome.converged || i >= settings.max_iterations || !std::isfinite(residual) || problem.cancelled()) break;
+    factor(problem, z, w);
+    // The multipliers are solved for whole at every step, so the step needs the balance without them.
+    w.trial.q = z.q;
+    w.trial.lambda = z.lambda;
+    if (problem.system.rows > 0)
+      w.residual.f.noalias() -= w.linearization.constraint.transpose() * z.lambda;
+    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, z.lambda);
+    const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
+    if (!std::isfinite(size) || size > 1e8) break;
+    double fraction = 1;
+    if (settings.damped) {
+      const double start = merit(problem, w);
+      for (;; fraction /= 2) {
+        z.q = w.trial.q;
+        apply_step(problem, w.scaled_step, fraction, z.q, w);
+        Unknowns probe{z.q, w.zero_lambda};
+        evaluate(problem, probe, 0, w);
+        linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
+        factor_constraints(problem, w);
+        const double now = merit(problem, w);
+        if (now <= (1 - 1e-4 * fraction) * start || now < 1e-13 || fraction < 1e-6) break;
+      }
+      if (fraction < 1e-6 && size > settings.step_tolerance) break;
+    } else {
+      apply_step(problem, w.scaled_step, 1, z.q, w);
+    }
+    outcome.largest_step = std::max(outcome.largest_step, fraction * size);
+    outcome.last_step = size;
+    evaluate(problem, z, 0, w);
+    if (size <= settings.step_tolerance && fraction == 1.) {
+      outcome.converged = true;
+    } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {
+      outcome.converged = outcome.linear = true;
+    }
+    previous_step = size;
+  }
+  return outcome;
+}
+
+bool assemble(const Problem& problem, Eigen::VectorXd& q, double t, Workspace& w) {
+  if (problem.system.rows == 0) return true;
+  w.zero_lambda.setZero(problem.system.rows);
+  Unknowns z{q, w.zero_lambda};
+  const auto opening = [&](const Eigen::VectorXd& at) {
+    z.q = at;
+    forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
+    evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
+    w.scaled_phi = -w.residual.phi.cwiseProduct(problem.scaling.row);
+    return w.scaled_phi.lpNorm<Eigen::Infinity>();
+  };
+  double open = opening(q);
+  for (int i = 0; i < 60; ++i) {
+    if (!std::isfinite(open)) return false;
+    if (open < 1e-14) break;
+    linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
+    factor_constraints(problem, w);
+    w.constraints.solve(w.scaled_phi, w.scaled_step);
+    const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
+    if (size < 1e-15) break;
+    double fraction = std::min(1., 0.5 / size), next = open;
+    Eigen::VectorXd moved;
+    for (;; fraction /= 2) {
+      moved = q;
+      apply_step(problem, w.scaled_step, fraction, moved, w);
+      next = opening(moved);
+      if (next < open || fraction < 1e-8) break;
+    }
+    if (!(next < open)) break;
+    q = moved;
+    open = next;
+  }
+  return opening(q) < 1e-10;
+}
+
+} // namespace flyball

@@ -1,0 +1,48 @@
+// The balance's Jacobian on the null space of the constraints, factored: by Cholesky where it is symmetric and
+// positive definite (then the state is a strict minimum), else by what still works.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+namespace flyball {
+
+class ReducedHessian {
+public:
+  // `scale` (positive, by row) makes the diagonal comparable; see factor().
+  // Symmetric matrices are averaged with their transposes. `noise[i]` is the size below which entry (i, i) is rounding.
+  void factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& noise, bool symmetric);
+
+  // Directions without stiffness get no component.
+  void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x);
+
+  int size() const { return static_cast<int>(scale_.size()); }
+  // Symmetric: every eigenvalue well above zero.
+  bool positive_definite() const { return positive_; }
+  bool singular() const { return null_count() > 0; }
+  int null_count() const { return null_; }
+  // Symmetric and not positive definite: eigenvalues (ascending) and vectors of the equilibrated matrix;
+  // a direction of the original is scale() * vector.
+  const Eigen::VectorXd& eigenvalues() const { return eigen_.eigenvalues(); }
+  const Eigen::MatrixXd& eigenvectors() const { return eigen_.eigenvectors(); }
+  // Computes them for a positive definite matrix, too.
+  void decompose();
+  const Eigen::VectorXd& scale() const { return scale_; }
+  const Eigen::MatrixXd& equilibrated() const { return matrix_; }
+  // Basis of the directions without stiffness, in the original's coordinates.
+  Eigen::MatrixXd null_basis() const;
+
+  static constexpr double zero = 1e-11; // of the equilibrated matrix
+
+private:
+  bool symmetric_ = true, positive_ = false, decomposed_ = false;
+  int null_ = 0;
+  Eigen::VectorXd scale_, work_;
+  Eigen::MatrixXd matrix_;
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal_;
+};
+
+} // namespace flyball

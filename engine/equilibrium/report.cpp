@@ -1,0 +1,219 @@
+#include "engine/equilibrium/report.hpp"
+
+#include "engine/mechanism/error.hpp"
+#include "engine/system/reactions.hpp"
+#include "engine/system/rotation_vector.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+double wrapped(double angle) {
+  const double turn = 2 * std::numbers::pi;
+  angle = std::remainder(angle, turn);
+  return angle <= -std::numbers::pi ? angle + turn : angle;
+}
+
+std::string cut_name(const ReportInput& in, int cut) {
+  return in.mechanism.joints[static_cast<std::size_t>(in.problem.system.cuts[static_cast<std::size_t>(cut)].joint)].name;
+}
+
+double error_of(const System& system, const Parameters& p, const CoordinateInfo& c, const Eigen::VectorXd& q,
+                const Eigen::VectorXd& error) {
+  const Link& link = system.links[static_cast<std::size_t>(c.link)];
+  if (link.v < 0) return 0;
+  if (link.type != LinkType::spherical) return error[link.v];
+  const LinkParameters& lp = p.links[static_cast<std::size_t>(c.link)];
+  const Mat3 j = inverse_left_jacobian(rotation_vector(link, lp, q));
+  const Mat3 rate = link.reversed ? Mat3(j.transpose() * lp.drawn_rotation.toRotationMatrix().transpose()) : j;
+  return rate.row(c.index - link.coordinate).cwiseAbs().dot(error.segment<3>(link.v));
+}
+
+void report_coordinates(const ReportInput& in, const Eigen::VectorXd& error, Solution& out) {
+  const System& system = in.problem.system;
+  const Parameters& p = in.problem.parameters;
+  for (const CoordinateInfo& c : system.coordinates) {
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+    const Link& link = system.links[static_cast<std::size_t>(c.link)];
+    CoordinateSolution x;
+    x.joint = joint.name;
+    x.index = c.index;
+    x.count = coordinate_count(joint.type);
+    x.angle = c.angle;
+    x.driven = link.drive >= 0;
+    x.value = coordinate_value(system, p, in.found.z.q, c);
+    const bool unwrapped = p.links[static_cast<std::size_t>(c.link)].elastic;
+    if (c.angle && link.type == LinkType::revolute && !unwrapped && !x.driven) x.value = wrapped(x.value);
+    x.error = error_of(system, p, c, in.found.z.q, error);
+    out.coordinates.push_back(std::move(x));
+  }
+}
+
+// Whether a transmitted wrench changes with the drives' phase as seen from both its parts.
+struct Frames {
+  Mat3 parent, child;
+};
+
+Frames frames_of(const System& system, const Kinematics<double>& k, const TreeJoint& t) {
+  const auto r = [&](int body) { return body < 0 ? Mat3(Mat3::Identity()) : k.at(system.body_link[static_cast<std::size_t>(body)]).R; };
+  return {r(t.parent_body), r(t.child_body)};
+}
+
+void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
+  const System& system = in.problem.system;
+  const Parameters& p = in.problem.parameters;
+  const bool redundant = w.constraints.rank() < system.rows;
+  out.reactions_nonunique = redundant;
+  struct Snapshot {
+    TransmittedForces forces;
+    std::vector<Frames> tree, cuts;
+  };
+  const auto at_phase = [&](double t) {
+    w.zero_lambda.setZero(system.rows);
+    Unknowns z{in.found.z.q, w.zero_lambda};
+    evaluate(in.problem, z, t, w);
+    linearize_constraints(system, p, w.kinematics, w.linearization);
+    factor_constraints(in.problem, w);
+    const Eigen::VectorXd rhs = -w.residual.f.cwiseProduct(in.problem.scaling.column);
+    z.lambda = w.constraints.least_norm_multipliers(rhs).cwiseProduct(in.problem.scaling.row);
+    Snapshot s{transmitted_forces(system, p, z.lambda, w.kinematics, w.residual), {}, {}};
+    for (const TreeJoint& tree : system.tree_joints) s.tree.push_back(frames_of(system, w.kinematics, tree));
+    for (const CutJoint& cut : system.cuts) s.cuts.push_back({w.kinematics.at(cut.ends.a).R, w.kinematics.at(cut.ends.b).R});
+    if (t == 0)
+      for (const CutJoint& cut : system.cuts) {
+        JointMultipliers m;
+        m.joint = in.mechanism.joints[static_cast<std::size_t>(cut.joint)].name;
+        for (std::size_t r = 0; r < cut.rows.size(); ++r)
+          m.values.push_back(z.lambda[cut.first_row + static_cast<int>(r)]);
+        out.multipliers.push_back(std::move(m));
+      }
+    return s;
+  };
+  const Snapshot drawn = at_phase(0);
+  std::vector<Snapshot> others;
+  for (double t : sample_phases(system, p)) others.push_back(at_phase(t));
+  double size = 0;
+  for (const JointWrench& x : drawn.forces.tree) size = std::max({size, x.force.norm(), x.torque.norm() / p.length});
+  const auto varies = [&](const JointWrench& a, const Frames& fa, const JointWrench& b, const Frames& fb) {
+    const auto differs = [&](const Mat3& ra, const Mat3& rb) {
+      return (ra.transpose() * a.force - rb.transpose() * b.force).norm() > 1e-7 * size ||
+             (ra.transpose() * a.torque - rb.transpose() * b.torque).norm() > 1e-7 * size * p.length;
+    };
+    return differs(fa.parent, fb.parent) && differs(fa.child, fb.child);
+  };
+  for (const Joint& j : in.mechanism.joints) {
+    if (j.type == JointType::gear) continue;
+    const auto add = [&](const JointWrench& x, bool varying) {
+      out.reactions.push_back({j.name, x.force, x.torque, varying});
+    };
+    const auto tree = std::ranges::find(system.tree_joints, j.name, &TreeJoint::name);
+    if (tree != system.tree_joints.end()) {
+      const auto i = static_cast<std::size_t>(tree - system.tree_joints.begin());
+      add(drawn.forces.tree[i], std::ranges::any_of(others, [&](const Snapshot& s) {
+            return varies(drawn.forces.tree[i], drawn.tree[i], s.forces.tree[i], s.tree[i]);
+          }));
+      continue;
+    }
+    for (std::size_t i = 0; i < system.cuts.size(); ++i)
+      if (in.mechanism.joints[static_cast<std::size_t>(system.cuts[i].joint)].name == j.name)
+        add(drawn.forces.cuts[i], std::ranges::any_of(others, [&](const Snapshot& s) {
+              return varies(drawn.forces.cuts[i], drawn.cuts[i], s.forces.cuts[i], s.cuts[i]);
+            }));
+  }
+  for (std::size_t d = 0; d < system.drives.size(); ++d) {
+    if (system.drives[d].motor != static_cast<int>(d)) continue;
+    const Link& link = system.links[static_cast<std::size_t>(system.drives[d].link)];
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+    DriveTorque torque;
+    torque.joint = joint.name;
+    torque.index = link.coordinate;
+    torque.count = coordinate_count(joint.type);
+    torque.angle = link.type == LinkType::revolute;
+    // Where the tree runs against the joint its axes are turned round and so is nothing else: the coordinate keeps its sign.
+    torque.value = drawn.forces.drives[d];
+    for (const Snapshot& s : others)
+      if (std::abs(s.forces.drives[d] - torque.value) > 1e-7 * size * (torque.angle ? p.length : 1)) torque.varying = true;
+    out.drive_torques.push_back(std::move(torque));
+  }
+}
+
+} // namespace
+
+std::string failure_message(const ReportInput& in, Workspace& w) {
+  if (in.found.status == Status::infeasible)
+    return "The loops cannot be closed: \"" + cut_name(in, in.found.open_cut) +
+           "\" stays open however the other coordinates are chosen.";
+  if (in.found.status == Status::not_converged) return in.found.message;
+  if (in.existence.loops_open)
+    return "No steady state: as the drives turn, \"" + cut_name(in, in.existence.worst_cut) +
+           "\" cannot be held with all other coordinates constant, whichever joint of its loop is cut.";
+  return "No steady state: " + blame(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
+         " turns with the drives, so the balance holds at one moment only.";
+}
+
+void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, Workspace& w, Solution& out) {
+  const System& system = in.problem.system;
+  report_coordinates(in, error, out);
+  out.stable = in.stability.stable;
+  out.stability_reason = in.stability.reason;
+  out.eigenvalues = in.stability.eigenvalues;
+  for (int v : in.stability.neutral)
+    for (const Link& link : system.links) {
+      const int n = link.type == LinkType::spherical ? 3 : 1;
+      if (link.v < 0 || v < link.v || v >= link.v + n) continue;
+      const std::string& name = system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
+      if (std::ranges::find(out.neutral, name) == out.neutral.end()) out.neutral.push_back(name);
+    }
+  if (details) report_forces(in, w, out);
+  // The balance with its multipliers, as solved.
+  w.zero_lambda.setZero(system.rows);
+  Unknowns z{in.found.z.q, w.zero_lambda};
+  evaluate(in.problem, z, 0, w);
+  linearize_constraints(system, in.problem.parameters, w.kinematics, w.linearization);
+  factor_constraints(in.problem, w);
+  const Eigen::VectorXd rhs = -w.residual.f.cwiseProduct(in.problem.scaling.column);
+  z.lambda = w.constraints.least_norm_multipliers(rhs).cwiseProduct(in.problem.scaling.row);
+  evaluate(in.problem, z, 0, w);
+  out.residual = scaled_residual(in.problem, w);
+  body_poses(system, in.mechanism, in.problem.parameters, w.kinematics, out.poses);
+  if (details && system.nv > 0) {
+    factor(in.problem, z, w);
+    const int n = system.nv, m = w.constraints.rank();
+    // Of the balance on the null space and the constraints on the range, both in scaled units and equilibrated.
+    const Eigen::MatrixXd reduced = w.hessian.equilibrated();
+    double high = 0, low = std::numeric_limits<double>::infinity();
+    if (n > m) {
+      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(reduced);
+      high = svd.singularValues()[0];
+      low = svd.singularValues().tail(1)[0];
+    }
+    if (n <= 400) out.condition = n > m ? high / low : 1.;
+    if (out.condition && !std::isfinite(*out.condition)) out.condition.reset();
+  }
+  out.message = in.found.message;
+  if (out.message.empty()) out.message = "Converged.";
+  if (!out.neutral.empty()) {
+    out.message += " Nothing resists";
+    for (std::size_t i = 0; i < out.neutral.size(); ++i) out.message += (i ? ", " : " ") + out.neutral[i];
+    out.message += "; held where it was drawn.";
+  }
+  if (out.stable == false && in.found.message.empty()) out.message += " This state is unstable.";
+}
+
+void set_start(const System& system, const Parameters& parameters, const std::string& name, double value,
+               Eigen::VectorXd& q) {
+  for (const CoordinateInfo& c : system.coordinates) {
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+    const bool one = coordinate_count(joint.type) == 1;
+    if (name != joint.name + "." + std::to_string(c.index) && !(one && name == joint.name)) continue;
+    if (system.links[static_cast<std::size_t>(c.link)].drive >= 0)
+      throw SceneError(name, "is driven; a start is for free coordinates");
+    set_coordinate(system, parameters, c, value, q);
+    return;
+  }
+  throw SceneError(name, "is not a free coordinate; use the joint's name, or name.index where it has several");
+}
+
+} // namespace flyball

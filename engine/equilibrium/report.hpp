@@ -1,0 +1,31 @@
+// From what the solvers found to what a person reads.
+#pragma once
+
+#include "engine/equilibrium/analysis.hpp"
+#include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/stability.hpp"
+
+namespace flyball {
+
+struct ReportInput {
+  const Mechanism& mechanism;
+  const Problem& problem;
+  const Found& found;
+  const Existence& existence;
+  const Stability& stability;
+};
+
+// Why there is no answer, naming the part that is to blame.
+std::string failure_message(const ReportInput& input, Workspace& w);
+
+// Fills the parts of a converged solution; `error` by coordinate of q_R.
+void report(const ReportInput& input, const Eigen::VectorXd& error, bool details, Workspace& w, Solution& out);
+
+SystemSummary summarize(const Mechanism& mechanism, const System& system, const Parameters& parameters);
+
+// Sets "joint" or "joint.index" in a configuration. Throws SceneError where there is no such free coordinate.
+void set_start(const System& system, const Parameters& parameters, const std::string& name, double value,
+               Eigen::VectorXd& q);
+
+} // namespace flyball

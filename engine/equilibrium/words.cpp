@@ -1,0 +1,36 @@
+#include "engine/equilibrium/solution.hpp"
+
+namespace flyball {
+
+std::string_view word(Status status) {
+  switch (status) {
+  case Status::converged: return "converged";
+  case Status::not_converged: return "not_converged";
+  case Status::no_steady_state: return "no_steady_state";
+  case Status::infeasible: return "infeasible";
+  }
+  return "";
+}
+
+std::string_view word(Net net) {
+  switch (net) {
+  case Net::damped: return "damped";
+  case Net::homotopy: return "homotopy";
+  case Net::descent: return "descent";
+  }
+  return "";
+}
+
+std::string_view word(StabilityReason reason) {
+  switch (reason) {
+  case StabilityReason::minimum: return "minimum";
+  case StabilityReason::asymptotic: return "asymptotic";
+  case StabilityReason::gyroscopic_only: return "gyroscopic_only";
+  case StabilityReason::neutral: return "neutral";
+  case StabilityReason::marginal: return "marginal";
+  case StabilityReason::unstable: return "unstable";
+  }
+  return "";
+}
+
+} // namespace flyball

@@ -1,0 +1,26 @@
+// Storage that solves reuse, so that repeating one allocates nothing.
+#pragma once
+
+#include "engine/equilibrium/constraint_space.hpp"
+#include "engine/equilibrium/problem.hpp"
+#include "engine/equilibrium/reduced_hessian.hpp"
+
+namespace flyball {
+
+struct Workspace {
+  Kinematics<double> kinematics;
+  Residual<double> residual;
+  Magnitudes magnitudes;
+  Linearization linearization;
+  ConstraintSpace constraints;
+  ReducedHessian hessian;
+  Eigen::MatrixXd scaled_jacobian, scaled_stiffness, product, reduced;
+  Eigen::VectorXd scaled_phi, scaled_force, range_step, target, reduced_rhs, reduced_step, noise, scaled_step,
+      scaled_lambda, step, zero_lambda;
+  Kinematics<long double> kinematics_long;
+  Residual<long double> residual_long;
+  Configuration<long double> q_long, lambda_long;
+  Unknowns trial;
+};
+
+} // namespace flyball

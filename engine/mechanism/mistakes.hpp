@@ -1,0 +1,54 @@
+// The parts of find_mistakes.
+#pragma once
+
+#include "engine/mechanism/body_groups.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/mechanism.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flyball {
+
+class Mistakes {
+ public:
+  void add(std::string where, std::string expected) {
+    all_.emplace_back(std::move(where), std::move(expected));
+  }
+  // Adds a mistake unless it is all right.
+  void expect(bool right, const std::string& where, const char* expected) {
+    if (!right) add(where, expected);
+  }
+  const std::vector<SceneError>& all() const { return all_; }
+
+ private:
+  std::vector<SceneError> all_;
+};
+
+// "joints.spin", or "joints[2]" where the name is no use.
+std::string part_path(std::string_view list, std::size_t i, std::string_view name);
+std::string joint_path(const Mechanism& mechanism, std::size_t joint);
+// "joints.spin.spring", or "joints.x.spring[1]" where the joint has several coordinates.
+std::string coordinate_path(const Mechanism& mechanism, std::size_t joint, std::string_view key,
+                            std::size_t i);
+
+void find_body_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
+void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
+void find_force_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
+// Of a force or joint between two bodies.
+void find_two_body_mistakes(const Mechanism& mechanism, const BodyNumbers& numbers,
+                            const std::array<std::string, 2>& bodies, const std::string& path,
+                            Mistakes& mistakes);
+// Says of a name that it is no body's.
+void add_unknown_body(const Mechanism& mechanism, std::string_view name, bool ground_too,
+                      const std::string& where, Mistakes& mistakes);
+
+// The following take for granted that all names are right.
+
+// Bodies connected to nothing, and cuts that would leave a body so.
+void find_connection_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
+// Drives that contradict each other, and what may not act on a driven coordinate.
+void find_drive_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
+
+} // namespace flyball

@@ -1,0 +1,27 @@
+// Every number of a part that has an address.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+struct Number {
+  std::string key;                 // the address after the part's name: "drive.speed", "at.0"
+  std::string unit;                // as shown to a person, "" where it has none
+  double value = 0;                // or, for an optional field that is absent, what it stands for
+  std::function<void(double)> set; // valid as long as the part
+};
+
+std::vector<Number> numbers_of(Body& body);
+// The mechanism tells what absent fields stand for.
+std::vector<Number> numbers_of(const Mechanism& mechanism, Joint& joint);
+std::vector<Number> numbers_of(const Mechanism& mechanism, Force& force);
+// The parts without a name, whose keys are whole addresses.
+std::vector<Number> numbers_of_gravity(Vec3& gravity);
+std::vector<Number> numbers_of(Simulation& simulation);
+
+} // namespace flyball

@@ -1,0 +1,173 @@
+#include "engine/mechanism/validate.hpp"
+
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/mistakes.hpp"
+#include "engine/mechanism/numbers.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <cctype>
+#include <cmath>
+#include <map>
+
+namespace flyball {
+namespace {
+
+std::string name_mistake(const std::string& name) {
+  if (name.empty()) return "expected a name that is not empty";
+  if (name == ground_name) return "expected another name; \"ground\" is the fixed world";
+  if (name.find('.') != std::string::npos)
+    return "expected a name without dots, which separate the parts of an address";
+  if (!is_usable_name(name)) return "expected a name without control characters";
+  if (find_invalid_utf8(name) != std::string::npos) return "expected UTF-8 text";
+  return {};
+}
+
+template <class Part>
+void find_name_mistakes(const std::vector<Part>& parts, const std::string& list, Mistakes& mistakes) {
+  std::map<std::string_view, std::size_t> seen;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string place = list + "[" + std::to_string(i) + "]";
+    if (const std::string mistake = name_mistake(parts[i].name); !mistake.empty()) {
+      mistakes.add(place + ".name", mistake);
+      continue;
+    }
+    const auto [first, is_new] = seen.emplace(parts[i].name, i);
+    if (!is_new)
+      mistakes.add(place + ".name", "expected a name of its own; " + list + "[" +
+                                        std::to_string(first->second) + "] is called \"" + parts[i].name +
+                                        "\" too");
+  }
+}
+
+// An address as a path in the JSON text: "axis.0" is axis[0].
+std::string json_key(std::string_view key) {
+  std::string path;
+  while (!key.empty()) {
+    const std::string_view segment = key.substr(0, key.find('.'));
+    if (std::isdigit(static_cast<unsigned char>(segment.front())) != 0)
+      path += "[" + std::string(segment) + "]";
+    else
+      path += (path.empty() ? "" : ".") + std::string(segment);
+    key.remove_prefix(std::min(key.size(), segment.size() + 1));
+  }
+  return path;
+}
+
+void expect_finite(const std::vector<Number>& numbers, const std::string& prefix, Mistakes& mistakes) {
+  for (const Number& number : numbers)
+    mistakes.expect(std::isfinite(number.value), prefix + json_key(number.key), "expected a finite number");
+}
+
+void find_non_finite(const Mechanism& mechanism, Mistakes& mistakes) {
+  Vec3 gravity = mechanism.gravity;
+  expect_finite(numbers_of_gravity(gravity), "", mistakes);
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
+    Body body = mechanism.bodies[i];
+    const std::string path = part_path("bodies", i, body.name);
+    expect_finite(numbers_of(body), path + ".", mistakes);
+    mistakes.expect(body.rotation.coeffs().allFinite(), path + ".rotation", "expected four finite numbers");
+  }
+  for (std::size_t i = 0; i < mechanism.joints.size(); ++i) {
+    Joint joint = mechanism.joints[i];
+    expect_finite(numbers_of(mechanism, joint), part_path("joints", i, joint.name) + ".", mistakes);
+  }
+  for (std::size_t i = 0; i < mechanism.forces.size(); ++i) {
+    Force force = mechanism.forces[i];
+    expect_finite(numbers_of(mechanism, force), part_path("forces", i, force.name) + ".", mistakes);
+  }
+}
+
+void find_slider_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
+  for (std::size_t i = 0; i < mechanism.sliders.size(); ++i) {
+    const Slider& slider = mechanism.sliders[i];
+    const std::string path = "sliders[" + std::to_string(i) + "]";
+    try {
+      get_parameter(mechanism, slider.parameter);
+    } catch (const SceneError& error) {
+      mistakes.add(path + ".parameter", error.what());
+    }
+    const std::string range = path + ".range";
+    if (!std::isfinite(slider.from) || !std::isfinite(slider.to))
+      mistakes.add(range, "expected two finite numbers");
+    else if (slider.from == slider.to)
+      mistakes.add(range, "expected two different numbers, found " + number_text(slider.from) + " twice");
+    else if (slider.scale == SliderScale::log && std::min(slider.from, slider.to) <= 0)
+      mistakes.add(range, "expected two numbers above zero, since the scale is log");
+  }
+}
+
+void find_setting_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
+  const double duration = mechanism.simulation.duration;
+  mistakes.expect(std::isfinite(duration) && duration > 0, "simulation.duration",
+                  "expected a number above zero");
+  if (!mechanism.camera) return;
+  const Camera& camera = *mechanism.camera;
+  mistakes.expect(camera.target.allFinite(), "view.camera.target", "expected three finite numbers");
+  mistakes.expect(std::isfinite(camera.distance) && camera.distance > 0, "view.camera.distance",
+                  "expected a number above zero");
+  mistakes.expect(std::isfinite(camera.azimuth), "view.camera.azimuth", "expected a finite number");
+  mistakes.expect(std::isfinite(camera.elevation), "view.camera.elevation", "expected a finite number");
+}
+
+} // namespace
+
+std::string part_path(std::string_view list, std::size_t i, std::string_view name) {
+  return std::string(list) + (is_usable_name(name) ? "." + std::string(name) : "[" + std::to_string(i) + "]");
+}
+
+std::string joint_path(const Mechanism& mechanism, std::size_t joint) {
+  return part_path("joints", joint, mechanism.joints[joint].name);
+}
+
+std::string coordinate_path(const Mechanism& mechanism, std::size_t joint, std::string_view key,
+                            std::size_t i) {
+  const std::string path = joint_path(mechanism, joint) + "." + std::string(key);
+  return coordinate_count(mechanism.joints[joint].type) > 1 ? path + "[" + std::to_string(i) + "]" : path;
+}
+
+void add_unknown_body(const Mechanism& mechanism, std::string_view name, bool ground_too,
+                      const std::string& where, Mistakes& mistakes) {
+  std::vector<std::string_view> names;
+  if (ground_too) names.push_back(ground_name);
+  for (const Body& body : mechanism.bodies)
+    names.push_back(body.name);
+  mistakes.add(where, "no body is called \"" + std::string(name) + "\"" + did_you_mean(name, names) +
+                          "; expected " +
+                          (names.empty() ? "a body, of which there is none" : word_list(names)));
+}
+
+void find_two_body_mistakes(const Mechanism& mechanism, const BodyNumbers& numbers,
+                            const std::array<std::string, 2>& bodies, const std::string& path,
+                            Mistakes& mistakes) {
+  for (std::size_t end = 0; end < 2; ++end)
+    if (!numbers.has(bodies[end]))
+      add_unknown_body(mechanism, bodies[end], true, path + ".bodies[" + std::to_string(end) + "]", mistakes);
+  if (bodies[0] == bodies[1])
+    mistakes.add(path + ".bodies", "expected two different bodies, found \"" + bodies[0] + "\" twice");
+}
+
+std::vector<SceneError> find_mistakes(const Mechanism& mechanism) {
+  Mistakes mistakes;
+  find_name_mistakes(mechanism.bodies, "bodies", mistakes);
+  find_name_mistakes(mechanism.joints, "joints", mistakes);
+  find_name_mistakes(mechanism.forces, "forces", mistakes);
+  find_non_finite(mechanism, mistakes);
+  // What follows compares numbers and looks up names, and would only repeat these in other words.
+  if (!mistakes.all().empty()) return mistakes.all();
+  find_body_mistakes(mechanism, mistakes);
+  find_joint_mistakes(mechanism, mistakes);
+  find_force_mistakes(mechanism, mistakes);
+  find_slider_mistakes(mechanism, mistakes);
+  find_setting_mistakes(mechanism, mistakes);
+  if (!mistakes.all().empty()) return mistakes.all();
+  find_connection_mistakes(mechanism, mistakes);
+  find_drive_mistakes(mechanism, mistakes);
+  return mistakes.all();
+}
+
+void validate(const Mechanism& mechanism) {
+  const std::vector<SceneError> mistakes = find_mistakes(mechanism);
+  if (!mistakes.empty()) throw mistakes.front();
+}
+
+} // namespace flyball

@@ -1,0 +1,185 @@
+#include "engine/mechanism/body_groups.hpp"
+#include "engine/mechanism/mistakes.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace flyball {
+namespace {
+
+// What drives a coordinate, directly or through gears.
+struct Driven {
+  bool is = false;
+  double speed = 0;
+  std::size_t joint = 0; // whose drive it is
+  int gear = -1;         // the last gear on the way, -1 where it is driven directly
+};
+
+// Of every coordinate, numbered through all joints.
+class DrivenCoordinates {
+ public:
+  DrivenCoordinates(const Mechanism& mechanism, Mistakes& mistakes) : mechanism_(mechanism) {
+    for (const Joint& joint : mechanism.joints) {
+      first_.push_back(all_.size());
+      all_.resize(all_.size() + joint.coordinates.size());
+    }
+    neighbours_.resize(all_.size());
+    for (std::size_t g = 0; g < mechanism.joints.size(); ++g)
+      if (mechanism.joints[g].type == JointType::gear) add_gear(g);
+    std::deque<std::size_t> waiting;
+    for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
+      for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i)
+        if (const std::optional<Drive>& drive = mechanism.joints[j].coordinates[i].drive) {
+          all_[first_[j] + i] = {true, drive->speed, j, -1};
+          waiting.push_back(first_[j] + i);
+        }
+    for (; !waiting.empty(); waiting.pop_front())
+      spread(waiting.front(), waiting, mistakes);
+  }
+
+  const Driven& operator()(std::size_t joint, std::size_t i) const { return all_[first_[joint] + i]; }
+
+  bool every_one(std::size_t joint) const {
+    const std::size_t count = mechanism_.joints[joint].coordinates.size();
+    for (std::size_t i = 0; i < count; ++i)
+      if (!(*this)(joint, i).is) return false;
+    return true;
+  }
+
+ private:
+  struct Mesh {
+    std::size_t other;
+    double ratio; // speed of the other over this one's
+    std::size_t gear;
+  };
+
+  void add_gear(std::size_t g) {
+    const Joint& gear = mechanism_.joints[g];
+    std::array<std::size_t, 2> ends{};
+    for (std::size_t end = 0; end < 2; ++end) {
+      const auto [joint, i] = find_coordinate(mechanism_, gear.joints[end]);
+      ends[end] = first_[static_cast<std::size_t>(joint)] + static_cast<std::size_t>(i);
+    }
+    neighbours_[ends[0]].push_back({ends[1], gear.ratio, g});
+    neighbours_[ends[1]].push_back({ends[0], 1 / gear.ratio, g});
+  }
+
+  void spread(std::size_t from, std::deque<std::size_t>& waiting, Mistakes& mistakes) {
+    const Driven source = all_[from];
+    for (const auto& [other, ratio, g] : neighbours_[from]) {
+      Driven& target = all_[other];
+      const double speed = source.speed * ratio;
+      if (!target.is) {
+        target = {true, speed, source.joint, static_cast<int>(g)};
+        waiting.push_back(other);
+        continue;
+      }
+      constexpr double round_off = 1e-9;
+      const double largest = std::max(std::abs(speed), std::abs(target.speed));
+      if (std::abs(speed - target.speed) <= round_off * largest || is_reported(g)) continue;
+      reported_.push_back(g);
+      const std::string& a = mechanism_.joints[source.joint].name;
+      const std::string& b = mechanism_.joints[target.joint].name;
+      mistakes.add(joint_path(mechanism_, g),
+                   "expected drives that agree: the drive of " + a + " asks for a speed of " +
+                       number_text(speed) + " where the drive of " + b + (a == b ? ", by another way," : "") +
+                       " asks for " + number_text(target.speed));
+    }
+  }
+
+  bool is_reported(std::size_t gear) const {
+    return std::find(reported_.begin(), reported_.end(), gear) != reported_.end();
+  }
+
+  const Mechanism& mechanism_;
+  std::vector<std::size_t> first_; // number of each joint's first coordinate
+  std::vector<Driven> all_;
+  std::vector<std::vector<Mesh>> neighbours_;
+  std::vector<std::size_t> reported_; // gears
+};
+
+void find_springs_on_driven(const Mechanism& mechanism, const DrivenCoordinates& driven, Mistakes& mistakes) {
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
+    for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i) {
+      if (!driven(j, i).is) continue;
+      const Coordinate& coordinate = mechanism.joints[j].coordinates[i];
+      const int gear = driven(j, i).gear;
+      const std::string by =
+          gear < 0 ? "" : " through the gear " + mechanism.joints[static_cast<std::size_t>(gear)].name;
+      const std::string reason =
+          " on this coordinate, which is driven" + by + ": its torque or force never settles";
+      if (coordinate.spring)
+        mistakes.add(coordinate_path(mechanism, j, "spring", i), "expected no spring" + reason);
+      if (coordinate.stop)
+        mistakes.add(coordinate_path(mechanism, j, "stop", i), "expected no stop" + reason);
+    }
+}
+
+// The joints on the way between two bodies (as BodyNumbers has them) among `joints`, which form no loop.
+std::vector<std::size_t> way_between(const Mechanism& mechanism, const BodyNumbers& numbers,
+                                     const std::vector<std::size_t>& joints, std::size_t from,
+                                     std::size_t to) {
+  constexpr std::size_t unseen = static_cast<std::size_t>(-1);
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> steps(mechanism.bodies.size() +
+                                                                      1); // body, joint
+  for (const std::size_t j : joints) {
+    const std::size_t a = numbers[mechanism.joints[j].bodies[0]];
+    const std::size_t b = numbers[mechanism.joints[j].bodies[1]];
+    steps[a].emplace_back(b, j);
+    steps[b].emplace_back(a, j);
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> came(steps.size(), {unseen, unseen});
+  std::deque<std::size_t> waiting{to};
+  came[to].first = to;
+  for (; !waiting.empty(); waiting.pop_front())
+    for (const auto& [next, joint] : steps[waiting.front()])
+      if (came[next].first == unseen) {
+        came[next] = {waiting.front(), joint};
+        waiting.push_back(next);
+      }
+  std::vector<std::size_t> way;
+  for (std::size_t body = from; body != to; body = came[body].first)
+    way.push_back(came[body].second);
+  return way;
+}
+
+// A loop in which every joint is driven or fixed moves as the drives say, or not at all.
+void find_driven_loops(const Mechanism& mechanism, const DrivenCoordinates& driven, Mistakes& mistakes) {
+  const BodyNumbers numbers(mechanism);
+  BodyGroups groups(numbers);
+  std::vector<std::size_t> joined;
+  const auto join = [&](bool fixed) {
+    for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
+      const Joint& joint = mechanism.joints[j];
+      const bool has_bodies = joint.type != JointType::gear && joint.type != JointType::distance;
+      if (!has_bodies || fixed != (joint.type == JointType::fixed) || !driven.every_one(j)) continue;
+      if (groups.join(joint.bodies)) {
+        joined.push_back(j);
+      } else if (!fixed) { // a loop of fixed joints alone is only redundant
+        std::vector<std::string> names{joint.name};
+        for (const std::size_t k :
+             way_between(mechanism, numbers, joined, numbers[joint.bodies[0]], numbers[joint.bodies[1]]))
+          names.push_back(mechanism.joints[k].name);
+        const std::vector<std::string_view> views(names.begin(), names.end());
+        mistakes.add(joint_path(mechanism, j) + ".drive",
+                     "expected a joint that is neither driven nor fixed in the "
+                     "loop of " +
+                         word_list(views, "and") + ": these drives contradict each other");
+      }
+    }
+  };
+  join(true);
+  join(false);
+}
+
+} // namespace
+
+void find_drive_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
+  const DrivenCoordinates driven(mechanism, mistakes);
+  find_springs_on_driven(mechanism, driven, mistakes);
+  find_driven_loops(mechanism, driven, mistakes);
+}
+
+} // namespace flyball

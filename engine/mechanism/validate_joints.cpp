@@ -1,0 +1,172 @@
+#include "engine/mechanism/mistakes.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <cmath>
+
+namespace flyball {
+namespace {
+
+bool coincide(const std::array<Vec3, 2>& points) {
+  constexpr double round_off = 1e-14;
+  return drawn_distance(points) <= round_off * (points[0].norm() + points[1].norm());
+}
+
+// Whether the direction survives being scaled to unit length.
+bool has_direction(const Vec3& v) {
+  return std::isnormal(v.squaredNorm());
+}
+
+bool parallel(const Vec3& a, const Vec3& b) {
+  constexpr double tolerance = 1e-9;
+  return a.normalized().cross(b.normalized()).norm() <= tolerance;
+}
+
+void find_axis_mistakes(const Joint& joint, const std::string& path, Mistakes& mistakes) {
+  if (!has_axis(joint.type)) return;
+  constexpr const char* expected = "expected a direction, not zero";
+  const bool universal = joint.type == JointType::universal;
+  mistakes.expect(has_direction(joint.axis), path + (universal ? ".axes[0]" : ".axis"), expected);
+  if (!has_axis2(joint.type)) return;
+  mistakes.expect(has_direction(joint.axis2), path + (universal ? ".axes[1]" : ".x_axis"), expected);
+  if (!has_direction(joint.axis) || !has_direction(joint.axis2) || !parallel(joint.axis, joint.axis2)) return;
+  if (universal)
+    mistakes.add(path + ".axes", "expected two directions that are not parallel");
+  else
+    mistakes.add(path + ".x_axis", "expected a direction that is not parallel to `axis`, the normal");
+}
+
+void find_coordinate_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t i, Mistakes& mistakes) {
+  const Joint& joint = mechanism.joints[j];
+  const Coordinate& coordinate = joint.coordinates[i];
+  const auto path = [&](std::string_view key) { return coordinate_path(mechanism, j, key, i); };
+  if (coordinate.damping < 0)
+    mistakes.add(path("damping"), "expected zero or more, found " + number_text(coordinate.damping));
+  if (coordinate.stop) {
+    const Stop& stop = *coordinate.stop;
+    mistakes.expect(stop.lower || stop.upper, path("stop"), "expected lower, upper or both");
+    mistakes.expect(!stop.lower || !stop.upper || *stop.lower <= *stop.upper, path("stop") + ".lower",
+                    "expected no more than `upper`");
+    if (!(stop.stiffness > 0))
+      mistakes.add(path("stop") + ".stiffness",
+                   "expected a number above zero, found " + number_text(stop.stiffness));
+  }
+  if (!coordinate.drive) return;
+  if (is_rotation_vector(joint.type, static_cast<int>(i)))
+    mistakes.add(path("drive"),
+                 "expected no drive: a rotation vector that changes at a constant rate is no constant "
+                 "angular velocity; use revolute joints");
+  else if (joint.cut == true)
+    mistakes.add(path("drive"),
+                 "expected no drive, or `cut` left out: a cut joint has no coordinate to drive");
+}
+
+void find_cut_mistakes(const Joint& joint, const std::string& path, Mistakes& mistakes) {
+  if (!joint.cut) return;
+  const bool always_cut = joint.type == JointType::distance || joint.type == JointType::gear;
+  if (always_cut && !*joint.cut)
+    mistakes.add(path + ".cut", "expected true, or the key left out: a " +
+                                    std::string(type_name(joint.type)) + " joint is always cut");
+  if (joint.type == JointType::free && *joint.cut)
+    mistakes.add(path + ".cut",
+                 "expected false, or the key left out: a free joint holds nothing that could be cut");
+}
+
+void find_length_mistakes(const Joint& joint, const std::string& path, Mistakes& mistakes) {
+  if (joint.length && !(*joint.length > 0))
+    mistakes.add(path + ".length", "expected a number above zero, found " + number_text(*joint.length));
+  if (!joint.length && coincide(joint.points))
+    mistakes.add(path + ".points", "expected two points apart, or `length` given");
+}
+
+void find_gear_mistakes(const Mechanism& mechanism, const Joint& gear, const std::string& path,
+                        Mistakes& mistakes) {
+  for (std::size_t end = 0; end < 2; ++end) {
+    const std::string& reference = gear.joints[end];
+    const std::string where = path + ".joints[" + std::to_string(end) + "]";
+    const std::string name = reference.substr(0, reference.find('.'));
+    const int index = joint_index(mechanism, name);
+    if (index < 0) {
+      std::vector<std::string_view> names;
+      for (const Joint& joint : mechanism.joints)
+        if (coordinate_count(joint.type) > 0) names.push_back(joint.name);
+      mistakes.add(where, "no joint is called \"" + name + "\"" + did_you_mean(name, names) +
+                              (names.empty() ? "" : "; expected " + word_list(names)));
+      continue;
+    }
+    const Joint& joint = mechanism.joints[static_cast<std::size_t>(index)];
+    const std::string kind = "a " + std::string(type_name(joint.type)) + " joint";
+    const int count = coordinate_count(joint.type);
+    const CoordinateReference coordinate = find_coordinate(mechanism, reference);
+    if (&joint == &gear)
+      mistakes.add(where, "expected another joint than the gear itself");
+    else if (count == 0)
+      mistakes.add(where, "expected a joint with a coordinate; " + kind + " has none");
+    else if (coordinate.joint < 0 && count == 1)
+      mistakes.add(where, "expected \"" + name + "\": " + kind + " has a single coordinate");
+    else if (coordinate.joint < 0)
+      mistakes.add(where, "expected one coordinate, \"" + coordinate_name(joint, 0) + "\" to \"" +
+                              coordinate_name(joint, count - 1) + "\": " + kind + " has " +
+                              std::to_string(count));
+    else if (is_rotation_vector(joint.type, coordinate.coordinate))
+      mistakes.add(
+          where,
+          "expected no component of a rotation vector, whose rate is no angular velocity; use revolute "
+          "joints");
+    else if (joint.cut == true)
+      mistakes.add(where, "expected a joint that is not cut; a cut joint has no coordinate");
+  }
+  if (gear.joints[0] == gear.joints[1]) mistakes.add(path + ".joints", "expected two different coordinates");
+  mistakes.expect(gear.ratio != 0, path + ".ratio", "expected a number other than zero");
+}
+
+} // namespace
+
+void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
+  const BodyNumbers numbers(mechanism);
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
+    const Joint& joint = mechanism.joints[j];
+    const std::string path = joint_path(mechanism, j);
+    if (joint.type == JointType::gear)
+      find_gear_mistakes(mechanism, joint, path, mistakes);
+    else
+      find_two_body_mistakes(mechanism, numbers, joint.bodies, path, mistakes);
+    if (joint.type == JointType::distance) find_length_mistakes(joint, path, mistakes);
+    find_axis_mistakes(joint, path, mistakes);
+    find_cut_mistakes(joint, path, mistakes);
+    const auto count = static_cast<std::size_t>(coordinate_count(joint.type));
+    if (joint.coordinates.size() != count)
+      mistakes.add(path + ".coordinate", "expected " + std::to_string(count) + " coordinates, found " +
+                                             std::to_string(joint.coordinates.size()));
+    else
+      for (std::size_t i = 0; i < count; ++i)
+        find_coordinate_mistakes(mechanism, j, i, mistakes);
+  }
+}
+
+void find_force_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
+  const BodyNumbers numbers(mechanism);
+  for (std::size_t i = 0; i < mechanism.forces.size(); ++i) {
+    const Force& force = mechanism.forces[i];
+    const std::string path = part_path("forces", i, force.name);
+    const auto not_negative = [&](double value, const char* key) {
+      if (value < 0) mistakes.add(path + "." + key, "expected zero or more, found " + number_text(value));
+    };
+    if (force.type == ForceType::spring) {
+      find_two_body_mistakes(mechanism, numbers, force.bodies, path, mistakes);
+      if (coincide(force.points) && force.free_length != 0.0)
+        mistakes.add(path + ".points",
+                     "expected two points apart, or a `free_length` of 0: the spring has no direction");
+      not_negative(force.free_length.value_or(0), "free_length");
+      not_negative(force.damping, "damping");
+      continue;
+    }
+    if (force.body == ground_name)
+      mistakes.add(path + ".body", "expected a body; the ground does not move");
+    else if (!numbers.has(force.body))
+      add_unknown_body(mechanism, force.body, false, path + ".body", mistakes);
+    not_negative(force.linear, "linear");
+    not_negative(force.quadratic, "quadratic");
+  }
+}
+
+} // namespace flyball

@@ -1,0 +1,527 @@
+#include "engine/mechanism/error.hpp"
+#include "engine/system/system.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace flyball {
+namespace {
+
+constexpr int ground = -1;
+
+// An axis of a joint and the coordinate that moves along or about it.
+struct ChainPart {
+  LinkType type;
+  int axis;
+  int coordinate;
+};
+
+std::vector<ChainPart> chain_of(JointType type) {
+  using enum LinkType;
+  switch (type) {
+  case JointType::revolute: return {{revolute, 0, 0}};
+  case JointType::prismatic: return {{prismatic, 0, 0}};
+  case JointType::cylindrical: return {{revolute, 0, 0}, {prismatic, 0, 1}};
+  case JointType::universal: return {{revolute, 0, 0}, {revolute, 1, 1}};
+  case JointType::spherical: return {{spherical, 0, 0}};
+  case JointType::planar: return {{prismatic, 1, 0}, {prismatic, 2, 1}, {revolute, 0, 2}};
+  case JointType::free:
+    return {{prismatic, 3, 0}, {prismatic, 4, 1}, {prismatic, 5, 2}, {spherical, 0, 3}};
+  case JointType::fixed: return {{fixed, 0, 0}};
+  case JointType::distance:
+  case JointType::gear: break;
+  }
+  return {};
+}
+
+// Constraint equations of a joint that closes a loop, in its frame with z along the axis.
+std::vector<ConstraintRow> rows_of(JointType type) {
+  const ConstraintRow px{RowType::point, 0, 0}, py{RowType::point, 1, 1}, pz{RowType::point, 2, 2};
+  const ConstraintRow xz{RowType::direction, 0, 2}, yz{RowType::direction, 1, 2};
+  const ConstraintRow xy{RowType::direction, 0, 1}, zx{RowType::direction, 2, 0};
+  switch (type) {
+  case JointType::revolute: return {px, py, pz, xz, yz};
+  case JointType::prismatic: return {px, py, xy, yz, zx};
+  case JointType::cylindrical: return {px, py, xz, yz};
+  case JointType::universal: return {px, py, pz, {RowType::direction, 2, 3}};
+  case JointType::spherical: return {px, py, pz};
+  case JointType::planar: return {pz, xz, yz};
+  case JointType::fixed: return {px, py, pz, xy, yz, zx};
+  case JointType::distance: return {{RowType::distance, 0, 0}};
+  case JointType::gear: return {{RowType::gear, 0, 0}};
+  case JointType::free: break;
+  }
+  return {};
+}
+
+bool joins_trees(JointType type) { return type != JointType::distance && type != JointType::gear; }
+
+class UnionFind {
+public:
+  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[static_cast<std::size_t>(i)] != i) {
+      int& p = parent_[static_cast<std::size_t>(i)];
+      i = p = parent_[static_cast<std::size_t>(p)];
+    }
+    return i;
+  }
+  bool unite(int a, int b) {
+    a = find(a);
+    b = find(b);
+    if (a == b) return false;
+    parent_[static_cast<std::size_t>(b)] = a;
+    return true;
+  }
+
+private:
+  std::vector<int> parent_;
+};
+
+// How a coordinate is driven: from which motor, through which gears.
+struct DriveOrigin {
+  bool driven = false;
+  int motor_joint = -1, motor_coordinate = 0;
+  std::vector<int> gears;
+};
+
+class Compiler {
+public:
+  Compiler(const Mechanism& mechanism, const CutChoice& choice) : m_(mechanism), choice_(choice) {}
+
+  System run() {
+    propagate_drives();
+    choose_tree();
+    build_links();
+    add_cuts();
+    add_forces();
+    list_coordinates();
+    classify();
+    return std::move(s_);
+  }
+
+private:
+  const Joint& joint(int j) const { return m_.joints[static_cast<std::size_t>(j)]; }
+  int joint_count() const { return static_cast<int>(m_.joints.size()); }
+  int body_count() const { return static_cast<int>(m_.bodies.size()); }
+  Link& link(int l) { return s_.links[static_cast<std::size_t>(l)]; }
+
+  int body_of(const std::string& name, const std::string& where) const {
+    if (name == ground_name) return ground;
+    const int b = body_index(m_, name);
+    if (b < 0) throw SceneError(where, "there is no body \"" + name + "\"");
+    return b;
+  }
+  std::string joint_path(int j) const { return "joints." + joint(j).name; }
+
+  CoordinateReference gear_end(int j, int end) const {
+    const std::string& name = joint(j).joints[static_cast<std::size_t>(end)];
+    const CoordinateReference r = find_coordinate(m_, name);
+    if (r.joint < 0) throw SceneError(joint_path(j), "there is no joint coordinate \"" + name + "\"");
+    return r;
+  }
+  DriveOrigin& origin(CoordinateReference r) {
+    return origins_[static_cast<std::size_t>(r.joint)][static_cast<std::size_t>(r.coordinate)];
+  }
+
+  // A gear to a driven coordinate makes the other driven.
+  void propagate_drives() {
+    origins_.resize(m_.joints.size());
+    for (int j = 0; j < joint_count(); ++j) {
+      auto& o = origins_[static_cast<std::size_t>(j)];
+      o.resize(joint(j).coordinates.size());
+      for (std::size_t k = 0; k < o.size(); ++k)
+        if (joint(j).coordinates[k].drive) o[k] = {true, j, static_cast<int>(k), {}};
+    }
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (int j = 0; j < joint_count(); ++j) {
+        if (joint(j).type != JointType::gear) continue;
+        const CoordinateReference a = gear_end(j, 0), b = gear_end(j, 1);
+        if (origin(a).driven == origin(b).driven) continue;
+        DriveOrigin& from = origin(a).driven ? origin(a) : origin(b);
+        DriveOrigin& to = origin(a).driven ? origin(b) : origin(a);
+        to = from;
+        to.gears.push_back(j);
+        changed = true;
+      }
+    }
+    needs_coordinate_.assign(m_.joints.size(), false);
+    for (int j = 0; j < joint_count(); ++j) {
+      for (const Coordinate& c : joint(j).coordinates)
+        if (c.spring || c.stop) needs_coordinate_[static_cast<std::size_t>(j)] = true;
+      if (joint(j).type == JointType::gear)
+        for (int end : {0, 1}) needs_coordinate_[static_cast<std::size_t>(gear_end(j, end).joint)] = true;
+    }
+  }
+
+  bool is_driven(int j) const {
+    return std::ranges::any_of(origins_[static_cast<std::size_t>(j)], [](const DriveOrigin& o) { return o.driven; });
+  }
+
+  // Lower is kept in the tree first.
+  auto preference(int j) const {
+    const Joint& x = joint(j);
+    const bool labelled = std::ranges::any_of(
+        x.coordinates, [](const Coordinate& c) { return c.drawn != 0 || c.damping != 0; });
+    int rank = 4;
+    if (labelled) rank = 3;
+    if (needs_coordinate_[static_cast<std::size_t>(j)]) rank = 2;
+    if (x.cut == false) rank = 1;
+    if (is_driven(j)) rank = 0;
+    return std::tuple(rank, coordinate_count(x.type), j);
+  }
+
+  void choose_tree() {
+    std::vector<int> order;
+    for (int j = 0; j < joint_count(); ++j)
+      if (joins_trees(joint(j).type)) order.push_back(j);
+    std::ranges::sort(order, [&](int a, int b) { return preference(a) < preference(b); });
+    in_tree_.assign(m_.joints.size(), false);
+    UnionFind parts(m_.bodies.size() + 1);
+    for (int j : order) {
+      const Joint& x = joint(j);
+      if (x.cut == true || std::ranges::find(choice_.cut, j) != choice_.cut.end()) continue;
+      const int a = body_of(x.bodies[0], joint_path(j)), b = body_of(x.bodies[1], joint_path(j));
+      if (parts.unite(a + 1, b + 1)) {
+        in_tree_[static_cast<std::size_t>(j)] = true;
+      } else if (is_driven(j)) {
+        throw SceneError(joint_path(j) + ".drive", "driven joints close a loop; a driven joint cannot be cut");
+      } else if (x.type == JointType::free) {
+        throw SceneError(joint_path(j), "a free joint joins bodies that are joined already; it constrains nothing");
+      }
+    }
+  }
+
+  // Appends the links of a joint; returns the outermost.
+  int add_chain(int j, JointType type, int parent_link, bool reversed, TreeJoint record) {
+    const std::vector<ChainPart> parts = chain_of(type);
+    record.joint = j;
+    record.type = type;
+    record.first_link = static_cast<int>(s_.links.size());
+    record.link_count = static_cast<int>(parts.size());
+    record.reversed = reversed;
+    const int index = static_cast<int>(s_.tree_joints.size());
+    int last = parent_link;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const ChainPart& part = reversed ? parts[parts.size() - 1 - i] : parts[i];
+      Link l;
+      l.type = part.type;
+      l.parent = last;
+      l.tree_joint = index;
+      l.coordinate = part.coordinate;
+      l.reversed = reversed;
+      l.axis = part.axis;
+      last = static_cast<int>(s_.links.size());
+      const DriveOrigin* o = nullptr;
+      if (j >= 0 && part.type != LinkType::fixed)
+        o = &origins_[static_cast<std::size_t>(j)][static_cast<std::size_t>(part.coordinate)];
+      if (o && o->driven) {
+        if (part.type == LinkType::spherical)
+          throw SceneError(joint_path(j) + ".drive", "a rotation vector cannot be driven; use revolute joints");
+        l.drive = static_cast<int>(s_.drives.size());
+        s_.drives.push_back({last, l.drive, o->gears});
+        motors_.push_back({o->motor_joint, o->motor_coordinate});
+      } else if (part.type != LinkType::fixed) {
+        l.q = s_.nq;
+        l.v = s_.nv;
+        s_.nq += part.type == LinkType::spherical ? 4 : 1;
+        s_.nv += part.type == LinkType::spherical ? 3 : 1;
+      }
+      s_.links.push_back(l);
+    }
+    s_.tree_joints.push_back(std::move(record));
+    return last;
+  }
+
+  int drive_depth(int l) const {
+    int depth = 0;
+    for (; l >= 0; l = s_.links[static_cast<std::size_t>(l)].parent)
+      depth += s_.links[static_cast<std::size_t>(l)].drive >= 0;
+    return depth;
+  }
+
+  // Walks the tree outwards from a body that has its link already.
+  void grow(int from) {
+    std::vector<int> stack{from};
+    while (!stack.empty()) {
+      const int body = stack.back();
+      stack.pop_back();
+      std::vector<int> found;
+      for (int j : joints_at_[static_cast<std::size_t>(body + 1)]) {
+        const Joint& x = joint(j);
+        const int p = body_of(x.bodies[0], ""), c = body_of(x.bodies[1], "");
+        const bool reversed = p != body;
+        const int other = reversed ? p : c;
+        if (other == ground || s_.body_link[static_cast<std::size_t>(other)] >= 0) continue;
+        const int parent = body == ground ? -1 : s_.body_link[static_cast<std::size_t>(body)];
+        TreeJoint record;
+        record.name = x.name;
+        record.parent_body = p;
+        record.child_body = c;
+        const int l = add_chain(j, x.type, parent, reversed, std::move(record));
+        link(l).body = other;
+        s_.body_link[static_cast<std::size_t>(other)] = l;
+        found.push_back(other);
+      }
+      stack.insert(stack.end(), found.rbegin(), found.rend());
+    }
+  }
+
+  // A body held only by distance joints, springs or joints marked to be cut gets a free joint to its most
+  // driven neighbour. Returns false when nothing joins what is left to what is there.
+  bool add_implicit_joint() {
+    int best_depth = -1, best_from = ground, best_to = ground;
+    const auto consider = [&](const std::array<std::string, 2>& bodies) {
+      for (int end : {0, 1}) {
+        const int from = body_of(bodies[static_cast<std::size_t>(end)], "");
+        const int to = body_of(bodies[static_cast<std::size_t>(1 - end)], "");
+        if (to == ground || s_.body_link[static_cast<std::size_t>(to)] >= 0) continue;
+        const int l = from == ground ? -1 : s_.body_link[static_cast<std::size_t>(from)];
+        if (from != ground && l < 0) continue;
+        if (const int depth = drive_depth(l); depth > best_depth) {
+          best_depth = depth;
+          best_from = from;
+          best_to = to;
+        }
+      }
+    };
+    for (const Joint& x : m_.joints)
+      if (x.type != JointType::gear) consider(x.bodies);
+    for (const Force& f : m_.forces)
+      if (f.type == ForceType::spring) consider(f.bodies);
+    if (best_to == ground) return false;
+    TreeJoint record;
+    record.name = m_.bodies[static_cast<std::size_t>(best_to)].name + ".free";
+    record.parent_body = best_from;
+    record.child_body = best_to;
+    const int parent = best_from == ground ? -1 : s_.body_link[static_cast<std::size_t>(best_from)];
+    const int l = add_chain(-1, JointType::free, parent, false, std::move(record));
+    link(l).body = best_to;
+    s_.body_link[static_cast<std::size_t>(best_to)] = l;
+    grow(best_to);
+    return true;
+  }
+
+  void build_links() {
+    s_.body_link.assign(m_.bodies.size(), -1);
+    joints_at_.resize(m_.bodies.size() + 1);
+    for (int j = 0; j < joint_count(); ++j) {
+      if (!in_tree_[static_cast<std::size_t>(j)]) continue;
+      for (const std::string& name : joint(j).bodies)
+        joints_at_[static_cast<std::size_t>(body_of(name, joint_path(j)) + 1)].push_back(j);
+    }
+    grow(ground);
+    while (true) {
+      const auto lost = std::ranges::find(s_.body_link, -1);
+      if (lost == s_.body_link.end()) break;
+      if (!add_implicit_joint())
+        throw SceneError("bodies." + m_.bodies[static_cast<std::size_t>(lost - s_.body_link.begin())].name,
+                         "is connected to nothing; join it to the ground or to another body");
+    }
+    for (std::size_t d = 0; d < s_.drives.size(); ++d)
+      for (std::size_t e = 0; e < s_.drives.size(); ++e) {
+        const Link& l = link(s_.drives[e].link);
+        const TreeJoint& t = s_.tree_joints[static_cast<std::size_t>(l.tree_joint)];
+        if (s_.drives[e].gears.empty() && t.joint == motors_[d].joint && l.coordinate == motors_[d].coordinate)
+          s_.drives[d].motor = static_cast<int>(e);
+      }
+  }
+
+  int link_of(int body) const { return body == ground ? -1 : s_.body_link[static_cast<std::size_t>(body)]; }
+
+  // Free coordinates on the way from `l` to the root.
+  Support path_to_root(int l, bool second) const {
+    Support path;
+    for (; l >= 0; l = s_.links[static_cast<std::size_t>(l)].parent) {
+      const Link& x = s_.links[static_cast<std::size_t>(l)];
+      if (x.v < 0) continue;
+      const int n = x.type == LinkType::spherical ? 3 : 1;
+      for (int k = n - 1; k >= 0; --k) path.push_back({x.v + k, l, second});
+    }
+    std::ranges::reverse(path);
+    return path;
+  }
+
+  PairEnds ends_between(int a, int b) const {
+    PairEnds ends{a, b, {}};
+    const Support pa = path_to_root(a, false), pb = path_to_root(b, true);
+    std::size_t common = 0;
+    while (common < pa.size() && common < pb.size() && pa[common].v == pb[common].v) ++common;
+    ends.support.assign(pa.begin() + static_cast<std::ptrdiff_t>(common), pa.end());
+    ends.support.insert(ends.support.end(), pb.begin() + static_cast<std::ptrdiff_t>(common), pb.end());
+    return ends;
+  }
+
+  void add_cut(CutJoint cut, JointType type) {
+    cut.type = type;
+    cut.first_row = s_.rows;
+    cut.rows = rows_of(type);
+    s_.rows += static_cast<int>(cut.rows.size());
+    s_.cuts.push_back(std::move(cut));
+  }
+
+  void add_cuts() {
+    std::vector<int> gears;
+    for (int j = 0; j < joint_count(); ++j) {
+      const Joint& x = joint(j);
+      if (x.type == JointType::gear) {
+        gears.push_back(j);
+        continue;
+      }
+      if (in_tree_[static_cast<std::size_t>(j)]) continue;
+      const int a = body_of(x.bodies[0], joint_path(j)), b = body_of(x.bodies[1], joint_path(j));
+      const bool damped = std::ranges::any_of(x.coordinates, [](const Coordinate& c) { return c.damping != 0; });
+      const bool axial = x.type == JointType::revolute || x.type == JointType::prismatic ||
+                         x.type == JointType::cylindrical;
+      CutJoint cut;
+      cut.joint = j;
+      if (needs_coordinate_[static_cast<std::size_t>(j)] || (damped && !axial)) {
+        // A spring needs the joint's own coordinate: keep the joint, lead it to a massless twin of the child,
+        // and close the loop by welding the twin to the child.
+        TreeJoint record;
+        record.name = x.name;
+        record.parent_body = a;
+        record.child_body = b;
+        record.closes_loop = true;
+        cut.tree_joint = static_cast<int>(s_.tree_joints.size());
+        const int twin = add_chain(j, x.type, link_of(a), false, std::move(record));
+        cut.ends = ends_between(twin, link_of(b));
+        add_cut(std::move(cut), JointType::fixed);
+        continue;
+      }
+      cut.ends = ends_between(link_of(a), link_of(b));
+      if (damped)
+        for (int k = 0; k < coordinate_count(x.type); ++k)
+          if (x.coordinates[static_cast<std::size_t>(k)].damping != 0)
+            s_.cut_dampers.push_back({j, k, is_angle(x.type, k), cut.ends});
+      add_cut(std::move(cut), x.type);
+    }
+    for (int j : gears) add_gear(j);
+  }
+
+  void add_gear(int j) {
+    const CoordinateReference a = gear_end(j, 0), b = gear_end(j, 1);
+    if (origin(a).driven) { // then b is, too
+      s_.dropped_gears.push_back(j);
+      return;
+    }
+    CutJoint cut;
+    cut.joint = j;
+    for (const Link& l : s_.links) {
+      const int owner = s_.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint;
+      if (l.type != LinkType::revolute && l.type != LinkType::prismatic) continue;
+      if (owner == a.joint && l.coordinate == a.coordinate) cut.gear_a = l.q, cut.gear_va = l.v;
+      if (owner == b.joint && l.coordinate == b.coordinate) cut.gear_b = l.q, cut.gear_vb = l.v;
+    }
+    if (cut.gear_a < 0 || cut.gear_b < 0)
+      throw SceneError(joint_path(j), "a gear couples coordinates of one axis; a rotation vector has none");
+    add_cut(std::move(cut), JointType::gear);
+  }
+
+  void add_forces() {
+    for (int f = 0; f < static_cast<int>(m_.forces.size()); ++f) {
+      const Force& x = m_.forces[static_cast<std::size_t>(f)];
+      const std::string path = "forces." + x.name;
+      if (x.type == ForceType::spring) {
+        s_.springs.push_back(
+            {f, ends_between(link_of(body_of(x.bodies[0], path)), link_of(body_of(x.bodies[1], path)))});
+      } else {
+        const int l = link_of(body_of(x.body, path));
+        s_.body_forces.push_back({f, l, path_to_root(l, false)});
+      }
+    }
+  }
+
+  void list_coordinates() {
+    for (int l = 0; l < static_cast<int>(s_.links.size()); ++l) {
+      const Link& x = link(l);
+      if (x.type == LinkType::fixed) continue;
+      const TreeJoint& t = s_.tree_joints[static_cast<std::size_t>(x.tree_joint)];
+      const int n = x.type == LinkType::spherical ? 3 : 1;
+      for (int k = 0; k < n; ++k)
+        s_.coordinates.push_back({x.tree_joint, x.coordinate + k, is_angle(t.type, x.coordinate + k), l});
+    }
+    const auto key = [&](const CoordinateInfo& c) {
+      const int j = s_.tree_joints[static_cast<std::size_t>(c.tree_joint)].joint;
+      return std::tuple(j < 0 ? joint_count() + c.tree_joint : j, c.index);
+    };
+    std::ranges::stable_sort(s_.coordinates, [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  }
+
+  // The drives a link turns with, innermost last; two links with the same ones never move against each other
+  // in the steady state.
+  int moving_frame(int l) const {
+    for (; l >= 0; l = s_.links[static_cast<std::size_t>(l)].parent)
+      if (s_.links[static_cast<std::size_t>(l)].drive >= 0) return l;
+    return -1;
+  }
+
+  void classify() {
+    for (const DrivenCoordinate& d : s_.drives)
+      if (moving_frame(link(d.link).parent) >= 0) s_.single_drives = false;
+    for (const BodyForceElement& e : s_.body_forces) {
+      const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
+      if (f.type != ForceType::force || f.frame != ForceFrame::world) s_.conservative = false;
+    }
+    for (const PointSpringElement& e : s_.springs)
+      if (m_.forces[static_cast<std::size_t>(e.force)].damping != 0 &&
+          moving_frame(e.ends.a) != moving_frame(e.ends.b))
+        s_.conservative = false;
+    for (const CutDamperElement& e : s_.cut_dampers)
+      if (moving_frame(e.ends.a) != moving_frame(e.ends.b)) s_.conservative = false;
+  }
+
+  const Mechanism& m_;
+  const CutChoice& choice_;
+  System s_;
+  std::vector<std::vector<DriveOrigin>> origins_;
+  std::vector<CoordinateReference> motors_; // by entry of s_.drives
+  std::vector<bool> needs_coordinate_, in_tree_;
+  std::vector<std::vector<int>> joints_at_;
+};
+
+} // namespace
+
+System compile(const Mechanism& mechanism, const CutChoice& choice) { return Compiler(mechanism, choice).run(); }
+
+std::vector<CutChoice> neighbouring_cuts(const Mechanism& mechanism, const System& system) {
+  std::vector<int> chosen;
+  for (const CutJoint& c : system.cuts) {
+    const Joint& x = mechanism.joints[static_cast<std::size_t>(c.joint)];
+    if (joins_trees(x.type) && x.cut != true) chosen.push_back(c.joint);
+  }
+  std::vector<CutChoice> result;
+  for (int cut : chosen) {
+    const auto c = std::ranges::find(system.cuts, cut, &CutJoint::joint);
+    // The tree joints of the loop: those that are on one side's way to the root, but not on both.
+    std::vector<int> loop;
+    const auto walk = [&](int l) {
+      for (int last = -1; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
+        const int t = system.links[static_cast<std::size_t>(l)].tree_joint;
+        if (t == last) continue;
+        last = t;
+        if (const auto it = std::ranges::find(loop, t); it != loop.end())
+          loop.erase(it);
+        else
+          loop.push_back(t);
+      }
+    };
+    walk(c->ends.a);
+    walk(c->ends.b);
+    for (int t : loop) {
+      const TreeJoint& tree = system.tree_joints[static_cast<std::size_t>(t)];
+      if (tree.joint < 0 || tree.closes_loop) continue;
+      const Joint& x = mechanism.joints[static_cast<std::size_t>(tree.joint)];
+      const auto moved = [&](const Link& l) { return l.tree_joint == t && l.drive >= 0; };
+      if (x.cut == false || x.type == JointType::free || std::ranges::any_of(system.links, moved)) continue;
+      CutChoice other{chosen};
+      *std::ranges::find(other.cut, cut) = tree.joint;
+      result.push_back(std::move(other));
+    }
+  }
+  return result;
+}
+
+} // namespace flyball

@@ -1,0 +1,148 @@
+#include "engine/system/kinematics.hpp"
+
+#include "engine/system/rotation_vector.hpp"
+
+namespace flyball {
+
+template <class S>
+void forward(const System& system, const Parameters& p, const Configuration<S>& q, double t, Kinematics<S>& out) {
+  const std::size_t n = system.links.size();
+  out.links.resize(n);
+  out.columns.resize(static_cast<std::size_t>(system.nv));
+  out.ground.R.setIdentity();
+  out.ground.o.setZero();
+  out.ground.axis.setZero();
+  out.ground.w.setZero();
+  out.ground.v.setZero();
+  out.ground.dw.setZero();
+  out.ground.dv = -p.gravity.cast<S>();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Link& link = system.links[i];
+    const LinkParameters& lp = p.links[i];
+    const LinkState<S>& parent = out.at(link.parent);
+    LinkState<S>& x = out.links[i];
+    S displacement = 0;
+    if (link.drive >= 0)
+      displacement = S(lp.start) + S(lp.speed) * S(t);
+    else if (link.type == LinkType::revolute || link.type == LinkType::prismatic)
+      displacement = q[link.q] - S(lp.drawn);
+    x.o = parent.o + parent.R * lp.offset.cast<S>();
+    switch (link.type) {
+    case LinkType::fixed: x.R = parent.R; break;
+    case LinkType::revolute:
+      x.axis = parent.R * lp.axis.cast<S>();
+      x.R = parent.R * rotation_about<S>(lp.axis.cast<S>(), displacement);
+      break;
+    case LinkType::prismatic:
+      x.axis = parent.R * lp.axis.cast<S>();
+      x.R = parent.R;
+      x.o += x.axis * displacement;
+      break;
+    case LinkType::spherical: {
+      const Eigen::Quaternion<S> d(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
+      x.R = parent.R * d.toRotationMatrix();
+      break;
+    }
+    }
+    if (link.v >= 0) {
+      Column<S>* column = &out.columns[static_cast<std::size_t>(link.v)];
+      if (link.type == LinkType::spherical)
+        for (int k = 0; k < 3; ++k) column[k] = {parent.R.col(k), x.o, true};
+      else
+        *column = {x.axis, x.o, link.type == LinkType::revolute};
+    }
+    if (!p.moving) {
+      x.w.setZero();
+      x.v.setZero();
+      x.dw.setZero();
+      x.dv = out.ground.dv;
+      continue;
+    }
+    const Vec3T<S> arm = x.o - parent.o;
+    const Vec3T<S> swing = parent.w.cross(arm);
+    x.w = parent.w;
+    x.dw = parent.dw;
+    x.v = parent.v + swing;
+    x.dv = parent.dv + parent.dw.cross(arm) + parent.w.cross(swing);
+    if (link.drive >= 0) {
+      const S speed = S(lp.speed) * S(p.speed_scale);
+      if (link.type == LinkType::revolute) {
+        x.w += x.axis * speed;
+        x.dw += parent.w.cross(x.axis) * speed;
+      } else {
+        x.v += x.axis * speed;
+        x.dv += parent.w.cross(x.axis) * (2 * speed);
+      }
+    }
+  }
+}
+
+template <class S>
+void retract(const System& system, const Configuration<S>& step, Configuration<S>& q) {
+  for (const Link& link : system.links) {
+    if (link.v < 0) continue;
+    if (link.type != LinkType::spherical) {
+      q[link.q] += step[link.v];
+      continue;
+    }
+    const Eigen::Quaternion<S> d(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
+    const Eigen::Quaternion<S> moved =
+        (exp_rotation<S>(Vec3T<S>(step.template segment<3>(link.v))) * d).normalized();
+    q[link.q] = moved.w();
+    q.template segment<3>(link.q + 1) = moved.vec();
+  }
+}
+
+template <class S>
+Vec3T<S> rotation_vector(const Link& link, const LinkParameters& p, const Configuration<S>& q) {
+  const Eigen::Quaternion<S> d(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
+  return log_rotation<S>((link.reversed ? d.conjugate() : d) * p.drawn_rotation.cast<S>());
+}
+
+double coordinate_value(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                        const CoordinateInfo& c) {
+  const Link& link = system.links[static_cast<std::size_t>(c.link)];
+  const LinkParameters& p = parameters.links[static_cast<std::size_t>(c.link)];
+  if (link.drive >= 0) return p.drawn + p.start;
+  if (link.type == LinkType::spherical) return rotation_vector(link, p, q)[c.index - link.coordinate];
+  return q[link.q];
+}
+
+void set_coordinate(const System& system, const Parameters& parameters, const CoordinateInfo& c, double value,
+                    Eigen::VectorXd& q) {
+  const Link& link = system.links[static_cast<std::size_t>(c.link)];
+  if (link.q < 0) return;
+  if (link.type != LinkType::spherical) {
+    q[link.q] = value;
+    return;
+  }
+  const LinkParameters& p = parameters.links[static_cast<std::size_t>(c.link)];
+  Vec3 r = rotation_vector(link, p, q);
+  r[c.index - link.coordinate] = value;
+  Quat d = exp_rotation(r) * p.drawn_rotation.conjugate();
+  if (link.reversed) d = d.conjugate();
+  q.segment<4>(link.q) << d.w(), d.x(), d.y(), d.z();
+}
+
+void body_poses(const System& system, const Mechanism& mechanism, const Parameters& parameters,
+                const Kinematics<double>& kinematics, std::vector<Pose>& poses) {
+  poses.resize(mechanism.bodies.size());
+  for (std::size_t b = 0; b < poses.size(); ++b) {
+    const int l = system.body_link[b];
+    const LinkState<double>& x = kinematics.at(l);
+    poses[b].position = parameters.origin + x.o + x.R * parameters.links[static_cast<std::size_t>(l)].com;
+    poses[b].rotation = (Quat(x.R) * mechanism.bodies[b].rotation.normalized()).normalized();
+    if (poses[b].rotation.w() < 0) poses[b].rotation.coeffs() *= -1;
+  }
+}
+
+template void forward<double>(const System&, const Parameters&, const Configuration<double>&, double, Kinematics<double>&);
+template void forward<long double>(const System&, const Parameters&, const Configuration<long double>&, double,
+                                   Kinematics<long double>&);
+template void retract<double>(const System&, const Configuration<double>&, Configuration<double>&);
+template void retract<long double>(const System&, const Configuration<long double>&, Configuration<long double>&);
+template Vec3T<double> rotation_vector<double>(const Link&, const LinkParameters&, const Configuration<double>&);
+template Vec3T<long double> rotation_vector<long double>(const Link&, const LinkParameters&,
+                                                         const Configuration<long double>&);
+
+} // namespace flyball

@@ -1,0 +1,297 @@
+#include "engine/system/linearization.hpp"
+
+#include "engine/system/constraint_row.hpp"
+#include "engine/system/pair_stiffness.hpp"
+#include "engine/system/rotation_vector.hpp"
+
+namespace flyball {
+namespace {
+
+using Columns = std::vector<Column<double>>;
+
+int column_count(const Link& link) { return link.v < 0 ? 0 : link.type == LinkType::spherical ? 3 : 1; }
+
+void fill_screws(const System& system, const Parameters& p, const Kinematics<double>& k, std::vector<ScrewRates>& out) {
+  out.resize(static_cast<std::size_t>(system.nv));
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const Link& link = system.links[i];
+    for (int c = 0; c < column_count(link); ++c) {
+      ScrewRates& s = out[static_cast<std::size_t>(link.v + c)];
+      const Column<double>& column = k.columns[static_cast<std::size_t>(link.v + c)];
+      const Vec3& a = column.axis;
+      s.sw = column.angular ? a : Vec3(Vec3::Zero());
+      s.sv = column.angular ? Vec3(Vec3::Zero()) : a;
+      const LinkState<double>& parent = k.at(link.parent);
+      if (!p.moving) {
+        s.dw.setZero();
+        s.dv.setZero();
+        s.ddw.setZero();
+        s.ddv = column.angular ? Vec3(k.ground.dv.cross(a)) : Vec3(Vec3::Zero());
+        continue;
+      }
+      // The parent's motion as a field, at this link's origin.
+      const Vec3 arm = column.o - parent.o;
+      const Vec3 v = parent.v + parent.w.cross(arm);
+      const Vec3 acceleration = parent.dv + parent.dw.cross(arm) + parent.w.cross(parent.w.cross(arm));
+      const Vec3 spatial = acceleration - parent.w.cross(v);
+      if (column.angular) {
+        s.dw = parent.w.cross(a);
+        s.dv = v.cross(a);
+        s.ddw = parent.dw.cross(a);
+        s.ddv = spatial.cross(a);
+      } else {
+        s.dw.setZero();
+        s.dv = parent.w.cross(a);
+        s.ddw.setZero();
+        s.ddv = parent.dw.cross(a);
+      }
+      s.ddw += parent.w.cross(s.dw);
+      s.ddv += parent.w.cross(s.dv) + v.cross(s.dw);
+    }
+  }
+}
+
+void fill_composites(const System& system, const Parameters& p, const Kinematics<double>& k,
+                     std::vector<CompositeBody>& out) {
+  out.resize(system.links.size());
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    CompositeBody& b = out[i];
+    const LinkParameters& lp = p.links[i];
+    const LinkState<double>& x = k.links[i];
+    b.mass = lp.mass;
+    if (lp.mass == 0 && !lp.has_inertia) {
+      b = {0, Vec3::Zero(), Mat3::Zero(), Mat3::Zero(), Vec3::Zero()};
+      continue;
+    }
+    const Vec3 c = x.R * lp.com;
+    const Mat3 inertia = lp.has_inertia ? Mat3(x.R * lp.inertia * x.R.transpose()) : Mat3(Mat3::Zero());
+    const Mat3 cx = skew(c);
+    b.first_moment = lp.mass * c;
+    b.inertia = inertia - lp.mass * cx * cx;
+    if (!p.moving) {
+      b.b.setZero();
+      b.momentum.setZero();
+      continue;
+    }
+    b.momentum = lp.mass * (x.v + x.w.cross(c));
+    const Mat3 w = skew(x.w);
+    b.b = w * inertia - inertia * w - skew<double>(inertia * x.w) - 2 * cx * skew(b.momentum);
+  }
+  for (std::size_t i = system.links.size(); i-- > 0;) {
+    const int parent = system.links[i].parent;
+    if (parent < 0) continue;
+    const CompositeBody& b = out[i];
+    CompositeBody& a = out[static_cast<std::size_t>(parent)];
+    const Vec3 r = k.links[i].o - k.at(parent).o;
+    const Mat3 rx = skew(r), hx = skew(b.first_moment);
+    a.mass += b.mass;
+    a.first_moment += b.first_moment + b.mass * r;
+    a.inertia += b.inertia - rx * hx - hx * rx - b.mass * rx * rx;
+    a.momentum += b.momentum;
+    if (p.moving) a.b += b.b - 2 * rx * skew(b.momentum);
+  }
+}
+
+struct Wrench {
+  Vec3 moment, force;
+};
+
+Wrench times_inertia(const CompositeBody& b, const Vec3& w, const Vec3& v) {
+  return {b.inertia * w + b.first_moment.cross(v), b.mass * v - b.first_moment.cross(w)};
+}
+
+// Calls visit(parent link, arm from its origin to this link's origin) for a link and its ancestors.
+template <class Visit>
+void walk_up(const System& system, const Kinematics<double>& k, std::size_t from, bool with_self, Visit visit) {
+  if (with_self) visit(from, Vec3(Vec3::Zero()));
+  for (int l = system.links[from].parent; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
+    const auto i = static_cast<std::size_t>(l);
+    if (system.links[i].v >= 0) visit(i, Vec3(k.links[from].o - k.links[i].o));
+  }
+}
+
+// Adds, for every pair of coordinates on a common path, wrench(j) projected on i (j at or beyond i), and
+// row(i) applied to j (j strictly before i).
+template <class WrenchOf, class RowOf, class Apply>
+void fill_tree(const System& system, const Kinematics<double>& k, const std::vector<ScrewRates>& screws,
+               Eigen::MatrixXd& out, WrenchOf wrench_of, RowOf row_of, Apply apply) {
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const Link& link = system.links[l];
+    for (int c = 0; c < column_count(link); ++c) {
+      const int j = link.v + c;
+      const Wrench u = wrench_of(l, screws[static_cast<std::size_t>(j)]);
+      const auto row = row_of(l, screws[static_cast<std::size_t>(j)]);
+      walk_up(system, k, l, true, [&](std::size_t a, const Vec3& arm) {
+        const Link& other = system.links[a];
+        for (int d = 0; d < column_count(other); ++d) {
+          const ScrewRates& s = screws[static_cast<std::size_t>(other.v + d)];
+          out(other.v + d, j) += s.sw.dot(u.moment + arm.cross(u.force)) + s.sv.dot(u.force);
+          if (a != l) out(j, other.v + d) += apply(row, s, arm);
+        }
+      });
+    }
+  }
+}
+
+// The covectors S^T I and S^T B of a link's coordinate, about its own origin; B acts on angular rates alone.
+struct Row {
+  Wrench inertia;
+  Vec3 b;
+};
+
+double apply_inertia(const Row& row, const Vec3& w, const Vec3& v, const Vec3& arm) {
+  return w.dot(row.inertia.moment + arm.cross(row.inertia.force)) + v.dot(row.inertia.force);
+}
+
+// Springs and stops of spherical links: the Hessian in the step's axes.
+Mat3 rotation_stiffness(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
+  const Vec3 r = rotation_vector(link, p, q);
+  const Mat3 j = inverse_left_jacobian(r), r0 = p.drawn_rotation.toRotationMatrix();
+  Vec3 g, curvature;
+  for (int i = 0; i < 3; ++i) {
+    g[i] = p.force[static_cast<std::size_t>(i)].gradient(r[i]);
+    curvature[i] = p.force[static_cast<std::size_t>(i)].curvature(r[i]);
+  }
+  Mat3 out;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 dr = link.reversed ? Vec3(-j.transpose() * r0.row(i).transpose()) : Vec3(j.col(i));
+    const Mat3 dj = inverse_left_jacobian_derivative(r, dr);
+    const Vec3 dg = curvature.cwiseProduct(dr);
+    out.col(i) = link.reversed ? Vec3(-r0 * (dj * g + j * dg)) : Vec3(dj.transpose() * g + j.transpose() * dg);
+  }
+  return out;
+}
+
+Mat3 rotation_damping(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
+  const Mat3 j = inverse_left_jacobian(rotation_vector(link, p, q));
+  const Mat3 to_rate = link.reversed ? Mat3(-j.transpose() * p.drawn_rotation.toRotationMatrix().transpose()) : j;
+  const Vec3 c(p.force[0].damping, p.force[1].damping, p.force[2].damping);
+  return to_rate.transpose() * c.asDiagonal() * to_rate;
+}
+
+void add_body_forces(const System& system, const Parameters& p, const Kinematics<double>& k,
+                     const std::vector<ScrewRates>& screws, Eigen::MatrixXd& out) {
+  for (std::size_t n = 0; n < system.body_forces.size(); ++n) {
+    const BodyForceElement& e = system.body_forces[n];
+    const BodyForceParameters& f = p.body_forces[n];
+    // A force fixed in the body turns with it, which is what the subtree sums assume.
+    if (e.link < 0 || (f.type != ForceType::drag && f.frame == ForceFrame::body)) continue;
+    const AppliedForce<double> a = applied_force(e, f, k);
+    const Vec3 v = f.type == ForceType::drag ? k.velocity(e.link, a.point) : Vec3(Vec3::Zero());
+    const double speed = v.norm();
+    for (const SupportColumn& cj : e.support) {
+      const Column<double>& j = k.columns[static_cast<std::size_t>(cj.v)];
+      Vec3 force = j.turn().cross(a.force);
+      const Vec3 torque = j.turn().cross(a.torque);
+      if (f.type == ForceType::drag) {
+        const ScrewRates& s = screws[static_cast<std::size_t>(cj.v)];
+        const Vec3 dv = s.dv + s.dw.cross(a.point - j.o);
+        force = (f.linear + f.quadratic * speed) * dv;
+        if (speed > 0) force += f.quadratic / speed * v * v.dot(dv);
+      }
+      for (const SupportColumn& ci : e.support) {
+        const Column<double>& i = k.columns[static_cast<std::size_t>(ci.v)];
+        out(ci.v, cj.v) += i.at(a.point).dot(force) + i.turn().dot(torque);
+      }
+    }
+  }
+}
+
+} // namespace
+
+void linearize_constraints(const System& system, const Parameters& p, const Kinematics<double>& k,
+                           Linearization& out) {
+  out.constraint.setZero(system.rows, system.nv);
+  for (std::size_t c = 0; c < system.cuts.size(); ++c)
+    for (std::size_t r = 0; r < system.cuts[c].rows.size(); ++r)
+      row_gradient(system.cuts[c], p.cuts[c], system.cuts[c].rows[r], k, [&](int v, double g) {
+        out.constraint(system.cuts[c].first_row + static_cast<int>(r), v) += g;
+      });
+}
+
+void linearize(const System& system, const Parameters& p, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda,
+               const Kinematics<double>& k, const Residual<double>& residual, Linearization& out) {
+  out.stiffness.setZero(system.nv, system.nv);
+  fill_screws(system, p, k, out.screws);
+  fill_composites(system, p, k, out.composites);
+  fill_tree(
+      system, k, out.screws, out.stiffness,
+      [&](std::size_t l, const ScrewRates& s) {
+        const CompositeBody& b = out.composites[l];
+        Wrench u = times_inertia(b, s.ddw, s.ddv);
+        u.moment += s.sw.cross(residual.moment[l]) + s.sv.cross(residual.force[l]) + b.b * s.dw;
+        u.force += s.sw.cross(residual.force[l]) - 2 * b.momentum.cross(s.dw);
+        return u;
+      },
+      [&](std::size_t l, const ScrewRates& s) {
+        const CompositeBody& b = out.composites[l];
+        return Row{times_inertia(b, s.sw, s.sv), b.b.transpose() * s.sw - 2 * s.sv.cross(b.momentum)};
+      },
+      [](const Row& row, const ScrewRates& s, const Vec3& arm) {
+        return apply_inertia(row, s.ddw, s.ddv, arm) + s.dw.dot(row.b);
+      });
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const Link& link = system.links[l];
+    if (link.v < 0 || !p.links[l].elastic) continue;
+    if (link.type == LinkType::spherical)
+      out.stiffness.block<3, 3>(link.v, link.v) += rotation_stiffness(link, p.links[l], q);
+    else
+      out.stiffness(link.v, link.v) += p.links[l].force[0].curvature(q[link.q]);
+  }
+  add_body_forces(system, p, k, out.screws, out.stiffness);
+  add_pair_stiffness(system, p, lambda, k, out.screws, out.stiffness);
+  linearize_constraints(system, p, k, out);
+}
+
+void linearize_motion(const System& system, const Parameters& p, const Eigen::VectorXd& q, const Kinematics<double>& k,
+                      Linearization& out) {
+  out.mass.setZero(system.nv, system.nv);
+  out.velocity.setZero(system.nv, system.nv);
+  const auto inertia_row = [&](std::size_t l, const ScrewRates& s) {
+    const CompositeBody& b = out.composites[l];
+    return Row{times_inertia(b, s.sw, s.sv), b.b.transpose() * s.sw - 2 * s.sv.cross(b.momentum)};
+  };
+  fill_tree(
+      system, k, out.screws, out.mass,
+      [&](std::size_t l, const ScrewRates& s) { return times_inertia(out.composites[l], s.sw, s.sv); }, inertia_row,
+      [](const Row& row, const ScrewRates& s, const Vec3& arm) { return apply_inertia(row, s.sw, s.sv, arm); });
+  if (p.moving)
+    fill_tree(
+        system, k, out.screws, out.velocity,
+        [&](std::size_t l, const ScrewRates& s) {
+          const CompositeBody& b = out.composites[l];
+          Wrench u = times_inertia(b, 2 * s.dw, 2 * s.dv);
+          u.moment += b.b * s.sw;
+          u.force -= 2 * b.momentum.cross(s.sw);
+          return u;
+        },
+        inertia_row,
+        [](const Row& row, const ScrewRates& s, const Vec3& arm) {
+          return 2 * apply_inertia(row, s.dw, s.dv, arm) + s.sw.dot(row.b);
+        });
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const Link& link = system.links[l];
+    if (link.v < 0) continue;
+    if (link.type == LinkType::spherical)
+      out.velocity.block<3, 3>(link.v, link.v) += rotation_damping(link, p.links[l], q);
+    else
+      out.velocity(link.v, link.v) += p.links[l].force[0].damping;
+  }
+  for (std::size_t n = 0; n < system.body_forces.size(); ++n) {
+    const BodyForceElement& e = system.body_forces[n];
+    const BodyForceParameters& f = p.body_forces[n];
+    if (e.link < 0 || f.type != ForceType::drag) continue;
+    const Vec3 point = k.point(e.link, f.at), v = k.velocity(e.link, point);
+    const double speed = v.norm();
+    for (const SupportColumn& cj : e.support) {
+      const Vec3 dv = k.columns[static_cast<std::size_t>(cj.v)].at(point);
+      Vec3 force = (f.linear + f.quadratic * speed) * dv;
+      if (speed > 0) force += f.quadratic / speed * v * v.dot(dv);
+      for (const SupportColumn& ci : e.support)
+        out.velocity(ci.v, cj.v) += k.columns[static_cast<std::size_t>(ci.v)].at(point).dot(force);
+    }
+  }
+  add_pair_damping(system, p, k, out.velocity);
+}
+
+} // namespace flyball

@@ -1,0 +1,19 @@
+// The amended potential U = V - T_0 of a conservative system: V of springs, stops, gravity and constant forces, T_0 the
+// kinetic energy of the drives' motion alone. Its stationary points on the constraints are the steady states;
+// its strict minima are stable (Routh; Choi, Park and Yoo's reference [5] for the open system).
+//
+// T_0 serves where the drives' phase is ignorable: always with single drives, otherwise at a steady state.
+#pragma once
+
+#include "engine/system/kinematics.hpp"
+
+namespace flyball {
+
+struct Potential {
+  double value = 0;     // J
+  double magnitude = 0; // J, sum of the terms' sizes, for the rounding error
+};
+Potential amended_potential(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                            const Kinematics<double>& kinematics);
+
+} // namespace flyball

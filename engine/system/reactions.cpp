@@ -1,0 +1,112 @@
+#include "engine/system/reactions.hpp"
+
+namespace flyball {
+namespace {
+
+struct Wrench {
+  Vec3 moment = Vec3::Zero(), force = Vec3::Zero(); // about the link's origin
+};
+
+} // namespace
+
+TransmittedForces transmitted_forces(const System& system, const Parameters& p,
+                                     const Eigen::VectorXd& lambda, const Kinematics<double>& k,
+                                     const Residual<double>& residual) {
+  const std::size_t n = system.links.size();
+  // What each link's joint must supply: first by the link's own elements, then with its subtree's.
+  std::vector<Wrench> needed(n);
+  const auto add = [&](int link, const Vec3& point, const Vec3& force, const Vec3& torque) {
+    if (link < 0) return;
+    Wrench& w = needed[static_cast<std::size_t>(link)];
+    w.force += force;
+    w.moment += torque + (point - k.at(link).o).cross(force);
+  };
+  TransmittedForces out;
+  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+    const PairEnds& ends = system.springs[i].ends;
+    const SpringState<double> s = spring_state(system.springs[i], p.springs[i], k);
+    add(ends.b, s.b, s.tension * s.direction, Vec3::Zero());
+    add(ends.a, s.a, -s.tension * s.direction, Vec3::Zero());
+  }
+  for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
+    const CutDamperElement& e = system.cut_dampers[i];
+    const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[i].axis, b = k.point(e.ends.b, p.cut_dampers[i].b);
+    const Vec3 torque = p.cut_dampers[i].damping * axis * axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w);
+    const Vec3 force =
+        p.cut_dampers[i].damping * axis * axis.dot(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b));
+    add(e.ends.b, b, e.angular ? Vec3(Vec3::Zero()) : force, e.angular ? torque : Vec3(Vec3::Zero()));
+    add(e.ends.a, b, e.angular ? Vec3(Vec3::Zero()) : Vec3(-force), e.angular ? Vec3(-torque) : Vec3(Vec3::Zero()));
+  }
+  out.cuts.resize(system.cuts.size());
+  for (std::size_t i = 0; i < system.cuts.size(); ++i) {
+    const CutJoint& cut = system.cuts[i];
+    if (cut.type == JointType::gear) continue;
+    const CutParameters& f = p.cuts[i];
+    JointWrench& w = out.cuts[i];
+    w.point = k.point(cut.ends.b, f.b);
+    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+      const double multiplier = lambda[cut.first_row + static_cast<int>(r)];
+      const ConstraintRow& row = cut.rows[r];
+      const Vec3 u = k.at(cut.ends.a).R * f.frame[static_cast<std::size_t>(row.u)];
+      switch (row.type) {
+      case RowType::distance: w.force -= multiplier * (w.point - k.point(cut.ends.a, f.a)).normalized(); break;
+      case RowType::point: w.force -= multiplier * u; break;
+      case RowType::direction:
+        w.torque -= multiplier * (k.at(cut.ends.b).R * f.frame[static_cast<std::size_t>(row.w)]).cross(u);
+        break;
+      case RowType::gear: break;
+      }
+    }
+    add(cut.ends.b, w.point, -w.force, -w.torque);
+    add(cut.ends.a, w.point, w.force, w.torque);
+    // Damping in a cut joint is part of what the joint transmits.
+    for (std::size_t d = 0; d < system.cut_dampers.size(); ++d) {
+      const CutDamperElement& e = system.cut_dampers[d];
+      if (e.joint != cut.joint) continue;
+      const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[d].axis;
+      if (e.angular)
+        w.torque -= p.cut_dampers[d].damping * axis * axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w);
+      else
+        w.force -= p.cut_dampers[d].damping * axis *
+                   axis.dot(k.velocity(e.ends.b, w.point) - k.velocity(e.ends.a, w.point));
+    }
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    const int parent = system.links[i].parent;
+    if (parent >= 0) add(parent, k.links[i].o, needed[i].force, needed[i].moment);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    needed[i].force += residual.force[i];
+    needed[i].moment += residual.moment[i];
+  }
+  out.tree.resize(system.tree_joints.size());
+  for (std::size_t t = 0; t < system.tree_joints.size(); ++t) {
+    const TreeJoint& joint = system.tree_joints[t];
+    const int last = joint.first_link + joint.link_count - 1;
+    const Wrench& w = needed[static_cast<std::size_t>(last)];
+    JointWrench& o = out.tree[t];
+    if (joint.joint < 0) continue;
+    // `at` as the joint's own child carries it; the tree may run the other way.
+    if (joint.closes_loop || !joint.reversed) {
+      o.point = k.at(last).o;
+    } else {
+      const Link& first = system.links[static_cast<std::size_t>(joint.first_link)];
+      o.point = k.point(first.parent, p.links[static_cast<std::size_t>(joint.first_link)].offset);
+    }
+    const double sign = joint.reversed ? -1 : 1;
+    o.force = sign * w.force;
+    o.torque = sign * (w.moment + (k.at(last).o - o.point).cross(w.force));
+  }
+  out.drives.assign(system.drives.size(), 0);
+  for (const DrivenCoordinate& d : system.drives) {
+    const auto l = static_cast<std::size_t>(d.link);
+    const LinkState<double>& x = k.links[l];
+    const double carried =
+        x.axis.dot(system.links[l].type == LinkType::revolute ? needed[l].moment : needed[l].force) +
+        p.links[l].force[0].damping * p.links[l].speed;
+    out.drives[static_cast<std::size_t>(d.motor)] += carried * p.links[l].gear_ratio;
+  }
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,226 @@
+#include "engine/system/residual.hpp"
+
+#include "engine/system/constraint_row.hpp"
+#include "engine/system/rotation_vector.hpp"
+
+namespace flyball {
+namespace {
+
+// Calls add(v, force) for springs and stops of a link's own coordinates.
+template <class S, class Add>
+void coordinate_forces(const Link& link, const LinkParameters& p, const Configuration<S>& q, Add add) {
+  if (link.type != LinkType::spherical) {
+    add(link.v, p.force[0].gradient(q[link.q]));
+    return;
+  }
+  // With r the rotation vector and exp([d]) the step: dr = J d, so the torque is J^T dV/dr.
+  const Vec3T<S> r = rotation_vector(link, p, q);
+  Vec3T<S> g;
+  for (int i = 0; i < 3; ++i) g[i] = p.force[static_cast<std::size_t>(i)].gradient(r[i]);
+  Vec3T<S> torque = inverse_left_jacobian<S>(r).transpose() * g;
+  if (link.reversed) torque = -(p.drawn_rotation.cast<S>() * (inverse_left_jacobian<S>(r) * g));
+  for (int i = 0; i < 3; ++i) add(link.v + i, torque[i]);
+}
+
+} // namespace
+
+template <class S>
+AppliedForce<S> applied_force(const BodyForceElement& e, const BodyForceParameters& p, const Kinematics<S>& k) {
+  AppliedForce<S> a{k.point(e.link, p.at), Vec3T<S>::Zero(), Vec3T<S>::Zero()};
+  if (p.type == ForceType::drag) {
+    const Vec3T<S> v = k.velocity(e.link, a.point);
+    a.force = -(S(p.linear) + S(p.quadratic) * v.norm()) * v;
+    return a;
+  }
+  Vec3T<S> vector = p.vector.cast<S>();
+  if (p.frame == ForceFrame::body) vector = k.at(e.link).R * vector;
+  (p.type == ForceType::torque ? a.torque : a.force) = vector;
+  return a;
+}
+
+template <class S>
+SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParameters& p, const Kinematics<S>& k) {
+  SpringState<S> s;
+  s.a = k.point(e.ends.a, p.a);
+  s.b = k.point(e.ends.b, p.b);
+  const Vec3T<S> d = s.b - s.a;
+  s.length = d.norm();
+  s.direction = s.length > 0 ? Vec3T<S>(d / s.length) : Vec3T<S>(Vec3T<S>::Zero());
+  s.tension = S(p.stiffness) * (s.length - S(p.free_length));
+  if (p.damping != 0)
+    s.tension += S(p.damping) * s.direction.dot(k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a));
+  return s;
+}
+
+template <class S>
+void evaluate_residual(const System& system, const Parameters& p, const Configuration<S>& q,
+                       const Configuration<S>& lambda, const Kinematics<S>& k, Residual<S>& out) {
+  const std::size_t n = system.links.size();
+  out.f.resize(system.nv);
+  out.phi.resize(system.rows);
+  out.force.resize(n);
+  out.moment.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const LinkParameters& lp = p.links[i];
+    const LinkState<S>& x = k.links[i];
+    if (lp.mass == 0 && !lp.has_inertia) {
+      out.force[i].setZero();
+      out.moment[i].setZero();
+      continue;
+    }
+    const Vec3T<S> c = x.R * lp.com.cast<S>();
+    if (!p.moving) {
+      out.force[i] = S(lp.mass) * x.dv;
+      out.moment[i] = c.cross(out.force[i]);
+      continue;
+    }
+    out.force[i] = S(lp.mass) * (x.dv + x.dw.cross(c) + x.w.cross(x.w.cross(c)));
+    out.moment[i] = c.cross(out.force[i]);
+    if (lp.has_inertia) {
+      const auto times_inertia = [&](const Vec3T<S>& a) -> Vec3T<S> {
+        return x.R * (lp.inertia.cast<S>() * (x.R.transpose() * a));
+      };
+      out.moment[i] += times_inertia(x.dw) + x.w.cross(times_inertia(x.w));
+    }
+  }
+  for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
+    const BodyForceElement& e = system.body_forces[i];
+    if (e.link < 0) continue;
+    const auto l = static_cast<std::size_t>(e.link);
+    const AppliedForce<S> a = applied_force(e, p.body_forces[i], k);
+    out.force[l] -= a.force;
+    out.moment[l] -= a.torque + (a.point - k.links[l].o).cross(a.force);
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    const Link& link = system.links[i];
+    if (link.v >= 0) {
+      if (link.type == LinkType::spherical)
+        for (int j = 0; j < 3; ++j) out.f[link.v + j] = k.columns[static_cast<std::size_t>(link.v + j)].axis.dot(out.moment[i]);
+      else
+        out.f[link.v] = k.links[i].axis.dot(link.type == LinkType::revolute ? out.moment[i] : out.force[i]);
+      if (p.links[i].elastic)
+        coordinate_forces<S>(link, p.links[i], q, [&](int v, S value) { out.f[v] += value; });
+    }
+    if (link.parent >= 0) {
+      const auto j = static_cast<std::size_t>(link.parent);
+      out.force[j] += out.force[i];
+      out.moment[j] += out.moment[i] + (k.links[i].o - k.links[j].o).cross(out.force[i]);
+    }
+  }
+  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+    const PointSpringElement& e = system.springs[i];
+    const SpringState<S> s = spring_state(e, p.springs[i], k);
+    // With no free length the force is k d, well defined where the points meet.
+    const bool linear = p.springs[i].free_length == 0 && p.springs[i].damping == 0;
+    const Vec3T<S> pull = linear ? Vec3T<S>(S(p.springs[i].stiffness) * (s.b - s.a)) : Vec3T<S>(s.tension * s.direction);
+    for (const SupportColumn& c : e.ends.support) {
+      const S g = pull.dot(k.columns[static_cast<std::size_t>(c.v)].at(c.second ? s.b : s.a));
+      out.f[c.v] += c.second ? g : -g;
+    }
+  }
+  for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
+    const CutDamperElement& e = system.cut_dampers[i];
+    const CutDamperParameters& d = p.cut_dampers[i];
+    const Vec3T<S> axis = k.at(e.ends.a).R * d.axis.cast<S>();
+    const Vec3T<S> b = k.point(e.ends.b, d.b);
+    const S rate = e.angular ? axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w)
+                             : axis.dot(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b));
+    for (const SupportColumn& c : e.ends.support) {
+      const Column<S>& column = k.columns[static_cast<std::size_t>(c.v)];
+      const S g = S(d.damping) * rate * (e.angular ? axis.dot(column.turn()) : axis.dot(column.at(b)));
+      out.f[c.v] += c.second ? g : -g;
+    }
+  }
+  for (std::size_t i = 0; i < system.cuts.size(); ++i) {
+    const CutJoint& cut = system.cuts[i];
+    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+      const int row = cut.first_row + static_cast<int>(r);
+      out.phi[row] = row_value(cut, p.cuts[i], cut.rows[r], q, k);
+      if (const S multiplier = lambda[row]; multiplier != S(0))
+        row_gradient(cut, p.cuts[i], cut.rows[r], k, [&](int v, S g) { out.f[v] += multiplier * g; });
+    }
+  }
+}
+
+void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                         const Eigen::VectorXd& lambda, const Kinematics<double>& k, Magnitudes& out) {
+  const std::size_t n = system.links.size();
+  out.force.resize(system.nv);
+  out.phi.resize(system.rows);
+  out.link_force.resize(n);
+  out.link_moment.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const LinkParameters& lp = p.links[i];
+    const LinkState<double>& x = k.links[i];
+    const double c = lp.com.norm(), w2 = x.w.squaredNorm();
+    out.link_force[i] = lp.mass * (p.gravity.norm() + (x.dv - k.ground.dv).norm() + (x.dw.norm() + w2) * c);
+    out.link_moment[i] = c * out.link_force[i];
+    if (lp.has_inertia && p.moving) out.link_moment[i] += lp.inertia.norm() * (x.dw.norm() + w2);
+  }
+  for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
+    const BodyForceElement& e = system.body_forces[i];
+    if (e.link < 0) continue;
+    const auto l = static_cast<std::size_t>(e.link);
+    const AppliedForce<double> a = applied_force(e, p.body_forces[i], k);
+    out.link_force[l] += a.force.norm();
+    out.link_moment[l] += a.torque.norm() + (a.point - k.links[l].o).norm() * a.force.norm();
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    const Link& link = system.links[i];
+    if (link.v >= 0) {
+      if (link.type == LinkType::spherical)
+        out.force.segment<3>(link.v).setConstant(out.link_moment[i]);
+      else
+        out.force[link.v] = link.type == LinkType::revolute ? out.link_moment[i] : out.link_force[i];
+      if (p.links[i].elastic && link.type != LinkType::spherical) {
+        const CoordinateForce& c = p.links[i].force[0];
+        out.force[link.v] += std::abs(c.stiffness) * (std::abs(q[link.q]) + std::abs(c.free)) +
+                             (c.curvature(q[link.q]) - c.stiffness) * (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
+      } else if (p.links[i].elastic) {
+        for (int j = 0; j < 3; ++j)
+          for (const CoordinateForce& c : p.links[i].force)
+            out.force[link.v + j] += (std::abs(c.stiffness) + c.stop_stiffness) * (4 + std::abs(c.free));
+      }
+    }
+    if (link.parent >= 0) {
+      const auto j = static_cast<std::size_t>(link.parent);
+      out.link_force[j] += out.link_force[i];
+      out.link_moment[j] += out.link_moment[i] + (k.links[i].o - k.links[j].o).norm() * out.link_force[i];
+    }
+  }
+  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+    const PointSpringElement& e = system.springs[i];
+    const SpringState<double> s = spring_state(e, p.springs[i], k);
+    const double size = std::abs(p.springs[i].stiffness) * (s.a.norm() + s.b.norm() + s.length + p.springs[i].free_length) +
+                        std::abs(s.tension);
+    for (const SupportColumn& c : e.ends.support)
+      out.force[c.v] += size * k.columns[static_cast<std::size_t>(c.v)].at(c.second ? s.b : s.a).norm();
+  }
+  for (std::size_t i = 0; i < system.cuts.size(); ++i) {
+    const CutJoint& cut = system.cuts[i];
+    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+      const int row = cut.first_row + static_cast<int>(r);
+      switch (cut.rows[r].type) {
+      case RowType::gear:
+        out.phi[row] = std::abs(q[cut.gear_b]) + std::abs(p.cuts[i].ratio * q[cut.gear_a]) + std::abs(p.cuts[i].offset) + 1;
+        break;
+      case RowType::direction: out.phi[row] = 1; break;
+      case RowType::point:
+      case RowType::distance: out.phi[row] = p.length; break;
+      }
+      row_gradient(cut, p.cuts[i], cut.rows[r], k,
+                   [&](int v, double g) { out.force[v] += std::abs(lambda[row] * g); });
+    }
+  }
+}
+
+template AppliedForce<double> applied_force(const BodyForceElement&, const BodyForceParameters&, const Kinematics<double>&);
+template SpringState<double> spring_state(const PointSpringElement&, const PointSpringParameters&,
+                                          const Kinematics<double>&);
+template void evaluate_residual<double>(const System&, const Parameters&, const Configuration<double>&,
+                                        const Configuration<double>&, const Kinematics<double>&, Residual<double>&);
+template void evaluate_residual<long double>(const System&, const Parameters&, const Configuration<long double>&,
+                                             const Configuration<long double>&, const Kinematics<long double>&,
+                                             Residual<long double>&);
+
+} // namespace flyball

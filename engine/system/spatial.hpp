@@ -1,0 +1,35 @@
+// Small vector algebra shared by the system's passes. Spatial vectors are kept as two 3-vectors, angular
+// part first, referred to a stated point and always in world axes (Featherstone, Rigid Body Dynamics
+// Algorithms, 2008, chapter 2, without its coordinate rotations).
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace flyball {
+
+template <class S>
+using Vec3T = Eigen::Matrix<S, 3, 1>;
+template <class S>
+using Mat3T = Eigen::Matrix<S, 3, 3>;
+
+// [a] with [a] b = a x b.
+template <class S>
+Mat3T<S> skew(const Vec3T<S>& a) {
+  Mat3T<S> m;
+  m << S(0), -a.z(), a.y(), a.z(), S(0), -a.x(), -a.y(), a.x(), S(0);
+  return m;
+}
+
+// Rotation by `angle` about the unit vector `a` (Rodrigues), with 1 - cos formed without cancellation.
+template <class S>
+Mat3T<S> rotation_about(const Vec3T<S>& a, S angle) {
+  using std::cos;
+  using std::sin;
+  const S s = sin(angle), h = sin(angle / 2), versine = 2 * h * h;
+  const Mat3T<S> k = skew<S>(a);
+  return Mat3T<S>::Identity() + s * k + versine * (k * k);
+}
+
+} // namespace flyball

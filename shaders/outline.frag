@@ -1,0 +1,6 @@
+precision highp float;
+
+uniform vec4 ink;
+out vec4 color;
+
+void main() { color = ink; }
