@@ -42,7 +42,10 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--state-file", options.state_file)->group("");
 
+  add_solve(app, exit_code);
+  add_sweep(app, exit_code);
   add_render(app, exit_code);
+  add_check(app, exit_code);
 
   try {
     app.parse(argc, argv);

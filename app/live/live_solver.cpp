@@ -25,6 +25,11 @@ std::uint64_t LiveSolver::ask(LiveRequest request) {
   }
   if (next_ && next_->request.another) job.request.another = true;
   if (next_ && !next_->request.warm) job.request.warm = false;
+  if (job.request.another) {
+    answer_.reset();
+    poses_.reset();
+    next_time_.reset();
+  }
   if (running_ && (job.request.another || !spare_)) cancel_ = true;
   const std::uint64_t ticket = job.ticket;
   next_ = std::move(job);

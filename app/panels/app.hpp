@@ -60,7 +60,6 @@ struct DialogState {
   Dialog wanted = Dialog::none; // to be opened by the next frame
   bool showing = false;
   std::string path;             // typed
-  std::string problem;          // why it did not work
   int width = 1920, height = 1080; // pixels
   bool panels = false;
 };
@@ -102,7 +101,9 @@ struct App {
   std::string notice; // what was last done, in words: shown in the view
 };
 
-// Opens a scene; where it cannot be read, says so in `problem` and leaves the open one as it is.
+// Opens a mechanism, read from `file`.
+void open_mechanism(App& app, Mechanism mechanism, const std::filesystem::path& file);
+// Reads and opens a scene; where it cannot be read, says so in `problem` and leaves the open one as it is.
 void open_scene(App& app, const std::filesystem::path& file);
 void reload_scene(App& app);
 // The same address as in a scene file; solves at once. Not finite values and unknown addresses are ignored.

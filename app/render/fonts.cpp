@@ -42,7 +42,7 @@ struct Wish {
 
 ImFont* load(ImFontAtlas& atlas, const Wish& wish, float pixels, const std::string& icons, UiFonts& fonts) {
   const std::string file = find_font(wish.files);
-  if (file.find(*wish.files.begin()) == std::string::npos) fonts.missing.emplace_back(wish.name);
+  if (file.empty() || file.find("DejaVu") != std::string::npos) fonts.missing.emplace_back(wish.name);
   ImFontConfig config;
   config.OversampleH = 2;
   config.OversampleV = 1;

@@ -92,6 +92,24 @@ void draw_revolute(Sketch& sketch, const Assembly& assembly, std::size_t index, 
   draw_anchor(sketch, p.at + 2.2 * u * side, -side, 2.2 * u, colors);
 }
 
+// The bushings that tell a slider from any other body on its rail.
+void draw_bushings(Sketch& sketch, const Assembly& assembly, std::size_t index, const Vec3& slider,
+                   const Place& p) {
+  const double u = p.unit;
+  const int body = assembly.joint_bodies[index][static_cast<std::size_t>(slider_end(assembly, index))];
+  if (body >= 0 && !assembly.mechanism.bodies[static_cast<std::size_t>(body)].shapes.empty())
+    return sketch.tube(slider, p.axis, 1.9 * u, 1.1 * u, 0.1 * u);
+  const bool round =
+      assembly.mechanism.joints[index].type == JointType::cylindrical || slides_on_shaft(assembly, index);
+  for (const double side : {-1.0, 1.0}) {
+    if (round)
+      sketch.tube(slider + side * 1.25 * u * p.axis, p.axis, 0.22 * u, 1.5 * u, 0.08 * u);
+    else
+      sketch.box(slider + side * 1.65 * u * p.axis, frame_along(p.axis, assembly.scale.up),
+                 {0.9 * u, 0.9 * u, 0.2 * u}, 0.08 * u);
+  }
+}
+
 void draw_prismatic(Sketch& sketch, const Assembly& assembly, std::size_t index, const Place& p,
                     const Palette& colors) {
   const Joint& joint = assembly.mechanism.joints[index];
@@ -99,18 +117,7 @@ void draw_prismatic(Sketch& sketch, const Assembly& assembly, std::size_t index,
   const int end = slider_end(assembly, index);
   const Vec3 slider = end == 1 ? p.there : p.at, rail = end == 1 ? p.at : p.there;
   sketch.pen.color = colors.metal_dark;
-  const bool round = joint.type == JointType::cylindrical || slides_on_shaft(assembly, index);
-  const int slider_body = assembly.joint_bodies[index][static_cast<std::size_t>(end)];
-  if (slider_body >= 0 && !assembly.mechanism.bodies[static_cast<std::size_t>(slider_body)].shapes.empty())
-    sketch.tube(slider, p.axis, 1.9 * u, 1.1 * u, 0.1 * u);
-  else
-    for (const double side : {-1.0, 1.0}) {
-      if (round)
-        sketch.tube(slider + side * 1.25 * u * p.axis, p.axis, 0.22 * u, 1.5 * u, 0.08 * u);
-      else
-        sketch.box(slider + side * 1.65 * u * p.axis, frame_along(p.axis, assembly.scale.up),
-                   {0.9 * u, 0.9 * u, 0.2 * u}, 0.08 * u);
-    }
+  draw_bushings(sketch, assembly, index, slider, p);
   if (assembly.joint_bodies[index][end == 1 ? 0 : 1] >= 0 || joint.coordinates.empty()) return;
   const Coordinate& c = joint.coordinates.back();
   const SlideRange range = slide_range(c, u);

@@ -78,7 +78,7 @@ SceneScale scene_scale(const Mechanism& mechanism);
 struct SceneOptions {
   Theme theme = Theme::light;
   bool joints = true, drives = true, forces = true; // forces: springs and dampers too
-  std::span<const std::string> cut_joints;          // names, to be marked
+  std::span<const std::string> cut_joints{};        // names, to be marked
 };
 
 struct SceneList {

@@ -17,14 +17,15 @@ namespace {
 
 // Parts and connections, as opposed to numbers: what a compiled system depends on.
 bool same_topology(const Mechanism& a, const Mechanism& b) {
-  if (a.bodies.size() != b.bodies.size() || a.joints.size() != b.joints.size() || a.forces.size() != b.forces.size())
+  if (a.bodies.size() != b.bodies.size() || a.joints.size() != b.joints.size() ||
+      a.forces.size() != b.forces.size())
     return false;
   for (std::size_t i = 0; i < a.bodies.size(); ++i)
     if (a.bodies[i].name != b.bodies[i].name) return false;
   for (std::size_t i = 0; i < a.joints.size(); ++i) {
     const Joint &x = a.joints[i], &y = b.joints[i];
-    if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.cut != y.cut || x.joints != y.joints ||
-        x.coordinates.size() != y.coordinates.size())
+    if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.cut != y.cut ||
+        x.joints != y.joints || x.coordinates.size() != y.coordinates.size())
       return false;
     for (std::size_t k = 0; k < x.coordinates.size(); ++k) {
       const Coordinate &c = x.coordinates[k], &d = y.coordinates[k];
@@ -35,8 +36,8 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
   }
   for (std::size_t i = 0; i < a.forces.size(); ++i) {
     const Force &x = a.forces[i], &y = b.forces[i];
-    if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.body != y.body || x.frame != y.frame ||
-        (x.damping != 0) != (y.damping != 0))
+    if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.body != y.body ||
+        x.frame != y.frame || (x.damping != 0) != (y.damping != 0))
       return false;
   }
   return true;
@@ -59,7 +60,8 @@ int loops_opened(const System& system, const Mechanism& mechanism) {
     double rate = 0;
     for (const DrivenCoordinate& d : system.drives) {
       const auto l = static_cast<std::size_t>(d.link);
-      rate = std::max(rate, std::abs(p.links[l].speed) / (system.links[l].type == LinkType::revolute ? 1 : p.length));
+      rate = std::max(rate, std::abs(p.links[l].speed) /
+                                (system.links[l].type == LinkType::revolute ? 1 : p.length));
     }
     return Eigen::VectorXd::Constant(1, rate);
   }();
@@ -81,8 +83,8 @@ int loops_opened(const System& system, const Mechanism& mechanism) {
   return opened;
 }
 
-// The cuts by preference, or the nearest others with which the drives carry the loops along: a joint that must turn at a
-// constant rate has to be cut.
+// The cuts by preference, or the nearest others with which the drives carry the loops along: a joint that
+// must turn at a constant rate has to be cut.
 System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& notes) {
   System best = compile(mechanism);
   int opened = loops_opened(best, mechanism);
@@ -118,7 +120,8 @@ System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& 
     for (const CutJoint& cut : best.cuts) {
       const Joint& j = mechanism.joints[static_cast<std::size_t>(cut.joint)];
       if (j.cut != true && coordinate_count(j.type) > 0)
-        notes.push_back("The loop is cut at " + j.name + ", which turns or slides at a constant rate in the steady state.");
+        notes.push_back("The loop is cut at " + j.name +
+                        ", which turns or slides at a constant rate in the steady state.");
     }
   return best;
 }
@@ -169,7 +172,8 @@ Solution Analysis::solve(const SolveOptions& options) {
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
   const bool warm = options.warm && s.answered && options.start.empty();
   s.start = warm ? s.answer : s.drawn;
-  for (const auto& [name, value] : options.start) set_start(s.system, s.parameters, name, value, s.start);
+  for (const auto& [name, value] : options.start)
+    set_start(s.system, s.parameters, name, value, s.start);
 
   const auto begin = std::chrono::steady_clock::now();
   find_equilibrium(problem, s.start, options.nearest, warm, s.workspace, s.history, s.found);
@@ -187,7 +191,9 @@ Solution Analysis::solve(const SolveOptions& options) {
   out.iterations = s.found.iterations;
   out.history = s.history;
   out.net = s.found.net;
-  out.status = steady ? Status::converged : s.found.status == Status::converged ? Status::no_steady_state : s.found.status;
+  out.status = steady                                ? Status::converged
+               : s.found.status == Status::converged ? Status::no_steady_state
+                                                     : s.found.status;
   if (!steady) {
     const ReportInput input{s.mechanism, problem, s.found, existence, stability};
     out.message = failure_message(input, s.workspace);
@@ -201,7 +207,8 @@ Solution Analysis::solve(const SolveOptions& options) {
     stability = find_stability(problem, s.found.z, !many, s.workspace);
     if (many)
       stability.eigenvalues.reset();
-    else if (options.modes > 0 && stability.eigenvalues && stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
+    else if (options.modes > 0 && stability.eigenvalues &&
+             stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
       stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
   }
   const ReportInput input{s.mechanism, problem, s.found, existence, stability};

@@ -14,10 +14,10 @@
 namespace flyball {
 
 struct SolveOptions {
-  bool nearest = false;        // the plain Newton-Raphson answer, stable or not
-  bool warm = false;           // start from this analysis' last converged answer instead of the drawn pose
-  bool details = true;         // eigenvalues, reactions and drive torques; not needed by a sweep
-  int modes = 0;               // eigenvalues asked for where there are more than 200 coordinates
+  bool nearest = false; // the plain Newton-Raphson answer, stable or not
+  bool warm = false;    // start from this analysis' last converged answer instead of the drawn pose
+  bool details = true;  // eigenvalues, reactions and drive torques; not needed by a sweep
+  int modes = 0;        // eigenvalues asked for where there are more than 200 coordinates
   std::vector<std::pair<std::string, double>> start; // "joint" or "joint.index" = value, over the drawn pose
   const std::atomic<bool>* cancel = nullptr;         // polled between iterations; then not_converged
 };
@@ -27,19 +27,19 @@ struct SystemSummary {
   std::vector<std::string> in, left_out; // passes, in words
   int bodies = 0, free_coordinates = 0, driven_coordinates = 0, constraint_equations = 0;
   std::vector<std::string> tree_joints, cut_joints, implicit_joints;
-  std::vector<std::string> notes;        // choices worth telling: "the bearing was cut so that ..."
+  std::vector<std::string> notes; // choices worth telling: "the bearing was cut so that ..."
 };
 
 class Analysis {
-public:
+ public:
   // Compiles. Throws SceneError (validate first for all mistakes at once).
   explicit Analysis(const Mechanism& mechanism);
   ~Analysis();
   Analysis(Analysis&&) noexcept;
   Analysis& operator=(Analysis&&) noexcept;
 
-  // Takes new numbers. Cheap where only numbers changed; recompiles where parts or topology did. Keeps the last answer
-  // as a warm start where it still fits.
+  // Takes new numbers. Cheap where only numbers changed; recompiles where parts or topology did. Keeps the
+  // last answer as a warm start where it still fits.
   void update(const Mechanism& mechanism);
 
   Solution solve(const SolveOptions& options = {});
@@ -50,7 +50,7 @@ public:
   // at their last answer (at the drawn pose before there is one).
   std::vector<Pose> poses_at(double t) const;
 
-private:
+ private:
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -17,23 +17,30 @@ void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance) 
   const auto diagonal = qr_.matrixQR().diagonal().cwiseAbs();
   const double largest = diagonal.size() > 0 ? diagonal.maxCoeff() : 0;
   const auto limit = std::min(n_, rows_);
-  while (rank_ < limit && diagonal[rank_] > tolerance * largest && diagonal[rank_] > 0) ++rank_;
+  while (rank_ < limit && diagonal[rank_] > tolerance * largest && diagonal[rank_] > 0)
+    ++rank_;
   basis_.setZero(n_, n_ - rank_);
   basis_.bottomRows(n_ - rank_).setIdentity();
   for (int k = rank_ - 1; k >= 0; --k)
-    basis_.bottomRows(n_ - k).applyHouseholderOnTheLeft(qr_.matrixQR().col(k).tail(n_ - k - 1), qr_.hCoeffs()[k],
-                                                        apply_work_.data());
+    basis_.bottomRows(n_ - k).applyHouseholderOnTheLeft(qr_.matrixQR().col(k).tail(n_ - k - 1),
+                                                        qr_.hCoeffs()[k], apply_work_.data());
 }
 
 void ConstraintSpace::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& y) const {
   y.setZero(n_);
   if (rank_ == 0) return;
   // R_11^T c = (P^T rhs)_1, y = Q_1 c.
-  for (int i = 0; i < rank_; ++i) y[i] = rhs[qr_.colsPermutation().indices()[i]];
-  qr_.matrixQR().topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().transpose().solveInPlace(y.head(rank_));
+  for (int i = 0; i < rank_; ++i)
+    y[i] = rhs[qr_.colsPermutation().indices()[i]];
+  qr_.matrixQR()
+      .topLeftCorner(rank_, rank_)
+      .triangularView<Eigen::Upper>()
+      .transpose()
+      .solveInPlace(y.head(rank_));
   double scratch = 0;
   for (int k = rank_ - 1; k >= 0; --k)
-    y.tail(n_ - k).applyHouseholderOnTheLeft(qr_.matrixQR().col(k).tail(n_ - k - 1), qr_.hCoeffs()[k], &scratch);
+    y.tail(n_ - k).applyHouseholderOnTheLeft(qr_.matrixQR().col(k).tail(n_ - k - 1), qr_.hCoeffs()[k],
+                                             &scratch);
 }
 
 void ConstraintSpace::multipliers(const Eigen::VectorXd& rhs, Eigen::VectorXd& lambda) const {
@@ -42,9 +49,11 @@ void ConstraintSpace::multipliers(const Eigen::VectorXd& rhs, Eigen::VectorXd& l
   work_ = rhs;
   double scratch = 0;
   for (int k = 0; k < rank_; ++k)
-    work_.tail(n_ - k).applyHouseholderOnTheLeft(qr_.matrixQR().col(k).tail(n_ - k - 1), qr_.hCoeffs()[k], &scratch);
+    work_.tail(n_ - k).applyHouseholderOnTheLeft(qr_.matrixQR().col(k).tail(n_ - k - 1), qr_.hCoeffs()[k],
+                                                 &scratch);
   qr_.matrixQR().topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().solveInPlace(work_.head(rank_));
-  for (int i = 0; i < rank_; ++i) lambda[qr_.colsPermutation().indices()[i]] = work_[i];
+  for (int i = 0; i < rank_; ++i)
+    lambda[qr_.colsPermutation().indices()[i]] = work_[i];
 }
 
 Eigen::VectorXd ConstraintSpace::least_norm_multipliers(const Eigen::VectorXd& rhs) const {
@@ -54,9 +63,11 @@ Eigen::VectorXd ConstraintSpace::least_norm_multipliers(const Eigen::VectorXd& r
   // Dependent rows: R = [R_11 R_12]; lambda is the least-norm solution of R P^T lambda = (Q^T rhs)_1.
   const Eigen::MatrixXd r = qr_.matrixQR().topRows(rank_).triangularView<Eigen::Upper>();
   Eigen::VectorXd permuted(rows_);
-  for (int i = 0; i < rows_; ++i) permuted[i] = lambda[qr_.colsPermutation().indices()[i]];
+  for (int i = 0; i < rows_; ++i)
+    permuted[i] = lambda[qr_.colsPermutation().indices()[i]];
   const Eigen::VectorXd best = r.completeOrthogonalDecomposition().solve(r * permuted);
-  for (int i = 0; i < rows_; ++i) lambda[qr_.colsPermutation().indices()[i]] = best[i];
+  for (int i = 0; i < rows_; ++i)
+    lambda[qr_.colsPermutation().indices()[i]] = best[i];
   return lambda;
 }
 

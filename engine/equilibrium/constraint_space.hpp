@@ -1,5 +1,5 @@
-// The range and the null space of the constraint Jacobian, found by column-pivoted Householder QR of its transpose.
-// Loops are often redundantly constrained, so the rank is found, not assumed.
+// The range and the null space of the constraint Jacobian, found by column-pivoted Householder QR of its
+// transpose. Loops are often redundantly constrained, so the rank is found, not assumed.
 #pragma once
 
 #include <Eigen/QR>
@@ -7,7 +7,7 @@
 namespace flyball {
 
 class ConstraintSpace {
-public:
+ public:
   // `jacobian` is scaled: (rows, n). Pivots below `tolerance` times the largest count as zero.
   void factor(const Eigen::MatrixXd& jacobian, double tolerance);
 
@@ -24,7 +24,7 @@ public:
   // The same of least norm.
   Eigen::VectorXd least_norm_multipliers(const Eigen::VectorXd& rhs) const;
 
-private:
+ private:
   int n_ = 0, rows_ = 0, rank_ = 0;
   Eigen::MatrixXd transposed_;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;

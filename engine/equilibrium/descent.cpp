@@ -44,7 +44,8 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
     const Eigen::MatrixXd reduced = basis.transpose() * w.scaled_stiffness * basis;
     w.noise = Eigen::VectorXd::Zero(basis.cols());
     for (Eigen::Index k = 0; k < basis.cols(); ++k)
-      w.noise[k] = 1e-15 * basis.col(k).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+      w.noise[k] =
+          1e-15 * basis.col(k).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     hessian.factor(reduced, w.noise, true);
     hessian.decompose();
 
@@ -102,7 +103,8 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
     }
     if (!accepted) return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
     travelled += fraction * size;
-    radius = fraction * size >= 0.99 * radius ? std::min(0.5, 2 * radius) : std::max(1e-3, std::min(radius, 2 * fraction * size));
+    radius = fraction * size >= 0.99 * radius ? std::min(0.5, 2 * radius)
+                                              : std::max(1e-3, std::min(radius, 2 * fraction * size));
     z.q = moved;
     if (travelled > 400) return {DescentEnd::unbounded, i};
   }

@@ -1,5 +1,5 @@
-// Downhill on the amended potential to a stable state: Newton steps with negative curvature turned round, on the
-// manifold of closed loops, within a trust region.
+// Downhill on the amended potential to a stable state: Newton steps with negative curvature turned round, on
+// the manifold of closed loops, within a trust region.
 #pragma once
 
 #include "engine/equilibrium/newton.hpp"

@@ -28,11 +28,13 @@ std::vector<double> sample_phases(const System& system, const Parameters& p) {
     if (speed == 0) continue;
     const bool turns = system.links[static_cast<std::size_t>(d.link)].type == LinkType::revolute;
     const double rate = turns ? speed : 3 * speed / p.length;
-    if (std::ranges::none_of(rates, [&](double r) { return std::abs(r - rate) < 1e-6 * rate; })) rates.push_back(rate);
+    if (std::ranges::none_of(rates, [&](double r) { return std::abs(r - rate) < 1e-6 * rate; }))
+      rates.push_back(rate);
   }
   if (rates.size() > 4) rates.resize(4);
   for (double rate : rates)
-    for (double angle : std::array{1.0, 2.3, 3.9, 5.2}) phases.push_back(angle / rate);
+    for (double angle : std::array{1.0, 2.3, 3.9, 5.2})
+      phases.push_back(angle / rate);
   return phases;
 }
 
@@ -58,7 +60,8 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
       const double size =
           basis.col(k).cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
       const double left = std::abs(w.reduced_rhs[k]);
-      if (left > tolerance * size && left / size > result.violation) result = {false, false, t, left / size, -1};
+      if (left > tolerance * size && left / size > result.violation)
+        result = {false, false, t, left / size, -1};
     }
   }
   return result;
@@ -73,12 +76,14 @@ std::string blame(const Problem& problem, const Mechanism& mechanism, const Eige
     l.has_inertia = false;
     l.elastic = false;
   }
-  for (PointSpringParameters& s : only.springs) s.stiffness = s.damping = 0;
+  for (PointSpringParameters& s : only.springs)
+    s.stiffness = s.damping = 0;
   for (BodyForceParameters& f : only.body_forces) {
     f.vector.setZero();
     f.linear = f.quadratic = 0;
   }
-  for (CutDamperParameters& d : only.cut_dampers) d.damping = 0;
+  for (CutDamperParameters& d : only.cut_dampers)
+    d.damping = 0;
   const Problem part{system, only, problem.scaling};
   // How much the projected force of what is left in `only` changes from the drawn phase to the bad one.
   const auto change = [&] {

@@ -15,14 +15,16 @@ struct Existence {
   int worst_cut = -1;      // loops_open: in System::cuts
 };
 
-// Times (s) along q_D(t) at which to look: for each drive several turns at angles where no low harmonic vanishes together.
-// Empty where the mechanism's shape alone makes every phase alike.
+// Times (s) along q_D(t) at which to look: for each drive several turns at angles where no low harmonic
+// vanishes together. Empty where the mechanism's shape alone makes every phase alike.
 std::vector<double> sample_phases(const System& system, const Parameters& parameters);
 
 // At each phase Phi must vanish and the force balance must lie in the range of Phi_q^T.
-Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases, Workspace& w);
+Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,
+                          Workspace& w);
 
 // What turns with the drives, as a phrase: "the weight of bob", "the force push", "the inertia of rotor".
-std::string blame(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q, double phase, Workspace& w);
+std::string blame(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q, double phase,
+                  Workspace& w);
 
 } // namespace flyball

@@ -18,7 +18,8 @@ bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
       const auto& f = problem.parameters.cuts[c].frame;
       for (int axis : {row.u, row.w}) {
         const Vec3& e = f[static_cast<std::size_t>(axis)];
-        if ((axis == 2 || cut.type == JointType::fixed || cut.type == JointType::prismatic) && e.dot(r * e) < 0)
+        if ((axis == 2 || cut.type == JointType::fixed || cut.type == JointType::prismatic) &&
+            e.dot(r * e) < 0)
           return false;
       }
     }
@@ -27,7 +28,7 @@ bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
 }
 
 class Search {
-public:
+ public:
   Search(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
          std::vector<double>& history, Found& found)
       : p_(problem), start_(start), nearest_(nearest), warm_(warm), w_(w), history_(history), found_(found) {}
@@ -43,12 +44,15 @@ public:
     if (p_.cancelled()) return cancelled();
     if (!close_loops()) return;
     if (!arrived_) {
-      if (attempt(assembled_, Net::damped, [&](Unknowns& z) { return newton(p_, z, w_, {200, true}, &history_); }))
+      if (attempt(assembled_, Net::damped, [&](Unknowns& z) {
+            return newton(p_, z, w_, {200, true}, &history_);
+          }))
         return;
       if (p_.cancelled()) return cancelled();
     }
     if (!arrived_ && p_.parameters.moving) {
-      if (attempt(assembled_, Net::homotopy, [&](Unknowns& z) { return homotopy(p_, z, w_, &history_); })) return;
+      if (attempt(assembled_, Net::homotopy, [&](Unknowns& z) { return homotopy(p_, z, w_, &history_); }))
+        return;
       if (p_.cancelled()) return cancelled();
     }
     if (p_.system.conservative && !nearest_ && go_downhill()) return;
@@ -56,7 +60,7 @@ public:
     settle_for_unstable();
   }
 
-private:
+ private:
   // Runs a solver from q; true when its answer stands.
   template <class Solver>
   bool attempt(const Eigen::VectorXd& q, std::optional<Net> net, Solver solver) {
@@ -80,8 +84,8 @@ private:
     return true;
   }
 
-  // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems without a
-  // potential have no such order; their eigenvalues judge.
+  // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems
+  // without a potential have no such order; their eigenvalues judge.
   bool acceptable(const NewtonOutcome& outcome) {
     if (nearest_ || !p_.symmetric()) return true;
     factor(p_, found_.z, w_);
@@ -101,9 +105,7 @@ private:
     return end.value <= begin.value + 1e-12 * (begin.magnitude + end.magnitude);
   }
 
-  bool only_flat() {
-    return w_.hessian.singular() && w_.hessian.eigenvalues()[0] > -ReducedHessian::zero;
-  }
+  bool only_flat() { return w_.hessian.singular() && w_.hessian.eigenvalues()[0] > -ReducedHessian::zero; }
 
   void cancelled() {
     found_.status = Status::not_converged;
@@ -121,7 +123,8 @@ private:
     for (int i = 0; i < 12 && !p_.cancelled(); ++i) {
       assembled_ = start_;
       w_.step.resize(p_.system.nv);
-      for (Eigen::Index k = 0; k < w_.step.size(); ++k) w_.step[k] = spread(random) * p_.scaling.column[k];
+      for (Eigen::Index k = 0; k < w_.step.size(); ++k)
+        w_.step[k] = spread(random) * p_.scaling.column[k];
       retract<double>(p_.system, w_.step, assembled_);
       if (assemble(p_, assembled_, 0, w_) && closed_the_right_way(p_, w_.kinematics)) return true;
     }
@@ -145,7 +148,8 @@ private:
   bool go_downhill() {
     found_.net = Net::descent;
     const bool from_saddle = arrived_ && unstable_ && below_start();
-    if (const DescentEnd end = descend_from(from_saddle ? candidate_.q : assembled_); end != DescentEnd::minimum) {
+    if (const DescentEnd end = descend_from(from_saddle ? candidate_.q : assembled_);
+        end != DescentEnd::minimum) {
       fell_ = end == DescentEnd::unbounded;
       return false;
     }
@@ -164,8 +168,10 @@ private:
       }
     }
     if (arrived_ && unstable_)
-      found_.message = from_saddle ? "Newton-Raphson arrived at an unstable state; stepped off it and went downhill."
-                                   : "Newton-Raphson arrived at an unstable state above the start; went downhill from the start.";
+      found_.message =
+          from_saddle
+              ? "Newton-Raphson arrived at an unstable state; stepped off it and went downhill."
+              : "Newton-Raphson arrived at an unstable state above the start; went downhill from the start.";
     found_.status = Status::converged;
     return true;
   }
@@ -204,9 +210,10 @@ private:
       found_.newton = candidate_outcome_;
       found_.net = candidate_net_;
       found_.status = Status::converged;
-      found_.message = unstable_ ? fell_ ? "The potential falls without end from here; no stable state was found."
-                                         : "No stable state was found downhill from here."
-                                 : "A stable state, but the start may lie in the basin of another.";
+      found_.message = unstable_
+                           ? fell_ ? "The potential falls without end from here; no stable state was found."
+                                   : "No stable state was found downhill from here."
+                           : "A stable state, but the start may lie in the basin of another.";
       return;
     }
     found_.status = Status::not_converged;
@@ -214,7 +221,8 @@ private:
     found_.message = "Newton-Raphson, its damped form";
     if (p_.parameters.moving) found_.message += ", homotopy from rest";
     if (p_.system.conservative && !nearest_) found_.message += ", descent of the potential";
-    found_.message += fell_ ? " found no equilibrium: the potential falls without end." : " found no equilibrium from this start.";
+    found_.message += fell_ ? " found no equilibrium: the potential falls without end."
+                            : " found no equilibrium from this start.";
   }
 
   const Problem& p_;
@@ -232,8 +240,8 @@ private:
 
 } // namespace
 
-void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
-                      std::vector<double>& history, Found& found) {
+void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
+                      Workspace& w, std::vector<double>& history, Found& found) {
   Search(problem, start, nearest, warm, w, history, found).run();
 }
 

@@ -1,8 +1,9 @@
 // Which equilibrium is the answer, and which net caught it.
 //
-// Newton-Raphson runs first, then damped, then by homotopy from rest, then downhill on the amended potential. Where there
-// is a potential an answer counts only if it is a minimum that the assembled start can reach without climbing; Newton's
-// habit of stopping at unstable states is met by going on downhill. Without one, Newton's answer stands.
+// Newton-Raphson runs first, then damped, then by homotopy from rest, then downhill on the amended potential.
+// Where there is a potential an answer counts only if it is a minimum that the assembled start can reach
+// without climbing; Newton's habit of stopping at unstable states is met by going on downhill. Without one,
+// Newton's answer stands.
 #pragma once
 
 #include "engine/equilibrium/newton.hpp"
@@ -19,13 +20,13 @@ struct Found {
   NewtonOutcome newton;
   std::optional<Net> net;
   int iterations = 0;
-  int open_cut = -1;   // infeasible: the worst cut joint, in System::cuts
-  double opening = 0;  // infeasible: scaled
+  int open_cut = -1;  // infeasible: the worst cut joint, in System::cuts
+  double opening = 0; // infeasible: scaled
 };
 
-// From `start`. `nearest` asks for the Newton answer, stable or not. Reuses `found`'s storage; allocates nothing when the
-// plain run arrives in a system of the same size as before.
-void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
-                      std::vector<double>& history, Found& found);
+// From `start`. `nearest` asks for the Newton answer, stable or not. Reuses `found`'s storage; allocates
+// nothing when the plain run arrives in a system of the same size as before.
+void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
+                      Workspace& w, std::vector<double>& history, Found& found);
 
 } // namespace flyball

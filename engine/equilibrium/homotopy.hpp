@@ -1,5 +1,5 @@
-// From rest to the full drive speeds: solve the mechanism standing still, then follow the state as the squared speed
-// grows, with steps halved where Newton-Raphson fails.
+// From rest to the full drive speeds: solve the mechanism standing still, then follow the state as the
+// squared speed grows, with steps halved where Newton-Raphson fails.
 #pragma once
 
 #include "engine/equilibrium/newton.hpp"

@@ -9,13 +9,14 @@ double rank_tolerance(const Problem& problem, const Eigen::VectorXd& phi) {
   return std::clamp(10 * open, 1e-10, 1e-3);
 }
 
-void apply_step(const Problem& problem, const Eigen::VectorXd& scaled_step, double fraction, Eigen::VectorXd& q,
-                Workspace& w) {
+void apply_step(const Problem& problem, const Eigen::VectorXd& scaled_step, double fraction,
+                Eigen::VectorXd& q, Workspace& w) {
   w.step = fraction * scaled_step.cwiseProduct(problem.scaling.column);
   retract<double>(problem.system, w.step, q);
 }
 
-// What is left of the force balance when the best multipliers have been found; f is without constraint forces.
+// What is left of the force balance when the best multipliers have been found; f is without constraint
+// forces.
 double merit(const Problem& problem, Workspace& w) {
   w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
   double sum = 0;
@@ -40,14 +41,16 @@ double scaled_residual(const Problem& problem, const Workspace& w) {
     if (w.residual.f[i] != 0) worst = std::max(worst, std::abs(w.residual.f[i]) / w.magnitudes.force[i]);
   for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
     worst = std::max(worst, std::abs(w.residual.phi[i]) * problem.scaling.row[i]);
-  return std::isfinite(w.residual.f.sum() + w.residual.phi.sum()) ? worst : std::numeric_limits<double>::infinity();
+  return std::isfinite(w.residual.f.sum() + w.residual.phi.sum()) ? worst
+                                                                  : std::numeric_limits<double>::infinity();
 }
 
 void factor_constraints(const Problem& problem, Workspace& w) {
   w.scaled_jacobian.resize(problem.system.rows, problem.system.nv);
   for (int j = 0; j < problem.system.nv; ++j)
     for (int i = 0; i < problem.system.rows; ++i)
-      w.scaled_jacobian(i, j) = w.linearization.constraint(i, j) * problem.scaling.row[i] * problem.scaling.column[j];
+      w.scaled_jacobian(i, j) =
+          w.linearization.constraint(i, j) * problem.scaling.row[i] * problem.scaling.column[j];
   w.constraints.factor(w.scaled_jacobian, rank_tolerance(problem, w.residual.phi));
 }
 
@@ -58,7 +61,8 @@ void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
   w.scaled_stiffness.resize(n, n);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i)
-      w.scaled_stiffness(i, j) = w.linearization.stiffness(i, j) * problem.scaling.column[i] * problem.scaling.column[j];
+      w.scaled_stiffness(i, j) =
+          w.linearization.stiffness(i, j) * problem.scaling.column[i] * problem.scaling.column[j];
   // Below this a stiffness is rounding: the forces behind it, per radian or reach.
   const double rounding = 1e-15;
   if (w.constraints.rank() == 0) {
@@ -114,13 +118,13 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     const double residual = scaled_residual(problem, w);
     if (history) history->push_back(residual);
     outcome.iterations = i;
-    if (outcome.converged || i >= settings.max_iterations || !std::isfinite(residual) || problem.cancelled()) break;
+    if (outcome.converged || i >= settings.max_iterations || !std::isfinite(residual) || problem.cancelled())
+      break;
     factor(problem, z, w);
     // The multipliers are solved for whole at every step, so the step needs the balance without them.
     w.trial.q = z.q;
     w.trial.lambda = z.lambda;
-    if (problem.system.rows > 0)
-      w.residual.f.noalias() -= w.linearization.constraint.transpose() * z.lambda;
+    if (problem.system.rows > 0) w.residual.f.noalias() -= w.linearization.constraint.transpose() * z.lambda;
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, z.lambda);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > 1e8) break;

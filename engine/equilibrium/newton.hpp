@@ -1,6 +1,6 @@
-// Newton-Raphson on z = [q_R; lambda] (eqs. 21 and 22), by the null-space method: the step closes the loops in the range
-// of Phi_q^T and balances the forces in its null space, so redundant constraints do no harm and the definiteness of the
-// balance is known at every iteration.
+// Newton-Raphson on z = [q_R; lambda] (eqs. 21 and 22), by the null-space method: the step closes the loops
+// in the range of Phi_q^T and balances the forces in its null space, so redundant constraints do no harm and
+// the definiteness of the balance is known at every iteration.
 #pragma once
 
 #include "engine/equilibrium/workspace.hpp"
@@ -12,7 +12,8 @@ namespace flyball {
 // Evaluates the balance at phase t: kinematics, residual at z.lambda and magnitudes.
 void evaluate(const Problem& problem, const Unknowns& z, double t, Workspace& w);
 
-// Largest scaled equation of eq. 23: forces relative to the terms they are made of, lengths to the mechanism's reach.
+// Largest scaled equation of eq. 23: forces relative to the terms they are made of, lengths to the
+// mechanism's reach.
 double scaled_residual(const Problem& problem, const Workspace& w);
 
 // Scales and factors the constraint Jacobian in w.linearization.
@@ -21,20 +22,20 @@ void factor_constraints(const Problem& problem, Workspace& w);
 // Linearises and factors at an evaluated state.
 void factor(const Problem& problem, const Unknowns& z, Workspace& w);
 
-// The Newton step at a factored state: `step` (scaled, tangent) and `lambda` (new multipliers) for the balance `f` without
-// constraint forces (N m, N) and the constraint values `phi`.
+// The Newton step at a factored state: `step` (scaled, tangent) and `lambda` (new multipliers) for the
+// balance `f` without constraint forces (N m, N) and the constraint values `phi`.
 void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::VectorXd& phi, Workspace& w,
                  Eigen::VectorXd& scaled_step, Eigen::VectorXd& lambda);
 
 struct NewtonSettings {
   int max_iterations = 30;
-  bool damped = false;      // halve steps until the scaled residual falls
+  bool damped = false;          // halve steps until the scaled residual falls
   double step_tolerance = 1e-9; // scaled; quadratic convergence puts the error at its square
 };
 
 struct NewtonOutcome {
   bool converged = false;
-  bool linear = false;     // converged in the residual while steps still shrank slowly: a singular state
+  bool linear = false; // converged in the residual while steps still shrank slowly: a singular state
   int iterations = 0;
   double largest_step = 0; // scaled
   double last_step = 0;    // scaled

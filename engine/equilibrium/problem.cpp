@@ -19,7 +19,11 @@ void set_scaling(const System& system, const Parameters& p, Scaling& out) {
       case RowType::point:
       case RowType::distance: scale = 1 / p.length; break;
       case RowType::direction: break;
-      case RowType::gear: scale = 1 / std::max(out.column[cut.gear_vb], std::abs(p.cuts[static_cast<std::size_t>(&cut - system.cuts.data())].ratio) * out.column[cut.gear_va]); break;
+      case RowType::gear:
+        scale = 1 / std::max(out.column[cut.gear_vb],
+                             std::abs(p.cuts[static_cast<std::size_t>(&cut - system.cuts.data())].ratio) *
+                                 out.column[cut.gear_va]);
+        break;
       }
       out.row[cut.first_row + static_cast<int>(r)] = scale;
     }

@@ -8,8 +8,8 @@
 
 namespace flyball {
 
-// Unknowns are scaled to radians and characteristic lengths, constraint rows likewise; forces then have units of
-// energy in every equation, and a change of the unit of length changes nothing.
+// Unknowns are scaled to radians and characteristic lengths, constraint rows likewise; forces then have units
+// of energy in every equation, and a change of the unit of length changes nothing.
 struct Scaling {
   Eigen::VectorXd column; // rad or m per scaled unit, by coordinate of q_R
   Eigen::VectorXd row;    // scaled units per m, rad or 1, by constraint row

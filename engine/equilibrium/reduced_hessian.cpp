@@ -27,8 +27,8 @@ void ReducedHessian::factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd
   if (symmetric) {
     cholesky_.compute(matrix_);
     // A pivot below the threshold bounds the smallest eigenvalue from above.
-    positive_ = cholesky_.info() == Eigen::Success &&
-                cholesky_.matrixLLT().diagonal().cwiseAbs2().minCoeff() > zero;
+    positive_ =
+        cholesky_.info() == Eigen::Success && cholesky_.matrixLLT().diagonal().cwiseAbs2().minCoeff() > zero;
     if (!positive_) {
       decompose();
       null_ = static_cast<int>((eigen_.eigenvalues().array().abs() <= zero).count());
@@ -78,11 +78,13 @@ Eigen::MatrixXd ReducedHessian::null_basis() const {
   if (symmetric_) {
     Eigen::Index c = 0;
     for (Eigen::Index k = 0; k < n; ++k)
-      if (std::abs(eigen_.eigenvalues()[k]) <= zero) basis.col(c++) = scale_.cwiseProduct(eigen_.eigenvectors().col(k));
+      if (std::abs(eigen_.eigenvalues()[k]) <= zero)
+        basis.col(c++) = scale_.cwiseProduct(eigen_.eigenvectors().col(k));
     return basis;
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix_, Eigen::ComputeFullV);
-  for (int k = 0; k < null_; ++k) basis.col(k) = scale_.cwiseProduct(svd.matrixV().col(n - null_ + k));
+  for (int k = 0; k < null_; ++k)
+    basis.col(k) = scale_.cwiseProduct(svd.matrixV().col(n - null_ + k));
   return basis;
 }
 

@@ -1,5 +1,5 @@
-// The balance's Jacobian on the null space of the constraints, factored: by Cholesky where it is symmetric and
-// positive definite (then the state is a strict minimum), else by what still works.
+// The balance's Jacobian on the null space of the constraints, factored: by Cholesky where it is symmetric
+// and positive definite (then the state is a strict minimum), else by what still works.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -9,9 +9,10 @@
 namespace flyball {
 
 class ReducedHessian {
-public:
+ public:
   // `scale` (positive, by row) makes the diagonal comparable; see factor().
-  // Symmetric matrices are averaged with their transposes. `noise[i]` is the size below which entry (i, i) is rounding.
+  // Symmetric matrices are averaged with their transposes. `noise[i]` is the size below which entry (i, i) is
+  // rounding.
   void factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& noise, bool symmetric);
 
   // Directions without stiffness get no component.
@@ -35,7 +36,7 @@ public:
 
   static constexpr double zero = 1e-11; // of the equilibrated matrix
 
-private:
+ private:
   bool symmetric_ = true, positive_ = false, decomposed_ = false;
   int null_ = 0;
   Eigen::VectorXd scale_, work_;

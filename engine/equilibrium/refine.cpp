@@ -2,7 +2,8 @@
 
 namespace flyball {
 
-void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, Workspace& w, Eigen::VectorXd& error) {
+void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, Workspace& w,
+            Eigen::VectorXd& error) {
   const System& system = problem.system;
   error.setZero(system.nv);
   if (system.nv == 0) return;

@@ -17,7 +17,9 @@ double wrapped(double angle) {
 }
 
 std::string cut_name(const ReportInput& in, int cut) {
-  return in.mechanism.joints[static_cast<std::size_t>(in.problem.system.cuts[static_cast<std::size_t>(cut)].joint)].name;
+  return in.mechanism
+      .joints[static_cast<std::size_t>(in.problem.system.cuts[static_cast<std::size_t>(cut)].joint)]
+      .name;
 }
 
 double error_of(const System& system, const Parameters& p, const CoordinateInfo& c, const Eigen::VectorXd& q,
@@ -27,7 +29,8 @@ double error_of(const System& system, const Parameters& p, const CoordinateInfo&
   if (link.type != LinkType::spherical) return error[link.v];
   const LinkParameters& lp = p.links[static_cast<std::size_t>(c.link)];
   const Mat3 j = inverse_left_jacobian(rotation_vector(link, lp, q));
-  const Mat3 rate = link.reversed ? Mat3(j.transpose() * lp.drawn_rotation.toRotationMatrix().transpose()) : j;
+  const Mat3 rate =
+      link.reversed ? Mat3(j.transpose() * lp.drawn_rotation.toRotationMatrix().transpose()) : j;
   return rate.row(c.index - link.coordinate).cwiseAbs().dot(error.segment<3>(link.v));
 }
 
@@ -57,7 +60,9 @@ struct Frames {
 };
 
 Frames frames_of(const System& system, const Kinematics<double>& k, const TreeJoint& t) {
-  const auto r = [&](int body) { return body < 0 ? Mat3(Mat3::Identity()) : k.at(system.body_link[static_cast<std::size_t>(body)]).R; };
+  const auto r = [&](int body) {
+    return body < 0 ? Mat3(Mat3::Identity()) : k.at(system.body_link[static_cast<std::size_t>(body)]).R;
+  };
   return {r(t.parent_body), r(t.child_body)};
 }
 
@@ -79,8 +84,10 @@ void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
     const Eigen::VectorXd rhs = -w.residual.f.cwiseProduct(in.problem.scaling.column);
     z.lambda = w.constraints.least_norm_multipliers(rhs).cwiseProduct(in.problem.scaling.row);
     Snapshot s{transmitted_forces(system, p, z.lambda, w.kinematics, w.residual), {}, {}};
-    for (const TreeJoint& tree : system.tree_joints) s.tree.push_back(frames_of(system, w.kinematics, tree));
-    for (const CutJoint& cut : system.cuts) s.cuts.push_back({w.kinematics.at(cut.ends.a).R, w.kinematics.at(cut.ends.b).R});
+    for (const TreeJoint& tree : system.tree_joints)
+      s.tree.push_back(frames_of(system, w.kinematics, tree));
+    for (const CutJoint& cut : system.cuts)
+      s.cuts.push_back({w.kinematics.at(cut.ends.a).R, w.kinematics.at(cut.ends.b).R});
     if (t == 0)
       for (const CutJoint& cut : system.cuts) {
         JointMultipliers m;
@@ -93,9 +100,11 @@ void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
   };
   const Snapshot drawn = at_phase(0);
   std::vector<Snapshot> others;
-  for (double t : sample_phases(system, p)) others.push_back(at_phase(t));
+  for (double t : sample_phases(system, p))
+    others.push_back(at_phase(t));
   double size = 0;
-  for (const JointWrench& x : drawn.forces.tree) size = std::max({size, x.force.norm(), x.torque.norm() / p.length});
+  for (const JointWrench& x : drawn.forces.tree)
+    size = std::max({size, x.force.norm(), x.torque.norm() / p.length});
   const auto varies = [&](const JointWrench& a, const Frames& fa, const JointWrench& b, const Frames& fb) {
     const auto differs = [&](const Mat3& ra, const Mat3& rb) {
       return (ra.transpose() * a.force - rb.transpose() * b.force).norm() > 1e-7 * size ||
@@ -131,10 +140,12 @@ void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
     torque.index = link.coordinate;
     torque.count = coordinate_count(joint.type);
     torque.angle = link.type == LinkType::revolute;
-    // Where the tree runs against the joint its axes are turned round and so is nothing else: the coordinate keeps its sign.
+    // Where the tree runs against the joint its axes are turned round and so is nothing else: the coordinate
+    // keeps its sign.
     torque.value = drawn.forces.drives[d];
     for (const Snapshot& s : others)
-      if (std::abs(s.forces.drives[d] - torque.value) > 1e-7 * size * (torque.angle ? p.length : 1)) torque.varying = true;
+      if (std::abs(s.forces.drives[d] - torque.value) > 1e-7 * size * (torque.angle ? p.length : 1))
+        torque.varying = true;
     out.drive_torques.push_back(std::move(torque));
   }
 }
@@ -181,7 +192,8 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   if (details && system.nv > 0) {
     factor(in.problem, z, w);
     const int n = system.nv, m = w.constraints.rank();
-    // Of the balance on the null space and the constraints on the range, both in scaled units and equilibrated.
+    // Of the balance on the null space and the constraints on the range, both in scaled units and
+    // equilibrated.
     const Eigen::MatrixXd reduced = w.hessian.equilibrated();
     double high = 0, low = std::numeric_limits<double>::infinity();
     if (n > m) {
@@ -196,7 +208,8 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   if (out.message.empty()) out.message = "Converged.";
   if (!out.neutral.empty()) {
     out.message += " Nothing resists";
-    for (std::size_t i = 0; i < out.neutral.size(); ++i) out.message += (i ? ", " : " ") + out.neutral[i];
+    for (std::size_t i = 0; i < out.neutral.size(); ++i)
+      out.message += (i ? ", " : " ") + out.neutral[i];
     out.message += "; held where it was drawn.";
   }
   if (out.stable == false && in.found.message.empty()) out.message += " This state is unstable.";
@@ -213,7 +226,8 @@ void set_start(const System& system, const Parameters& parameters, const std::st
     set_coordinate(system, parameters, c, value, q);
     return;
   }
-  throw SceneError(name, "is not a free coordinate; use the joint's name, or name.index where it has several");
+  throw SceneError(name,
+                   "is not a free coordinate; use the joint's name, or name.index where it has several");
 }
 
 } // namespace flyball

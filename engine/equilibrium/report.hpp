@@ -20,7 +20,8 @@ struct ReportInput {
 std::string failure_message(const ReportInput& input, Workspace& w);
 
 // Fills the parts of a converged solution; `error` by coordinate of q_R.
-void report(const ReportInput& input, const Eigen::VectorXd& error, bool details, Workspace& w, Solution& out);
+void report(const ReportInput& input, const Eigen::VectorXd& error, bool details, Workspace& w,
+            Solution& out);
 
 SystemSummary summarize(const Mechanism& mechanism, const System& system, const Parameters& parameters);
 

@@ -25,7 +25,8 @@ enum class Net { damped, homotopy, descent };
 enum class StabilityReason {
   minimum,         // strict minimum of the amended potential on the constraints
   asymptotic,      // all eigenvalues to the left
-  gyroscopic_only, // not a minimum, but the eigenvalues lie on the imaginary axis: any damping destabilises it
+  gyroscopic_only, // not a minimum, but the eigenvalues lie on the imaginary axis: any damping destabilises
+                   // it
   neutral,         // stable but for directions that nothing resists
   marginal,        // eigenvalues too close to the axis to tell, or a singular state (a fold or branch point)
   unstable,
@@ -70,20 +71,20 @@ struct Solution {
   std::string message;                         // always a sentence
   std::vector<CoordinateSolution> coordinates; // in the scene's order; empty where there is no answer
   std::vector<JointMultipliers> multipliers;
-  double residual = 0;                         // largest scaled equation of eq. 23
+  double residual = 0; // largest scaled equation of eq. 23
   int iterations = 0;
-  std::vector<double> history;                 // scaled residual at the start and after each iteration
+  std::vector<double> history; // scaled residual at the start and after each iteration
   std::optional<Net> net;
-  double run_time_s = 0;                       // from the start to the accepted answer
+  double run_time_s = 0; // from the start to the accepted answer
   std::optional<bool> stable;
   std::optional<StabilityReason> stability_reason;
   std::optional<std::vector<std::complex<double>>> eigenvalues; // 1/s, of the linearised motion
-  std::vector<std::string> neutral;            // joints that take part in a direction nothing resists
+  std::vector<std::string> neutral; // joints that take part in a direction nothing resists
   std::vector<DriveTorque> drive_torques;
   std::vector<Reaction> reactions;
-  bool reactions_nonunique = false;            // redundant loops: the minimum-norm multipliers
-  std::vector<Pose> poses;                     // in the order of the bodies, at the drawn drive phase
-  std::optional<double> condition;             // 2-norm, of the scaled equations
+  bool reactions_nonunique = false; // redundant loops: the minimum-norm multipliers
+  std::vector<Pose> poses;          // in the order of the bodies, at the drawn drive phase
+  std::optional<double> condition;  // 2-norm, of the scaled equations
 };
 
 } // namespace flyball

@@ -15,8 +15,8 @@ void sort_eigenvalues(std::vector<Complex>& s) {
 }
 
 // Of s^2 + s d + k with d = L^-1 D L^-T, k = L^-1 K L^-T, M = L L^T.
-std::vector<Complex> regular_eigenvalues(const Eigen::LLT<Eigen::MatrixXd>& mass, const Eigen::MatrixXd& velocity,
-                                         const Eigen::MatrixXd& stiffness) {
+std::vector<Complex> regular_eigenvalues(const Eigen::LLT<Eigen::MatrixXd>& mass,
+                                         const Eigen::MatrixXd& velocity, const Eigen::MatrixXd& stiffness) {
   const Eigen::Index n = velocity.rows();
   const auto l = mass.matrixL();
   const auto whiten = [&](const Eigen::MatrixXd& a) {
@@ -40,7 +40,8 @@ std::vector<Complex> regular_eigenvalues(const Eigen::LLT<Eigen::MatrixXd>& mass
   companion.bottomLeftCorner(n, n) = -k;
   companion.bottomRightCorner(n, n) = -d;
   const Eigen::EigenSolver<Eigen::MatrixXd> eigen(companion, false);
-  for (Eigen::Index i = 0; i < 2 * n; ++i) s.push_back(eigen.eigenvalues()[i]);
+  for (Eigen::Index i = 0; i < 2 * n; ++i)
+    s.push_back(eigen.eigenvalues()[i]);
   return s;
 }
 
@@ -56,7 +57,8 @@ std::vector<Complex> singular_eigenvalues(const Eigen::MatrixXd& mass, const Eig
   const Eigen::GeneralizedEigenSolver<Eigen::MatrixXd> eigen(a, b, false);
   std::vector<Complex> s;
   for (Eigen::Index i = 0; i < 2 * n; ++i)
-    if (std::abs(eigen.betas()[i]) > 1e-12 * std::abs(eigen.alphas()[i])) s.push_back(eigen.alphas()[i] / eigen.betas()[i]);
+    if (std::abs(eigen.betas()[i]) > 1e-12 * std::abs(eigen.alphas()[i]))
+      s.push_back(eigen.alphas()[i] / eigen.betas()[i]);
   return s;
 }
 
@@ -76,7 +78,8 @@ std::vector<Complex> pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen
   const Eigen::MatrixXd m1 = mass / m, d1 = velocity / (m * rate), k1 = stiffness / (m * rate * rate);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shape((m1 + m1.transpose()) / 2);
   Eigen::Index massless = 0;
-  while (massless < m1.rows() && shape.eigenvalues()[massless] < 1e-13) ++massless;
+  while (massless < m1.rows() && shape.eigenvalues()[massless] < 1e-13)
+    ++massless;
   std::vector<Complex> s;
   if (massless == 0) {
     s = regular_eigenvalues(Eigen::LLT<Eigen::MatrixXd>((m1 + m1.transpose()) / 2), d1, k1);
@@ -87,13 +90,16 @@ std::vector<Complex> pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen
     const Eigen::MatrixXd kzz = z.transpose() * k1 * z;
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> condensed(kzz);
     if (undamped <= 1e-13 * (d1.norm() + 1) && condensed.rank() == massless) {
-      const Eigen::MatrixXd kc = r.transpose() * k1 * r - r.transpose() * k1 * z * condensed.solve(z.transpose() * k1 * r);
-      s = regular_eigenvalues(Eigen::LLT<Eigen::MatrixXd>(r.transpose() * m1 * r), r.transpose() * d1 * r, kc);
+      const Eigen::MatrixXd kc =
+          r.transpose() * k1 * r - r.transpose() * k1 * z * condensed.solve(z.transpose() * k1 * r);
+      s = regular_eigenvalues(Eigen::LLT<Eigen::MatrixXd>(r.transpose() * m1 * r), r.transpose() * d1 * r,
+                              kc);
     } else {
       s = singular_eigenvalues(m1, d1, k1);
     }
   }
-  for (Complex& x : s) x *= rate;
+  for (Complex& x : s)
+    x *= rate;
   sort_eigenvalues(s);
   return s;
 }
@@ -112,7 +118,8 @@ bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
     forward<double>(problem.system, problem.parameters, q, 0, w.kinematics);
     w.zero_lambda.setZero(problem.system.rows);
     evaluate_residual<double>(problem.system, problem.parameters, q, w.zero_lambda, w.kinematics, w.residual);
-    return amended_potential(problem.system, problem.parameters, q, w.kinematics).value + z.lambda.dot(w.residual.phi);
+    return amended_potential(problem.system, problem.parameters, q, w.kinematics).value +
+           z.lambda.dot(w.residual.phi);
   };
   const double h = 1e-3;
   bool agrees = true;
@@ -135,7 +142,8 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   const Eigen::MatrixXd reduced = basis.transpose() * w.scaled_stiffness * basis;
   w.noise.resize(basis.cols());
   for (Eigen::Index i = 0; i < basis.cols(); ++i)
-    w.noise[i] = 1e-15 * basis.col(i).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+    w.noise[i] =
+        1e-15 * basis.col(i).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
   energy.factor(reduced, w.noise, potential);
   const bool minimum = potential && energy.positive_definite();
   if (minimum) {
@@ -161,7 +169,8 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
       linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
       factor_constraints(problem, w);
       w.zero_lambda.setZero(problem.system.rows);
-      const Eigen::VectorXd left = w.constraints.basis().transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
+      const Eigen::VectorXd left =
+          w.constraints.basis().transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
       const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
       if (left.size() > 0 && left.lpNorm<Eigen::Infinity>() > 1e-9 * force) balanced = false;
     }
@@ -186,8 +195,10 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
 
   linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.linearization);
   const auto& s = problem.scaling.column;
-  const Eigen::MatrixXd mass = basis.transpose() * s.asDiagonal() * w.linearization.mass * s.asDiagonal() * basis;
-  const Eigen::MatrixXd velocity = basis.transpose() * s.asDiagonal() * w.linearization.velocity * s.asDiagonal() * basis;
+  const Eigen::MatrixXd mass =
+      basis.transpose() * s.asDiagonal() * w.linearization.mass * s.asDiagonal() * basis;
+  const Eigen::MatrixXd velocity =
+      basis.transpose() * s.asDiagonal() * w.linearization.velocity * s.asDiagonal() * basis;
   Eigen::MatrixXd stiffness = reduced;
   if (potential) stiffness = (reduced + reduced.transpose()) / 2;
   out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness);
@@ -197,7 +208,9 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   std::vector<Complex> moving = *out.eigenvalues;
   std::ranges::sort(moving, [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
   const double largest = moving.empty() ? 0 : std::abs(moving.back());
-  for (int i = 0; i < 2 * static_cast<int>(flat.cols()) && !moving.empty() && std::abs(moving.front()) < 1e-5 * largest; ++i)
+  for (int i = 0;
+       i < 2 * static_cast<int>(flat.cols()) && !moving.empty() && std::abs(moving.front()) < 1e-5 * largest;
+       ++i)
     moving.erase(moving.begin());
   bool right = false, left = !moving.empty() || flat.cols() == 0;
   for (Complex x : moving) {
@@ -209,7 +222,8 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   if (mass.rows() > 0) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shape((mass + mass.transpose()) / 2);
     Eigen::Index massless = 0;
-    while (massless < mass.rows() && shape.eigenvalues()[massless] < 1e-13 * std::max(mass.norm(), 1e-300)) ++massless;
+    while (massless < mass.rows() && shape.eigenvalues()[massless] < 1e-13 * std::max(mass.norm(), 1e-300))
+      ++massless;
     if (massless > 0) {
       const Eigen::MatrixXd zz = shape.eigenvectors().leftCols(massless);
       const Eigen::MatrixXd kzz = zz.transpose() * (stiffness + stiffness.transpose()) * zz;

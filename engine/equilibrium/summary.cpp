@@ -10,8 +10,10 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   out.free_coordinates = system.nv;
   out.driven_coordinates = static_cast<int>(system.drives.size());
   out.constraint_equations = system.rows;
-  for (const TreeJoint& t : system.tree_joints) (t.joint < 0 ? out.implicit_joints : out.tree_joints).push_back(t.name);
-  for (const CutJoint& c : system.cuts) out.cut_joints.push_back(mechanism.joints[static_cast<std::size_t>(c.joint)].name);
+  for (const TreeJoint& t : system.tree_joints)
+    (t.joint < 0 ? out.implicit_joints : out.tree_joints).push_back(t.name);
+  for (const CutJoint& c : system.cuts)
+    out.cut_joints.push_back(mechanism.joints[static_cast<std::size_t>(c.joint)].name);
   const auto say = [&](bool in, std::string_view pass) { (in ? out.in : out.left_out).emplace_back(pass); };
   say(system.rows > 0, "loops: multipliers and constraint rows");
   say(p.moving, "motion of the drives: centrifugal and gyroscopic forces");
@@ -19,14 +21,20 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   say(std::ranges::any_of(p.links, &LinkParameters::elastic), "springs and stops in joints");
   say(!system.springs.empty(), "springs between points");
   say(!system.body_forces.empty(), "forces, torques and drag");
-  const bool damped = std::ranges::any_of(p.links, [](const LinkParameters& l) {
-    return std::ranges::any_of(l.force, [](const CoordinateForce& f) { return f.damping != 0; });
-  }) || !system.cut_dampers.empty() ||
-                      std::ranges::any_of(p.springs, [](const PointSpringParameters& s) { return s.damping != 0; });
+  const bool damped =
+      std::ranges::any_of(p.links,
+                          [](const LinkParameters& l) {
+                            return std::ranges::any_of(
+                                l.force, [](const CoordinateForce& f) { return f.damping != 0; });
+                          }) ||
+      !system.cut_dampers.empty() ||
+      std::ranges::any_of(p.springs, [](const PointSpringParameters& s) { return s.damping != 0; });
   say(damped, "dampers (in the eigenvalues; none acts on the balance of parts that turn together)");
-  say(std::ranges::any_of(system.links, [](const Link& l) { return l.type == LinkType::spherical && l.v >= 0; }),
+  say(std::ranges::any_of(system.links,
+                          [](const Link& l) { return l.type == LinkType::spherical && l.v >= 0; }),
       "rotations as quaternions");
-  say(!(system.conservative && system.single_drives), "general matrices (a symmetric one serves conservative forces)");
+  say(!(system.conservative && system.single_drives),
+      "general matrices (a symmetric one serves conservative forces)");
   say(!p.phase_free, "checks at other phases of the drives (the mechanism's shape makes all phases alike)");
   return out;
 }

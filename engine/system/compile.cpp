@@ -26,8 +26,7 @@ std::vector<ChainPart> chain_of(JointType type) {
   case JointType::universal: return {{revolute, 0, 0}, {revolute, 1, 1}};
   case JointType::spherical: return {{spherical, 0, 0}};
   case JointType::planar: return {{prismatic, 1, 0}, {prismatic, 2, 1}, {revolute, 0, 2}};
-  case JointType::free:
-    return {{prismatic, 3, 0}, {prismatic, 4, 1}, {prismatic, 5, 2}, {spherical, 0, 3}};
+  case JointType::free: return {{prismatic, 3, 0}, {prismatic, 4, 1}, {prismatic, 5, 2}, {spherical, 0, 3}};
   case JointType::fixed: return {{fixed, 0, 0}};
   case JointType::distance:
   case JointType::gear: break;
@@ -55,10 +54,12 @@ std::vector<ConstraintRow> rows_of(JointType type) {
   return {};
 }
 
-bool joins_trees(JointType type) { return type != JointType::distance && type != JointType::gear; }
+bool joins_trees(JointType type) {
+  return type != JointType::distance && type != JointType::gear;
+}
 
 class UnionFind {
-public:
+ public:
   explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
   int find(int i) {
     while (parent_[static_cast<std::size_t>(i)] != i) {
@@ -75,7 +76,7 @@ public:
     return true;
   }
 
-private:
+ private:
   std::vector<int> parent_;
 };
 
@@ -87,7 +88,7 @@ struct DriveOrigin {
 };
 
 class Compiler {
-public:
+ public:
   Compiler(const Mechanism& mechanism, const CutChoice& choice) : m_(mechanism), choice_(choice) {}
 
   System run() {
@@ -101,7 +102,7 @@ public:
     return std::move(s_);
   }
 
-private:
+ private:
   const Joint& joint(int j) const { return m_.joints[static_cast<std::size_t>(j)]; }
   int joint_count() const { return static_cast<int>(m_.joints.size()); }
   int body_count() const { return static_cast<int>(m_.bodies.size()); }
@@ -152,12 +153,14 @@ private:
       for (const Coordinate& c : joint(j).coordinates)
         if (c.spring || c.stop) needs_coordinate_[static_cast<std::size_t>(j)] = true;
       if (joint(j).type == JointType::gear)
-        for (int end : {0, 1}) needs_coordinate_[static_cast<std::size_t>(gear_end(j, end).joint)] = true;
+        for (int end : {0, 1})
+          needs_coordinate_[static_cast<std::size_t>(gear_end(j, end).joint)] = true;
     }
   }
 
   bool is_driven(int j) const {
-    return std::ranges::any_of(origins_[static_cast<std::size_t>(j)], [](const DriveOrigin& o) { return o.driven; });
+    return std::ranges::any_of(origins_[static_cast<std::size_t>(j)],
+                               [](const DriveOrigin& o) { return o.driven; });
   }
 
   // Lower is kept in the tree first.
@@ -187,9 +190,11 @@ private:
       if (parts.unite(a + 1, b + 1)) {
         in_tree_[static_cast<std::size_t>(j)] = true;
       } else if (is_driven(j)) {
-        throw SceneError(joint_path(j) + ".drive", "driven joints close a loop; a driven joint cannot be cut");
+        throw SceneError(joint_path(j) + ".drive",
+                         "driven joints close a loop; a driven joint cannot be cut");
       } else if (x.type == JointType::free) {
-        throw SceneError(joint_path(j), "a free joint joins bodies that are joined already; it constrains nothing");
+        throw SceneError(joint_path(j),
+                         "a free joint joins bodies that are joined already; it constrains nothing");
       }
     }
   }
@@ -219,7 +224,8 @@ private:
         o = &origins_[static_cast<std::size_t>(j)][static_cast<std::size_t>(part.coordinate)];
       if (o && o->driven) {
         if (part.type == LinkType::spherical)
-          throw SceneError(joint_path(j) + ".drive", "a rotation vector cannot be driven; use revolute joints");
+          throw SceneError(joint_path(j) + ".drive",
+                           "a rotation vector cannot be driven; use revolute joints");
         l.drive = static_cast<int>(s_.drives.size());
         s_.drives.push_back({last, l.drive, o->gears});
         motors_.push_back({o->motor_joint, o->motor_coordinate});
@@ -324,7 +330,8 @@ private:
       for (std::size_t e = 0; e < s_.drives.size(); ++e) {
         const Link& l = link(s_.drives[e].link);
         const TreeJoint& t = s_.tree_joints[static_cast<std::size_t>(l.tree_joint)];
-        if (s_.drives[e].gears.empty() && t.joint == motors_[d].joint && l.coordinate == motors_[d].coordinate)
+        if (s_.drives[e].gears.empty() && t.joint == motors_[d].joint &&
+            l.coordinate == motors_[d].coordinate)
           s_.drives[d].motor = static_cast<int>(e);
       }
   }
@@ -338,7 +345,8 @@ private:
       const Link& x = s_.links[static_cast<std::size_t>(l)];
       if (x.v < 0) continue;
       const int n = x.type == LinkType::spherical ? 3 : 1;
-      for (int k = n - 1; k >= 0; --k) path.push_back({x.v + k, l, second});
+      for (int k = n - 1; k >= 0; --k)
+        path.push_back({x.v + k, l, second});
     }
     std::ranges::reverse(path);
     return path;
@@ -348,7 +356,8 @@ private:
     PairEnds ends{a, b, {}};
     const Support pa = path_to_root(a, false), pb = path_to_root(b, true);
     std::size_t common = 0;
-    while (common < pa.size() && common < pb.size() && pa[common].v == pb[common].v) ++common;
+    while (common < pa.size() && common < pb.size() && pa[common].v == pb[common].v)
+      ++common;
     ends.support.assign(pa.begin() + static_cast<std::ptrdiff_t>(common), pa.end());
     ends.support.insert(ends.support.end(), pb.begin() + static_cast<std::ptrdiff_t>(common), pb.end());
     return ends;
@@ -372,9 +381,10 @@ private:
       }
       if (in_tree_[static_cast<std::size_t>(j)]) continue;
       const int a = body_of(x.bodies[0], joint_path(j)), b = body_of(x.bodies[1], joint_path(j));
-      const bool damped = std::ranges::any_of(x.coordinates, [](const Coordinate& c) { return c.damping != 0; });
-      const bool axial = x.type == JointType::revolute || x.type == JointType::prismatic ||
-                         x.type == JointType::cylindrical;
+      const bool damped =
+          std::ranges::any_of(x.coordinates, [](const Coordinate& c) { return c.damping != 0; });
+      const bool axial =
+          x.type == JointType::revolute || x.type == JointType::prismatic || x.type == JointType::cylindrical;
       CutJoint cut;
       cut.joint = j;
       if (needs_coordinate_[static_cast<std::size_t>(j)] || (damped && !axial)) {
@@ -398,7 +408,8 @@ private:
             s_.cut_dampers.push_back({j, k, is_angle(x.type, k), cut.ends});
       add_cut(std::move(cut), x.type);
     }
-    for (int j : gears) add_gear(j);
+    for (int j : gears)
+      add_gear(j);
   }
 
   void add_gear(int j) {
@@ -484,7 +495,9 @@ private:
 
 } // namespace
 
-System compile(const Mechanism& mechanism, const CutChoice& choice) { return Compiler(mechanism, choice).run(); }
+System compile(const Mechanism& mechanism, const CutChoice& choice) {
+  return Compiler(mechanism, choice).run();
+}
 
 std::vector<CutChoice> neighbouring_cuts(const Mechanism& mechanism, const System& system) {
   std::vector<int> chosen;

@@ -7,8 +7,8 @@ namespace flyball {
 
 // Calls add(v, dPhi/dq_v) for each coordinate that moves the row.
 template <class S, class Add>
-void row_gradient(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row, const Kinematics<S>& k,
-                  Add add) {
+void row_gradient(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row,
+                  const Kinematics<S>& k, Add add) {
   if (row.type == RowType::gear) {
     add(cut.gear_va, S(-p.ratio));
     add(cut.gear_vb, S(1));

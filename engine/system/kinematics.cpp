@@ -5,7 +5,8 @@
 namespace flyball {
 
 template <class S>
-void forward(const System& system, const Parameters& p, const Configuration<S>& q, double t, Kinematics<S>& out) {
+void forward(const System& system, const Parameters& p, const Configuration<S>& q, double t,
+             Kinematics<S>& out) {
   const std::size_t n = system.links.size();
   out.links.resize(n);
   out.columns.resize(static_cast<std::size_t>(system.nv));
@@ -47,7 +48,8 @@ void forward(const System& system, const Parameters& p, const Configuration<S>& 
     if (link.v >= 0) {
       Column<S>* column = &out.columns[static_cast<std::size_t>(link.v)];
       if (link.type == LinkType::spherical)
-        for (int k = 0; k < 3; ++k) column[k] = {parent.R.col(k), x.o, true};
+        for (int k = 0; k < 3; ++k)
+          column[k] = {parent.R.col(k), x.o, true};
       else
         *column = {x.axis, x.o, link.type == LinkType::revolute};
     }
@@ -136,12 +138,15 @@ void body_poses(const System& system, const Mechanism& mechanism, const Paramete
   }
 }
 
-template void forward<double>(const System&, const Parameters&, const Configuration<double>&, double, Kinematics<double>&);
-template void forward<long double>(const System&, const Parameters&, const Configuration<long double>&, double,
-                                   Kinematics<long double>&);
+template void forward<double>(const System&, const Parameters&, const Configuration<double>&, double,
+                              Kinematics<double>&);
+template void forward<long double>(const System&, const Parameters&, const Configuration<long double>&,
+                                   double, Kinematics<long double>&);
 template void retract<double>(const System&, const Configuration<double>&, Configuration<double>&);
-template void retract<long double>(const System&, const Configuration<long double>&, Configuration<long double>&);
-template Vec3T<double> rotation_vector<double>(const Link&, const LinkParameters&, const Configuration<double>&);
+template void retract<long double>(const System&, const Configuration<long double>&,
+                                   Configuration<long double>&);
+template Vec3T<double> rotation_vector<double>(const Link&, const LinkParameters&,
+                                               const Configuration<double>&);
 template Vec3T<long double> rotation_vector<long double>(const Link&, const LinkParameters&,
                                                          const Configuration<long double>&);
 

@@ -39,9 +39,7 @@ struct Kinematics {
   std::vector<LinkState<S>> links;
   std::vector<Column<S>> columns; // by coordinate of q_R
   LinkState<S> ground;
-  const LinkState<S>& at(int link) const {
-    return link < 0 ? ground : links[static_cast<std::size_t>(link)];
-  }
+  const LinkState<S>& at(int link) const { return link < 0 ? ground : links[static_cast<std::size_t>(link)]; }
   Vec3T<S> point(int link, const Offset& offset) const {
     const LinkState<S>& l = at(link);
     return l.o + l.R * offset.template cast<S>();
@@ -53,8 +51,8 @@ struct Kinematics {
   }
 };
 
-// Phase `t`: seconds of driving since the drawn pose (at the full drive speeds; Parameters::speed_scale slows the motion, not
-// the phase). Instantiated for double and long double.
+// Phase `t`: seconds of driving since the drawn pose (at the full drive speeds; Parameters::speed_scale slows
+// the motion, not the phase). Instantiated for double and long double.
 template <class S>
 void forward(const System& system, const Parameters& parameters, const Configuration<S>& q, double t,
              Kinematics<S>& out);
@@ -63,7 +61,8 @@ void forward(const System& system, const Parameters& parameters, const Configura
 template <class S>
 void retract(const System& system, const Configuration<S>& step, Configuration<S>& q);
 
-// The value of a coordinate as its joint labels it: rad or m. Component k of a spherical link's rotation vector.
+// The value of a coordinate as its joint labels it: rad or m. Component k of a spherical link's rotation
+// vector.
 double coordinate_value(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                         const CoordinateInfo& coordinate);
 // The rotation vector of a spherical link, in the joint's own order.
@@ -71,8 +70,8 @@ template <class S>
 Vec3T<S> rotation_vector(const Link& link, const LinkParameters& parameters, const Configuration<S>& q);
 
 // Sets coordinates by label. A rotation vector is set as a whole (all three of a link).
-void set_coordinate(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate, double value,
-                    Eigen::VectorXd& q);
+void set_coordinate(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate,
+                    double value, Eigen::VectorXd& q);
 
 // Poses of the mechanism's bodies, in its order.
 void body_poses(const System& system, const Mechanism& mechanism, const Parameters& parameters,

@@ -9,9 +9,12 @@ namespace {
 
 using Columns = std::vector<Column<double>>;
 
-int column_count(const Link& link) { return link.v < 0 ? 0 : link.type == LinkType::spherical ? 3 : 1; }
+int column_count(const Link& link) {
+  return link.v < 0 ? 0 : link.type == LinkType::spherical ? 3 : 1;
+}
 
-void fill_screws(const System& system, const Parameters& p, const Kinematics<double>& k, std::vector<ScrewRates>& out) {
+void fill_screws(const System& system, const Parameters& p, const Kinematics<double>& k,
+                 std::vector<ScrewRates>& out) {
   out.resize(static_cast<std::size_t>(system.nv));
   for (std::size_t i = 0; i < system.links.size(); ++i) {
     const Link& link = system.links[i];
@@ -102,7 +105,8 @@ Wrench times_inertia(const CompositeBody& b, const Vec3& w, const Vec3& v) {
 
 // Calls visit(parent link, arm from its origin to this link's origin) for a link and its ancestors.
 template <class Visit>
-void walk_up(const System& system, const Kinematics<double>& k, std::size_t from, bool with_self, Visit visit) {
+void walk_up(const System& system, const Kinematics<double>& k, std::size_t from, bool with_self,
+             Visit visit) {
   if (with_self) visit(from, Vec3(Vec3::Zero()));
   for (int l = system.links[from].parent; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
     const auto i = static_cast<std::size_t>(l);
@@ -157,14 +161,16 @@ Mat3 rotation_stiffness(const Link& link, const LinkParameters& p, const Eigen::
     const Vec3 dr = link.reversed ? Vec3(-j.transpose() * r0.row(i).transpose()) : Vec3(j.col(i));
     const Mat3 dj = inverse_left_jacobian_derivative(r, dr);
     const Vec3 dg = curvature.cwiseProduct(dr);
-    out.col(i) = link.reversed ? Vec3(-r0 * (dj * g + j * dg)) : Vec3(dj.transpose() * g + j.transpose() * dg);
+    out.col(i) =
+        link.reversed ? Vec3(-r0 * (dj * g + j * dg)) : Vec3(dj.transpose() * g + j.transpose() * dg);
   }
   return out;
 }
 
 Mat3 rotation_damping(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
   const Mat3 j = inverse_left_jacobian(rotation_vector(link, p, q));
-  const Mat3 to_rate = link.reversed ? Mat3(-j.transpose() * p.drawn_rotation.toRotationMatrix().transpose()) : j;
+  const Mat3 to_rate =
+      link.reversed ? Mat3(-j.transpose() * p.drawn_rotation.toRotationMatrix().transpose()) : j;
   const Vec3 c(p.force[0].damping, p.force[1].damping, p.force[2].damping);
   return to_rate.transpose() * c.asDiagonal() * to_rate;
 }
@@ -209,8 +215,9 @@ void linearize_constraints(const System& system, const Parameters& p, const Kine
       });
 }
 
-void linearize(const System& system, const Parameters& p, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda,
-               const Kinematics<double>& k, const Residual<double>& residual, Linearization& out) {
+void linearize(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+               const Eigen::VectorXd& lambda, const Kinematics<double>& k, const Residual<double>& residual,
+               Linearization& out) {
   out.stiffness.setZero(system.nv, system.nv);
   fill_screws(system, p, k, out.screws);
   fill_composites(system, p, k, out.composites);
@@ -243,8 +250,8 @@ void linearize(const System& system, const Parameters& p, const Eigen::VectorXd&
   linearize_constraints(system, p, k, out);
 }
 
-void linearize_motion(const System& system, const Parameters& p, const Eigen::VectorXd& q, const Kinematics<double>& k,
-                      Linearization& out) {
+void linearize_motion(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                      const Kinematics<double>& k, Linearization& out) {
   out.mass.setZero(system.nv, system.nv);
   out.velocity.setZero(system.nv, system.nv);
   const auto inertia_row = [&](std::size_t l, const ScrewRates& s) {
@@ -253,8 +260,11 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
   };
   fill_tree(
       system, k, out.screws, out.mass,
-      [&](std::size_t l, const ScrewRates& s) { return times_inertia(out.composites[l], s.sw, s.sv); }, inertia_row,
-      [](const Row& row, const ScrewRates& s, const Vec3& arm) { return apply_inertia(row, s.sw, s.sv, arm); });
+      [&](std::size_t l, const ScrewRates& s) { return times_inertia(out.composites[l], s.sw, s.sv); },
+      inertia_row,
+      [](const Row& row, const ScrewRates& s, const Vec3& arm) {
+        return apply_inertia(row, s.sw, s.sv, arm);
+      });
   if (p.moving)
     fill_tree(
         system, k, out.screws, out.velocity,

@@ -1,12 +1,12 @@
-// Exact derivatives of the balance: f_z of eq. 21, and mass and velocity matrices of the motion about a steady
-// state.
+// Exact derivatives of the balance: f_z of eq. 21, and mass and velocity matrices of the motion about a
+// steady state.
 //
-// Derivation. Perturbing coordinate j moves everything beyond it by the screw S_j, which itself is carried by the
-// parent body (velocity V, acceleration A): Psi' = V x S_j, Psi'' = A x S_j + V x Psi'. A rigid body's force
-// F = I A + V x* I V then changes by S_j x* F + I Psi'' + B Psi' with B x = -I (V x x) + x x* I V + V x* I x, and
-// by B S_j + 2 I Psi' per unit of velocity. Sums over a subtree of I, B and F give every entry (the form found by
-// Echeandia and Wensing, Numerical methods to compute the Coriolis matrix and Christoffel symbols, 2021). About
-// any point B is [B_1 0; -2 [h] 0], h the linear momentum.
+// Derivation. Perturbing coordinate j moves everything beyond it by the screw S_j, which itself is carried by
+// the parent body (velocity V, acceleration A): Psi' = V x S_j, Psi'' = A x S_j + V x Psi'. A rigid body's
+// force F = I A + V x* I V then changes by S_j x* F + I Psi'' + B Psi' with B x = -I (V x x) + x x* I V + V
+// x* I x, and by B S_j + 2 I Psi' per unit of velocity. Sums over a subtree of I, B and F give every entry
+// (the form found by Echeandia and Wensing, Numerical methods to compute the Coriolis matrix and Christoffel
+// symbols, 2021). About any point B is [B_1 0; -2 [h] 0], h the linear momentum.
 #pragma once
 
 #include "engine/system/residual.hpp"
@@ -14,11 +14,11 @@
 namespace flyball {
 
 struct CompositeBody {
-  double mass;          // kg
-  Vec3 first_moment;    // kg m, about the link's origin
-  Mat3 inertia;         // kg m^2, about the link's origin
-  Mat3 b;               // kg m^2/s, B_1
-  Vec3 momentum;        // kg m/s
+  double mass;       // kg
+  Vec3 first_moment; // kg m, about the link's origin
+  Mat3 inertia;      // kg m^2, about the link's origin
+  Mat3 b;            // kg m^2/s, B_1
+  Vec3 momentum;     // kg m/s
 };
 
 // S, Psi' and Psi'' of one coordinate, about its link's origin: angular and linear parts.
@@ -36,15 +36,15 @@ struct Linearization {
 };
 
 // Fills `constraint` alone.
-void linearize_constraints(const System& system, const Parameters& parameters, const Kinematics<double>& kinematics,
-                           Linearization& out);
+void linearize_constraints(const System& system, const Parameters& parameters,
+                           const Kinematics<double>& kinematics, Linearization& out);
 
 // Fills `stiffness` and `constraint`. `residual` must be evaluated at the same state. For a spherical
-// link the stiffness is the derivative of the moment in fixed axes along exp(step) D; it is symmetric for conservative
-// systems up to terms that vanish with the moment.
+// link the stiffness is the derivative of the moment in fixed axes along exp(step) D; it is symmetric for
+// conservative systems up to terms that vanish with the moment.
 void linearize(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
-               const Eigen::VectorXd& lambda, const Kinematics<double>& kinematics, const Residual<double>& residual,
-               Linearization& out);
+               const Eigen::VectorXd& lambda, const Kinematics<double>& kinematics,
+               const Residual<double>& residual, Linearization& out);
 
 // Fills `mass` and `velocity`; call after linearize at the same state.
 void linearize_motion(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,

@@ -14,9 +14,11 @@ Part part(const SupportColumn& s, const Kinematics<double>& k) {
   return {s.v, s.link, s.second, k.columns[static_cast<std::size_t>(s.v)]};
 }
 
-// Of two coordinates of one side, j carries i's axis if it lies strictly nearer the root (links are numbered from the root
-// outwards); the columns of one spherical link stay put.
-bool carries(const Part& j, const Part& i) { return j.link < i.link; }
+// Of two coordinates of one side, j carries i's axis if it lies strictly nearer the root (links are numbered
+// from the root outwards); the columns of one spherical link stay put.
+bool carries(const Part& j, const Part& i) {
+  return j.link < i.link;
+}
 
 // d/dq_j of i's motion of a point carried by both: the outer one turns the inner one's motion.
 Vec3 moved_motion(const Part& i, const Part& j, const Vec3& point) {
@@ -39,7 +41,8 @@ double line_hessian(const Line& line, const Part& i, const Part& j) {
   double h = line.along * si * sj;
   if (line.tension != 0) {
     h += line.tension / line.length * (ji.dot(jj) - si * sj);
-    if (i.second == j.second) h += line.tension * (i.second ? 1. : -1.) * line.direction.dot(moved_motion(i, j, pi));
+    if (i.second == j.second)
+      h += line.tension * (i.second ? 1. : -1.) * line.direction.dot(moved_motion(i, j, pi));
   }
   return h;
 }
@@ -50,7 +53,8 @@ double point_hessian(const Vec3& u, const Vec3& b, const Part& i, const Part& j)
   if (i.second) return -u.dot(j.column.turn().cross(i.column.at(b)));
   if (j.second) return -u.dot(i.column.turn().cross(j.column.at(b)));
   // Both carry u and neither the point: the deeper one turns the motion that the other makes.
-  return carries(j, i) ? u.dot(i.column.turn().cross(j.column.at(b))) : u.dot(j.column.turn().cross(i.column.at(b)));
+  return carries(j, i) ? u.dot(i.column.turn().cross(j.column.at(b)))
+                       : u.dot(j.column.turn().cross(i.column.at(b)));
 }
 
 // Second derivative of u_A . w_B.
@@ -65,7 +69,8 @@ double direction_hessian(const Vec3& u, const Vec3& w, const Part& i, const Part
 template <class Entry>
 void for_pairs(const Support& support, const Kinematics<double>& k, Eigen::MatrixXd& out, Entry entry) {
   for (const SupportColumn& si : support)
-    for (const SupportColumn& sj : support) out(si.v, sj.v) += entry(part(si, k), part(sj, k));
+    for (const SupportColumn& sj : support)
+      out(si.v, sj.v) += entry(part(si, k), part(sj, k));
 }
 
 // Change of a carried point's velocity as coordinate j moves, at the point's own new place.
@@ -96,7 +101,8 @@ void add_springs(const System& system, const Parameters& p, const Kinematics<dou
     for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) {
       const Vec3 motion = j.column.at(j.second ? s.b : s.a) * (j.second ? 1. : -1.);
       const Vec3 turned = (motion - s.direction * s.direction.dot(motion)) / s.length;
-      const Vec3 change = velocity_change(j, screws[static_cast<std::size_t>(j.v)], j.second ? s.b : s.a, j.second ? vb : va);
+      const Vec3 change =
+          velocity_change(j, screws[static_cast<std::size_t>(j.v)], j.second ? s.b : s.a, j.second ? vb : va);
       const double rate = turned.dot(vb - va) + (j.second ? 1. : -1.) * s.direction.dot(change);
       return f.damping * rate * s.direction.dot(i.column.at(i.second ? s.b : s.a)) * (i.second ? 1. : -1.);
     });

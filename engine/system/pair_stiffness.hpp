@@ -1,5 +1,5 @@
-// Second derivatives of what acts between two bodies: point springs, dampers in cut joints, and the constraint
-// forces' (Phi_q^T lambda)_q. Only coordinates between the two bodies take part.
+// Second derivatives of what acts between two bodies: point springs, dampers in cut joints, and the
+// constraint forces' (Phi_q^T lambda)_q. Only coordinates between the two bodies take part.
 #pragma once
 
 #include "engine/system/linearization.hpp"
@@ -10,7 +10,7 @@ void add_pair_stiffness(const System& system, const Parameters& parameters, cons
                         const Kinematics<double>& kinematics, const std::vector<ScrewRates>& screws,
                         Eigen::MatrixXd& stiffness);
 
-void add_pair_damping(const System& system, const Parameters& parameters, const Kinematics<double>& kinematics,
-                      Eigen::MatrixXd& velocity);
+void add_pair_damping(const System& system, const Parameters& parameters,
+                      const Kinematics<double>& kinematics, Eigen::MatrixXd& velocity);
 
 } // namespace flyball

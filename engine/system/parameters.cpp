@@ -34,21 +34,22 @@ Vec3 joint_point(const Mechanism& m, const TreeJoint& t) {
 }
 
 class Binder {
-public:
+ public:
   Binder(const System& s, const Mechanism& m, Parameters& p) : s_(s), m_(m), p_(p) {}
 
   void run() {
     p_.gravity = m_.gravity;
     p_.origin = s_.tree_joints.empty() ? Vec3(Vec3::Zero()) : joint_point(m_, s_.tree_joints.front());
     p_.links.resize(s_.links.size());
-    for (std::size_t l = 0; l < s_.links.size(); ++l) bind_link(l);
+    for (std::size_t l = 0; l < s_.links.size(); ++l)
+      bind_link(l);
     bind_speeds();
     bind_elements();
     p_.length = reach();
     p_.phase_free = phase_free();
   }
 
-private:
+ private:
   const Joint& joint(int j) const { return m_.joints[static_cast<std::size_t>(j)]; }
 
   void bind_link(std::size_t l) {
@@ -65,12 +66,14 @@ private:
     if (link.type == LinkType::spherical) {
       Vec3 r = Vec3::Zero();
       if (j)
-        for (int k = 0; k < 3; ++k) r[k] = j->coordinates[static_cast<std::size_t>(link.coordinate + k)].drawn;
+        for (int k = 0; k < 3; ++k)
+          r[k] = j->coordinates[static_cast<std::size_t>(link.coordinate + k)].drawn;
       out.drawn_rotation = exp_rotation(r);
     }
     if (j && link.type != LinkType::fixed) {
       const int n = link.type == LinkType::spherical ? 3 : 1;
-      for (int k = 0; k < n; ++k) bind_coordinate(j->coordinates[static_cast<std::size_t>(link.coordinate + k)], out, k);
+      for (int k = 0; k < n; ++k)
+        bind_coordinate(j->coordinates[static_cast<std::size_t>(link.coordinate + k)], out, k);
       out.drawn = j->coordinates[static_cast<std::size_t>(link.coordinate)].drawn;
     }
     if (link.body >= 0) {
@@ -115,7 +118,8 @@ private:
   bool is_end(const Joint& g, int end, const DrivenCoordinate& d) const {
     const Link& l = s_.links[static_cast<std::size_t>(d.link)];
     const CoordinateReference r = find_coordinate(m_, g.joints[static_cast<std::size_t>(end)]);
-    return r.joint == s_.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint && r.coordinate == l.coordinate;
+    return r.joint == s_.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint &&
+           r.coordinate == l.coordinate;
   }
 
   void bind_speeds() {
@@ -169,8 +173,10 @@ private:
       const int b = body_index(m_, f.body);
       const Vec3 centre = b >= 0 ? m_.bodies[static_cast<std::size_t>(b)].position : Vec3(Vec3::Zero());
       Vec3 vector = f.vector;
-      if (f.frame == ForceFrame::body && b >= 0) vector = m_.bodies[static_cast<std::size_t>(b)].rotation.normalized() * vector;
-      p_.body_forces[i] = {f.type, f.frame, in_link(f.at.value_or(centre), e.link), vector, f.linear, f.quadratic};
+      if (f.frame == ForceFrame::body && b >= 0)
+        vector = m_.bodies[static_cast<std::size_t>(b)].rotation.normalized() * vector;
+      p_.body_forces[i] = {f.type, f.frame,  in_link(f.at.value_or(centre), e.link),
+                           vector, f.linear, f.quadratic};
     }
     p_.cut_dampers.resize(s_.cut_dampers.size());
     for (std::size_t i = 0; i < s_.cut_dampers.size(); ++i) {
@@ -180,7 +186,8 @@ private:
                            j.coordinates[static_cast<std::size_t>(e.coordinate)].damping};
     }
     p_.cuts.resize(s_.cuts.size());
-    for (std::size_t i = 0; i < s_.cuts.size(); ++i) bind_cut(s_.cuts[i], p_.cuts[i]);
+    for (std::size_t i = 0; i < s_.cuts.size(); ++i)
+      bind_cut(s_.cuts[i], p_.cuts[i]);
   }
 
   void bind_cut(const CutJoint& cut, CutParameters& out) const {
@@ -199,7 +206,8 @@ private:
     }
     out.a = in_link(j.at, cut.ends.a);
     out.b = in_link(j.at, cut.ends.b);
-    const Vec3 z = cut.type == JointType::fixed || cut.type == JointType::spherical ? Vec3(Vec3::UnitZ()) : j.axis.normalized();
+    const Vec3 z = cut.type == JointType::fixed || cut.type == JointType::spherical ? Vec3(Vec3::UnitZ())
+                                                                                    : j.axis.normalized();
     const Vec3 x = any_perpendicular(z);
     out.frame = {x, z.cross(x), z, Vec3::Zero()};
     if (cut.type == JointType::universal) {

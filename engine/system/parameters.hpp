@@ -34,19 +34,19 @@ struct CoordinateForce {
 };
 
 struct LinkParameters {
-  Vec3 offset = Vec3::Zero();   // m, p of this link's origin in its parent's, drawn pose
-  Vec3 origin = Vec3::Zero();   // m, this link's origin in the drawn pose, from Parameters::origin
-  Vec3 axis = Vec3::UnitZ();    // unit, drawn pose; turned round where the tree runs against the joint
-  double drawn = 0;             // label of the drawn pose
-  double speed = 0;             // driven: rad/s or m/s, before Parameters::speed_scale
-  double gear_ratio = 1;        // driven: speed per speed of its motor
-  double start = 0;             // driven: displacement from the drawn pose at phase zero (a gear may ask for one)
+  Vec3 offset = Vec3::Zero(); // m, p of this link's origin in its parent's, drawn pose
+  Vec3 origin = Vec3::Zero(); // m, this link's origin in the drawn pose, from Parameters::origin
+  Vec3 axis = Vec3::UnitZ();  // unit, drawn pose; turned round where the tree runs against the joint
+  double drawn = 0;           // label of the drawn pose
+  double speed = 0;           // driven: rad/s or m/s, before Parameters::speed_scale
+  double gear_ratio = 1;      // driven: speed per speed of its motor
+  double start = 0; // driven: displacement from the drawn pose at phase zero (a gear may ask for one)
   Quat drawn_rotation = Quat::Identity(); // spherical: exp of the drawn rotation vector
   std::array<CoordinateForce, 3> force;   // one used, three for spherical
-  bool elastic = false;         // any of them is a spring or stop
-  double mass = 0;              // kg
-  Vec3 com = Vec3::Zero();      // m, mass centre from the link's origin, drawn pose
-  Mat3 inertia = Mat3::Zero();  // kg m^2, about the mass centre, drawn-pose world axes
+  bool elastic = false;                   // any of them is a spring or stop
+  double mass = 0;                        // kg
+  Vec3 com = Vec3::Zero();                // m, mass centre from the link's origin, drawn pose
+  Mat3 inertia = Mat3::Zero();            // kg m^2, about the mass centre, drawn-pose world axes
   bool has_inertia = false;
 };
 
@@ -73,19 +73,20 @@ struct CutDamperParameters {
 };
 
 struct CutParameters {
-  Offset a, b;                 // the joint's point on either end; a distance joint's points
-  std::array<Vec3, 4> frame;   // x, y, z (axis), second axis; drawn pose
-  double constant = 0;         // direction rows of a universal joint
-  double length = 0;           // distance
+  Offset a, b;                  // the joint's point on either end; a distance joint's points
+  std::array<Vec3, 4> frame;    // x, y, z (axis), second axis; drawn pose
+  double constant = 0;          // direction rows of a universal joint
+  double length = 0;            // distance
   double ratio = 0, offset = 0; // gear
 };
 
 struct Parameters {
-  Vec3 origin = Vec3::Zero();  // m: the world point that positions are taken from, to keep digits far from the world's origin
+  Vec3 origin = Vec3::Zero(); // m: the world point that positions are taken from, to keep digits far from the
+                              // world's origin
   Vec3 gravity = Vec3::Zero();
-  double speed_scale = 1;      // all drive speeds times this: homotopy from rest
-  double length = 1;           // m, characteristic: the mechanism's reach
-  bool moving = false;         // any drive turns
+  double speed_scale = 1; // all drive speeds times this: homotopy from rest
+  double length = 1;      // m, characteristic: the mechanism's reach
+  bool moving = false;    // any drive turns
   std::vector<LinkParameters> links;
   std::vector<PointSpringParameters> springs;
   std::vector<BodyForceParameters> body_forces;

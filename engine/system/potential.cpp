@@ -27,7 +27,8 @@ Potential amended_potential(const System& system, const Parameters& p, const Eig
     if (link.v < 0 || !lp.elastic) continue;
     if (link.type == LinkType::spherical) {
       const Vec3 r = rotation_vector(link, lp, q);
-      for (int j = 0; j < 3; ++j) add(lp.force[static_cast<std::size_t>(j)].energy(r[j]));
+      for (int j = 0; j < 3; ++j)
+        add(lp.force[static_cast<std::size_t>(j)].energy(r[j]));
     } else {
       add(lp.force[0].energy(q[link.q]));
     }

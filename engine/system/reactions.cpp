@@ -9,9 +9,8 @@ struct Wrench {
 
 } // namespace
 
-TransmittedForces transmitted_forces(const System& system, const Parameters& p,
-                                     const Eigen::VectorXd& lambda, const Kinematics<double>& k,
-                                     const Residual<double>& residual) {
+TransmittedForces transmitted_forces(const System& system, const Parameters& p, const Eigen::VectorXd& lambda,
+                                     const Kinematics<double>& k, const Residual<double>& residual) {
   const std::size_t n = system.links.size();
   // What each link's joint must supply: first by the link's own elements, then with its subtree's.
   std::vector<Wrench> needed(n);
@@ -35,7 +34,8 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p,
     const Vec3 force =
         p.cut_dampers[i].damping * axis * axis.dot(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b));
     add(e.ends.b, b, e.angular ? Vec3(Vec3::Zero()) : force, e.angular ? torque : Vec3(Vec3::Zero()));
-    add(e.ends.a, b, e.angular ? Vec3(Vec3::Zero()) : Vec3(-force), e.angular ? Vec3(-torque) : Vec3(Vec3::Zero()));
+    add(e.ends.a, b, e.angular ? Vec3(Vec3::Zero()) : Vec3(-force),
+        e.angular ? Vec3(-torque) : Vec3(Vec3::Zero()));
   }
   out.cuts.resize(system.cuts.size());
   for (std::size_t i = 0; i < system.cuts.size(); ++i) {
@@ -49,7 +49,9 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p,
       const ConstraintRow& row = cut.rows[r];
       const Vec3 u = k.at(cut.ends.a).R * f.frame[static_cast<std::size_t>(row.u)];
       switch (row.type) {
-      case RowType::distance: w.force -= multiplier * (w.point - k.point(cut.ends.a, f.a)).normalized(); break;
+      case RowType::distance:
+        w.force -= multiplier * (w.point - k.point(cut.ends.a, f.a)).normalized();
+        break;
       case RowType::point: w.force -= multiplier * u; break;
       case RowType::direction:
         w.torque -= multiplier * (k.at(cut.ends.b).R * f.frame[static_cast<std::size_t>(row.w)]).cross(u);

@@ -16,16 +16,19 @@ void coordinate_forces(const Link& link, const LinkParameters& p, const Configur
   // With r the rotation vector and exp([d]) the step: dr = J d, so the torque is J^T dV/dr.
   const Vec3T<S> r = rotation_vector(link, p, q);
   Vec3T<S> g;
-  for (int i = 0; i < 3; ++i) g[i] = p.force[static_cast<std::size_t>(i)].gradient(r[i]);
+  for (int i = 0; i < 3; ++i)
+    g[i] = p.force[static_cast<std::size_t>(i)].gradient(r[i]);
   Vec3T<S> torque = inverse_left_jacobian<S>(r).transpose() * g;
   if (link.reversed) torque = -(p.drawn_rotation.cast<S>() * (inverse_left_jacobian<S>(r) * g));
-  for (int i = 0; i < 3; ++i) add(link.v + i, torque[i]);
+  for (int i = 0; i < 3; ++i)
+    add(link.v + i, torque[i]);
 }
 
 } // namespace
 
 template <class S>
-AppliedForce<S> applied_force(const BodyForceElement& e, const BodyForceParameters& p, const Kinematics<S>& k) {
+AppliedForce<S> applied_force(const BodyForceElement& e, const BodyForceParameters& p,
+                              const Kinematics<S>& k) {
   AppliedForce<S> a{k.point(e.link, p.at), Vec3T<S>::Zero(), Vec3T<S>::Zero()};
   if (p.type == ForceType::drag) {
     const Vec3T<S> v = k.velocity(e.link, a.point);
@@ -39,7 +42,8 @@ AppliedForce<S> applied_force(const BodyForceElement& e, const BodyForceParamete
 }
 
 template <class S>
-SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParameters& p, const Kinematics<S>& k) {
+SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParameters& p,
+                            const Kinematics<S>& k) {
   SpringState<S> s;
   s.a = k.point(e.ends.a, p.a);
   s.b = k.point(e.ends.b, p.b);
@@ -95,7 +99,8 @@ void evaluate_residual(const System& system, const Parameters& p, const Configur
     const Link& link = system.links[i];
     if (link.v >= 0) {
       if (link.type == LinkType::spherical)
-        for (int j = 0; j < 3; ++j) out.f[link.v + j] = k.columns[static_cast<std::size_t>(link.v + j)].axis.dot(out.moment[i]);
+        for (int j = 0; j < 3; ++j)
+          out.f[link.v + j] = k.columns[static_cast<std::size_t>(link.v + j)].axis.dot(out.moment[i]);
       else
         out.f[link.v] = k.links[i].axis.dot(link.type == LinkType::revolute ? out.moment[i] : out.force[i]);
       if (p.links[i].elastic)
@@ -112,7 +117,8 @@ void evaluate_residual(const System& system, const Parameters& p, const Configur
     const SpringState<S> s = spring_state(e, p.springs[i], k);
     // With no free length the force is k d, well defined where the points meet.
     const bool linear = p.springs[i].free_length == 0 && p.springs[i].damping == 0;
-    const Vec3T<S> pull = linear ? Vec3T<S>(S(p.springs[i].stiffness) * (s.b - s.a)) : Vec3T<S>(s.tension * s.direction);
+    const Vec3T<S> pull =
+        linear ? Vec3T<S>(S(p.springs[i].stiffness) * (s.b - s.a)) : Vec3T<S>(s.tension * s.direction);
     for (const SupportColumn& c : e.ends.support) {
       const S g = pull.dot(k.columns[static_cast<std::size_t>(c.v)].at(c.second ? s.b : s.a));
       out.f[c.v] += c.second ? g : -g;
@@ -175,7 +181,8 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
       if (p.links[i].elastic && link.type != LinkType::spherical) {
         const CoordinateForce& c = p.links[i].force[0];
         out.force[link.v] += std::abs(c.stiffness) * (std::abs(q[link.q]) + std::abs(c.free)) +
-                             (c.curvature(q[link.q]) - c.stiffness) * (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
+                             (c.curvature(q[link.q]) - c.stiffness) *
+                                 (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
       } else if (p.links[i].elastic) {
         for (int j = 0; j < 3; ++j)
           for (const CoordinateForce& c : p.links[i].force)
@@ -191,8 +198,9 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
   for (std::size_t i = 0; i < system.springs.size(); ++i) {
     const PointSpringElement& e = system.springs[i];
     const SpringState<double> s = spring_state(e, p.springs[i], k);
-    const double size = std::abs(p.springs[i].stiffness) * (s.a.norm() + s.b.norm() + s.length + p.springs[i].free_length) +
-                        std::abs(s.tension);
+    const double size =
+        std::abs(p.springs[i].stiffness) * (s.a.norm() + s.b.norm() + s.length + p.springs[i].free_length) +
+        std::abs(s.tension);
     for (const SupportColumn& c : e.ends.support)
       out.force[c.v] += size * k.columns[static_cast<std::size_t>(c.v)].at(c.second ? s.b : s.a).norm();
   }
@@ -202,7 +210,8 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
       const int row = cut.first_row + static_cast<int>(r);
       switch (cut.rows[r].type) {
       case RowType::gear:
-        out.phi[row] = std::abs(q[cut.gear_b]) + std::abs(p.cuts[i].ratio * q[cut.gear_a]) + std::abs(p.cuts[i].offset) + 1;
+        out.phi[row] = std::abs(q[cut.gear_b]) + std::abs(p.cuts[i].ratio * q[cut.gear_a]) +
+                       std::abs(p.cuts[i].offset) + 1;
         break;
       case RowType::direction: out.phi[row] = 1; break;
       case RowType::point:
@@ -214,13 +223,16 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
   }
 }
 
-template AppliedForce<double> applied_force(const BodyForceElement&, const BodyForceParameters&, const Kinematics<double>&);
+template AppliedForce<double> applied_force(const BodyForceElement&, const BodyForceParameters&,
+                                            const Kinematics<double>&);
 template SpringState<double> spring_state(const PointSpringElement&, const PointSpringParameters&,
                                           const Kinematics<double>&);
 template void evaluate_residual<double>(const System&, const Parameters&, const Configuration<double>&,
-                                        const Configuration<double>&, const Kinematics<double>&, Residual<double>&);
-template void evaluate_residual<long double>(const System&, const Parameters&, const Configuration<long double>&,
-                                             const Configuration<long double>&, const Kinematics<long double>&,
-                                             Residual<long double>&);
+                                        const Configuration<double>&, const Kinematics<double>&,
+                                        Residual<double>&);
+template void evaluate_residual<long double>(const System&, const Parameters&,
+                                             const Configuration<long double>&,
+                                             const Configuration<long double>&,
+                                             const Kinematics<long double>&, Residual<long double>&);
 
 } // namespace flyball

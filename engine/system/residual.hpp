@@ -1,8 +1,8 @@
 // The balance of eq. 23: f = B_R^T (M B_D' q_D' - Q) + Phi_qR^T lambda and Phi, at a phase of the drives.
 //
 // The first part is what the recursive Newton-Euler algorithm returns for velocities [q_D'; 0] and zero
-// accelerations, so B is never formed. Forces between two bodies are put on the coordinates between them alone,
-// so that a stiff spring leaves no rounding on the rest of the tree.
+// accelerations, so B is never formed. Forces between two bodies are put on the coordinates between them
+// alone, so that a stiff spring leaves no rounding on the rest of the tree.
 #pragma once
 
 #include "engine/system/kinematics.hpp"
@@ -13,7 +13,8 @@ template <class S>
 struct Residual {
   Configuration<S> f;   // N m or N, by coordinate of q_R: inertia less applied plus constraint forces
   Configuration<S> phi; // m or 1, by constraint row; gears rad or m
-  // Force and moment about the link's origin that its subtree's inertia, weight and single-body forces ask for.
+  // Force and moment about the link's origin that its subtree's inertia, weight and single-body forces ask
+  // for.
   std::vector<Vec3T<S>> force, moment;
 };
 
@@ -29,7 +30,8 @@ struct Magnitudes {
   std::vector<double> link_force, link_moment; // workspace
 };
 void evaluate_magnitudes(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
-                         const Eigen::VectorXd& lambda, const Kinematics<double>& kinematics, Magnitudes& out);
+                         const Eigen::VectorXd& lambda, const Kinematics<double>& kinematics,
+                         Magnitudes& out);
 
 // Applied on the link by a force, torque or drag: force (N) at a point, and a torque (N m).
 template <class S>

@@ -1,11 +1,11 @@
 // A mechanism compiled for solving: the spanning tree as links, the joints cut to close loops as constraint
-// rows, coordinates split into driven (q_D) and free (q_R, eq. 7). It holds what does not change while numbers
-// move; the numbers are in Parameters.
+// rows, coordinates split into driven (q_D) and free (q_R, eq. 7). It holds what does not change while
+// numbers move; the numbers are in Parameters.
 //
 // Every joint is a chain of links with one axis each (revolute, prismatic) or with a rotation (spherical);
-// the links between are massless frames. A link's rotation R is its displacement from the drawn pose, so R = I and all
-// axes and offsets are world vectors there. Where the tree runs against a joint's own order its chain is
-// reversed with its axes turned round, so that coordinates keep their sign.
+// the links between are massless frames. A link's rotation R is its displacement from the drawn pose, so R =
+// I and all axes and offsets are world vectors there. Where the tree runs against a joint's own order its
+// chain is reversed with its axes turned round, so that coordinates keep their sign.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -20,26 +20,26 @@ enum class LinkType { fixed, revolute, prismatic, spherical };
 
 struct Link {
   LinkType type = LinkType::fixed;
-  int parent = -1;      // link; -1 is ground
-  int body = -1;        // of the mechanism, rigidly on this link; -1: a massless frame
-  int tree_joint = -1;  // in System::tree_joints
-  int coordinate = 0;   // of the joint; the first of three for spherical
+  int parent = -1;     // link; -1 is ground
+  int body = -1;       // of the mechanism, rigidly on this link; -1: a massless frame
+  int tree_joint = -1; // in System::tree_joints
+  int coordinate = 0;  // of the joint; the first of three for spherical
   bool reversed = false;
-  int axis = 0;         // 0: the joint's axis, 1: its second axis, 2: normal x x_axis; 3, 4, 5: world x, y, z
-  int q = -1;           // first entry in the configuration (spherical: a quaternion w x y z, four entries)
-  int v = -1;           // first entry in q_R as a tangent vector (spherical: three); -1 where driven or fixed
-  int drive = -1;       // in System::drives
+  int axis = 0;   // 0: the joint's axis, 1: its second axis, 2: normal x x_axis; 3, 4, 5: world x, y, z
+  int q = -1;     // first entry in the configuration (spherical: a quaternion w x y z, four entries)
+  int v = -1;     // first entry in q_R as a tangent vector (spherical: three); -1 where driven or fixed
+  int drive = -1; // in System::drives
 };
 
 // A joint of the mechanism in the tree, or one made to hold a body on strings and springs.
 struct TreeJoint {
-  int joint = -1;               // in the mechanism; -1 for an implicit free joint
-  std::string name;             // "ball.free" for an implicit one
+  int joint = -1;   // in the mechanism; -1 for an implicit free joint
+  std::string name; // "ball.free" for an implicit one
   JointType type = JointType::free;
   int parent_body = -1, child_body = -1; // in the joint's own order; -1 is ground
   int first_link = 0, link_count = 0;    // its chain, from the tree's root outwards
   bool reversed = false;
-  bool closes_loop = false;     // its child is a massless twin, welded to the real child by constraints
+  bool closes_loop = false; // its child is a massless twin, welded to the real child by constraints
 };
 
 // A coordinate at constant speed, by its own motor or through gears from one.
@@ -92,14 +92,15 @@ enum class RowType {
 
 struct ConstraintRow {
   RowType type = RowType::point;
-  int u = 0, w = 0; // of the cut joint's frame vectors: 0 x, 1 y, 2 z (the axis), 3 a universal joint's second axis
+  int u = 0,
+      w = 0; // of the cut joint's frame vectors: 0 x, 1 y, 2 z (the axis), 3 a universal joint's second axis
 };
 
 struct CutJoint {
-  int joint = -1;       // in the mechanism
-  int tree_joint = -1;  // where a twin is welded: its joint in the tree
+  int joint = -1;      // in the mechanism
+  int tree_joint = -1; // where a twin is welded: its joint in the tree
   JointType type = JointType::fixed;
-  PairEnds ends;        // empty support for gears
+  PairEnds ends; // empty support for gears
   int first_row = 0;
   std::vector<ConstraintRow> rows;
   int gear_a = -1, gear_b = -1; // entries in the configuration
@@ -121,7 +122,7 @@ struct CutChoice {
 struct System {
   std::vector<Link> links; // parents before children
   std::vector<TreeJoint> tree_joints;
-  std::vector<int> body_link;  // by body of the mechanism
+  std::vector<int> body_link; // by body of the mechanism
   std::vector<DrivenCoordinate> drives;
   std::vector<CoordinateInfo> coordinates; // all but fixed, in the scene's order, implicit joints last
   std::vector<PointSpringElement> springs;
@@ -129,9 +130,9 @@ struct System {
   std::vector<CutDamperElement> cut_dampers;
   std::vector<CutJoint> cuts;
   std::vector<int> dropped_gears; // gears between driven coordinates: no equation left
-  int nq = 0;   // entries of a configuration
-  int nv = 0;   // dimension of q_R
-  int rows = 0; // constraint equations
+  int nq = 0;                     // entries of a configuration
+  int nv = 0;                     // dimension of q_R
+  int rows = 0;                   // constraint equations
 
   // All forces have a potential. Damping where parts do not turn against each other does no harm.
   bool conservative = true;

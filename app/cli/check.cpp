@@ -1,0 +1,102 @@
+#include "app/cli/command.hpp"
+#include "app/cli/report_error.hpp"
+#include "app/cli/scene_argument.hpp"
+#include "engine/equilibrium/analysis.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/validate.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace flyball::cli {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string to_text(const Mechanism& m, const SystemSummary& s) {
+  const auto many = [](int n, const char* one, const char* several) {
+    return fmt::format("{} {}", n, n == 1 ? one : several);
+  };
+  std::string out =
+      fmt::format("{}: a valid scene\n  {}, {}, {}, {}\n", m.name, many(s.bodies, "body", "bodies"),
+                  many(s.free_coordinates, "free coordinate", "free coordinates"),
+                  many(s.driven_coordinates, "driven", "driven"),
+                  many(s.constraint_equations, "constraint equation", "constraint equations"));
+  if (!s.tree_joints.empty()) out += "  tree joints: " + joined(s.tree_joints) + "\n";
+  if (!s.implicit_joints.empty())
+    out += "  joints added to hold bodies on strings and springs: " + joined(s.implicit_joints) + "\n";
+  if (!s.cut_joints.empty()) out += "  cut joints: " + joined(s.cut_joints) + "\n";
+  for (const std::string& note : s.notes)
+    out += "  " + note + "\n";
+  out += "\nin the system\n";
+  for (const std::string& pass : s.in)
+    out += "  + " + pass + "\n";
+  if (s.in.empty()) out += "  nothing but joints\n";
+  out += "left out, because the scene does not need it\n";
+  for (const std::string& pass : s.left_out)
+    out += "  - " + pass + "\n";
+  return out;
+}
+
+} // namespace
+
+void add_check(CLI::App& app, int& exit_code) {
+  struct Options {
+    std::filesystem::path file;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("check", "Validate a scene; say what its system has and what was left out");
+  command->add_option("scene", options->file, "Scene file (-: standard input)")->required();
+  command->add_flag("--json", options->json, "Print a JSON object");
+  command->footer("Example: flyball check governor.json");
+  command->callback([options, &exit_code] {
+    const auto named = [&](const SceneError& error) {
+      return SceneError(options->file.string() + (error.where().empty() ? "" : ": " + error.where()),
+                        error.expected());
+    };
+    Mechanism mechanism;
+    const std::string text = read_bytes(options->file);
+    try {
+      mechanism = parse_scene(text);
+    } catch (const SceneError& error) {
+      throw named(error);
+    }
+    const std::vector<SceneError> mistakes = find_mistakes(mechanism);
+    for (const SceneError& mistake : mistakes)
+      exit_code = report_error(named(mistake));
+    if (!mistakes.empty()) return;
+    SystemSummary summary;
+    try {
+      summary = Analysis(mechanism).summary();
+    } catch (const SceneError& error) {
+      throw named(error);
+    }
+    if (options->json) {
+      const nlohmann::ordered_json out = {{"valid", true},
+                                          {"in", summary.in},
+                                          {"left_out", summary.left_out},
+                                          {"bodies", summary.bodies},
+                                          {"free_coordinates", summary.free_coordinates},
+                                          {"driven_coordinates", summary.driven_coordinates},
+                                          {"constraint_equations", summary.constraint_equations},
+                                          {"tree_joints", summary.tree_joints},
+                                          {"cut_joints", summary.cut_joints},
+                                          {"implicit_joints", summary.implicit_joints},
+                                          {"notes", summary.notes}};
+      fmt::print("{}\n", out.dump(2));
+    } else {
+      fmt::print("{}", to_text(mechanism, summary));
+    }
+    exit_code = exit_done;
+  });
+}
+
+} // namespace flyball::cli

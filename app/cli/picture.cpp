@@ -1,0 +1,25 @@
+#include "app/cli/picture.hpp"
+
+#include "app/cli/assets.hpp"
+#include "app/panels/snapshot.hpp"
+#include "app/render/offscreen.hpp"
+#include "engine/mechanism/scene.hpp"
+
+namespace flyball::cli {
+
+Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& options) {
+  App app({.mode = LiveSolver::Mode::immediate, .on_news = {}, .scenes = shipped_scenes(), .theme = options.theme,
+           .numbers = {}});
+  app.view.samples = options.antialiased ? 4 : 1;
+  app.view.solid = !options.drawn_pose;
+  app.scale = options.scale;
+  open_mechanism(app, load_scene(scene), scene);
+  const OffscreenContext context;
+  const PixelSize size{options.width, options.height};
+  Picture picture;
+  picture.image = options.interface ? interface_picture(app, size, options.scale) : view_picture(app, size);
+  picture.answer = app.answer;
+  return picture;
+}
+
+} // namespace flyball::cli

@@ -1,0 +1,28 @@
+// A scene drawn off-screen, as `render` and a window without a display do it.
+#pragma once
+
+#include "app/panels/app.hpp"
+#include "app/render/image.hpp"
+
+#include <filesystem>
+
+namespace flyball::cli {
+
+struct PictureOptions {
+  int width = 1280, height = 720; // pixels
+  bool interface = false;         // the window with its panels, else the 3-D view alone
+  bool drawn_pose = false;        // instead of the equilibrium
+  float scale = 1;                // pixels a point has
+  Theme theme = Theme::light;
+  bool antialiased = true;
+};
+
+struct Picture {
+  Image image;
+  LiveAnswer answer; // what it shows; where nothing was solved, ticket is 0
+};
+
+// Throws SceneError for a scene that cannot be used and GlError where nothing can be drawn.
+Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& options);
+
+} // namespace flyball::cli

@@ -1,0 +1,76 @@
+#include "app/cli/command.hpp"
+#include "app/cli/picture.hpp"
+#include "app/cli/report_error.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <memory>
+
+namespace flyball::cli {
+
+namespace {
+
+constexpr int largest = 16384; // pixels a side
+
+struct RenderOptions {
+  std::filesystem::path scene, out;
+  std::string size = "1280x720", pose = "equilibrium", theme = "light";
+  float scale = 1;
+  bool interface = false, plain = false;
+};
+
+// "1280x720" into the options; what is wrong with it, or "".
+std::string read_size(const std::string& text, PictureOptions& options) {
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, options.width);
+  const bool cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  const auto height = cross ? std::from_chars(width.ptr + 1, end, options.height) : width;
+  const bool read = cross && height.ec == std::errc() && height.ptr == end;
+  const bool fits = options.width > 0 && options.height > 0 && options.width <= largest && options.height <= largest;
+  return read && fits ? "" : fmt::format("expected WIDTHxHEIGHT from 1x1 to {0}x{0}, such as 1280x720", largest);
+}
+
+int run_render(const RenderOptions& options) {
+  PictureOptions wanted;
+  wanted.interface = options.interface;
+  wanted.drawn_pose = options.pose == "drawn";
+  wanted.scale = options.scale;
+  wanted.theme = options.theme == "dark" ? Theme::dark : Theme::light;
+  wanted.antialiased = !options.plain;
+  if (const std::string wrong = read_size(options.size, wanted); !wrong.empty())
+    return report_error("--size: " + wrong);
+  const Picture picture = draw_picture(options.scene, wanted);
+  write_png(options.out, picture.image);
+  if (wanted.drawn_pose) return exit_done;
+  if (picture.answer.error) return report_error(*picture.answer.error);
+  if (picture.answer.solution.status == Status::converged) return exit_done;
+  report_error(fmt::format("{}: {} (the picture shows the drawn pose)", options.scene.string(),
+                           picture.answer.solution.message));
+  return exit_no_result;
+}
+
+} // namespace
+
+void add_render(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = app.add_subcommand("render", "Draw a scene into a PNG, without a display");
+  command->add_option("scene", options->scene, "Scene file (-: standard input)")->required();
+  command->add_option("-o,--out", options->out, "PNG file to write")->required();
+  command->add_option("--size", options->size, "Pixels")->capture_default_str();
+  command->add_flag("--ui", options->interface, "The window with its panels rather than the view alone");
+  command
+      ->add_option("--pose", options->pose,
+                   "drawn or equilibrium; a scene without equilibrium is drawn as it is in the file, and the exit code is 1")
+      ->check(CLI::IsMember({"drawn", "equilibrium"}))
+      ->capture_default_str();
+  command->add_option("--scale", options->scale, "Pixels a point has")->check(CLI::Range(0.5, 4.0))->capture_default_str();
+  command->add_option("--theme", options->theme, "Colours")
+      ->check(CLI::IsMember({"light", "dark"}))
+      ->capture_default_str();
+  command->add_flag("--no-msaa", options->plain, "Without anti-aliasing of the view: faster");
+  command->footer("Example: flyball render governor.json -o governor.png --ui --size 1280x800");
+  command->callback([options, &exit_code] { exit_code = run_render(*options); });
+}
+
+} // namespace flyball::cli

@@ -1,0 +1,30 @@
+// What solve, sweep and check have in common: a scene file and --set address=value.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace flyball::cli {
+
+struct SceneArgument {
+  std::filesystem::path file;
+  std::vector<std::string> settings; // "address=value"
+
+  void add_to(CLI::App& command);
+  // Reads, applies the settings and validates. Throws SceneError that names the file.
+  Mechanism load() const;
+};
+
+// "name=1.5" as a pair. Throws SceneError naming the option.
+std::pair<std::string, double> parse_assignment(std::string_view option, std::string_view text);
+// A finite number, all of the text. Throws SceneError naming the option.
+double parse_number(std::string_view option, std::string_view text);
+
+} // namespace flyball::cli

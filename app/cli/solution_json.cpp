@@ -1,0 +1,89 @@
+#include "app/cli/solution_json.hpp"
+
+#include <cmath>
+
+namespace flyball::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json array(const Vec3& v) {
+  return {number(v.x()), number(v.y()), number(v.z())};
+}
+
+// Puts a value at its joint: the value itself where the joint has one coordinate, else into an array with
+// null where nothing was said.
+void put(Json& object, const std::string& joint, int index, int count, Json value) {
+  if (count == 1) {
+    object[joint] = std::move(value);
+    return;
+  }
+  if (!object.contains(joint)) object[joint] = Json::array_t(static_cast<std::size_t>(count));
+  object[joint][static_cast<std::size_t>(index)] = std::move(value);
+}
+
+} // namespace
+
+Json to_json(const Mechanism& mechanism, const Solution& s) {
+  const bool converged = s.status == Status::converged;
+  Json out;
+  out["status"] = word(s.status);
+  out["message"] = s.message;
+  for (const char* key : {"coordinates", "multipliers"})
+    out[key] = converged ? Json::object() : Json(nullptr);
+  out["residual"] = number(s.residual);
+  out["error_estimate"] = converged ? Json::object() : Json(nullptr);
+  out["iterations"] = s.iterations;
+  out["history"] = Json::array();
+  for (double h : s.history)
+    out["history"].push_back(number(h));
+  out["net"] = s.net ? Json(word(*s.net)) : Json(nullptr);
+  out["run_time_s"] = s.run_time_s;
+  out["stable"] = s.stable ? Json(*s.stable) : Json(nullptr);
+  out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);
+  for (const char* key : {"eigenvalues", "neutral", "drive_torques", "reactions", "poses", "condition"})
+    out[key] = nullptr;
+  if (!converged) return out;
+
+  for (const CoordinateSolution& c : s.coordinates) {
+    if (c.driven) continue;
+    put(out["coordinates"], c.joint, c.index, c.count, number(c.value));
+    put(out["error_estimate"], c.joint, c.index, c.count, number(c.error));
+  }
+  for (const JointMultipliers& m : s.multipliers) {
+    out["multipliers"][m.joint] = Json::array();
+    for (double value : m.values)
+      out["multipliers"][m.joint].push_back(number(value));
+  }
+  if (s.eigenvalues) {
+    out["eigenvalues"] = Json::array();
+    for (const auto& e : *s.eigenvalues)
+      out["eigenvalues"].push_back({number(e.real()), number(e.imag())});
+  }
+  out["neutral"] = s.neutral;
+  out["drive_torques"] = Json::object();
+  for (const DriveTorque& d : s.drive_torques)
+    put(out["drive_torques"], d.joint, d.index, d.count, number(d.value));
+  out["reactions"] = Json::object();
+  for (const Reaction& r : s.reactions) {
+    Json entry = {{"force", array(r.force)}, {"torque", array(r.torque)}};
+    if (r.varying) entry["varying"] = true;
+    if (s.reactions_nonunique) entry["nonunique"] = true;
+    out["reactions"][r.joint] = std::move(entry);
+  }
+  out["poses"] = Json::object();
+  for (std::size_t b = 0; b < s.poses.size(); ++b) {
+    const Quat& q = s.poses[b].rotation;
+    out["poses"][mechanism.bodies[b].name] = {
+        {"position", array(s.poses[b].position)},
+        {"rotation", {number(q.w()), number(q.x()), number(q.y()), number(q.z())}}};
+  }
+  if (s.condition) out["condition"] = number(*s.condition);
+  return out;
+}
+
+} // namespace flyball::cli

@@ -1,0 +1,14 @@
+// A solution as the JSON object that `flyball solve --json` prints.
+#pragma once
+
+#include "engine/equilibrium/solution.hpp"
+#include "engine/mechanism/mechanism.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace flyball::cli {
+
+// Every key is always there; what is not available is null.
+nlohmann::ordered_json to_json(const Mechanism& mechanism, const Solution& solution);
+
+} // namespace flyball::cli

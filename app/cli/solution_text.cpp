@@ -1,0 +1,90 @@
+#include "app/cli/solution_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flyball::cli {
+namespace {
+
+// As many decimals as the error leaves, at most `most`.
+std::string rounded(double value, double error, int most) {
+  const int decimals = error > 0 ? static_cast<int>(std::floor(-std::log10(error))) : most;
+  return fmt::format("{:.{}f}", value, std::clamp(decimals, 0, most));
+}
+
+std::string label(const std::string& joint, int index, int count) {
+  return count == 1 ? joint : fmt::format("{}.{}", joint, index);
+}
+
+std::string stability(const Solution& s) {
+  if (!s.stability_reason) return "";
+  switch (*s.stability_reason) {
+  case StabilityReason::minimum: return "stable: a strict minimum of the amended potential";
+  case StabilityReason::asymptotic: return "stable: every small motion about it dies out";
+  case StabilityReason::gyroscopic_only: return "held by gyroscopic forces alone: any damping destroys it";
+  case StabilityReason::neutral: return "neutral: nothing resists some direction";
+  case StabilityReason::marginal: return "marginal: too close to the border of stability to tell";
+  case StabilityReason::unstable: return "unstable";
+  }
+  return "";
+}
+
+} // namespace
+
+std::string to_text(const Mechanism& mechanism, const Solution& s) {
+  std::string out = fmt::format("{}: {}\n", mechanism.name, s.message);
+  if (s.status != Status::converged) {
+    out += fmt::format("  residual {:.2g}, {} iterations, {:.1f} µs\n", s.residual, s.iterations,
+                       s.run_time_s * 1e6);
+    return out;
+  }
+  if (const std::string words = stability(s); !words.empty()) out += "  " + words + "\n";
+  std::size_t width = 10;
+  for (const auto& c : s.coordinates)
+    width = std::max(width, label(c.joint, c.index, c.count).size());
+  for (const auto& r : s.reactions)
+    width = std::max(width, r.joint.size());
+  const auto heading = [&](const char* text) { out += fmt::format("\n{}\n", text); };
+  if (!s.coordinates.empty()) heading("coordinates");
+  for (const CoordinateSolution& c : s.coordinates) {
+    const std::string name = label(c.joint, c.index, c.count);
+    if (c.driven) {
+      out += fmt::format("  {:{}}  driven\n", name, width);
+      continue;
+    }
+    const double shown = c.angle ? 180 / std::numbers::pi : 1000;
+    out += fmt::format("  {:{}}  {:>22} {:3}  {:>20} {:2}  ± {:.1g} {}\n", name, width,
+                       rounded(c.value, c.error, 17), c.angle ? "rad" : "m",
+                       rounded(c.value * shown, c.error * shown, 12), c.angle ? "°" : "mm", c.error,
+                       c.angle ? "rad" : "m");
+  }
+  if (!s.drive_torques.empty()) heading("drives");
+  for (const DriveTorque& d : s.drive_torques)
+    out += fmt::format("  {:{}}  {:>22.9g} {}{}\n", label(d.joint, d.index, d.count), width, d.value,
+                       d.angle ? "N m" : "N", d.varying ? "  (changes with the phase)" : "");
+  if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
+  for (const Reaction& r : s.reactions)
+    out += fmt::format("  {:{}}  force [{:.6g}, {:.6g}, {:.6g}] N  torque [{:.6g}, {:.6g}, {:.6g}] N m{}\n",
+                       r.joint, width, r.force.x(), r.force.y(), r.force.z(), r.torque.x(), r.torque.y(),
+                       r.torque.z(), r.varying ? "  (changes with the phase)" : "");
+  if (s.reactions_nonunique)
+    out +=
+        "  The loops are redundant: these are the reactions with the least multipliers of many possible.\n";
+  if (s.eigenvalues && !s.eigenvalues->empty()) {
+    heading("eigenvalues of the linearised motion");
+    for (const auto& e : *s.eigenvalues)
+      if (e.imag() >= 0)
+        out += e.imag() > 0 ? fmt::format("  {:>13.6g} ± {:.6g} i 1/s  ({:.4g} Hz)\n", e.real(), e.imag(),
+                                          e.imag() / (2 * std::numbers::pi))
+                            : fmt::format("  {:>13.6g} 1/s\n", e.real());
+  }
+  out += fmt::format("\nresidual {:.1e}, {} iterations{}, {:.1f} µs", s.residual, s.iterations,
+                     s.net ? fmt::format(" (net: {})", word(*s.net)) : std::string(), s.run_time_s * 1e6);
+  if (s.condition) out += fmt::format(", condition {:.2g}", *s.condition);
+  return out + "\n";
+}
+
+} // namespace flyball::cli

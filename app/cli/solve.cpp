@@ -1,0 +1,57 @@
+#include "app/cli/command.hpp"
+#include "app/cli/scene_argument.hpp"
+#include "app/cli/solution_json.hpp"
+#include "app/cli/solution_text.hpp"
+#include "engine/equilibrium/analysis.hpp"
+#include "engine/mechanism/error.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace flyball::cli {
+
+void add_solve(CLI::App& app, int& exit_code) {
+  struct Options {
+    SceneArgument scene;
+    std::vector<std::string> start;
+    int modes = 0;
+    bool nearest = false, json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("solve", "Find the steady state");
+  options->scene.add_to(*command);
+  command
+      ->add_option("--start", options->start,
+                   "Start elsewhere than drawn: joint=value, or joint.index=value (rad, m)")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_flag("--nearest", options->nearest, "The plain Newton-Raphson answer, stable or not");
+  command
+      ->add_option("--modes", options->modes,
+                   "Eigenvalues to print where there are more than 200 coordinates")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--json", options->json, "Print a JSON object");
+  command->footer("Example: flyball solve governor.json --set joints.spin.drive.speed=12 --json");
+  command->callback([options, &exit_code] {
+    const Mechanism mechanism = options->scene.load();
+    SolveOptions solve;
+    solve.nearest = options->nearest;
+    solve.modes = options->modes;
+    for (const std::string& text : options->start)
+      solve.start.push_back(parse_assignment("--start", text));
+    Solution solution;
+    try {
+      solution = Analysis(mechanism).solve(solve);
+    } catch (const SceneError& error) {
+      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+    }
+    if (options->json)
+      fmt::print("{}\n", to_json(mechanism, solution).dump(2));
+    else
+      fmt::print("{}", to_text(mechanism, solution));
+    exit_code = solution.status == Status::converged ? exit_done : exit_no_result;
+  });
+}
+
+} // namespace flyball::cli

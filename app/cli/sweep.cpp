@@ -1,0 +1,204 @@
+#include "engine/study/sweep.hpp"
+#include "app/cli/command.hpp"
+#include "app/cli/progress.hpp"
+#include "app/cli/scene_argument.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace flyball::cli {
+namespace {
+
+// ADDRESS=FROM:TO:N
+Variation parse_variation(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::size_t first = text.find(':', equals), second = text.find(':', first + 1);
+  if (equals == std::string::npos || first == std::string::npos || second == std::string::npos)
+    throw SceneError("--vary", "expected address=from:to:count, not \"" + text + "\"");
+  Variation v;
+  v.address = text.substr(0, equals);
+  const std::string option = "--vary " + v.address;
+  v.from = parse_number(option, std::string_view(text).substr(equals + 1, first - equals - 1));
+  v.to = parse_number(option, std::string_view(text).substr(first + 1, second - first - 1));
+  const double count = parse_number(option, std::string_view(text).substr(second + 1));
+  if (count != std::floor(count) || count < 1 || count > 1e7)
+    throw SceneError(option, "expected a whole number of values from 1 to 10000000");
+  v.count = static_cast<int>(count);
+  return v;
+}
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\n") == std::string::npos) return field;
+  std::string out = "\"";
+  for (char c : field) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
+struct ColumnName {
+  std::string joint;
+  int index;
+  std::string text() const { return index < 0 ? joint : joint + "." + std::to_string(index); }
+};
+
+// The free coordinates; the same at every point.
+std::vector<ColumnName> coordinate_columns(const std::vector<SweepPoint>& points) {
+  std::vector<ColumnName> columns;
+  for (const SweepPoint& p : points) {
+    if (p.solution.coordinates.empty()) continue;
+    for (const CoordinateSolution& c : p.solution.coordinates)
+      if (!c.driven) columns.push_back({c.joint, c.count == 1 ? -1 : c.index});
+    break;
+  }
+  return columns;
+}
+
+std::string to_csv(const std::vector<Variation>& variations, const std::vector<SweepPoint>& points) {
+  const std::vector<ColumnName> columns = coordinate_columns(points);
+  std::string out;
+  for (const Variation& v : variations)
+    out += quoted(v.address) + ",";
+  out += "status";
+  for (const ColumnName& c : columns)
+    out += "," + quoted(c.text());
+  out += ",stable,residual,run_time_s\n";
+  for (const SweepPoint& p : points) {
+    for (double value : p.parameters)
+      out += number_text(value) + ",";
+    out += word(p.solution.status);
+    std::size_t at = 0;
+    for (const CoordinateSolution& c : p.solution.coordinates)
+      if (!c.driven) {
+        out += "," + number_text(c.value);
+        ++at;
+      }
+    for (; at < columns.size(); ++at)
+      out += ",";
+    out += p.solution.stable ? (*p.solution.stable ? ",true," : ",false,") : ",,";
+    out += number_text(p.solution.residual) + "," + number_text(p.solution.run_time_s) + "\n";
+  }
+  return out;
+}
+
+std::string to_json(const std::vector<Variation>& variations, const std::vector<SweepPoint>& points) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const SweepPoint& p : points) {
+    nlohmann::ordered_json row;
+    for (std::size_t v = 0; v < variations.size(); ++v)
+      row["parameters"][variations[v].address] = p.parameters[v];
+    row["status"] = word(p.solution.status);
+    row["message"] = p.solution.message;
+    row["coordinates"] = nlohmann::ordered_json::object();
+    for (const CoordinateSolution& c : p.solution.coordinates)
+      if (!c.driven) row["coordinates"][ColumnName{c.joint, c.count == 1 ? -1 : c.index}.text()] = c.value;
+    row["stable"] =
+        p.solution.stable ? nlohmann::ordered_json(*p.solution.stable) : nlohmann::ordered_json(nullptr);
+    row["residual"] = p.solution.residual;
+    row["run_time_s"] = p.solution.run_time_s;
+    rows.push_back(std::move(row));
+  }
+  return nlohmann::ordered_json{{"points", std::move(rows)}}.dump(2) + "\n";
+}
+
+std::string to_table(const Mechanism& m, const std::vector<Variation>& variations,
+                     const std::vector<SweepPoint>& points) {
+  const std::vector<ColumnName> columns = coordinate_columns(points);
+  std::vector<std::vector<std::string>> rows(1);
+  for (const Variation& v : variations) {
+    const std::string unit = parameter_unit(m, v.address);
+    rows[0].push_back(unit.empty() ? v.address : fmt::format("{} [{}]", v.address, unit));
+  }
+  rows[0].push_back("status");
+  for (const ColumnName& c : columns) {
+    const int j = joint_index(m, c.joint);
+    const bool angle = j >= 0 ? is_angle(m.joints[static_cast<std::size_t>(j)].type, std::max(0, c.index))
+                              : is_angle(JointType::free, c.index);
+    rows[0].push_back(fmt::format("{} [{}]", c.text(), angle ? "rad" : "m"));
+  }
+  rows[0].insert(rows[0].end(), {"stable", "residual", "time [µs]"});
+  for (const SweepPoint& p : points) {
+    auto& row = rows.emplace_back();
+    for (double value : p.parameters)
+      row.push_back(fmt::format("{:.8g}", value));
+    row.emplace_back(word(p.solution.status));
+    for (const CoordinateSolution& c : p.solution.coordinates)
+      if (!c.driven) row.push_back(fmt::format("{:.10f}", c.value));
+    row.resize(variations.size() + 1 + columns.size());
+    row.push_back(p.solution.stable ? (*p.solution.stable ? "yes" : "no") : "-");
+    row.push_back(fmt::format("{:.1e}", p.solution.residual));
+    row.push_back(fmt::format("{:.1f}", p.solution.run_time_s * 1e6));
+  }
+  std::vector<std::size_t> widths(rows[0].size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], row[i].size());
+  std::string out;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      out += fmt::format("{}{:>{}}", i ? "  " : "", row[i], widths[i]);
+    out += "\n";
+  }
+  return out;
+}
+
+} // namespace
+
+void add_sweep(CLI::App& app, int& exit_code) {
+  struct Options {
+    SceneArgument scene;
+    std::vector<std::string> vary;
+    std::string csv;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("sweep", "Find the steady state over a range of one or more parameters");
+  options->scene.add_to(*command);
+  command
+      ->add_option("--vary", options->vary,
+                   "Vary a number: address=from:to:count; given again, all combinations")
+      ->required()
+      ->take_all()
+      ->allow_extra_args(false);
+  CLI::Option* csv =
+      command->add_option("--csv", options->csv, "Write a table to a file (-: standard output)");
+  command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
+  command->footer(
+      "Example: flyball sweep governor.json --vary joints.spin.drive.speed=5:20:31 --csv curve.csv");
+  command->callback([options, &exit_code] {
+    const Mechanism mechanism = options->scene.load();
+    std::vector<Variation> variations;
+    double total = 1;
+    for (const std::string& text : options->vary) {
+      variations.push_back(parse_variation(text));
+      total *= variations.back().count;
+    }
+    if (total > 1e7) throw SceneError("--vary", "expected at most 10000000 combinations");
+    std::vector<SweepPoint> points;
+    try {
+      Progress progress("solving");
+      points = sweep(mechanism, variations, 0,
+                     [&](std::size_t done, std::size_t all) { progress.show(done, all); });
+    } catch (const SceneError& error) {
+      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+    }
+    if (!options->csv.empty())
+      write_bytes(options->csv, to_csv(variations, points));
+    else
+      fmt::print("{}", options->json ? to_json(variations, points) : to_table(mechanism, variations, points));
+    const bool any = std::ranges::any_of(
+        points, [](const SweepPoint& p) { return p.solution.status == Status::converged; });
+    exit_code = any ? exit_done : exit_no_result;
+  });
+}
+
+} // namespace flyball::cli

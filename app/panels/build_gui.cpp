@@ -1,0 +1,20 @@
+#include "app/panels/panels.hpp"
+
+namespace flyball {
+
+void build_gui(App& app) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const Layout layout = layout_of(app, size.x, size.y);
+  app.widgets.clear();
+  handle_shortcuts(app);
+  viewport_panel(app, layout.view);
+  parameters_panel(app, layout.parameters);
+  results_panel(app, layout.results);
+  toolbar_panel(app, layout.toolbar);
+  drag_splitters(app, layout, size.y);
+  app.dialog.showing = false;
+  open_dialog(app);
+  export_dialog(app);
+}
+
+} // namespace flyball

@@ -1,0 +1,37 @@
+// How small disturbances of the steady state behave.
+#include "app/panels/panels.hpp"
+#include "app/panels/widgets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// In the order of the list: round-off leaves parts that ought to vanish at a tiny fraction of the largest.
+std::string part_text(double value, double largest) {
+  return value_text(value, std::max(largest * 1e-5, 1e-12), {6, 1e-16, false});
+}
+
+} // namespace
+
+void eigenvalue_results(App& app) {
+  const auto& eigenvalues = app.answer.solution.eigenvalues;
+  if (!eigenvalues || eigenvalues->empty()) return;
+  if (!section(app, "results/eigenvalues", "Eigenvalues", app.panels.eigenvalues)) return;
+  paragraph("Disturbances grow or die out with the real part and swing with the imaginary part.", colors_of(app).dim);
+  double largest = 0;
+  for (const std::complex<double>& z : *eigenvalues)
+    largest = std::max(largest, std::abs(z));
+  for (const std::complex<double>& z : *eigenvalues) {
+    if (z.imag() < 0) continue; // its conjugate stands for both
+    const bool pair = z.imag() > 1e-5 * largest;
+    const double frequency = z.imag() / 6.283185307179586;
+    const std::string label = pair ? value_text(frequency, largest * 1e-4, {4, 1e-16, false}) + " Hz" : "";
+    const std::string imaginary = pair ? " ± " + part_text(z.imag(), largest) + " i" : "";
+    row(app, label, part_text(z.real(), largest) + imaginary, "1/s");
+  }
+}
+
+} // namespace flyball

@@ -1,0 +1,96 @@
+#include "app/panels/layout.hpp"
+
+#include "app/panels/ui_style.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr float toolbar_height = 42, narrow = 1060;                 // points
+constexpr float least_panel = 230, most_panel = 560, least_view = 240; // points
+
+float panel_width(float wanted, float room) {
+  return std::clamp(wanted, least_panel, std::max(least_panel, std::min(most_panel, room)));
+}
+
+// Returns how far the person has dragged the line this frame. Each has a small window of its own, above the panels.
+float splitter(App& app, const char* name, const PanelRect& line, bool upright) {
+  const float grip = 4 * app.scale, thick = std::max(1.f, std::round(app.scale));
+  const ImVec2 from(line.x - (upright ? grip : 0), line.y - (upright ? 0 : grip));
+  const ImVec2 size(upright ? 2 * grip : line.width, upright ? line.height : 2 * grip);
+  ImGui::SetNextWindowPos(from);
+  ImGui::SetNextWindowSize(size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleVar(2);
+  ImGui::InvisibleButton("line", size);
+  note_widget(app.widgets, name);
+  const bool active = ImGui::IsItemActive(), lit = active || ImGui::IsItemHovered();
+  if (lit) ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
+  const UiColors& colors = ui_colors(app.theme);
+  const ImVec2 to(line.x + (upright ? thick : line.width), line.y + (upright ? line.height : thick));
+  ImGui::GetWindowDrawList()->AddRectFilled({line.x, line.y}, to,
+                                            ImGui::ColorConvertFloat4ToU32(lit ? colors.accent : colors.border));
+  ImGui::End();
+  if (!active) return 0;
+  return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
+}
+
+} // namespace
+
+Layout layout_of(const App& app, float width, float height) {
+  const float s = app.scale;
+  Layout layout;
+  const float top = std::round(toolbar_height * s), below = std::max(height - top, 1.f);
+  layout.toolbar = {0, 0, width, top};
+  layout.stacked = width < narrow * s;
+  if (layout.stacked) {
+    const float panel = std::round(s * panel_width(app.panels.stacked_width, width / s - least_view));
+    const float upper = std::round(below * std::clamp(app.panels.stacked_share, 0.15f, 0.85f));
+    layout.view = {0, top, std::max(width - panel, 1.f), below};
+    layout.parameters = {layout.view.width, top, panel, upper};
+    layout.results = {layout.view.width, top + upper, panel, below - upper};
+    return layout;
+  }
+  const float right = std::round(s * panel_width(app.panels.results_width, width / s - least_view - least_panel));
+  const float left = std::round(s * panel_width(app.panels.parameters_width, (width - right) / s - least_view));
+  layout.parameters = {0, top, left, below};
+  layout.results = {width - right, top, right, below};
+  layout.view = {left, top, std::max(width - left - right, 1.f), below};
+  return layout;
+}
+
+void drag_splitters(App& app, const Layout& layout, float height) {
+  const float s = app.scale;
+  PanelState& panels = app.panels;
+  const auto clamped = [](float points) { return std::clamp(points, least_panel, most_panel); };
+  const PanelRect& right = layout.results;
+  if (layout.stacked) {
+    const float wide = splitter(app, "splitter/panels", {right.x, layout.view.y, 1, layout.view.height}, true);
+    panels.stacked_width = clamped(panels.stacked_width - wide / s);
+    const float tall = splitter(app, "splitter/results", {right.x, right.y, right.width, 1}, false);
+    panels.stacked_share = std::clamp(panels.stacked_share + tall / (height - layout.toolbar.height), 0.15f, 0.85f);
+    return;
+  }
+  const float left_by = splitter(app, "splitter/parameters", {layout.view.x, layout.view.y, 1, layout.view.height}, true);
+  const float right_by = splitter(app, "splitter/results", {right.x, right.y, 1, right.height}, true);
+  panels.parameters_width = clamped(panels.parameters_width + left_by / s);
+  panels.results_width = clamped(panels.results_width - right_by / s);
+}
+
+void begin_panel(const char* name, const PanelRect& rect, int more_flags) {
+  ImGui::SetNextWindowPos({rect.x, rect.y});
+  ImGui::SetNextWindowSize({rect.width, rect.height});
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | more_flags);
+}
+
+} // namespace flyball

@@ -1,0 +1,83 @@
+// What the drives and joints bear.
+#include "app/panels/panels.hpp"
+#include "app/panels/widgets.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+std::string force_text(double value, double largest, const NumberStyle& numbers) {
+  // Digits of the largest: a component that ought to vanish is not told to twelve digits of round-off.
+  return value_text(value, std::max(largest, 1.0) * 1e-6, {6, numbers.noise, numbers.run_times});
+}
+
+void vector_row(App& app, const char* label, const Vec3& v, double largest, const char* unit) {
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += (i ? "  " : "") + value_text(v[i], std::max(largest * 1e-4, 1e-9), {5, app.options.numbers.noise, false});
+  row(app, label, text, unit);
+}
+
+void drive_torques(App& app) {
+  const std::vector<DriveTorque>& torques = app.answer.solution.drive_torques;
+  if (torques.empty()) return;
+  ImGui::Dummy({0, 2 * app.scale});
+  if (!section(app, "results/torques", "Drive torques", app.panels.torques)) return;
+  double largest = 0;
+  for (const DriveTorque& t : torques)
+    largest = std::max(largest, std::abs(t.value));
+  for (const DriveTorque& t : torques) {
+    const std::string name = t.count > 1 ? t.joint + "." + std::to_string(t.index) : t.joint;
+    row(app, t.varying ? name + " (varies)" : name, force_text(t.value, largest, app.options.numbers),
+        t.angle ? "N m" : "N",
+        t.varying ? "Changes as the drives turn; at the drawn phase." : "By the drive, positive along its coordinate.");
+  }
+}
+
+void reactions(App& app) {
+  const Solution& solution = app.answer.solution;
+  if (solution.reactions.empty()) return;
+  if (!section(app, "results/reactions", "Reactions", app.panels.reactions)) return;
+  paragraph(solution.reactions_nonunique
+                ? "Parent on child: x, y, z of the world. The loops hold more than they need; these are the smallest "
+                  "reactions that do it."
+                : "Parent on child: x, y, z of the world.",
+            colors_of(app).dim);
+  double force = 0, torque = 0;
+  for (const Reaction& r : solution.reactions) {
+    force = std::max(force, r.force.lpNorm<Eigen::Infinity>());
+    torque = std::max(torque, r.torque.lpNorm<Eigen::Infinity>());
+  }
+  for (const Reaction& r : solution.reactions) {
+    clipped_text(r.varying ? r.joint + " (varies)" : r.joint, ImGui::GetContentRegionAvail().x);
+    vector_row(app, "", r.force, force, "N");
+    if (torque > 0) vector_row(app, "", r.torque, torque, "N m");
+  }
+}
+
+void multipliers(App& app) {
+  const std::vector<JointMultipliers>& all = app.answer.solution.multipliers;
+  if (all.empty()) return;
+  if (!section(app, "results/multipliers", "Multipliers of the cut joints", app.panels.multipliers)) return;
+  double largest = 0;
+  for (const JointMultipliers& m : all)
+    for (const double value : m.values)
+      largest = std::max(largest, std::abs(value));
+  for (const JointMultipliers& m : all)
+    for (std::size_t i = 0; i < m.values.size(); ++i)
+      row(app, m.values.size() > 1 ? m.joint + "." + std::to_string(i) : m.joint,
+          force_text(m.values[i], largest, app.options.numbers), "N, N m");
+}
+
+} // namespace
+
+void load_results(App& app) {
+  drive_torques(app);
+  reactions(app);
+  multipliers(app);
+}
+
+} // namespace flyball

@@ -1,0 +1,90 @@
+#include "app/panels/panels.hpp"
+#include "app/panels/widgets.hpp"
+#include "app/render/icons.hpp"
+
+namespace flyball {
+
+namespace {
+
+struct Verdict {
+  const char* icon;
+  const char* text;
+  ImVec4 color;
+};
+
+Verdict verdict_of(const Solution& solution, const UiColors& colors) {
+  switch (solution.status) {
+  case Status::not_converged: return {icon::warning, "Not converged", colors.bad};
+  case Status::no_steady_state: return {icon::close, "No steady state", colors.bad};
+  case Status::infeasible: return {icon::close, "The loops cannot be closed", colors.bad};
+  case Status::converged: break;
+  }
+  if (solution.stable == true) return {icon::check, "Stable steady state", colors.good};
+  if (solution.stable == false) return {icon::warning, "Unstable steady state", colors.bad};
+  return {icon::question, "Steady state, stability undecided", colors.warn};
+}
+
+const char* reason_text(StabilityReason reason) {
+  switch (reason) {
+  case StabilityReason::minimum: return "A minimum of the amended potential.";
+  case StabilityReason::asymptotic: return "Every disturbance dies out.";
+  case StabilityReason::gyroscopic_only: return "Held by gyroscopic effects alone; any damping destabilises it.";
+  case StabilityReason::neutral: return "Stable but for directions that nothing resists.";
+  case StabilityReason::marginal: return "Too close to the limit of stability to tell.";
+  case StabilityReason::unstable: return "Disturbances grow.";
+  }
+  return "";
+}
+
+void verdict(App& app) {
+  const UiColors& colors = colors_of(app);
+  const Solution& solution = app.answer.solution;
+  const Verdict verdict = verdict_of(solution, colors);
+  ImGui::PushFont(app.fonts.strong);
+  ImGui::TextColored(verdict.color, "%s", verdict.icon);
+  ImGui::SameLine(0, 7 * app.scale);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextColored(verdict.color, "%s", verdict.text);
+  ImGui::PopTextWrapPos();
+  ImGui::PopFont();
+  note_widget(app.widgets, "results/verdict");
+  if (solution.status == Status::converged && solution.stability_reason)
+    paragraph(reason_text(*solution.stability_reason), colors.dim);
+  if (solution.status != Status::converged || solution.net || solution.stable != true)
+    paragraph(solution.message, solution.status == Status::converged ? colors.dim : colors.text);
+}
+
+// Directions that nothing resists.
+void neutral_joints(App& app) {
+  const std::vector<std::string>& neutral = app.answer.solution.neutral;
+  if (neutral.empty()) return;
+  std::string names;
+  for (const std::string& name : neutral)
+    names += (names.empty() ? "" : ", ") + name;
+  row(app, "Nothing resists", names, "", "Joints that take part in a direction in which the mechanism stands anywhere.");
+}
+
+} // namespace
+
+void results_panel(App& app, const PanelRect& rect) {
+  begin_panel("results", rect);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 4 * app.scale});
+  if (app.open && app.answer.error) {
+    ImGui::TextColored(colors_of(app).bad, "%s  Cannot be solved", icon::warning);
+    paragraph(*app.answer.error, colors_of(app).text);
+  } else if (app.open && app.answer.ticket) {
+    verdict(app);
+    neutral_joints(app);
+    coordinate_results(app);
+    solver_results(app);
+    load_results(app);
+    eigenvalue_results(app);
+    system_results(app);
+  } else if (app.open) {
+    paragraph("Solving…", colors_of(app).dim);
+  }
+  ImGui::PopStyleVar();
+  ImGui::End();
+}
+
+} // namespace flyball

@@ -1,0 +1,108 @@
+#include "app/panels/stage.hpp"
+
+#include "app/panels/layout.hpp"
+#include "app/panels/ui_style.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr float text_size = 15; // points
+
+ViewKey key_of(const App& app, const ViewFrame& frame, PixelSize size) {
+  ViewKey key;
+  key.size = size;
+  key.samples = app.view.samples;
+  key.ghost = app.view.ghost;
+  key.grid = app.view.grid;
+  key.shadow = app.view.shadow;
+  key.solid = app.view.solid;
+  key.theme = app.theme;
+  key.scale = app.scale;
+  key.hovered = app.view.hovered;
+  const ViewCamera& c = frame.camera;
+  key.camera = {c.target.x(), c.target.y(), c.target.z(), c.distance, c.azimuth,
+                c.elevation,  c.up.x(),     c.up.y(),     c.up.z()};
+  key.ticket = app.answer.ticket;
+  key.poses.reserve(7 * frame.poses.size());
+  for (const Pose& pose : frame.poses) {
+    key.poses.insert(key.poses.end(), pose.position.begin(), pose.position.end());
+    const auto& q = pose.rotation.coeffs();
+    key.poses.insert(key.poses.end(), q.begin(), q.end());
+  }
+  return key;
+}
+
+ImGuiContext* new_context() {
+  ImGuiContext* context = ImGui::CreateContext();
+  ImGui::SetCurrentContext(context);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.ConfigWindowsMoveFromTitleBarOnly = true;
+  return context;
+}
+
+} // namespace
+
+Stage::Stage(App& app, float scale)
+    : former_(ImGui::GetCurrentContext()), context_(new_context(), ImGui::DestroyContext) {
+  set_scale(app, scale);
+}
+
+Stage::~Stage() {
+  ImGui::SetCurrentContext(former_);
+}
+
+void Stage::set_scale(App& app, float scale) {
+  ImGui::SetCurrentContext(context_.get());
+  app.scale = scale;
+  app.fonts = load_fonts(*ImGui::GetIO().Fonts, text_size, scale);
+  ImGui::GetIO().FontDefault = app.fonts.text;
+  renderer_.upload_fonts();
+  apply_style(app.theme, scale);
+}
+
+void Stage::frame(App& app, PixelSize size, double seconds) {
+  ImGui::SetCurrentContext(context_.get());
+  const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
+  const PanelRect view = layout_of(app, width, height).view;
+  update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
+  draw_view(app, {static_cast<int>(view.width), static_cast<int>(view.height)});
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {width, height};
+  io.DisplayFramebufferScale = {1, 1};
+  io.DeltaTime = static_cast<float>(std::max(seconds, 1e-4));
+  ImGui::NewFrame();
+  build_gui(app);
+  ImGui::Render();
+}
+
+void Stage::render(const App& app, PixelSize size) {
+  ImGui::SetCurrentContext(context_.get());
+  const ImVec4 background = ui_colors(app.theme).panel;
+  glViewport(0, 0, size.width, size.height);
+  glClearColor(background.x, background.y, background.z, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  renderer_.draw(*ImGui::GetDrawData());
+}
+
+void Stage::draw_view(App& app, PixelSize size) {
+  const ViewFrame frame = view_frame(app);
+  ViewKey key = key_of(app, frame, size);
+  if (view_ && key == drawn_) {
+    app.view.texture = view_->texture();
+    return;
+  }
+  if (!view_ || size != drawn_.size || key.samples != drawn_.samples)
+    view_.emplace(size.width, size.height, key.samples);
+  view_renderer_.draw(frame, *view_);
+  app.view.texture = view_->texture();
+  drawn_ = std::move(key);
+  ++views_drawn_;
+}
+
+} // namespace flyball

@@ -1,0 +1,61 @@
+// Turns the app into a picture: one ImGui context with its fonts, and OpenGL for the 3-D view and the
+// panels. The same in a window and off-screen. Needs a current OpenGL context for its whole life.
+#pragma once
+
+#include "app/panels/app.hpp"
+#include "app/render/imgui_renderer.hpp"
+
+#include <array>
+#include <memory>
+
+namespace flyball {
+
+struct PixelSize {
+  int width = 0, height = 0;
+  bool operator==(const PixelSize&) const = default;
+};
+
+// Everything the 3-D view depends on; while it stays the same the view is not drawn again.
+struct ViewKey {
+  PixelSize size;
+  int samples = 0;
+  bool ghost = false, grid = false, shadow = false, solid = false;
+  Theme theme = Theme::light;
+  float scale = 1;
+  PartId hovered;
+  std::array<double, 9> camera{};
+  std::uint64_t ticket = 0;
+  std::vector<double> poses; // seven numbers a body
+  bool operator==(const ViewKey&) const = default;
+};
+
+class Stage {
+ public:
+  // Makes its own ImGui context current, with fonts and colours for app.theme at `scale`.
+  Stage(App& app, float scale);
+  ~Stage();
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  void set_scale(App& app, float scale);
+  // One frame: update(), the 3-D view where it changed, then the interface. ImGui's input must be in place;
+  // `seconds` have passed since the last frame.
+  void frame(App& app, PixelSize size, double seconds);
+  // Draws the frame into the framebuffer that is bound.
+  void render(const App& app, PixelSize size);
+  // How often the 3-D view was drawn so far.
+  int views_drawn() const { return views_drawn_; }
+
+ private:
+  void draw_view(App& app, PixelSize size);
+
+  ImGuiContext* former_; // that was current before
+  std::unique_ptr<ImGuiContext, void (*)(ImGuiContext*)> context_;
+  ImGuiRenderer renderer_;
+  ViewRenderer view_renderer_;
+  std::optional<Framebuffer> view_;
+  ViewKey drawn_;
+  int views_drawn_ = 0;
+};
+
+} // namespace flyball

@@ -1,0 +1,135 @@
+#include "app/panels/panels.hpp"
+#include "app/panels/widgets.hpp"
+#include "app/render/icons.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+struct Direction {
+  const char* name;
+  const char* text;
+  const char* help;
+  double azimuth, elevation; // rad
+};
+
+constexpr double right_angle = std::numbers::pi / 2;
+constexpr std::array directions{
+    Direction{"toolbar/front", "Front", "Look from the front (1)", 0, 0},
+    Direction{"toolbar/side", "Side", "Look from the right (2)", right_angle, 0},
+    Direction{"toolbar/top", "Top", "Look from above (3)", 0, right_angle},
+    Direction{"toolbar/iso", "Iso", "Look from the front, right and above (4)", right_angle / 2, 0.6154797086703873},
+};
+
+struct Factor {
+  double value;
+  const char* text;
+};
+constexpr std::array factors{Factor{1, "1×"},       Factor{0.5, "0.5×"},   Factor{0.2, "0.2×"},
+                             Factor{0.1, "0.1×"},   Factor{0.05, "0.05×"}, Factor{0.02, "0.02×"},
+                             Factor{0.01, "0.01×"}};
+
+void gap(const App& app) {
+  const float s = app.scale;
+  ImGui::SameLine(0, 8 * s);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float top = at.y + 5 * s, bottom = at.y + ImGui::GetFrameHeight() - 3 * s;
+  ImGui::GetWindowDrawList()->AddLine({at.x, top}, {at.x, bottom}, packed(ui_colors(app.theme).border),
+                                      std::max(1.f, std::round(s)));
+  ImGui::SameLine(0, 9 * s);
+}
+
+void next(const App& app) {
+  ImGui::SameLine(0, 2 * app.scale);
+}
+
+void file_buttons(App& app) {
+  if (icon_button(app, "toolbar/open", icon::folder_open, "Open a scene (Ctrl+O)")) show_open_dialog(app);
+  next(app);
+  if (icon_button(app, "toolbar/reload", icon::refresh, "Read the file again (Ctrl+R)")) reload_scene(app);
+  next(app);
+  if (icon_button(app, "toolbar/export", icon::camera, "Save a picture (Ctrl+E)")) show_export_dialog(app);
+}
+
+void play_buttons(App& app) {
+  const bool playing = app.playback.playing;
+  if (icon_button(app, "toolbar/play", playing ? icon::pause : icon::play,
+                  playing ? "Stop the drives (Space)" : "Turn at the drives' speed (Space)", playing))
+    play(app, !playing);
+  next(app);
+  if (icon_button(app, "toolbar/rewind", icon::step_backward, "Back to the drawn phase of the drives")) rewind(app);
+  next(app);
+  const auto current = std::ranges::find(factors, app.playback.factor, &Factor::value);
+  ImGui::SetNextItemWidth(74 * app.scale);
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
+  if (ImGui::BeginCombo("##factor", current == factors.end() ? "" : current->text)) {
+    for (const Factor& factor : factors)
+      if (ImGui::Selectable(factor.text, factor.value == app.playback.factor)) app.playback.factor = factor.value;
+    ImGui::EndCombo();
+  }
+  note_widget(app.widgets, "toolbar/factor");
+  help_on_hover("Speed of the picture: below 1× is slow motion");
+}
+
+void direction_buttons(App& app) {
+  for (const Direction& direction : directions) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, 5 * app.scale});
+    ImGui::PushID(direction.name);
+    if (ImGui::Button(direction.text)) look_from(app, direction.azimuth, direction.elevation);
+    ImGui::PopID();
+    ImGui::PopStyleVar();
+    note_widget(app.widgets, direction.name);
+    help_on_hover(direction.help);
+    next(app);
+  }
+  if (icon_button(app, "toolbar/fit", icon::expand, "All in view (F)")) app.view.fit = app.view.keep_direction = true;
+}
+
+void toggle(App& app, const char* name, const char* text, const char* help, bool& on) {
+  const UiColors& colors = colors_of(app);
+  ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.accent : colors.dim);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, 5 * app.scale});
+  ImGui::PushID(name);
+  if (ImGui::Button(text)) on = !on;
+  ImGui::PopID();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  note_widget(app.widgets, name);
+  help_on_hover(help);
+  next(app);
+}
+
+} // namespace
+
+void toolbar_panel(App& app, const PanelRect& rect) {
+  const float s = app.scale;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 7 * s});
+  begin_panel("toolbar", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  file_buttons(app);
+  gap(app);
+  play_buttons(app);
+  gap(app);
+  direction_buttons(app);
+  gap(app);
+  toggle(app, "toolbar/ghost", "Ghost", "The drawn pose, in grey (G)", app.view.ghost);
+  toggle(app, "toolbar/grid", "Grid", "The floor", app.view.grid);
+  toggle(app, "toolbar/shadow", "Shadow", "Shadow on the floor", app.view.shadow);
+  const float side = ImGui::GetFrameHeight() + 2 * s;
+  ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), rect.width - side - 8 * s));
+  const bool dark = app.theme == Theme::dark;
+  if (icon_button(app, "toolbar/theme", dark ? icon::sun : icon::moon, dark ? "Light colours" : "Dark colours")) {
+    app.theme = dark ? Theme::light : Theme::dark;
+    apply_style(app.theme, app.scale);
+  }
+  const float line = rect.height - std::max(1.f, std::round(s));
+  ImGui::GetWindowDrawList()->AddRectFilled({0, line}, {rect.width, rect.height}, packed(colors_of(app).border));
+  ImGui::End();
+}
+
+} // namespace flyball

@@ -1,0 +1,177 @@
+#include "app/panels/widgets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// Draws text with the font that is pushed for it, whatever is current.
+void text_in(ImFont* font, const ImVec4& color, const std::string& text) {
+  ImGui::PushFont(font);
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+}
+
+} // namespace
+
+void help_on_hover(const char* help) {
+  if (help && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
+    ImGui::TextUnformatted(help);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+  }
+}
+
+bool icon_button(App& app, const std::string& name, const char* icon, const char* help, bool on) {
+  const UiColors& colors = colors_of(app);
+  const float side = ImGui::GetFrameHeight() + 2 * app.scale;
+  ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.accent : colors.text);
+  if (on) ImGui::PushStyleColor(ImGuiCol_Button, colors.raised);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
+  ImGui::PushID(name.c_str());
+  const bool pressed = ImGui::Button(icon, {side, side});
+  ImGui::PopID();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor(on ? 2 : 1);
+  note_widget(app.widgets, name);
+  help_on_hover(help);
+  return pressed;
+}
+
+bool text_button(App& app, const std::string& name, const char* text, bool primary) {
+  const UiColors& colors = colors_of(app);
+  ImGui::PushStyleColor(ImGuiCol_Button, primary ? colors.accent : colors.raised);
+  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, primary ? colors.accent : colors.border);
+  ImGui::PushStyleColor(ImGuiCol_ButtonActive, primary ? colors.accent : colors.faint);
+  ImGui::PushStyleColor(ImGuiCol_Text, primary ? colors.on_accent : colors.text);
+  ImGui::PushID(name.c_str());
+  const bool pressed = ImGui::Button(text);
+  ImGui::PopID();
+  ImGui::PopStyleColor(4);
+  note_widget(app.widgets, name);
+  return pressed;
+}
+
+void heading(App& app, const char* text) {
+  ImGui::Dummy({0, 2 * app.scale});
+  text_in(app.fonts.strong, colors_of(app).text, text);
+}
+
+bool section(App& app, const std::string& name, const char* text, bool& open) {
+  const UiColors& colors = colors_of(app);
+  const float height = ImGui::GetTextLineHeight() + 6 * app.scale;
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
+  if (ImGui::InvisibleButton(name.c_str(), {width, height})) open = !open;
+  note_widget(app.widgets, name);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (ImGui::IsItemHovered())
+    list.AddRectFilled({from.x - 4 * app.scale, from.y}, {from.x + width, from.y + height}, packed(colors.raised),
+                       ImGui::GetStyle().FrameRounding);
+  const float r = 3.5f * app.scale, cx = from.x + r, cy = from.y + height / 2;
+  if (open)
+    list.AddTriangleFilled({cx - r, cy - r / 2}, {cx + r, cy - r / 2}, {cx, cy + r / 1.5f}, packed(colors.dim));
+  else
+    list.AddTriangleFilled({cx - r / 2, cy - r}, {cx + r / 1.5f, cy}, {cx - r / 2, cy + r}, packed(colors.dim));
+  list.AddText(app.fonts.strong, ImGui::GetFontSize(), {from.x + 14 * app.scale, from.y + 3 * app.scale},
+               packed(colors.text), text);
+  return open;
+}
+
+void right_text(App& app, const std::string& text, const ImVec4& color, bool digits) {
+  ImFont* font = digits ? app.fonts.digits : app.fonts.text;
+  const float width = font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.f, ImGui::GetContentRegionAvail().x - width));
+  text_in(font, color, text);
+}
+
+void row(App& app, const std::string& label, const std::string& value, const char* unit, const char* help) {
+  const UiColors& colors = colors_of(app);
+  ImGui::BeginGroup();
+  const float room = ImGui::GetContentRegionAvail().x;
+  const float start = ImGui::GetCursorPosX();
+  const float unit_width = unit && *unit ? ImGui::CalcTextSize(unit).x + 5 * app.scale : 0;
+  const ImFont* digits = app.fonts.digits;
+  const float value_width = digits->CalcTextSizeA(digits->FontSize, 1e9f, 0, value.c_str()).x;
+  ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
+  clipped_text(label, room - unit_width - value_width - 8 * app.scale);
+  ImGui::PopStyleColor();
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(start + std::max(0.f, room - unit_width - value_width));
+  text_in(app.fonts.digits, colors.text, value);
+  if (unit_width > 0) {
+    ImGui::SameLine(0, 5 * app.scale);
+    text_in(app.fonts.text, colors.dim, unit);
+  }
+  ImGui::EndGroup();
+  help_on_hover(help);
+}
+
+void paragraph(const std::string& text, const ImVec4& color) {
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+void clipped_text(const std::string& text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) {
+    ImGui::TextUnformatted(text.c_str());
+    return;
+  }
+  std::string cut = text;
+  while (!cut.empty() && ImGui::CalcTextSize((cut + "…").c_str()).x > width) {
+    // Whole characters: bytes of the form 10xxxxxx continue one.
+    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0) == 0x80) cut.pop_back();
+    if (!cut.empty()) cut.pop_back();
+  }
+  ImGui::TextUnformatted((cut + "…").c_str());
+  help_on_hover(text.c_str());
+}
+
+bool slider(App& app, const std::string& name, const ParameterControl& control, double& value, bool& type_value) {
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, height = 18 * s, radius = 6.5f * s;
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 4 * radius);
+  ImGui::InvisibleButton(name.c_str(), {width, height});
+  note_widget(app.widgets, name);
+  const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
+  const float left = from.x + radius, span = width - 2 * radius, middle = from.y + height / 2;
+  const ImGuiIO& io = ImGui::GetIO();
+
+  bool moved = false;
+  if (ImGui::IsItemActivated() && io.KeyCtrl) {
+    type_value = true;
+  } else if (active && !io.KeyCtrl && (ImGui::IsItemActivated() || io.MouseDelta.x != 0)) {
+    // With Shift the knob follows at a tenth of the hand's speed.
+    double place = static_cast<double>((io.MousePos.x - left) / span);
+    if (io.KeyShift) place = slider_place(control, value) + static_cast<double>(io.MouseDelta.x / span) / 10;
+    const double next = slider_value(control, place, io.KeyShift);
+    moved = next != value;
+    value = next;
+  }
+
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float line = 1.5f * s;
+  const float knob = left + span * static_cast<float>(slider_place(control, value));
+  // Filled from zero where the range holds it, else from the lower end.
+  const float zero = left + span * static_cast<float>(control.log ? 0 : slider_place(control, 0));
+  list.AddRectFilled({left - line, middle - line}, {left + span + line, middle + line}, packed(colors.faint), line);
+  list.AddRectFilled({std::min(zero, knob), middle - line}, {std::max(zero, knob), middle + line},
+                     packed(colors.accent), line);
+  const float mark = std::round(left + span * static_cast<float>(slider_place(control, control.file_value)));
+  list.AddLine({mark, middle + 4 * s}, {mark, middle + 8 * s}, packed(colors.dim), std::max(1.f, s));
+  list.AddCircleFilled({knob, middle}, radius, packed(colors.accent), 32);
+  if (!active) list.AddCircleFilled({knob, middle}, radius - 2 * s, packed(hovered ? colors.raised : colors.panel), 32);
+  return moved;
+}
+
+} // namespace flyball

@@ -1,0 +1,42 @@
+// The few kinds of widget that the panels are made of. Names are for the widget map and unique in the window.
+#pragma once
+
+#include "app/panels/app.hpp"
+#include "app/panels/ui_style.hpp"
+
+#include <string>
+
+namespace flyball {
+
+inline const UiColors& colors_of(const App& app) {
+  return ui_colors(app.theme);
+}
+inline ImU32 packed(const ImVec4& color) {
+  return ImGui::ColorConvertFloat4ToU32(color);
+}
+
+// A button of one icon; `on` shows it pressed in.
+bool icon_button(App& app, const std::string& name, const char* icon, const char* help, bool on = false);
+// A button of words; `primary` is the one that Enter means.
+bool text_button(App& app, const std::string& name, const char* text, bool primary = false);
+
+// What a panel's part is called.
+void heading(App& app, const char* text);
+// The same, that opens and closes; returns whether it is open.
+bool section(App& app, const std::string& name, const char* text, bool& open);
+
+// Text from here to the right edge, ending there.
+void right_text(App& app, const std::string& text, const ImVec4& color, bool digits);
+// "label            value unit": the value in digits. Help appears over the row.
+void row(App& app, const std::string& label, const std::string& value, const char* unit, const char* help = nullptr);
+// Words that may take several lines.
+void paragraph(const std::string& text, const ImVec4& color);
+// Text cut to the width with "..." where it is longer; the whole of it appears over it.
+void clipped_text(const std::string& text, float width);
+
+// A slim slider over the control's range; returns whether the value was moved. Ctrl-click asks for typing.
+bool slider(App& app, const std::string& name, const ParameterControl& control, double& value, bool& type_value);
+
+void help_on_hover(const char* help);
+
+} // namespace flyball

@@ -1,0 +1,83 @@
+#include "engine/study/sweep.hpp"
+
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/validate.hpp"
+
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+namespace flyball {
+
+double Variation::value(int i) const {
+  if (count < 2 || i == 0) return from;
+  if (i == count - 1) return to;
+  return from + (to - from) * i / (count - 1);
+}
+
+std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variation> variations, int threads,
+                              const std::function<void(std::size_t, std::size_t)>& progress) {
+  std::size_t total = 1;
+  for (const Variation& v : variations)
+    total *= static_cast<std::size_t>(std::max(1, v.count));
+  std::vector<SweepPoint> points(total);
+  for (std::size_t i = 0; i < total; ++i) {
+    points[i].parameters.resize(variations.size());
+    std::size_t rest = i;
+    for (std::size_t v = variations.size(); v-- > 0;) {
+      const auto count = static_cast<std::size_t>(std::max(1, variations[v].count));
+      points[i].parameters[v] = variations[v].value(static_cast<int>(rest % count));
+      rest /= count;
+    }
+  }
+
+  std::atomic<std::size_t> next = 0, done = 0;
+  std::atomic<bool> stop = false;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    try {
+      Mechanism varied = mechanism;
+      std::optional<Analysis> analysis;
+      for (std::size_t i; !stop && (i = next++) < total; ++done) {
+        for (std::size_t v = 0; v < variations.size(); ++v)
+          set_parameter(varied, variations[v].address, points[i].parameters[v]);
+        validate(varied);
+        if (analysis)
+          analysis->update(varied);
+        else
+          analysis.emplace(varied);
+        SolveOptions options;
+        options.details = false;
+        options.cancel = &stop;
+        points[i].solution = analysis->solve(options);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+      stop = true;
+    }
+  };
+  const auto cores = static_cast<std::size_t>(std::max(1u, std::thread::hardware_concurrency()));
+  const std::size_t count = std::min(total, threads > 0 ? static_cast<std::size_t>(threads) : cores);
+  {
+    std::vector<std::jthread> workers;
+    for (std::size_t i = 1; i < count; ++i)
+      workers.emplace_back(work);
+    if (progress) {
+      workers.emplace_back(work);
+      while (!stop && done < total) {
+        progress(done, total);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+      progress(done, total);
+    } else {
+      work();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  return points;
+}
+
+} // namespace flyball

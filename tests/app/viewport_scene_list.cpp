@@ -1,0 +1,233 @@
+#include "app/viewport/primitives.hpp"
+#include "app/viewport/scene_list.hpp"
+#include "tests/app/viewport_mechanisms.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+int count(const SceneList& scene, PartId part) {
+  return static_cast<int>(std::count_if(scene.instances.begin(), scene.instances.end(),
+                                        [&](const Instance& i) { return i.part == part; }));
+}
+
+int count(const SceneList& scene, Role role) {
+  return static_cast<int>(std::count_if(scene.instances.begin(), scene.instances.end(),
+                                        [&](const Instance& i) { return i.role == role; }));
+}
+
+const Instance& spring_coil(const SceneList& scene) {
+  const auto found = std::find_if(scene.instances.begin(), scene.instances.end(),
+                                  [](const Instance& i) { return i.role == Role::spring; });
+  REQUIRE(found != scene.instances.end());
+  return *found;
+}
+
+} // namespace
+
+TEST_CASE("every body and joint of a mechanism without shapes is drawn") {
+  const Mechanism m = governor();
+  const SceneList scene = build_scene(m, {});
+  for (int i = 0; i < 4; ++i)
+    CHECK(count(scene, {PartKind::body, i}) > 0);
+  for (int i = 0; i < 6; ++i)
+    CHECK(count(scene, {PartKind::joint, i}) > 0);
+  CHECK(count(scene, Role::drive) == 2); // arc and head
+  CHECK(count(scene, Role::damper) > 0);
+  CHECK(count(scene, Role::cut_mark) == 0);
+}
+
+TEST_CASE("the governor's balls hang on rods to the spindle") {
+  const SceneList scene = build_scene(governor(), {});
+  int balls = 0, rods = 0;
+  for (const Instance& i : scene.instances) {
+    if (i.part != PartId{PartKind::body, 1}) continue;
+    if (i.primitive == Primitive::sphere) {
+      ++balls;
+      CHECK((i.position - Vec3(-0.16, 0.2, 0)).norm() < 1e-12);
+      CHECK(i.round > 1.5 * scene.scale.unit);
+    }
+    if (i.primitive == Primitive::capsule) {
+      ++rods;
+      CHECK(i.extent.z() == Approx(0.08));
+    }
+  }
+  CHECK(balls == 1);
+  CHECK(rods == 1);
+}
+
+TEST_CASE("the spring's colour tells pressed from stretched, and its length follows the collar") {
+  const Mechanism m = governor();
+  const Palette& colors = palette(Theme::light);
+  const SceneList pressed = build_scene(m, {});
+  CHECK(spring_coil(pressed).color == colors.compression);
+  std::vector<Pose> poses = drawn_poses(m);
+  poses[3].position.y() = 0.2 - 0.25;
+  const SceneList stretched = build_scene(m, poses);
+  CHECK(spring_coil(stretched).color == colors.tension);
+  CHECK(spring_coil(stretched).extent.z() - spring_coil(pressed).extent.z() == Approx(0.25 - 0.0744));
+  poses[3].position.y() = 0.2 - 0.15;
+  const Color slack = spring_coil(build_scene(m, poses)).color;
+  CHECK(std::abs(slack.b - colors.slack.b) < 0.01f);
+}
+
+TEST_CASE("parts move with the poses and keep their size") {
+  const Mechanism m = governor();
+  std::vector<Pose> poses = drawn_poses(m);
+  for (Pose& pose : poses) {
+    pose.position = Vec3(-pose.position.z(), pose.position.y(), pose.position.x()) + Vec3(1, 2, 3);
+    pose.rotation = Quat(Eigen::AngleAxisd(-std::numbers::pi / 2, Vec3::UnitY()));
+  }
+  const SceneList still = build_scene(m, {}), moved = build_scene(m, poses);
+  REQUIRE(still.instances.size() == moved.instances.size());
+  CHECK(still.scale.unit == moved.scale.unit);
+  for (std::size_t i = 0; i < still.instances.size(); ++i) {
+    const Instance &a = still.instances[i], &b = moved.instances[i];
+    if (a.role != Role::body) continue;
+    const Vec3 expected = Vec3(-a.position.z(), a.position.y(), a.position.x()) + Vec3(1, 2, 3);
+    CHECK((b.position - expected).norm() < 1e-12);
+    CHECK(a.extent == b.extent);
+  }
+}
+
+TEST_CASE("cut joints are marked when named") {
+  const std::vector<std::string> cut{"link1", "arm2"};
+  const SceneList scene = build_scene(governor(), {}, {.cut_joints = cut});
+  const int marks = count(scene, Role::cut_mark);
+  CHECK(marks == 3); // the double bar of a link, the broken ring of a joint
+}
+
+TEST_CASE("given shapes are drawn as given") {
+  Mechanism m;
+  Body box = make_body("box", 1, {1, 0, 0});
+  box.shapes.resize(2);
+  box.shapes[0].type = ShapeType::box;
+  box.shapes[0].size = {1, 2, 3};
+  box.shapes[0].color = {{1, 0, 0}};
+  box.shapes[1].type = ShapeType::capsule;
+  box.shapes[1].radius = 0.25;
+  box.shapes[1].to = {0, 0, 4};
+  m.bodies = {box};
+  const SceneList scene = build_scene(m, {});
+  REQUIRE(scene.instances.size() == 2);
+  const Instance &first = scene.instances[0], &second = scene.instances[1];
+  CHECK((first.extent + Vec3::Constant(first.round) - Vec3(0.5, 1, 1.5)).norm() < 1e-12);
+  CHECK(first.color == Color{1, 0, 0, 1});
+  CHECK(second.round == 0.25);
+  CHECK(second.extent.z() == 2);
+}
+
+TEST_CASE("numbered bodies of one name share a hue, others do not") {
+  const SceneList scene = build_scene(governor(), {}, {.joints = false, .drives = false, .forces = false});
+  std::array<Color, 4> colors;
+  for (const Instance& i : scene.instances)
+    colors[static_cast<std::size_t>(i.part.index)] = i.color;
+  const auto apart = [&](std::size_t a, std::size_t b) {
+    return std::abs(colors[a].r - colors[b].r) + std::abs(colors[a].g - colors[b].g) +
+           std::abs(colors[a].b - colors[b].b);
+  };
+  CHECK(apart(1, 2) < 0.5f);
+  CHECK(apart(0, 1) > 0.5f);
+  CHECK(apart(1, 3) > 0.5f);
+}
+
+TEST_CASE("every type of joint and force has a sign of its own") {
+  for (const JointType type :
+       {JointType::revolute, JointType::prismatic, JointType::cylindrical, JointType::universal,
+        JointType::spherical, JointType::planar, JointType::fixed}) {
+    Mechanism m;
+    m.bodies = {make_body("a", 1, {0, 1, 0}), make_body("b", 1, {0, -1, 0})};
+    m.joints = {make_joint("hold", JointType::fixed, "ground", "a", {0, 2, 0}, {0, 1, 0}),
+                make_joint("j", type, "a", "b", {0, 0, 0}, {0, 1, 0})};
+    INFO(type_name(type));
+    const SceneList scene = build_scene(m, {});
+    CHECK(count(scene, {PartKind::joint, 1}) > 0);
+    CHECK(count(scene, {PartKind::body, 1}) > 0);
+  }
+  for (const ForceType type : {ForceType::spring, ForceType::force, ForceType::torque, ForceType::drag}) {
+    Mechanism m;
+    m.bodies = {make_body("a", 1, {0, 1, 0})};
+    Force force;
+    force.type = type;
+    force.body = "a";
+    force.bodies = {"ground", "a"};
+    force.points = {Vec3(0, 0, 0), Vec3(0, 1, 0)};
+    force.vector = {1, 0, 0};
+    m.forces = {force};
+    INFO(type_name(type));
+    CHECK(count(build_scene(m, {}), {PartKind::force, 0}) > 0);
+  }
+}
+
+TEST_CASE("nothing lies below the floor, at any phase of a drive") {
+  const Mechanism m = governor();
+  const SceneList scene = build_scene(m, {});
+  CHECK(scene.floor < scene.bounds.lower.y());
+  CHECK(scene.floor > scene.bounds.lower.y() - scene.scale.unit);
+
+  Mechanism wheel;
+  wheel.bodies = {make_body("arm", 1, {1, 0, 0})};
+  wheel.joints = {make_joint("spin", JointType::revolute, "ground", "arm", {0, 0, 0}, {0, 0, 1})};
+  wheel.joints[0].coordinates[0].drive = Drive{20};
+  CHECK(build_scene(wheel, {}).floor < -1);
+}
+
+TEST_CASE("extreme and degenerate mechanisms give finite lists") {
+  CHECK(build_scene(Mechanism{}, {}).instances.empty());
+  Mechanism m;
+  m.bodies = {make_body("tiny", 1e-30, {1e-12, 0, 0}), make_body("far", 1e30, {1e15, 0, 0}),
+              make_body("same", 0, {1e-12, 0, 0})};
+  m.joints = {make_joint("a", JointType::revolute, "ground", "tiny", {0, 0, 0}, {0, 0, 0}),
+              make_joint("b", JointType::prismatic, "tiny", "far", {0, 0, 0}, {1e-200, 0, 0}),
+              make_link("c", "tiny", "same", {1e-12, 0, 0}, {1e-12, 0, 0})};
+  std::vector<Pose> poses = drawn_poses(m);
+  for (const bool broken : {false, true}) {
+    if (broken) poses[1].position.x() = std::numeric_limits<double>::quiet_NaN();
+    const SceneList scene = build_scene(m, poses);
+    for (const Instance& i : scene.instances) {
+      CHECK(i.position.allFinite());
+      CHECK(i.extent.allFinite());
+      CHECK(i.rotation.coeffs().allFinite());
+    }
+    CHECK(scene.bounds.lower.allFinite());
+    CHECK(std::isfinite(scene.floor));
+  }
+}
+
+TEST_CASE("the ghost holds bodies and links only, in its colour") {
+  const Mechanism m = governor();
+  const Color grey{0.5f, 0.5f, 0.5f, 0.3f};
+  const std::vector<Instance> ghost = build_ghost(m, drawn_poses(m), grey);
+  CHECK_FALSE(ghost.empty());
+  for (const Instance& i : ghost) {
+    CHECK((i.role == Role::body || i.role == Role::link));
+    CHECK(i.color == grey);
+  }
+}
+
+TEST_CASE("unit solids are closed and face outwards") {
+  for (int p = 0; p < primitive_count; ++p)
+    for (const int detail : {0, 1, 2}) {
+      const PrimitiveMesh mesh = primitive_mesh(static_cast<Primitive>(p), detail);
+      INFO("primitive " << p << " detail " << detail);
+      const auto at = [&](std::uint32_t i) -> Vec3 {
+        const PrimitiveVertex& v = mesh.vertices[i];
+        return Vec3(v.core[0], v.core[1], v.core[2]) + 0.1 * Vec3(v.normal[0], v.normal[1], v.normal[2]);
+      };
+      // A closed surface that faces outwards has a volume, by the divergence theorem, and no net area.
+      double volume = 0;
+      Vec3 area = Vec3::Zero();
+      for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const Vec3 a = at(mesh.indices[i]), b = at(mesh.indices[i + 1]), c = at(mesh.indices[i + 2]);
+        volume += a.dot(b.cross(c)) / 6;
+        area += (b - a).cross(c - a) / 2;
+      }
+      CHECK(volume > 1e-3);
+      if (static_cast<Primitive>(p) != Primitive::sphere)
+        CHECK(area.norm() < 0.04); // sharp rims, never drawn with a radius, open a little
+    }
+}
