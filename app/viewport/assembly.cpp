@@ -179,6 +179,45 @@ SlideRange slide_range(const Coordinate& c, double unit) {
   return range;
 }
 
+namespace {
+
+struct Span {
+  double low, high;
+};
+
+Span along(const Shaft& shaft, const Bounds& bounds) {
+  const double middle = shaft.direction.dot(bounds.center() - shaft.origin);
+  const double half = shaft.direction.cwiseAbs().dot(0.5 * (bounds.upper - bounds.lower));
+  return {middle - half, middle + half};
+}
+
+// Ends the shaft where its shapes end; one that carries everything at its lower end hangs from the upper.
+void fit_to_shapes(Shaft& shaft, const Body& body, double unit) {
+  const Span whole = along(shaft, shape_bounds(body));
+  const bool hangs = shaft.from - whole.low < unit && whole.high - shaft.to > 3 * unit;
+  shaft.from = whole.low;
+  shaft.to = whole.high;
+  if (hangs) {
+    shaft.direction = -shaft.direction;
+    shaft.from = -whole.high;
+    shaft.to = -whole.low;
+  }
+  for (const Shape& shape : body.shapes) {
+    Body alone;
+    alone.position = body.position;
+    alone.shapes = {shape};
+    const Bounds bounds = shape_bounds(alone);
+    const Span span = along(shaft, bounds);
+    const Vec3 half = 0.5 * (bounds.upper - bounds.lower);
+    const double radius = (half - shaft.direction * shaft.direction.dot(half)).cwiseAbs().maxCoeff();
+    if (span.low > shaft.from + 0.5 * unit || radius <= shaft.base) continue;
+    shaft.base = radius;
+    shaft.base_height = span.high - span.low;
+  }
+}
+
+} // namespace
+
 std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {
   if (body < 0) return std::nullopt;
   const auto b = static_cast<std::size_t>(body);
@@ -219,12 +258,8 @@ std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {
       for (const double value : {range.from, range.to})
         include(other.at + (value - c.drawn) * axis);
     }
-    if (const Bounds shapes = shape_bounds(assembly.mechanism.bodies[b]); !shapes.empty) {
-      const Vec3 half = 0.5 * (shapes.upper - shapes.lower);
-      const double middle = shaft.direction.dot(shapes.center() - shaft.origin);
-      const double reach = shaft.direction.cwiseAbs().dot(half);
-      shaft.from = middle - reach;
-      shaft.to = middle + reach;
+    if (!assembly.mechanism.bodies[b].shapes.empty()) {
+      fit_to_shapes(shaft, assembly.mechanism.bodies[b], unit);
       return shaft;
     }
     shaft.from -= 7 * unit;

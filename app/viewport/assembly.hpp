@@ -55,8 +55,10 @@ SlideRange slide_range(const Coordinate& coordinate, double unit);
 // A body that turns about an axis of ground through all its points: drawn as a shaft.
 struct Shaft {
   Vec3 origin = Vec3::Zero();     // m, drawn pose
-  Vec3 direction = Vec3::UnitY(); // unit length, not downwards
+  Vec3 direction = Vec3::UnitY(); // unit length, from the end held by ground
   double from = 0, to = 0;        // m, its ends along `direction`
+  double base = 0;                // m, radius of the given shape that stands on ground; 0 without
+  double base_height = 0;         // m
   int joint = -1;                 // that it turns in
 };
 std::optional<Shaft> shaft_of(const Assembly& assembly, int body);

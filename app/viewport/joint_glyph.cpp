@@ -70,7 +70,8 @@ void draw_revolute(Sketch& sketch, const Assembly& assembly, std::size_t index, 
     sketch.pen.color = colors.metal;
     if (assembly.mechanism.bodies[static_cast<std::size_t>(body)].shapes.empty())
       sketch.tube(foot + 1.0 * u * shaft->direction, shaft->direction, 0.95 * u, 1.35 * u, 0.2 * u);
-    return draw_anchor(sketch, foot - 0.42 * u * shaft->direction, shaft->direction, 2.7 * u, colors);
+    return draw_anchor(sketch, foot - 0.16 * std::max(2.7 * u, 0.85 * shaft->base) * shaft->direction,
+                       shaft->direction, std::max(2.7 * u, 0.85 * shaft->base), colors);
   }
   if (shaft_of(assembly, p.parent) || shaft_of(assembly, p.child)) {
     // The shaft's head is the knuckle already.
@@ -264,13 +265,21 @@ void draw_drives(Sketch& sketch, const Assembly& assembly, std::size_t index, co
       continue;
     }
     Vec3 center = p.at + 1.9 * u * axis;
-    for (const int body : {p.parent, p.child})
-      if (const auto shaft = shaft_of(assembly, body); shaft && shaft->joint == static_cast<int>(index))
-        center = shaft->origin + (shaft->from + 3.4 * u) * shaft->direction;
+    double radius = 2.7 * u;
+    for (const int body : {p.parent, p.child}) {
+      const auto shaft = shaft_of(assembly, body);
+      if (!shaft || shaft->joint != static_cast<int>(index)) continue;
+      // Round the base of a turntable, otherwise above the bearing.
+      const bool broad = shaft->base > 1.8 * u;
+      center =
+          shaft->origin + (shaft->from + (broad ? 0.5 * shaft->base_height : 3.4 * u)) * shaft->direction;
+      if (broad) radius = 1.1 * shaft->base + 0.4 * u;
+    }
+    const double wire = std::max(0.24 * u, 0.02 * radius);
     if (speed == 0)
-      sketch.ring(center, axis, 2.7 * u, 0.2 * u, false);
+      sketch.ring(center, axis, radius, wire, false);
     else
-      sketch.turn(center, forward, start, 2.7 * u, 0.24 * u);
+      sketch.turn(center, forward, start, radius, wire);
   }
 }
 

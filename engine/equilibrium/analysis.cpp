@@ -183,7 +183,10 @@ Solution Analysis::solve(const SolveOptions& options) {
     existence = check_existence(problem, s.found.z.q, sample_phases(s.system, s.parameters), s.workspace);
   const bool steady = s.found.status == Status::converged && existence.holds;
   Stability stability;
-  if (steady) stability = find_stability(problem, s.found.z, false, s.workspace);
+  if (steady && s.found.minimum)
+    stability = {true, StabilityReason::minimum, {}, {}};
+  else if (steady)
+    stability = find_stability(problem, s.found.z, false, s.workspace);
   const auto end = std::chrono::steady_clock::now();
 
   Solution out;

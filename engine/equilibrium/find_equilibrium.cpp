@@ -39,19 +39,20 @@ class Search {
     found_.net.reset();
     found_.iterations = 0;
     found_.open_cut = -1;
+    found_.minimum = false;
     history_.clear();
     if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, {}, &history_); })) return;
     if (p_.cancelled()) return cancelled();
     if (!close_loops()) return;
     if (!arrived_) {
-      if (attempt(assembled_, Net::damped, [&](Unknowns& z) {
+      if (attempt(w_.assembled, Net::damped, [&](Unknowns& z) {
             return newton(p_, z, w_, {200, true}, &history_);
           }))
         return;
       if (p_.cancelled()) return cancelled();
     }
     if (!arrived_ && p_.parameters.moving) {
-      if (attempt(assembled_, Net::homotopy, [&](Unknowns& z) { return homotopy(p_, z, w_, &history_); }))
+      if (attempt(w_.assembled, Net::homotopy, [&](Unknowns& z) { return homotopy(p_, z, w_, &history_); }))
         return;
       if (p_.cancelled()) return cancelled();
     }
@@ -87,18 +88,21 @@ class Search {
   // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems
   // without a potential have no such order; their eigenvalues judge.
   bool acceptable(const NewtonOutcome& outcome) {
-    if (nearest_ || !p_.symmetric()) return true;
     factor(p_, found_.z, w_);
-    unstable_ = !w_.hessian.positive_definite() && !only_flat();
-    if (unstable_) return false;
-    if (warm_) return outcome.largest_step < 1;
-    if (outcome.largest_step > 1) return false;
+    found_.minimum = p_.symmetric() && w_.hessian.positive_definite();
+    if (nearest_ || !p_.symmetric()) return true;
+    unstable_ = !found_.minimum && !only_flat();
+    if (unstable_ || outcome.largest_step > 1) return false;
+    if (warm_) return true;
     const Potential end = amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics);
     const Eigen::VectorXd* from = &start_;
     if (p_.system.rows > 0) {
-      assembled_ = start_;
-      if (!assemble(p_, assembled_, 0, w_)) return true;
-      from = &assembled_;
+      w_.assembled = start_;
+      const bool closed = assemble(p_, w_.assembled, 0, w_);
+      evaluate(p_, found_.z, 0, w_);
+      factor(p_, found_.z, w_);
+      if (!closed) return true;
+      from = &w_.assembled;
     }
     forward<double>(p_.system, p_.parameters, *from, 0, w_.kinematics);
     const Potential begin = amended_potential(p_.system, p_.parameters, *from, w_.kinematics);
@@ -112,21 +116,21 @@ class Search {
     found_.message = "The solve was cancelled.";
   }
 
-  // Fills assembled_ or says that it cannot be done.
+  // Fills w_.assembled or says that it cannot be done.
   bool close_loops() {
-    assembled_ = start_;
-    if (assemble(p_, assembled_, 0, w_)) return true;
+    w_.assembled = start_;
+    if (assemble(p_, w_.assembled, 0, w_)) return true;
     // Gauss-Newton can stall: try from a few places around the start before calling it infeasible.
     record_opening();
     std::mt19937 random(12345);
     std::uniform_real_distribution<double> spread(-0.7, 0.7);
     for (int i = 0; i < 12 && !p_.cancelled(); ++i) {
-      assembled_ = start_;
+      w_.assembled = start_;
       w_.step.resize(p_.system.nv);
       for (Eigen::Index k = 0; k < w_.step.size(); ++k)
         w_.step[k] = spread(random) * p_.scaling.column[k];
-      retract<double>(p_.system, w_.step, assembled_);
-      if (assemble(p_, assembled_, 0, w_) && closed_the_right_way(p_, w_.kinematics)) return true;
+      retract<double>(p_.system, w_.step, w_.assembled);
+      if (assemble(p_, w_.assembled, 0, w_) && closed_the_right_way(p_, w_.kinematics)) return true;
     }
     found_.status = Status::infeasible;
     return false;
@@ -147,20 +151,21 @@ class Search {
 
   bool go_downhill() {
     found_.net = Net::descent;
-    const bool from_saddle = arrived_ && unstable_ && below_start();
-    if (const DescentEnd end = descend_from(from_saddle ? candidate_.q : assembled_);
-        end != DescentEnd::minimum) {
-      fell_ = end == DescentEnd::unbounded;
+    found_.z.q = w_.assembled;
+    const DescentOutcome descent = descend(p_, found_.z, w_, &history_);
+    found_.iterations += descent.iterations;
+    if (descent.end != DescentEnd::minimum) {
+      fell_ = descent.end == DescentEnd::unbounded;
       return false;
     }
-    const Eigen::VectorXd bottom = found_.z.q;
     const NewtonOutcome outcome = newton(p_, found_.z, w_, {}, &history_);
     found_.iterations += outcome.iterations;
     if (!outcome.converged || outcome.largest_step > 0.2) return false;
     found_.newton = outcome;
+    factor(p_, found_.z, w_);
+    found_.minimum = p_.symmetric() && w_.hessian.positive_definite();
     if (p_.symmetric()) {
-      factor(p_, found_.z, w_);
-      if (!w_.hessian.positive_definite() && !only_flat()) return false;
+      if (!found_.minimum && !only_flat()) return false;
       // Newton may have been right all along, by a way that had to be checked.
       if (arrived_ && !unstable_ && candidate_.q.size() > 0 && same(candidate_.q, found_.z.q)) {
         found_.net = candidate_net_;
@@ -169,26 +174,12 @@ class Search {
     }
     if (arrived_ && unstable_)
       found_.message =
-          from_saddle
-              ? "Newton-Raphson arrived at an unstable state; stepped off it and went downhill."
-              : "Newton-Raphson arrived at an unstable state above the start; went downhill from the start.";
+          same(candidate_.q, w_.assembled)
+              ? "The start is an unstable equilibrium; stepped off it and went downhill to a stable one."
+              : "Newton-Raphson arrived at an unstable equilibrium; went downhill from the start to a "
+                "stable one.";
     found_.status = Status::converged;
     return true;
-  }
-
-  DescentEnd descend_from(const Eigen::VectorXd& q) {
-    found_.z.q = q;
-    const DescentOutcome outcome = descend(p_, found_.z, w_, &history_);
-    found_.iterations += outcome.iterations;
-    return outcome.end;
-  }
-
-  bool below_start() {
-    forward<double>(p_.system, p_.parameters, candidate_.q, 0, w_.kinematics);
-    const Potential there = amended_potential(p_.system, p_.parameters, candidate_.q, w_.kinematics);
-    forward<double>(p_.system, p_.parameters, assembled_, 0, w_.kinematics);
-    const Potential here = amended_potential(p_.system, p_.parameters, assembled_, w_.kinematics);
-    return there.value <= here.value + 1e-12 * (here.magnitude + there.magnitude);
   }
 
   bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
@@ -207,6 +198,9 @@ class Search {
   void settle_for_unstable() {
     if (candidate_.q.size() > 0) {
       found_.z = candidate_;
+      evaluate(p_, found_.z, 0, w_);
+      factor(p_, found_.z, w_);
+      found_.minimum = p_.symmetric() && w_.hessian.positive_definite();
       found_.newton = candidate_outcome_;
       found_.net = candidate_net_;
       found_.status = Status::converged;
@@ -231,7 +225,6 @@ class Search {
   Workspace& w_;
   std::vector<double>& history_;
   Found& found_;
-  Eigen::VectorXd assembled_;
   Unknowns candidate_;
   NewtonOutcome candidate_outcome_;
   std::optional<Net> candidate_net_;

@@ -19,13 +19,15 @@ struct Found {
   Unknowns z;
   NewtonOutcome newton;
   std::optional<Net> net;
+  bool minimum = false; // a strict minimum of the amended potential on the constraints
   int iterations = 0;
   int open_cut = -1;  // infeasible: the worst cut joint, in System::cuts
   double opening = 0; // infeasible: scaled
 };
 
-// From `start`. `nearest` asks for the Newton answer, stable or not. Reuses `found`'s storage; allocates
-// nothing when the plain run arrives in a system of the same size as before.
+// From `start`. `nearest` asks for the Newton answer, stable or not; `warm` says that the start is a
+// neighbour's answer. Reuses `found`'s storage, and allocates nothing when the plain run arrives in a system
+// of the same size as before. An answer is left evaluated and factored in the workspace.
 void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
                       Workspace& w, std::vector<double>& history, Found& found);
 

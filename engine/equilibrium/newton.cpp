@@ -160,8 +160,8 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
 
 bool assemble(const Problem& problem, Eigen::VectorXd& q, double t, Workspace& w) {
   if (problem.system.rows == 0) return true;
-  w.zero_lambda.setZero(problem.system.rows);
-  Unknowns z{q, w.zero_lambda};
+  Unknowns& z = w.closing;
+  z.lambda.setZero(problem.system.rows);
   const auto opening = [&](const Eigen::VectorXd& at) {
     z.q = at;
     forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
@@ -179,7 +179,7 @@ bool assemble(const Problem& problem, Eigen::VectorXd& q, double t, Workspace& w
     const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
     if (size < 1e-15) break;
     double fraction = std::min(1., 0.5 / size), next = open;
-    Eigen::VectorXd moved;
+    Eigen::VectorXd& moved = w.moved;
     for (;; fraction /= 2) {
       moved = q;
       apply_step(problem, w.scaled_step, fraction, moved, w);

@@ -7,8 +7,6 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   const System& system = problem.system;
   error.setZero(system.nv);
   if (system.nv == 0) return;
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
   double previous = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 3; ++round) {
     w.q_long = z.q.cast<long double>();

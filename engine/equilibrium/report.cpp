@@ -194,15 +194,17 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
     const int n = system.nv, m = w.constraints.rank();
     // Of the balance on the null space and the constraints on the range, both in scaled units and
     // equilibrated.
-    const Eigen::MatrixXd reduced = w.hessian.equilibrated();
-    double high = 0, low = std::numeric_limits<double>::infinity();
-    if (n > m) {
-      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(reduced);
-      high = svd.singularValues()[0];
-      low = svd.singularValues().tail(1)[0];
+    if (n <= 400) {
+      out.condition = 1;
+      if (n > m) {
+        const Eigen::JacobiSVD<Eigen::MatrixXd> svd(w.hessian.equilibrated());
+        // Directions that nothing resists are not solved for.
+        double low = svd.singularValues()[0];
+        for (double value : svd.singularValues())
+          if (value > ReducedHessian::zero * svd.singularValues()[0]) low = value;
+        if (low > 0) out.condition = svd.singularValues()[0] / low;
+      }
     }
-    if (n <= 400) out.condition = n > m ? high / low : 1.;
-    if (out.condition && !std::isfinite(*out.condition)) out.condition.reset();
   }
   out.message = in.found.message;
   if (out.message.empty()) out.message = "Converged.";
@@ -210,7 +212,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
     out.message += " Nothing resists";
     for (std::size_t i = 0; i < out.neutral.size(); ++i)
       out.message += (i ? ", " : " ") + out.neutral[i];
-    out.message += "; held where it was drawn.";
+    out.message += out.neutral.size() == 1 ? "; its value is arbitrary." : "; their values are arbitrary.";
   }
   if (out.stable == false && in.found.message.empty()) out.message += " This state is unstable.";
 }

@@ -20,7 +20,8 @@ struct Workspace {
   Kinematics<long double> kinematics_long;
   Residual<long double> residual_long;
   Configuration<long double> q_long, lambda_long;
-  Unknowns trial;
+  Unknowns trial, closing;
+  Eigen::VectorXd assembled, moved;
 };
 
 } // namespace flyball
