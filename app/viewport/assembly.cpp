@@ -218,6 +218,10 @@ void fit_to_shapes(Shaft& shaft, const Body& body, double unit) {
 
 } // namespace
 
+bool on_axis(const Shaft& shaft, const Vec3& drawn, double unit) {
+  return (drawn - shaft.origin).cross(shaft.direction).norm() < 0.6 * unit;
+}
+
 std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {
   if (body < 0) return std::nullopt;
   const auto b = static_cast<std::size_t>(body);
@@ -230,19 +234,22 @@ std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {
     const bool on_ground = assembly.joint_bodies[j][0] < 0 || assembly.joint_bodies[j][1] < 0;
     if (!on_ground || (joint.type != JointType::revolute && joint.type != JointType::cylindrical)) continue;
 
-    Shaft shaft{joint.at, direction(joint.axis, Vec3::UnitZ()), 0, 0, bearing.joint};
+    Shaft shaft;
+    shaft.origin = joint.at;
+    shaft.direction = direction(joint.axis, Vec3::UnitZ());
+    shaft.joint = bearing.joint;
     if (shaft.direction.dot(assembly.scale.up) < 0) shaft.direction = -shaft.direction;
-    const auto off_axis = [&](const Vec3& p) {
-      return (p - shaft.origin).cross(shaft.direction).norm() > 0.6 * unit;
-    };
     const auto include = [&](const Vec3& p) {
       const double along = shaft.direction.dot(p - shaft.origin);
       shaft.from = std::min(shaft.from, along);
       shaft.to = std::max(shaft.to, along);
     };
-    if (off_axis(assembly.mechanism.bodies[b].position) ||
-        std::any_of(attachments.begin(), attachments.end(),
-                    [&](const Attachment& a) { return off_axis(a.at); }))
+    const Body& turning = assembly.mechanism.bodies[b];
+    const auto off_axis = [&](const Vec3& p) { return !on_axis(shaft, p, unit); };
+    if (off_axis(turning.position)) continue;
+    // With shapes of its own it may carry things anywhere, as a turntable does.
+    if (turning.shapes.empty() && std::any_of(attachments.begin(), attachments.end(),
+                                              [&](const Attachment& a) { return off_axis(a.at); }))
       continue;
     include(assembly.mechanism.bodies[b].position);
     for (const Attachment& a : attachments) {
@@ -273,7 +280,8 @@ namespace {
 
 bool on_shaft(const Assembly& assembly, const Joint& joint, int body) {
   const std::optional<Shaft> shaft = shaft_of(assembly, body);
-  return shaft && direction(joint.axis, Vec3::UnitZ()).cross(shaft->direction).norm() < 1e-3;
+  return shaft && on_axis(*shaft, joint.at, assembly.scale.unit) &&
+         direction(joint.axis, Vec3::UnitZ()).cross(shaft->direction).norm() < 1e-3;
 }
 
 } // namespace

@@ -52,7 +52,8 @@ struct SlideRange {
 };
 SlideRange slide_range(const Coordinate& coordinate, double unit);
 
-// A body that turns about an axis of ground through all its points: drawn as a shaft.
+// A body that turns about an axis of ground through its mass centre and all its points (or only the former,
+// where its shapes are given): drawn as a shaft.
 struct Shaft {
   Vec3 origin = Vec3::Zero();     // m, drawn pose
   Vec3 direction = Vec3::UnitY(); // unit length, from the end held by ground
@@ -62,6 +63,8 @@ struct Shaft {
   int joint = -1;                 // that it turns in
 };
 std::optional<Shaft> shaft_of(const Assembly& assembly, int body);
+// Whether a point of the drawn pose lies on its axis, by the size of glyphs.
+bool on_axis(const Shaft& shaft, const Vec3& drawn, double unit);
 
 // Which end of a prismatic or cylindrical joint is drawn as the slider (0 or 1); the other is its rail.
 int slider_end(const Assembly& assembly, std::size_t joint);

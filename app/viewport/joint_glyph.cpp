@@ -73,7 +73,9 @@ void draw_revolute(Sketch& sketch, const Assembly& assembly, std::size_t index, 
     return draw_anchor(sketch, foot - 0.16 * std::max(2.7 * u, 0.85 * shaft->base) * shaft->direction,
                        shaft->direction, std::max(2.7 * u, 0.85 * shaft->base), colors);
   }
-  if (shaft_of(assembly, p.parent) || shaft_of(assembly, p.child)) {
+  for (const int body : {p.parent, p.child}) {
+    const auto shaft = shaft_of(assembly, body);
+    if (!shaft || !on_axis(*shaft, assembly.mechanism.joints[index].at, u)) continue;
     // The shaft's head is the knuckle already.
     sketch.pen.color = colors.metal_dark;
     return sketch.disc(p.at, p.axis, 1.75 * u, 0.62 * u, 0.2 * u);

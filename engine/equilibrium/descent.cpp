@@ -52,6 +52,7 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
     // In equilibrated coordinates: step along each eigenvector against the gradient, with |eigenvalue|.
     const Eigen::VectorXd g = gradient.cwiseProduct(hessian.scale());
     Eigen::VectorXd y = Eigen::VectorXd::Zero(g.size());
+    const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
     double slope = 0, lowest = 0;
     Eigen::Index lowest_index = 0;
     bool down = false;
@@ -62,7 +63,15 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
         lowest = mu;
         lowest_index = k;
       }
-      if (std::abs(mu) <= ReducedHessian::zero) continue;
+      if (std::abs(mu) <= ReducedHessian::zero) {
+        // Nothing resists here. A force that pushes this way has a long way to go.
+        const Eigen::VectorXd way = hessian.eigenvectors().col(k).cwiseProduct(hessian.scale());
+        const double length = (basis * way).lpNorm<Eigen::Infinity>();
+        if (!(std::abs(gradient.dot(way)) > 1e-9 * force * length)) continue;
+        y -= hessian.eigenvectors().col(k) * (std::copysign(radius, along) / length);
+        slope -= std::abs(along) * radius / length;
+        continue;
+      }
       y -= hessian.eigenvectors().col(k) * (along / std::abs(mu));
       slope -= along * along / std::abs(mu);
     }

@@ -163,11 +163,11 @@ TEST_CASE("Text that is not JSON is told with line and column") {
   check_mistake(" \n\t ", "", "empty");
   check_mistake("[1, 2]", "", "expected an object, found an array of 2 elements");
   check_mistake("{\n  \"flyball\": 1,\n  \"name\" 3}", "line 3, column 10", "not JSON");
-  check_mistake("{\"flyball\": 1", "line 1, column 13", "not JSON");
+  check_mistake("{\"flyball\": 1", "line 1, column 14", "not JSON");
   check_mistake("{\"flyball\": NaN}", "line 1, column 13", "not JSON");
   check_mistake("{\"flyball\": Infinity}", "line 1, column 13", "not JSON");
   check_mistake("{\"flyball\": 1} x", "line 1, column 16", "not JSON");
-  check_mistake("{\"flyball\": 1, // no\n}", "line 1, column 17", "not JSON");
+  check_mistake("{\"flyball\": 1, // no\n}", "line 1, column 16", "not JSON");
   check_mistake("{\n\"name\": \"\xFF\"}", "line 2, column 10", "UTF-8");
   check_mistake("\xFF\xFE{", "line 1, column 1", "UTF-8");
   check_mistake("{\"name\": \"\xED\xA0\x80\"}", "line 1, column 11", "UTF-8");

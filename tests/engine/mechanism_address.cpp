@@ -1,0 +1,157 @@
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/scene.hpp"
+
+#include "tests/catch.hpp"
+#include "tests/engine/mechanism_everything.hpp"
+#include "tests/engine/mechanism_random.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+using namespace flyball;
+using namespace flyball::test;
+
+TEST_CASE("Every address of every scene can be read and set, and changes nothing else") {
+  std::vector<Mechanism> mechanisms{read_scene(everything)};
+  for (const std::string& file : shipped_scenes())
+    mechanisms.push_back(load_scene(file));
+  for (const Mechanism& original : mechanisms) {
+    const std::vector<std::string> addresses = parameter_addresses(original);
+    CHECK(std::set<std::string>(addresses.begin(), addresses.end()).size() == addresses.size());
+    for (const std::string& address : addresses) {
+      INFO(original.name << ": " << address);
+      const double value = get_parameter(original, address);
+      Mechanism changed = original;
+      set_parameter(changed, address, value + 0.5);
+      REQUIRE(get_parameter(changed, address) == value + 0.5);
+      REQUIRE_FALSE(changed == original);
+      REQUIRE(parameter_addresses(changed) == addresses);
+      int different = 0;
+      for (const std::string& other : addresses)
+        if (get_parameter(changed, other) != get_parameter(original, other)) ++different;
+      // A gear's offset, while absent, follows what it is derived from.
+      REQUIRE(different >= 1);
+      REQUIRE(different <= 2);
+      // Absent optional fields now hold what they stood for; apart from these all is as before.
+      Mechanism restored = changed;
+      set_parameter(restored, address, value);
+      for (const std::string& other : addresses)
+        REQUIRE(get_parameter(restored, other) == get_parameter(original, other));
+      REQUIRE_NOTHROW(parse_scene(write_scene(changed)));
+    }
+  }
+}
+
+TEST_CASE("Addresses reach the fields they name, with units") {
+  const Mechanism m = read_scene(everything);
+  struct Expected {
+    const char* address;
+    double value;
+    const char* unit;
+  };
+  const Expected all[] = {
+      {"gravity.1", -9.80665, "m/s^2"},
+      {"bodies.table.mass", 2, "kg"},
+      {"bodies.table.position.1", 0.5, "m"},
+      {"bodies.arm.inertia.5", 0.03, "kg m^2"},
+      {"joints.spin.drive.speed", 10, "rad/s"},
+      {"joints.hinge.at.0", 1, "m"},
+      {"joints.hinge.axis.2", 2, ""},
+      {"joints.hinge.coordinate", 0.5, "rad"},
+      {"joints.hinge.spring.stiffness", 300, "N m/rad"},
+      {"joints.hinge.spring.free", 0.1, "rad"},
+      {"joints.hinge.damping", 4, "N m s/rad"},
+      {"joints.hinge.stop.lower", -1, "rad"},
+      {"joints.hinge.stop.stiffness", 900, "N m/rad"},
+      {"joints.slide.damping", 0, "N s/m"},
+      {"joints.thread.coordinate.1", 0.3, "m"},
+      {"joints.thread.spring.1.stiffness", 70, "N/m"},
+      {"joints.thread.damping.0", 5, "N m s/rad"},
+      {"joints.thread.stop.1.upper", 3, "m"},
+      {"joints.thread.drive.0.speed", 6, "rad/s"},
+      {"joints.ice.drive.2.speed", 7, "rad/s"},
+      {"joints.ice.x_axis.2", 1, ""},
+      {"joints.cardan.axes.1.1", 1, ""},
+      {"joints.flight.drive.0.speed", 8, "m/s"},
+      {"joints.tie.points.1.2", 5, "m"},
+      {"joints.tie.length", 5.5, "m"},
+      {"joints.teeth.ratio", -2, ""},
+      {"joints.teeth.offset", 0.75, "rad"},
+      {"joints.worm.offset", -1.5, "rad"}, // 0 - 3 * 0.5, from the drawn values
+      {"forces.coil.stiffness", 120, "N/m"},
+      {"forces.coil.free_length", 0.9, "m"},
+      {"forces.coil.damping", 1.5, "N s/m"},
+      {"forces.coil.points.1.0", 1, "m"},
+      {"forces.push.vector.2", 6, "N"},
+      {"forces.push.at.1", 2, "m"},
+      {"forces.turn.vector.0", 7, "N m"},
+      {"forces.turn.at.0", 1, "m"}, // the mass centre
+      {"forces.air.linear", 0.125, "N s/m"},
+      {"forces.air.quadratic", 0.375, "N s^2/m^2"},
+      {"simulation.duration", 20, "s"},
+  };
+  const std::vector<std::string> addresses = parameter_addresses(m);
+  for (const Expected& expected : all) {
+    INFO(expected.address);
+    CHECK(get_parameter(m, expected.address) == expected.value);
+    CHECK(parameter_unit(m, expected.address) == expected.unit);
+    CHECK(std::find(addresses.begin(), addresses.end(), expected.address) != addresses.end());
+  }
+  CHECK(addresses.front() == "gravity.0");
+  CHECK(addresses.back() == "simulation.duration");
+}
+
+TEST_CASE("An absent optional number is set into being") {
+  Mechanism m = read_scene(edited(R"(, "length": 5.5)", ""));
+  const double drawn = get_parameter(m, "joints.tie.length");
+  CHECK(drawn == Approx(std::sqrt(26.0)));
+  CHECK_FALSE(m.joints.at(10).length.has_value());
+  set_parameter(m, "joints.tie.length", 4);
+  CHECK(m.joints.at(10).length == 4);
+  set_parameter(m, "forces.turn.at.1", 9);
+  CHECK(m.forces.at(2).at == Vec3(1, 9, 0));
+}
+
+TEST_CASE("An address that names nothing is answered with what exists") {
+  const Mechanism m = read_scene(everything);
+  const auto check = [&](const std::string& address, const std::string& where, const std::string& expected) {
+    INFO(address);
+    Mechanism copy = m;
+    try {
+      set_parameter(copy, address, 1);
+      FAIL_CHECK("accepted");
+    } catch (const SceneError& error) {
+      CHECK(error.where() == where);
+      CHECK_THAT(error.expected(), ContainsSubstring(expected));
+    }
+    CHECK(copy == m);
+    CHECK_THROWS_AS(get_parameter(m, address), SceneError);
+    CHECK_THROWS_AS(parameter_unit(m, address), SceneError);
+  };
+  check("", "", "begins with gravity, bodies, joints, forces or simulation");
+  check("joint.spin.drive.speed", "joint.spin.drive.speed", "did you mean \"joints\"?");
+  check("joints", "joints", "expected one of spin, hinge");
+  check("joints.spn.drive.speed", "joints.spn", "did you mean \"spin\"?");
+  check("joints.hinge.drive.speed", "joints.hinge.drive",
+        "there is no \"drive\" here; what exists: at, axis, coordinate, spring, damping and stop");
+  check("joints.hinge.spring.stifness", "joints.hinge.spring.stifness", "did you mean \"stiffness\"?");
+  check("joints.hinge.spring", "joints.hinge.spring", "names no number yet; what exists: stiffness and free");
+  check("joints.hinge", "joints.hinge", "names no number yet; what exists: at, axis");
+  check("joints.hinge.damping.0", "joints.hinge.damping.0", "expected the address to end before \"0\"");
+  check("joints.thread.drive.1.speed", "joints.thread.drive.1", "what exists: 0");
+  check("joints.thread.drive.speed", "joints.thread.drive.speed", "what exists: 0");
+  check("bodies.ground.mass", "bodies.ground", "expected one of table, arm");
+  check("gravity", "gravity", "what exists: 0, 1 and 2");
+  check("gravity.3", "gravity.3", "what exists: 0, 1 and 2");
+  check("simulation.damped", "simulation.damped", "what exists: duration");
+}
+
+TEST_CASE("A number that is none is not set") {
+  Mechanism m = read_scene(everything);
+  CHECK_THROWS_WITH(set_parameter(m, "bodies.table.mass", std::numeric_limits<double>::infinity()),
+                    "bodies.table.mass: expected a finite number");
+  CHECK_THROWS_AS(set_parameter(m, "gravity.0", std::numeric_limits<double>::quiet_NaN()), SceneError);
+  CHECK(m == read_scene(everything));
+}

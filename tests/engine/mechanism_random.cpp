@@ -1,0 +1,169 @@
+#include "tests/engine/mechanism_random.hpp"
+
+#include "engine/mechanism/file.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+
+namespace flyball::test {
+
+double RandomMechanism::number() {
+  switch (below(6)) {
+  case 0: return 0;
+  case 1: return below(2001) - 1000;
+  case 2: return below(2001) / 1000.0;
+  case 3: return std::normal_distribution<double>()(engine_);
+  default:
+    // Any bits at all: denormals, negative zero, the largest.
+    for (;;) {
+      const auto high = static_cast<std::uint64_t>(engine_());
+      const double any = std::bit_cast<double>(high << 32U | engine_());
+      if (std::isfinite(any)) return any;
+    }
+  }
+}
+
+std::string RandomMechanism::text() {
+  static const std::vector<std::string> pieces{"a",    "Z", " ",  "9", "\"", "\\", "\n",
+                                               "\x01", "ü", "球", "🜚", "/",  "[0]"};
+  std::string all;
+  for (int i = below(8) + 1; i > 0; --i)
+    all += pieces[static_cast<std::size_t>(below(static_cast<int>(pieces.size())))];
+  return all;
+}
+
+Shape RandomMechanism::shape() {
+  Shape shape;
+  shape.type = static_cast<ShapeType>(below(4));
+  shape.description = description();
+  if (shape.type == ShapeType::box)
+    shape.size = vector();
+  else
+    shape.radius = number();
+  if (shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule) {
+    shape.from = vector();
+    shape.to = vector();
+  } else if (maybe()) {
+    shape.at = vector();
+  }
+  if (maybe()) shape.color = {number(), number(), number()};
+  return shape;
+}
+
+Body RandomMechanism::body() {
+  Body body;
+  body.name = text();
+  body.description = description();
+  body.mass = number();
+  body.position = vector();
+  const int entries = 3 * below(3);
+  for (int i = 0; i < entries; ++i)
+    body.inertia[static_cast<std::size_t>(i)] = number();
+  if (maybe()) body.rotation = Quat(number(), number(), number(), number());
+  for (int i = below(3); i > 0; --i)
+    body.shapes.push_back(shape());
+  return body;
+}
+
+Coordinate RandomMechanism::coordinate() {
+  Coordinate coordinate;
+  if (maybe()) coordinate.drawn = number();
+  if (maybe()) coordinate.spring = CoordinateSpring{number(), number(), description()};
+  if (maybe()) coordinate.damping = number();
+  if (maybe()) coordinate.drive = Drive{number(), description()};
+  if (maybe()) {
+    Stop stop;
+    stop.lower = number();
+    if (maybe()) stop.upper = number();
+    if (stop.upper && maybe()) stop.lower.reset();
+    stop.stiffness = number();
+    stop.description = description();
+    coordinate.stop = stop;
+  }
+  return coordinate;
+}
+
+Joint RandomMechanism::joint() {
+  Joint joint;
+  joint.name = text();
+  joint.description = description();
+  joint.type = static_cast<JointType>(below(10));
+  if (joint.type == JointType::gear) {
+    joint.joints = {text(), text()};
+    joint.ratio = number();
+    if (maybe()) joint.offset = number();
+  } else {
+    joint.bodies = {text(), text()};
+  }
+  if (joint.type == JointType::distance) {
+    joint.points = {vector(), vector()};
+    if (maybe()) joint.length = number();
+  }
+  if (has_at(joint.type)) joint.at = vector();
+  if (has_axis(joint.type)) joint.axis = vector();
+  if (has_axis2(joint.type)) joint.axis2 = vector();
+  for (int i = coordinate_count(joint.type); i > 0; --i)
+    joint.coordinates.push_back(maybe() ? coordinate() : Coordinate());
+  if (maybe()) joint.cut = maybe();
+  return joint;
+}
+
+Force RandomMechanism::force() {
+  Force force;
+  force.name = text();
+  force.description = description();
+  force.type = static_cast<ForceType>(below(4));
+  if (force.type == ForceType::spring) {
+    force.bodies = {text(), text()};
+    force.points = {vector(), vector()};
+    force.stiffness = number();
+    if (maybe()) force.free_length = number();
+    force.damping = number();
+    return force;
+  }
+  force.body = text();
+  if (maybe()) force.at = vector();
+  if (force.type == ForceType::drag) {
+    force.linear = number();
+    force.quadratic = number();
+  } else {
+    force.vector = vector();
+    force.frame = static_cast<ForceFrame>(below(2));
+  }
+  return force;
+}
+
+Mechanism RandomMechanism::operator()() {
+  Mechanism m;
+  m.name = text();
+  m.description = description();
+  if (maybe()) m.gravity = vector();
+  for (int i = below(4); i > 0; --i)
+    m.bodies.push_back(body());
+  for (int i = below(6); i > 0; --i)
+    m.joints.push_back(joint());
+  for (int i = below(4); i > 0; --i)
+    m.forces.push_back(force());
+  for (int i = below(3); i > 0; --i)
+    m.sliders.push_back({text(), number(), number(), static_cast<SliderScale>(below(2)), description()});
+  if (maybe()) m.simulation = {number(), maybe(), description()};
+  if (maybe()) m.camera = Camera{vector(), number(), number(), number(), description()};
+  if (maybe()) m.view_description = text();
+  return m;
+}
+
+std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(FLYBALL_ASSETS "/scenes"))
+    if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string text_of(const std::string& file) {
+  return read_bytes(file);
+}
+
+} // namespace flyball::test

@@ -1,0 +1,68 @@
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include "tests/catch.hpp"
+
+#include <array>
+#include <limits>
+
+using namespace flyball;
+
+TEST_CASE("Numbers are as short as they can be and read back exactly") {
+  CHECK(number_text(200) == "200");
+  CHECK(number_text(0.1) == "0.1");
+  CHECK(number_text(-0.0) == "-0.0");
+  CHECK(number_text(1e300) == "1e+300");
+  for (const double value : {1.0 / 3, 0.45377171949723577, std::numeric_limits<double>::denorm_min(),
+                             std::numeric_limits<double>::max()})
+    CHECK(std::stod("0" + number_text(value / 2)) == value / 2);
+}
+
+TEST_CASE("The nearest word is what a person meant") {
+  constexpr std::array<std::string_view, 4> words{"axis", "axes", "bodies", "stiffness"};
+  CHECK(nearest_word("axs", words) == "axis");
+  CHECK(nearest_word("Bodys", words) == "bodies");
+  CHECK(nearest_word("stifness", words) == "stiffness");
+  CHECK(nearest_word("gravity", words).empty());
+  CHECK(nearest_word("", words).empty());
+  CHECK(nearest_word(std::string(100000, 'a'), words).empty());
+  CHECK(word_list(words) == "axis, axes, bodies or stiffness");
+}
+
+TEST_CASE("Text is UTF-8 or not") {
+  for (const char* good : {"", "plain", "ü", "球", "🜚", "\xED\x9F\xBF"})
+    CHECK(find_invalid_utf8(good) == std::string::npos);
+  CHECK(find_invalid_utf8("a\x80") == 1);
+  CHECK(find_invalid_utf8("\xC0\x80") == 0);
+  CHECK(find_invalid_utf8("\xE0\x80\x80") == 0);
+  CHECK(find_invalid_utf8("ab\xF4\x90\x80\x80") == 2);
+  CHECK(find_invalid_utf8("\xE7\x90") == 0);
+}
+
+TEST_CASE("Joint types have their coordinates") {
+  CHECK(coordinate_count(JointType::free) == 6);
+  CHECK(coordinate_count(JointType::distance) == 0);
+  CHECK(is_angle(JointType::cylindrical, 0));
+  CHECK_FALSE(is_angle(JointType::cylindrical, 1));
+  CHECK(is_angle(JointType::planar, 2));
+  CHECK_FALSE(is_angle(JointType::free, 2));
+  CHECK(is_rotation_vector(JointType::free, 3));
+  CHECK_FALSE(is_rotation_vector(JointType::planar, 2));
+}
+
+TEST_CASE("Coordinates are found by name and named") {
+  Mechanism m;
+  Joint joint;
+  joint.name = "one";
+  m.joints.push_back(joint);
+  joint.name = "two";
+  joint.type = JointType::universal;
+  m.joints.push_back(joint);
+  CHECK(find_coordinate(m, "one").joint == 0);
+  CHECK(find_coordinate(m, "two.1").joint == 1);
+  CHECK(find_coordinate(m, "two.1").coordinate == 1);
+  for (const char* none : {"one.0", "two", "two.2", "two.-1", "two.1x", "two.", "three", ""})
+    CHECK(find_coordinate(m, none).joint == -1);
+  CHECK(coordinate_name(m.joints[0], 0) == "one");
+  CHECK(coordinate_name(m.joints[1], 1) == "two.1");
+}
