@@ -45,10 +45,12 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["run_time_s"] = s.run_time_s;
   out["stable"] = s.stable ? Json(*s.stable) : Json(nullptr);
   out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);
-  for (const char* key : {"eigenvalues", "neutral", "drive_torques", "reactions", "poses", "condition"})
+  for (const char* key :
+       {"potential", "eigenvalues", "neutral", "drive_torques", "reactions", "poses", "condition"})
     out[key] = nullptr;
   if (!converged) return out;
 
+  if (s.potential) out["potential"] = number(*s.potential);
   for (const CoordinateSolution& c : s.coordinates) {
     if (c.driven) continue;
     put(out["coordinates"], c.joint, c.index, c.count, number(c.value));
@@ -83,6 +85,19 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
         {"rotation", {number(q.w()), number(q.x()), number(q.y()), number(q.z())}}};
   }
   if (s.condition) out["condition"] = number(*s.condition);
+  return out;
+}
+
+Json to_json(const Mechanism& mechanism, const AllSolutions& all) {
+  Json out;
+  out["equilibria"] = Json::array();
+  for (const Solution& s : all.equilibria)
+    out["equilibria"].push_back(to_json(mechanism, s));
+  Json bounds = Json::object();
+  for (const AllSolutions::Bound& b : all.bounds)
+    put(bounds, b.joint, b.index, b.count, {b.lower, b.upper});
+  out["search"] = {
+      {"bounds", std::move(bounds)}, {"starts", all.starts}, {"complete", false}, {"message", all.message}};
   return out;
 }
 

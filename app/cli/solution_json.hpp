@@ -1,7 +1,7 @@
 // A solution as the JSON object that `flyball solve --json` prints.
 #pragma once
 
-#include "engine/equilibrium/solution.hpp"
+#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
 #include <nlohmann/json.hpp>
@@ -10,5 +10,8 @@ namespace flyball::cli {
 
 // Every key is always there; what is not available is null.
 nlohmann::ordered_json to_json(const Mechanism& mechanism, const Solution& solution);
+
+// {"equilibria": [as above], "search": {"bounds", "starts", "complete"}}.
+nlohmann::ordered_json to_json(const Mechanism& mechanism, const AllSolutions& all);
 
 } // namespace flyball::cli

@@ -87,4 +87,23 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   return out + "\n";
 }
 
+std::string to_text(const Mechanism& mechanism, const AllSolutions& all) {
+  std::string out = fmt::format("{}: {} equilibria from {} starts. {}\n", mechanism.name,
+                                all.equilibria.size(), all.starts, all.message);
+  out += "searched";
+  for (const AllSolutions::Bound& b : all.bounds)
+    out += fmt::format("  {} {:.4g} to {:.4g} {}", label(b.joint, b.index, b.count), b.lower, b.upper,
+                       b.angle ? "rad" : "m");
+  for (std::size_t i = 0; i < all.equilibria.size(); ++i) {
+    const Solution& s = all.equilibria[i];
+    out += fmt::format("\n\n{}  {}", i + 1, stability(s));
+    if (s.potential) out += fmt::format(", potential {:.9g} J", *s.potential);
+    for (const CoordinateSolution& c : s.coordinates)
+      if (!c.driven)
+        out += fmt::format("\n   {} = {} {}  ± {:.1g}", label(c.joint, c.index, c.count),
+                           rounded(c.value, c.error, 17), c.angle ? "rad" : "m", c.error);
+  }
+  return out;
+}
+
 } // namespace flyball::cli

@@ -2,7 +2,7 @@
 // number with its unit.
 #pragma once
 
-#include "engine/equilibrium/solution.hpp"
+#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
 #include <string>
@@ -10,5 +10,6 @@
 namespace flyball::cli {
 
 std::string to_text(const Mechanism& mechanism, const Solution& solution);
+std::string to_text(const Mechanism& mechanism, const AllSolutions& all);
 
 } // namespace flyball::cli

@@ -16,7 +16,7 @@ void add_solve(CLI::App& app, int& exit_code) {
     SceneArgument scene;
     std::vector<std::string> start;
     int modes = 0;
-    bool nearest = false, json = false;
+    bool all = false, nearest = false, json = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("solve", "Find the steady state");
@@ -26,6 +26,7 @@ void add_solve(CLI::App& app, int& exit_code) {
                    "Start elsewhere than drawn: joint=value, or joint.index=value (rad, m)")
       ->take_all()
       ->allow_extra_args(false);
+  command->add_flag("--all", options->all, "All equilibria that a bounded search finds, stable or not");
   command->add_flag("--nearest", options->nearest, "The plain Newton-Raphson answer, stable or not");
   command
       ->add_option("--modes", options->modes,
@@ -42,6 +43,12 @@ void add_solve(CLI::App& app, int& exit_code) {
       solve.start.push_back(parse_assignment("--start", text));
     Solution solution;
     try {
+      if (options->all) {
+        const AllSolutions all = Analysis(mechanism).solve_all(solve);
+        fmt::print("{}\n", options->json ? to_json(mechanism, all).dump(2) : to_text(mechanism, all));
+        exit_code = all.equilibria.empty() ? exit_no_result : exit_done;
+        return;
+      }
       solution = Analysis(mechanism).solve(solve);
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());

@@ -191,10 +191,13 @@ Span along(const Shaft& shaft, const Bounds& bounds) {
   return {middle - half, middle + half};
 }
 
-// Ends the shaft where its shapes end; one that carries everything at its lower end hangs from the upper.
-void fit_to_shapes(Shaft& shaft, const Body& body, double unit) {
+// Ends the shaft where its shapes end. One whose bearing is at its upper end, with what it carries below,
+// hangs.
+void fit_to_shapes(Shaft& shaft, const Body& body, std::span<const Attachment> attachments, double unit) {
   const Span whole = along(shaft, shape_bounds(body));
-  const bool hangs = shaft.from - whole.low < unit && whole.high - shaft.to > 3 * unit;
+  bool hangs = whole.high < -whole.low;
+  for (const Attachment& a : attachments)
+    if (a.joint != shaft.joint && (a.at - shaft.origin).norm() < 2 * unit) hangs = false;
   shaft.from = whole.low;
   shaft.to = whole.high;
   if (hangs) {
@@ -265,8 +268,8 @@ std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {
       for (const double value : {range.from, range.to})
         include(other.at + (value - c.drawn) * axis);
     }
-    if (!assembly.mechanism.bodies[b].shapes.empty()) {
-      fit_to_shapes(shaft, assembly.mechanism.bodies[b], unit);
+    if (!turning.shapes.empty()) {
+      fit_to_shapes(shaft, turning, attachments, unit);
       return shaft;
     }
     shaft.from -= 7 * unit;

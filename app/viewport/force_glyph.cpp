@@ -117,8 +117,8 @@ void draw_spring(Sketch& sketch, const Assembly& assembly, std::size_t index, co
   sketch.pen.color = colors.metal_dark;
   for (const Vec3& end : {a, b})
     sketch.sphere(end, 0.45 * u);
-  if (first < 0) draw_anchor(sketch, a, b - a, 1.5 * u, colors);
-  if (second < 0) draw_anchor(sketch, b, a - b, 1.5 * u, colors);
+  if (first < 0) draw_anchor(sketch, a, b - a, 1.5 * u, u, colors);
+  if (second < 0) draw_anchor(sketch, b, a - b, 1.5 * u, u, colors);
 }
 
 // Arrows grow with the square root of what they stand for, the largest of its kind being ten units long.

@@ -14,6 +14,7 @@ void draw_joint_forces(Sketch& sketch, const Assembly& assembly, std::size_t joi
 void draw_force(Sketch& sketch, const Assembly& assembly, std::size_t force, const Palette& colors);
 
 // A hatched plate: here something is held by ground. `normal` points away from ground.
-void draw_anchor(Sketch& sketch, const Vec3& at, const Vec3& normal, double radius, const Palette& colors);
+void draw_anchor(Sketch& sketch, const Vec3& at, const Vec3& normal, double radius, double unit,
+                 const Palette& colors);
 
 } // namespace flyball

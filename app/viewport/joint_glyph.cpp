@@ -30,6 +30,11 @@ Place place_of(const Assembly& assembly, std::size_t index) {
   return p;
 }
 
+// Half the thickness of an anchor's plate.
+double anchor_half(double radius, double unit) {
+  return std::min(0.16 * radius, 0.45 * unit);
+}
+
 // The side of a joint at which ground holds it: below if the axis leans upwards, otherwise behind.
 Vec3 ground_side(const Vec3& axis, const Vec3& up) {
   return axis.dot(up) < -0.3 ? axis : Vec3(-axis);
@@ -70,8 +75,9 @@ void draw_revolute(Sketch& sketch, const Assembly& assembly, std::size_t index, 
     sketch.pen.color = colors.metal;
     if (assembly.mechanism.bodies[static_cast<std::size_t>(body)].shapes.empty())
       sketch.tube(foot + 1.0 * u * shaft->direction, shaft->direction, 0.95 * u, 1.35 * u, 0.2 * u);
-    return draw_anchor(sketch, foot - 0.16 * std::max(2.7 * u, 0.85 * shaft->base) * shaft->direction,
-                       shaft->direction, std::max(2.7 * u, 0.85 * shaft->base), colors);
+    const double radius = std::max(2.7 * u, 0.85 * shaft->base);
+    return draw_anchor(sketch, foot - anchor_half(radius, u) * shaft->direction, shaft->direction, radius, u,
+                       colors);
   }
   for (const int body : {p.parent, p.child}) {
     const auto shaft = shaft_of(assembly, body);
@@ -92,7 +98,7 @@ void draw_revolute(Sketch& sketch, const Assembly& assembly, std::size_t index, 
   const Vec3 side = ground_side(p.axis, assembly.scale.up);
   sketch.pen.color = colors.metal;
   sketch.cylinder(p.at + 0.8 * u * side, p.at + 1.9 * u * side, 0.85 * u, 0.1 * u);
-  draw_anchor(sketch, p.at + 2.2 * u * side, -side, 2.2 * u, colors);
+  draw_anchor(sketch, p.at + 2.2 * u * side, -side, 2.2 * u, u, colors);
 }
 
 // The bushings that tell a slider from any other body on its rail.
@@ -128,8 +134,8 @@ void draw_prismatic(Sketch& sketch, const Assembly& assembly, std::size_t index,
              to = rail + (range.to - c.drawn + 2.2 * u) * p.axis;
   sketch.pen.color = colors.metal;
   sketch.cylinder(from, to, 0.45 * u, 0.1 * u);
-  draw_anchor(sketch, from, p.axis, 1.7 * u, colors);
-  draw_anchor(sketch, to, -p.axis, 1.7 * u, colors);
+  draw_anchor(sketch, from, p.axis, 1.7 * u, u, colors);
+  draw_anchor(sketch, to, -p.axis, 1.7 * u, u, colors);
 }
 
 void draw_universal(Sketch& sketch, const Place& p, const Palette& colors) {
@@ -156,7 +162,7 @@ void draw_spherical(Sketch& sketch, const Assembly& assembly, const Place& p, co
   sketch.sphere(p.at, 0.85 * u);
   sketch.pen.color = colors.metal_dark;
   sketch.bowl(p.at, bottom, 1.25 * u);
-  if (p.parent < 0) draw_anchor(sketch, p.at + 1.6 * u * bottom, -bottom, 2 * u, colors);
+  if (p.parent < 0) draw_anchor(sketch, p.at + 1.6 * u * bottom, -bottom, 2 * u, u, colors);
 }
 
 void draw_distance(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
@@ -171,7 +177,7 @@ void draw_distance(Sketch& sketch, const Assembly& assembly, std::size_t index, 
   sketch.sphere(a, 0.68 * u);
   sketch.sphere(b, 0.68 * u);
   for (const auto& [body, at] : {std::pair(first, a), std::pair(second, b)})
-    if (body < 0) draw_anchor(sketch, at, -assembly.scale.up, 1.6 * u, colors);
+    if (body < 0) draw_anchor(sketch, at, -assembly.scale.up, 1.6 * u, u, colors);
 }
 
 void draw_gear(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
@@ -193,12 +199,13 @@ void draw_gear(Sketch& sketch, const Assembly& assembly, std::size_t index, cons
 
 } // namespace
 
-void draw_anchor(Sketch& sketch, const Vec3& at, const Vec3& normal, double radius, const Palette& colors) {
+void draw_anchor(Sketch& sketch, const Vec3& at, const Vec3& normal, double radius, double unit,
+                 const Palette& colors) {
   const Pen before = sketch.pen;
   sketch.pen.surface = Surface::hatched;
   sketch.pen.role = Role::anchor;
   sketch.pen.color = colors.metal;
-  sketch.disc(at, normal, 0.16 * radius, radius, 0.04 * radius);
+  sketch.disc(at, normal, anchor_half(radius, unit), radius, 0.1 * unit);
   sketch.pen = before;
 }
 
@@ -226,7 +233,8 @@ void draw_joint(Sketch& sketch, const Assembly& assembly, std::size_t index, con
     break;
   default: return;
   }
-  if (p.parent < 0) draw_anchor(sketch, p.at - 1.5 * u * assembly.scale.up, assembly.scale.up, 2 * u, colors);
+  if (p.parent < 0)
+    draw_anchor(sketch, p.at - 1.5 * u * assembly.scale.up, assembly.scale.up, 2 * u, u, colors);
 }
 
 void draw_cut_mark(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {

@@ -4,8 +4,8 @@ namespace flyball {
 
 namespace {
 
-constexpr std::array<Color, 6> body_colors = {okabe_ito::sky_blue, okabe_ito::orange, okabe_ito::green,
-                                              okabe_ito::yellow,   okabe_ito::purple, rgb(0x9AA3AD)};
+constexpr std::array<Color, 6> body_colors = {okabe_ito::green,  okabe_ito::orange, okabe_ito::sky_blue,
+                                              okabe_ito::yellow, okabe_ito::purple, rgb(0x9AA3AD)};
 
 constexpr Palette light = {
     .background_top = rgb(0xFBFCFD),

@@ -1,5 +1,6 @@
 #include "engine/equilibrium/analysis.hpp"
 
+#include "engine/equilibrium/all_equilibria.hpp"
 #include "engine/equilibrium/existence.hpp"
 #include "engine/equilibrium/find_equilibrium.hpp"
 #include "engine/equilibrium/refine.hpp"
@@ -216,6 +217,70 @@ Solution Analysis::solve(const SolveOptions& options) {
   }
   const ReportInput input{s.mechanism, problem, s.found, existence, stability};
   report(input, s.error, options.details, s.workspace, out);
+  return out;
+}
+
+AllSolutions Analysis::solve_all(const SolveOptions& options) {
+  State& s = *state_;
+  const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
+  EquilibriumList list = find_all_equilibria(problem, s.drawn, 1, s.workspace);
+  AllSolutions out;
+  out.starts = list.report.starts;
+  for (std::size_t c = 0; c < s.system.coordinates.size(); ++c) {
+    const CoordinateInfo& info = s.system.coordinates[c];
+    const TreeJoint& joint = s.system.tree_joints[static_cast<std::size_t>(info.tree_joint)];
+    if (s.system.links[static_cast<std::size_t>(info.link)].drive >= 0) continue;
+    const SearchRange& r = list.report.ranges[c];
+    out.bounds.push_back(
+        {joint.name, info.index, coordinate_count(joint.type), info.angle, r.lower, r.upper});
+  }
+  struct Entry {
+    double potential;
+    Solution solution;
+    Eigen::VectorXd q;
+    std::vector<int> neutral;
+  };
+  std::vector<Entry> entries;
+  const std::vector<double> phases = sample_phases(s.system, s.parameters);
+  for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i) {
+    Found found;
+    found.status = Status::converged;
+    found.z = list.states[i];
+    found.newton = list.outcomes[i];
+    found.iterations = list.outcomes[i].iterations;
+    const auto begin = std::chrono::steady_clock::now();
+    evaluate(problem, found.z, 0, s.workspace);
+    factor(problem, found.z, s.workspace);
+    refine(problem, found.z, found.newton, s.workspace, s.error);
+    const Existence existence = check_existence(problem, found.z.q, phases, s.workspace);
+    if (!existence.holds) continue;
+    const bool many = s.system.nv > 200 && options.modes == 0;
+    const Stability stability = find_stability(problem, found.z, !many, s.workspace);
+    // A family along a direction that nothing resists is one entry.
+    if (!stability.neutral.empty() && std::ranges::any_of(entries, [&](const Entry& e) {
+          return e.neutral == stability.neutral &&
+                 same_pose(problem, e.q, found.z.q, 1e-6, stability.neutral);
+        }))
+      continue;
+    const auto end = std::chrono::steady_clock::now();
+    Entry entry{0, {}, found.z.q, stability.neutral};
+    entry.solution.status = Status::converged;
+    entry.solution.iterations = found.iterations;
+    entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
+    report({s.mechanism, problem, found, existence, stability}, s.error, options.details, s.workspace,
+           entry.solution);
+    if (s.system.conservative) {
+      forward<double>(s.system, s.parameters, found.z.q, 0, s.workspace.kinematics);
+      entry.potential = amended_potential(s.system, s.parameters, found.z.q, s.workspace.kinematics).value;
+      entry.solution.potential = entry.potential;
+    }
+    entries.push_back(std::move(entry));
+  }
+  std::ranges::stable_sort(entries, {}, &Entry::potential);
+  for (Entry& e : entries)
+    out.equilibria.push_back(std::move(e.solution));
+  out.message = out.equilibria.empty() ? "No equilibrium was found in the range searched."
+                                       : "Found by a bounded search; there may be more.";
   return out;
 }
 

@@ -30,6 +30,20 @@ struct SystemSummary {
   std::vector<std::string> notes; // choices worth telling: "the bearing was cut so that ..."
 };
 
+// All equilibria of a bounded search, lowest potential first where there is one, else as found.
+struct AllSolutions {
+  std::vector<Solution> equilibria;
+  struct Bound {
+    std::string joint;
+    int index = 0, count = 1;
+    bool angle = false;
+    double lower = 0, upper = 0; // rad or m
+  };
+  std::vector<Bound> bounds; // free coordinates
+  int starts = 0;            // Newton-Raphson runs
+  std::string message;       // a sentence
+};
+
 class Analysis {
  public:
   // Compiles. Throws SceneError (validate first for all mistakes at once).
@@ -43,6 +57,9 @@ class Analysis {
   void update(const Mechanism& mechanism);
 
   Solution solve(const SolveOptions& options = {});
+
+  // `options`: details, modes and cancel count.
+  AllSolutions solve_all(const SolveOptions& options = {});
 
   SystemSummary summary() const;
 

@@ -8,25 +8,6 @@
 namespace flyball {
 namespace {
 
-// Direction rows vanish for an axis turned right round, too; such a loop is closed the wrong way.
-bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
-  for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
-    const CutJoint& cut = problem.system.cuts[c];
-    for (const ConstraintRow& row : cut.rows) {
-      if (row.type != RowType::direction || row.w == 3) continue;
-      const Mat3 r = k.at(cut.ends.a).R.transpose() * k.at(cut.ends.b).R;
-      const auto& f = problem.parameters.cuts[c].frame;
-      for (int axis : {row.u, row.w}) {
-        const Vec3& e = f[static_cast<std::size_t>(axis)];
-        if ((axis == 2 || cut.type == JointType::fixed || cut.type == JointType::prismatic) &&
-            e.dot(r * e) < 0)
-          return false;
-      }
-    }
-  }
-  return true;
-}
-
 class Search {
  public:
   Search(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
@@ -232,6 +213,24 @@ class Search {
 };
 
 } // namespace
+
+bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
+  for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
+    const CutJoint& cut = problem.system.cuts[c];
+    for (const ConstraintRow& row : cut.rows) {
+      if (row.type != RowType::direction || row.w == 3) continue;
+      const Mat3 r = k.at(cut.ends.a).R.transpose() * k.at(cut.ends.b).R;
+      const auto& f = problem.parameters.cuts[c].frame;
+      for (int axis : {row.u, row.w}) {
+        const Vec3& e = f[static_cast<std::size_t>(axis)];
+        if ((axis == 2 || cut.type == JointType::fixed || cut.type == JointType::prismatic) &&
+            e.dot(r * e) < 0)
+          return false;
+      }
+    }
+  }
+  return true;
+}
 
 void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
                       Workspace& w, std::vector<double>& history, Found& found) {

@@ -31,4 +31,8 @@ struct Found {
 void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
                       Workspace& w, std::vector<double>& history, Found& found);
 
+// Direction rows vanish for an axis turned right round, too: whether each loop is closed the way it was
+// drawn.
+bool closed_the_right_way(const Problem& problem, const Kinematics<double>& kinematics);
+
 } // namespace flyball

@@ -149,7 +149,8 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     outcome.last_step = size;
     evaluate(problem, z, 0, w);
     if (size <= settings.step_tolerance && fraction == 1.) {
-      // No step is left; but a force that no coordinate resists, or a loop that cannot close, asks for none either.
+      // No step is left; but a force that no coordinate resists, or a loop that cannot close, asks for none
+      // either.
       if (scaled_residual(problem, w) > 1e-8) break;
       outcome.converged = true;
     } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {

@@ -84,6 +84,7 @@ struct Solution {
   std::vector<Reaction> reactions;
   bool reactions_nonunique = false; // redundant loops: the minimum-norm multipliers
   std::vector<Pose> poses;          // in the order of the bodies, at the drawn drive phase
+  std::optional<double> potential;  // J, amended, where there is one
   std::optional<double> condition;  // 2-norm, of the scaled equations
 };
 

@@ -171,7 +171,7 @@ class Compiler {
     int rank = 4;
     if (labelled) rank = 3;
     if (needs_coordinate_[static_cast<std::size_t>(j)]) rank = 2;
-    if (x.cut == false) rank = 1;
+    if (x.cut == false || x.type == JointType::free) rank = 1; // a free joint cannot close a loop
     if (is_driven(j)) rank = 0;
     return std::tuple(rank, coordinate_count(x.type), j);
   }

@@ -105,7 +105,7 @@ Eigen::VectorXd Model::displaced(Dice& dice, double size) const {
 bool Model::close(Eigen::VectorXd& q, double t) const {
   if (system.rows == 0) return true;
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(system.rows);
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 60 && system.nv > 0; ++i) {
     const Point<double> point = evaluate_at<double>(*this, q, none, t);
     if (point.residual.phi.cwiseAbs().maxCoeff() < 3e-16) return true;
     Linearization l;

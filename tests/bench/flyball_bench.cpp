@@ -1,0 +1,180 @@
+// What a solve is made of, in microseconds, and how the parts compare: evaluating the balance, linearising it,
+// a Newton step, a solve from a neighbouring state and one from the drawn pose; and what it saves to leave
+// out what a scene does not need. Ratios of one run are printed at the end, since only those carry over to
+// another machine.
+#include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/refine.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/scene.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <memory>
+
+namespace {
+
+using namespace flyball;
+
+// A scene at its steady state, with the storage of its solves.
+struct Case {
+  Mechanism mechanism;
+  System system;
+  Parameters parameters;
+  Scaling scaling;
+  Workspace workspace;
+  Found found;
+  std::vector<double> history;
+  Eigen::VectorXd drawn, error;
+  Unknowns answer;
+
+  explicit Case(Mechanism m) : mechanism(std::move(m)), system(compile(mechanism)) {
+    take_numbers();
+    drawn_configuration(system, parameters, drawn);
+    solve(drawn, false);
+    answer = found.z;
+    answer.lambda.resize(system.rows);
+  }
+  Problem problem() const { return {system, parameters, scaling}; }
+  void take_numbers() {
+    bind(system, mechanism, parameters);
+    set_scaling(system, parameters, scaling);
+  }
+  void solve(const Eigen::VectorXd& start, bool warm) {
+    find_equilibrium(problem(), start, false, warm, workspace, history, found);
+    if (found.status == Status::converged) refine(problem(), found.z, found.newton, workspace, error);
+  }
+  void set_speed(double speed) {
+    for (Joint& j : mechanism.joints)
+      for (Coordinate& c : j.coordinates)
+        if (c.drive) c.drive->speed = speed;
+    take_numbers();
+  }
+  double speed() const { return get_parameter(mechanism, "joints.spin.drive.speed"); }
+};
+
+Mechanism scene(const std::string& name) {
+  return load_scene(FLYBALL_ASSETS "/scenes/" + name + ".json");
+}
+
+Mechanism without_gravity(Mechanism m) {
+  m.gravity.setZero();
+  return m;
+}
+
+Mechanism standing(Mechanism m) {
+  set_parameter(m, "joints.spin.drive.speed", 0);
+  return m;
+}
+
+// The governor without its links: an open tree of the same bodies, its arms held by springs.
+Mechanism without_loops(Mechanism m) {
+  std::erase_if(m.joints, [](const Joint& j) { return j.type == JointType::distance; });
+  for (Joint& j : m.joints)
+    if (j.name.starts_with("arm")) j.coordinates[0].spring = CoordinateSpring{20, 0};
+  return m;
+}
+
+void add(const std::string& name, const std::shared_ptr<Case>& c, const std::string& part,
+         std::function<void(Case&)> body) {
+  benchmark::RegisterBenchmark((name + "/" + part).c_str(), [c, body](benchmark::State& state) {
+    for ([[maybe_unused]] auto _ : state)
+      body(*c);
+  })->Unit(benchmark::kMicrosecond);
+}
+
+void add_parts(const std::string& name, Mechanism mechanism) {
+  const auto c = std::make_shared<Case>(std::move(mechanism));
+  if (c->found.status != Status::converged)
+    std::fprintf(stderr, "%s does not converge: %s\n", name.c_str(), c->found.message.c_str());
+  add(name, c, "residual", [](Case& x) {
+    forward<double>(x.system, x.parameters, x.answer.q, 0, x.workspace.kinematics);
+    evaluate_residual<double>(x.system, x.parameters, x.answer.q, x.answer.lambda, x.workspace.kinematics,
+                              x.workspace.residual);
+    benchmark::DoNotOptimize(x.workspace.residual.f.data());
+  });
+  add(name, c, "linearise", [](Case& x) {
+    linearize(x.system, x.parameters, x.answer.q, x.answer.lambda, x.workspace.kinematics,
+              x.workspace.residual, x.workspace.linearization);
+    benchmark::DoNotOptimize(x.workspace.linearization.stiffness.data());
+  });
+  add(name, c, "iteration", [](Case& x) {
+    const Problem p = x.problem();
+    evaluate(p, x.answer, 0, x.workspace);
+    factor(p, x.answer, x.workspace);
+    newton_step(p, x.workspace.residual.f, x.workspace.residual.phi, x.workspace, x.workspace.scaled_step,
+                x.workspace.scaled_lambda);
+    benchmark::DoNotOptimize(x.workspace.scaled_step.data());
+  });
+  const double speed = c->speed();
+  // A slider moves by half a percent to and fro, each answer the next start: with the new numbers taken.
+  benchmark::RegisterBenchmark((name + "/warm").c_str(), [c, speed](benchmark::State& state) {
+    Eigen::VectorXd q = c->answer.q;
+    bool up = false;
+    int iterations = 0, solves = 0;
+    for ([[maybe_unused]] auto _ : state) {
+      up = !up;
+      c->set_speed(up ? 1.005 * speed : speed);
+      c->solve(q, true);
+      q = c->found.z.q;
+      iterations += c->found.iterations;
+      ++solves;
+    }
+    c->set_speed(speed);
+    state.counters["iterations"] = static_cast<double>(iterations) / solves;
+  })->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark((name + "/cold").c_str(), [c](benchmark::State& state) {
+    for ([[maybe_unused]] auto _ : state)
+      c->solve(c->drawn, false);
+    state.counters["iterations"] = c->found.iterations;
+  })->Unit(benchmark::kMicrosecond);
+}
+
+// Prints as usual and remembers the times.
+class Remembering : public benchmark::ConsoleReporter {
+ public:
+  std::map<std::string, double> time; // us
+
+ private:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs)
+      if (!run.error_occurred && run.run_type == Run::RT_Iteration)
+        time[run.benchmark_name()] = run.GetAdjustedCPUTime();
+    ConsoleReporter::ReportRuns(runs);
+  }
+};
+
+void print_ratio(const Remembering& r, const std::string& of, const std::string& to) {
+  const auto a = r.time.find(of), b = r.time.find(to);
+  if (a != r.time.end() && b != r.time.end())
+    std::printf("%-34s / %-34s %8.2f\n", of.c_str(), to.c_str(), a->second / b->second);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  const std::vector<std::string> scenes{"pendulum", "governor", "chain20"};
+  for (const std::string& name : scenes)
+    add_parts(name, scene(name));
+  add_parts("governor without gravity", without_gravity(scene("governor")));
+  add_parts("governor standing", standing(scene("governor")));
+  add_parts("governor without loops", without_loops(scene("governor")));
+  Remembering reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  benchmark::Shutdown();
+
+  std::printf("\nRatios of this run\n");
+  for (const std::string& name : scenes) {
+    for (const char* part : {"linearise", "iteration", "warm", "cold"})
+      print_ratio(reporter, name + "/" + part, name + "/residual");
+    print_ratio(reporter, name + "/warm", name + "/iteration");
+    print_ratio(reporter, name + "/cold", name + "/warm");
+  }
+  for (const char* part : {"residual", "iteration", "warm"})
+    for (const char* variant : {"without gravity", "standing", "without loops"})
+      print_ratio(reporter, "governor " + std::string(variant) + "/" + part, std::string("governor/") + part);
+}

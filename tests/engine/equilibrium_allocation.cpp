@@ -1,0 +1,161 @@
+// A repeated small solve allocates nothing. This program's allocation functions count, on demand.
+#include "tests/engine/equilibrium_mechanisms.hpp"
+
+#include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/refine.hpp"
+
+#include <cerrno>
+#include <cstdlib>
+
+// Sanitizers bring allocation functions of their own; elsewhere there is no way in below malloc.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define FLYBALL_COUNT_ALLOCATIONS 1
+#else
+#define FLYBALL_COUNT_ALLOCATIONS 0
+#endif
+
+namespace {
+
+thread_local bool counting = false;
+thread_local long allocations = 0;
+
+} // namespace
+
+#if FLYBALL_COUNT_ALLOCATIONS
+
+// operator new and everything else ends up in one of these.
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size) noexcept {
+  allocations += counting;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  allocations += counting;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) noexcept {
+  allocations += counting;
+  return __libc_realloc(old, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  allocations += counting;
+  return __libc_memalign(alignment, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
+  allocations += counting;
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) noexcept {
+  allocations += counting;
+  *out = __libc_memalign(alignment, size);
+  return *out ? 0 : ENOMEM;
+}
+}
+
+#endif
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+template <class F>
+long allocations_of(F f) {
+  allocations = 0;
+  counting = true;
+  f();
+  counting = false;
+  return allocations;
+}
+
+// One scene and the storage of its solves, as a slider keeps it.
+struct Solver {
+  Mechanism mechanism;
+  System system;
+  Parameters parameters;
+  Scaling scaling;
+  Workspace workspace;
+  Found found;
+  std::vector<double> history;
+  Eigen::VectorXd drawn, error;
+
+  explicit Solver(Mechanism m) : mechanism(std::move(m)), system(compile(mechanism)) {
+    // The cuts that carry the bearing's loop along are the analysis' to find.
+    if (mechanism.name == "Governor with a bearing")
+      for (const CutChoice& choice : neighbouring_cuts(mechanism, system))
+        if (choice.cut == std::vector<int>{joint_index(mechanism, "bearing")})
+          system = compile(mechanism, choice);
+    take_numbers();
+    drawn_configuration(system, parameters, drawn);
+  }
+
+  void take_numbers() {
+    bind(system, mechanism, parameters);
+    set_scaling(system, parameters, scaling);
+  }
+
+  bool solve(const Eigen::VectorXd& start, bool warm) {
+    const Problem problem{system, parameters, scaling};
+    find_equilibrium(problem, start, false, warm, workspace, history, found);
+    if (found.status != Status::converged) return false;
+    refine(problem, found.z, found.newton, workspace, error);
+    return true;
+  }
+};
+
+} // namespace
+
+TEST_CASE("a repeated small solve allocates nothing") {
+  if (!FLYBALL_COUNT_ALLOCATIONS) {
+    WARN("skipped: allocations cannot be counted here (sanitizer, or not glibc)");
+    return;
+  }
+  // The counter counts.
+  CHECK(allocations_of([] {
+          volatile double* p = new double[100];
+          delete[] p;
+        }) == 1);
+  CHECK(allocations_of([] {
+          Eigen::VectorXd x = Eigen::VectorXd::Zero(50);
+          counting = counting && x.size() == 50;
+        }) == 1);
+
+  for (const char* scene : {"pendulum", "governor", "governor_bearing", "fourbar_turntable", "conical_pendulum"}) {
+    Solver solver(shipped(scene));
+    CAPTURE(scene);
+    bool arrived = true;
+    // Warm: a slider moves to and fro, each answer the next start.
+    Eigen::VectorXd answer = solver.drawn;
+    const double speed = get_parameter(solver.mechanism, "joints.spin.drive.speed");
+    const auto warm_solve = [&](double factor) {
+      set_parameter(solver.mechanism, "joints.spin.drive.speed", speed * factor);
+      solver.take_numbers();
+      bool ok = false;
+      const long n = allocations_of([&] {
+        ok = solver.solve(answer, true);
+        answer = solver.found.z.q;
+      });
+      arrived = arrived && ok;
+      return n;
+    };
+    for (const double factor : {1., 1.01, 1.})
+      warm_solve(factor);
+    for (const double factor : {1.005, 1.01, 0.99, 1.}) {
+      CAPTURE(factor);
+      CHECK(warm_solve(factor) == 0);
+      CHECK(solver.found.message.empty());
+    }
+    // Cold: from the drawn pose, every time.
+    solver.solve(solver.drawn, false);
+    CHECK(allocations_of([&] { arrived = solver.solve(solver.drawn, false) && arrived; }) == 0);
+    CHECK(allocations_of([&] { arrived = solver.solve(solver.drawn, false) && arrived; }) == 0);
+    CHECK(arrived);
+    // New numbers cost nothing either.
+    CHECK(allocations_of([&] { solver.take_numbers(); }) == 0);
+  }
+}

@@ -1,0 +1,271 @@
+// When there is a steady state, when there is none, and what the messages blame.
+#include "tests/engine/equilibrium_mechanisms.hpp"
+
+#include "engine/mechanism/error.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+// A pendulum on a spindle whose axis leans from the vertical by `tilt`.
+Mechanism tilted(double tilt, double speed) {
+  Mechanism m = conical(0.5, 0.2, speed, 0.2);
+  m.gravity = standard_gravity * Vec3(0, -std::cos(tilt), std::sin(tilt));
+  return m;
+}
+
+// Crank about z, rod, slider along x; drawn at a crank angle of one radian.
+Mechanism slider_crank(bool drive_crank) {
+  const double crank = 0.1, rod = 0.3, angle = 1;
+  const Vec3 pin(crank * std::cos(angle), crank * std::sin(angle), 0);
+  const Vec3 end(pin.x() + std::sqrt(rod * rod - pin.y() * pin.y()), 0, 0);
+  Mechanism m;
+  m.bodies = {body("crank", 1, pin / 2, {0.001, 0.001, 0.001}),
+              body("rod", 1, (pin + end) / 2, {0.001, 0.001, 0.001}), body("slider", 1, end)};
+  m.joints = {revolute("crank", "ground", "crank", {0, 0, 0}, {0, 0, 1}),
+              revolute("pin", "crank", "rod", pin, {0, 0, 1}),
+              revolute("wrist", "rod", "slider", end, {0, 0, 1}),
+              sprung(prismatic("slide", "ground", "slider", end, {1, 0, 0}), drive_crank ? 1e-3 : 50)};
+  if (drive_crank) m.joints[0].coordinates[0].drive = Drive{3};
+  return m;
+}
+
+Mechanism gyro(double turn, double rotor_speed, const Vec3& rotor_inertia) {
+  Mechanism m;
+  m.bodies = {spindle(), body("gimbal", 0.1, {0, 0, 0}, {0.001, 0.001, 0.001}),
+              body("rotor", 0.5, {0, 0, 0}, rotor_inertia)};
+  m.joints = {spin(turn), sprung(revolute("tilt", "spindle", "gimbal", {0, 0, 0}, {0, 0, 1}), 2),
+              driven(revolute("rotor", "gimbal", "rotor", {0, 0, 0}, {1, 0, 0}), rotor_speed)};
+  return m;
+}
+
+Mechanism four_bar(double second_link_offset = 0) {
+  // A parallel-axis loop closed by a spatial revolute: five equations, of which the plane needs two.
+  const Vec3 a(0, 0, 0), b(0, 0.2, 0), c(0.3, 0.25, 0), d(0.3, 0, 0);
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("crank", 0.2, (a + b) / 2, {1e-3, 1e-4, 1e-3}),
+              body("coupler", 0.3, (b + c) / 2, {1e-4, 1e-3, 1e-3}),
+              body("rocker", 0.25, (c + d) / 2, {1e-3, 1e-4, 1e-3})};
+  m.joints = {sprung(revolute("crank", "ground", "crank", a, {0, 0, 1}), 5, 0.3),
+              revolute("knee", "crank", "coupler", b, {0, 0, 1}),
+              revolute("wrist", "coupler", "rocker", c + Vec3(second_link_offset, 0, 0), {0, 0, 1}),
+              revolute("rocker", "ground", "rocker", d, {0, 0, 1})};
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("weight that turns with the drive leaves no steady state") {
+  for (const double tilt : {1e-3, 0.1, 1.5}) {
+    const Solution s = solve(tilted(tilt, 5));
+    CAPTURE(tilt, s.message);
+    CHECK(s.status == Status::no_steady_state);
+    CHECK_THAT(s.message, ContainsSubstring("the weight of bob"));
+    CHECK(s.coordinates.empty());
+    CHECK_FALSE(s.stable.has_value());
+  }
+  // Tilted in the hinge's own plane the balance does not change to first order at the drawn phase.
+  Mechanism m = tilted(0, 5);
+  m.gravity = standard_gravity * Vec3(std::sin(0.2), -std::cos(0.2), 0);
+  CHECK(solve(m).status == Status::no_steady_state);
+  // Not turning, any tilt will do.
+  CHECK(solve(tilted(0.4, 0)).status == Status::converged);
+}
+
+TEST_CASE("a slider-crank driven at its crank has no steady state") {
+  const Solution s = solve(slider_crank(true));
+  INFO(s.message);
+  CHECK(s.status == Status::no_steady_state);
+  const bool named = s.message.find("\"pin\"") != std::string::npos ||
+                     s.message.find("\"wrist\"") != std::string::npos ||
+                     s.message.find("\"slide\"") != std::string::npos;
+  CHECK(named);
+  // Standing, it settles like any other.
+  CHECK(solve(slider_crank(false)).status == Status::converged);
+}
+
+TEST_CASE("a rotor must be symmetric to spin on a turning frame") {
+  const Solution steady = solve(gyro(0.6, 100, {0.002, 0.001, 0.001}));
+  CHECK(steady.status == Status::converged);
+  CHECK(stable(steady));
+  const Solution unsteady = solve(gyro(0.6, 100, {0.002, 0.001, 0.0012}));
+  INFO(unsteady.message);
+  CHECK(unsteady.status == Status::no_steady_state);
+  CHECK_THAT(unsteady.message, ContainsSubstring("the inertia of rotor"));
+}
+
+TEST_CASE("forces held by the world on a turning body leave no steady state") {
+  Mechanism m = conical(0.5, 0.1, 5, 0.2);
+  Force push;
+  push.name = "push";
+  push.type = ForceType::force;
+  push.body = "bob";
+  push.vector = {0.5, 0, 0};
+  m.forces = {push};
+  const Solution s = solve(m);
+  INFO(s.message);
+  CHECK(s.status == Status::no_steady_state);
+  CHECK_THAT(s.message, ContainsSubstring("push"));
+  // Turning with the body, or along the spin axis, it does no harm.
+  m.forces[0].frame = ForceFrame::body;
+  CHECK(solve(m).status == Status::converged);
+  m.forces[0].frame = ForceFrame::world;
+  m.forces[0].vector = {0, 0.5, 0};
+  CHECK(solve(m).status == Status::converged);
+}
+
+TEST_CASE("a spring from a turning body to the ground must end on the axis") {
+  Mechanism m = conical(0.5, 0.1, 5, 0.2);
+  Force spring;
+  spring.name = "tether";
+  spring.type = ForceType::spring;
+  spring.bodies = {"ground", "bob"};
+  spring.points = {Vec3(0.4, -0.2, 0), m.bodies[1].position};
+  spring.stiffness = 30;
+  m.forces = {spring};
+  const Solution s = solve(m);
+  INFO(s.message);
+  CHECK(s.status == Status::no_steady_state);
+  CHECK_THAT(s.message, ContainsSubstring("tether"));
+  m.forces[0].points[0] = {0, -0.9, 0};
+  CHECK(solve(m).status == Status::converged);
+}
+
+TEST_CASE("drives at rest and drives along gravity are steady") {
+  SECTION("several drives at rest") {
+    const Solution s = solve(gyro(0, 0, {0.002, 0.001, 0.0012}));
+    CHECK(s.status == Status::converged);
+    check_value(s, "tilt", 0);
+  }
+  SECTION("one of two at rest, any rotor") {
+    CHECK(solve(gyro(0.6, 0, {0.002, 0.001, 0.0012})).status == Status::converged);
+  }
+  SECTION("a lift with a pendulum") {
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies = {body("cage", 1, {0, 0, 0}), body("bob", 1, {0.3, -0.4, 0})};
+    m.joints = {driven(prismatic("lift", "ground", "cage", {0, 0, 0}, {0, 1, 0}), 2),
+                revolute("swing", "cage", "bob", {0, 0, 0}, {0, 0, 1})};
+    const Solution s = solve(m);
+    REQUIRE(s.status == Status::converged);
+    check_value(s, "swing", -std::atan2(0.3L, 0.4L));
+    CHECK(stable(s));
+  }
+  SECTION("a screw along gravity") {
+    Mechanism m = conical(0.5, 0.1, 5, 0.2);
+    m.joints[0].type = JointType::cylindrical;
+    m.joints[0].coordinates.resize(2);
+    m.joints[0].coordinates[1].drive = Drive{0.3};
+    const Solution a = solve(m), b = solve(conical(0.5, 0.1, 5, 0.2));
+    REQUIRE(a.status == Status::converged);
+    CHECK(std::abs(value(a, "swing") - value(b, "swing")) < 1e-14);
+  }
+}
+
+TEST_CASE("a joint that has to turn at a constant rate is cut, and a note says so") {
+  const Analysis analysis(shipped("governor_bearing"));
+  const SystemSummary summary = analysis.summary();
+  CHECK(std::ranges::find(summary.cut_joints, "bearing") != summary.cut_joints.end());
+  const bool told = std::ranges::any_of(
+      summary.notes, [](const std::string& note) { return note.find("bearing") != std::string::npos; });
+  CHECK(told);
+  const Solution s = solve(shipped("governor_bearing"));
+  CHECK(s.status == Status::converged);
+  CHECK(stable(s));
+  // Marked otherwise, the loop is found impossible to keep.
+  Mechanism m = shipped("governor_bearing");
+  for (Joint& j : m.joints)
+    if (j.name == "lift") j.cut = true;
+  const Solution forced = solve(m);
+  INFO(forced.message);
+  CHECK((forced.status == Status::converged || forced.status == Status::no_steady_state));
+}
+
+TEST_CASE("loops that cannot be closed are infeasible, and the joint is named") {
+  SECTION("a link too long") {
+    Mechanism m = shipped("governor");
+    m.joints[4].length = 2;
+    const Solution s = solve(m);
+    INFO(s.message);
+    CHECK(s.status == Status::infeasible);
+    CHECK_THAT(s.message, ContainsSubstring("link1"));
+    CHECK(s.coordinates.empty());
+  }
+  SECTION("two rods that do not reach") {
+    Mechanism m;
+    m.bodies = {body("a", 1, {0.25, 0, 0}), body("b", 1, {1.75, 0, 0})};
+    m.joints = {revolute("a", "ground", "a", {0, 0, 0}, {0, 0, 1}),
+                revolute("b", "ground", "b", {2, 0, 0}, {0, 0, 1}),
+                distance("rope", "a", "b", {0.5, 0, 0}, {1.5, 0, 0}, 0.2)};
+    const Solution s = solve(m);
+    INFO(s.message);
+    CHECK(s.status == Status::infeasible);
+    CHECK_THAT(s.message, ContainsSubstring("rope"));
+  }
+}
+
+TEST_CASE("a loop with more equations than it needs converges") {
+  const Mechanism m = four_bar();
+  const Solution s = solve(m);
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(stable(s));
+  CHECK(s.reactions_nonunique);
+  CHECK(s.residual < 1e-13);
+  // As the same loop closed in its plane alone: by a distance joint in place of the coupler's far end.
+  Mechanism plane = m;
+  plane.bodies.erase(plane.bodies.begin() + 1);
+  plane.joints = {m.joints[0], m.joints[3],
+                  distance("coupler", "crank", "rocker", m.joints[1].at, m.joints[2].at)};
+  Mechanism light = m;
+  light.bodies[1] = body("coupler", 0, m.bodies[1].position);
+  const Solution a = solve(light), b = solve(plane);
+  REQUIRE(a.status == Status::converged);
+  REQUIRE(b.status == Status::converged);
+  CHECK(std::abs(value(a, "crank") - value(b, "crank")) < 1e-12);
+  CHECK_FALSE(b.reactions_nonunique);
+  // The shipped one on a turntable.
+  const Solution turning = solve(shipped("fourbar_turntable"));
+  CHECK(turning.status == Status::converged);
+  CHECK(turning.reactions_nonunique);
+  CHECK(stable(turning));
+}
+
+TEST_CASE("directions that nothing resists are said to be neutral") {
+  SECTION("a top turned about its own axis") {
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies = {body("top", 1, {0.1, -0.3, 0.05}, {0.01, 0.01, 0.01})};
+    m.joints = {joint(JointType::spherical, "socket", "ground", "top", {0, 0, 0})};
+    const Solution s = solve(m);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.neutral == std::vector<std::string>{"socket"});
+    CHECK_FALSE(s.stable.has_value());
+    CHECK(s.stability_reason == StabilityReason::neutral);
+    CHECK_THAT(s.message, ContainsSubstring("Nothing resists socket"));
+    CHECK(std::abs(s.poses[0].position.y() + m.bodies[0].position.norm()) < 1e-12);
+  }
+  SECTION("a wheel that spins freely beside a pendulum") {
+    Mechanism m = conical(0.5, 0.1, 5, 0.2);
+    m.bodies.push_back(body("wheel", 0.5, m.bodies[1].position, {0.01, 0.01, 0.01}));
+    m.joints.push_back(revolute("axle", "bob", "wheel", m.bodies[1].position, {0, 0, 1}));
+    const Solution s = solve(m);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.neutral == std::vector<std::string>{"axle"});
+    CHECK_FALSE(s.stable.has_value());
+    // The rest is solved all the same: the wheel is a point mass more at the bob.
+    Mechanism heavy = conical(0.5, 0.1, 5, 0.2);
+    heavy.bodies[1].mass = 1.5;
+    CHECK(std::abs(value(s, "swing") - value(solve(heavy), "swing")) < 1e-12);
+  }
+  SECTION("nothing is neutral where a spring holds it") {
+    Mechanism m;
+    m.bodies = {body("wheel", 1, {0, 0, 0}, {0.1, 0.1, 0.1})};
+    m.joints = {sprung(revolute("axle", "ground", "wheel", {0, 0, 0}, {0, 0, 1}), 1e-6)};
+    const Solution s = solve(m);
+    CHECK(s.neutral.empty());
+    CHECK(stable(s));
+  }
+}

@@ -1,0 +1,358 @@
+// Eigenvalues and verdicts of stability against closed forms.
+#include "tests/engine/equilibrium_mechanisms.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <complex>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+using Complex = std::complex<double>;
+
+// Of s^2 M + s D + K with regular M, by way of the companion matrix.
+std::vector<Complex> quadratic_pencil(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                                      const Eigen::MatrixXd& stiffness) {
+  const Eigen::Index n = mass.rows();
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  a.topRightCorner(n, n).setIdentity();
+  a.bottomLeftCorner(n, n) = -mass.inverse() * stiffness;
+  a.bottomRightCorner(n, n) = -mass.inverse() * velocity;
+  const Eigen::VectorXcd s = Eigen::EigenSolver<Eigen::MatrixXd>(a, false).eigenvalues();
+  return {s.begin(), s.end()};
+}
+
+// Each wanted eigenvalue has one of its own among the found.
+void check_eigenvalues(const Solution& s, std::vector<Complex> wanted, double tolerance = 1e-9) {
+  REQUIRE(s.eigenvalues.has_value());
+  std::vector<Complex> found = *s.eigenvalues;
+  CAPTURE(found, wanted, s.message);
+  REQUIRE(found.size() == wanted.size());
+  double size = 0;
+  for (const Complex x : wanted)
+    size = std::max(size, std::abs(x));
+  for (const Complex x : wanted) {
+    const auto nearest_one = std::ranges::min_element(
+        found, [&](Complex a, Complex b) { return std::abs(a - x) < std::abs(b - x); });
+    CHECK(std::abs(*nearest_one - x) <= tolerance * size);
+    found.erase(nearest_one);
+  }
+}
+
+// A disc that turns about x in two gimbals, the outer about y and sprung, the inner about z and sprung.
+Mechanism two_gimbals(double rotor_speed, double outer, double inner, double axial, double across) {
+  Mechanism m;
+  m.bodies = {body("outer", 0.1, {0, 0, 0}, {1e-3, 2e-3, 1e-3}),
+              body("inner", 0.1, {0, 0, 0}, {1e-3, 1e-3, 1e-3}),
+              body("rotor", 1, {0, 0, 0}, {axial, across, across})};
+  m.joints = {sprung(revolute("outer", "ground", "outer", {0, 0, 0}, {0, 1, 0}), outer),
+              sprung(revolute("inner", "outer", "inner", {0, 0, 0}, {0, 0, 1}), inner),
+              driven(revolute("rotor", "inner", "rotor", {0, 0, 0}, {1, 0, 0}), rotor_speed)};
+  return m;
+}
+
+// A mass on a turntable held by springs across.
+Mechanism puck(double speed, double kx, double ky, double mass) {
+  Mechanism m;
+  m.bodies = {spindle(), body("x", 0, {0, 0, 0}), body("puck", mass, {0, 0, 0})};
+  m.joints = {spin(speed, {0, 0, 1}), sprung(prismatic("x", "spindle", "x", {0, 0, 0}, {1, 0, 0}), kx),
+              sprung(prismatic("y", "x", "puck", {0, 0, 0}, {0, 1, 0}), ky)};
+  return m;
+}
+
+// A top standing on its tip in massless gimbals, driven about its own axis.
+Mechanism top(double rotor_speed, double mass, double height, double axial, double across) {
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("cross", 0, {0, 0, 0}), body("top", mass, {0, height, 0}, {across, axial, across})};
+  Joint tip = joint(JointType::universal, "tip", "ground", "cross", {0, 0, 0}, {1, 0, 0});
+  tip.axis2 = {0, 0, 1};
+  m.joints = {tip, driven(revolute("spin", "cross", "top", {0, 0, 0}, {0, 1, 0}), rotor_speed)};
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("a mass on a spring and a damper") {
+  for (const double damping : {0., 0.5, 200.}) {
+    const double mass = 0.4, stiffness = 90;
+    Mechanism m;
+    m.bodies = {body("mass", mass, {0, 0, 0})};
+    m.joints = {
+        dampened(sprung(prismatic("slide", "ground", "mass", {0, 0, 0}, {1, 0, 0}), stiffness), damping)};
+    const Complex half(damping / (2 * mass)), disc = std::sqrt(half * half - Complex(stiffness / mass));
+    const Solution s = solve(m);
+    CAPTURE(damping);
+    check_eigenvalues(s, {-half + disc, -half - disc});
+    CHECK(s.stability_reason == StabilityReason::minimum);
+    CHECK(stable(s));
+  }
+}
+
+TEST_CASE("a compound pendulum swings about hanging and falls from upright") {
+  const double mass = 2, arm = 0.3, inertia = 0.04, damping = 0.7;
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("rod", mass, {0, -arm, 0}, {inertia, 0, inertia})};
+  m.joints = {dampened(revolute("hinge", "ground", "rod", {0, 0, 0}, {0, 0, 1}), damping)};
+  const double i = inertia + mass * arm * arm, k = mass * standard_gravity * arm;
+  const auto roots = [&](double stiffness) {
+    const Complex half(damping / (2 * i)), disc = std::sqrt(half * half - Complex(stiffness / i));
+    return std::vector<Complex>{-half + disc, -half - disc};
+  };
+  check_eigenvalues(solve(m), roots(k));
+  m.bodies[0].position = {0, arm, 0};
+  const Solution up = solve(m, nearest());
+  REQUIRE(up.status == Status::converged);
+  check_eigenvalues(up, roots(-k));
+  CHECK(up.stable == false);
+  CHECK(up.stability_reason == StabilityReason::unstable);
+  const Solution fallen = solve(m);
+  CHECK(stable(fallen));
+  CHECK(std::abs(std::abs(value(fallen, "hinge")) - std::numbers::pi) < 1e-12);
+}
+
+TEST_CASE("a conical pendulum swings about its cone at speed times sine of its angle") {
+  // U'' / (m L^2) = (g cos(a) / L - w^2 cos(2 a)), with cos(a) = g / (w^2 L): w^2 sin(a)^2.
+  const double length = 0.6;
+  for (const double speed : {4.2, 6., 15.}) {
+    const Solution s = solve(conical(length, 0, speed, 0.3));
+    const double cosine = standard_gravity / (speed * speed * length);
+    const double rate = speed * std::sqrt(1 - cosine * cosine);
+    check_eigenvalues(s, {Complex(0, rate), Complex(0, -rate)}, 1e-12);
+    CHECK(stable(s));
+  }
+}
+
+TEST_CASE("the swing pendulum's linearised motion") {
+  const Mechanism m = shipped("pendulum");
+  const Solution s = solve(m);
+  // About its tip's place: m d^2 a'' + 2 m d w d' + ..., m d'' - 2 m d w a' + ..., from
+  // T = m ((x' - w y)^2 + (y' + w x)^2) / 2 with x = 1 + d cos(a), y = d sin(a).
+  const double a = value(s, "theta"), d = value(s, "d"), w = 20, mass = 1;
+  Eigen::Matrix2d inertia, velocity, stiffness;
+  inertia << mass * d * d, 0, 0, mass;
+  velocity << 10, 2 * mass * d * w, -2 * mass * d * w, 100;
+  const double cross = mass * w * w * std::sin(a);
+  stiffness << 300 + mass * w * w * d * std::cos(a), cross, cross, 50000 - mass * w * w;
+  // The massless arm leaves all four of them finite: the weight moves with it.
+  check_eigenvalues(s, quadratic_pencil(inertia, velocity, stiffness));
+  CHECK(stable(s));
+}
+
+TEST_CASE("a rate gyro's tilt swings as its one coordinate does") {
+  const Mechanism m = shipped("rate_gyro");
+  const Solution s = solve(m);
+  const Body &gimbal = m.bodies[1], &rotor = m.bodies[2];
+  const double a = value(s, "tilt"), w = 0.5, rate = 800;
+  const double square =
+      w * w * (gimbal.inertia[0] - gimbal.inertia[1] + rotor.inertia[0] - rotor.inertia[1]);
+  const double k = 1 - square * std::cos(2 * a) + rotor.inertia[0] * rate * w * std::sin(a);
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+  check_eigenvalues(
+      s, quadratic_pencil((gimbal.inertia[2] + rotor.inertia[2]) * one, 0.02 * one, k * one), 1e-8);
+  CHECK(stable(s));
+}
+
+TEST_CASE("a spinning rotor couples its gimbals") {
+  const double axial = 0.01, across = 0.006;
+  for (const double rate : {0., 30., 3000.}) {
+    const Solution s = solve(two_gimbals(rate, 4, 7, axial, across));
+    Eigen::Matrix2d inertia, velocity, stiffness;
+    inertia << 2e-3 + 1e-3 + across, 0, 0, 1e-3 + across;
+    velocity << 0, axial * rate, -axial * rate, 0;
+    stiffness << 4, 0, 0, 7;
+    CAPTURE(rate);
+    check_eigenvalues(s, quadratic_pencil(inertia, velocity, stiffness));
+    CHECK(s.stability_reason == StabilityReason::minimum);
+  }
+}
+
+TEST_CASE("massless coordinates have no eigenvalues of their own") {
+  const double k1 = 30, k2 = 80, mass = 0.5;
+  Mechanism m;
+  m.bodies = {body("joint", 0, {0, 0, 0}), body("mass", mass, {1, 0, 0})};
+  m.joints = {sprung(prismatic("a", "ground", "joint", {0, 0, 0}, {1, 0, 0}), k1, 0.2),
+              sprung(prismatic("b", "joint", "mass", {1, 0, 0}, {1, 0, 0}), k2, -0.1)};
+  SECTION("two springs in series are one") {
+    const double rate = std::sqrt(k1 * k2 / (k1 + k2) / mass);
+    const Solution s = solve(m);
+    check_eigenvalues(s, {Complex(0, rate), Complex(0, -rate)});
+    CHECK(stable(s));
+    CHECK(s.stability_reason == StabilityReason::minimum);
+  }
+  SECTION("a damper on one of them adds a real eigenvalue") {
+    const double c = 5;
+    m.joints[0].coordinates[0].damping = c;
+    // m (a + b)'' + k2 b = 0, c a' + k1 a = k2 b; with x = a + b:
+    // m c s^3 + m (k1 + k2) s^2 + c k2 s + k1 k2 = 0.
+    Eigen::Matrix3d companion;
+    companion << -(k1 + k2) / c, -k2 / mass, -k1 * k2 / (mass * c), 1, 0, 0, 0, 1, 0;
+    const Eigen::Vector3cd roots = Eigen::EigenSolver<Eigen::Matrix3d>(companion, false).eigenvalues();
+    const Solution s = solve(m);
+    check_eigenvalues(s, {roots[0], roots[1], roots[2]});
+    CHECK(stable(s));
+  }
+}
+
+TEST_CASE("negative stiffness is unstable without mass, too") {
+  // A massless pointer pressed upright by a compressed spring that would rather lie; a mass on a spring beside.
+  Mechanism m;
+  m.bodies = {body("pointer", 0, {0, 0.5, 0}), body("mass", 1, {1, 0, 0})};
+  m.joints = {revolute("pointer", "ground", "pointer", {0, 0, 0}, {0, 0, 1}),
+              sprung(prismatic("slide", "ground", "mass", {1, 0, 0}, {1, 0, 0}), 10, 0.1)};
+  Force spring;
+  spring.name = "press";
+  spring.type = ForceType::spring;
+  spring.bodies = {"ground", "pointer"};
+  spring.points = {Vec3(0, 1.5, 0), Vec3(0, 1, 0)};
+  spring.stiffness = 20;
+  spring.free_length = 0.9;
+  m.forces = {spring};
+  SECTION("with a potential") {
+    const Solution s = solve(m, nearest());
+    REQUIRE(s.status == Status::converged);
+    check_value(s, "pointer", 0);
+    CHECK(s.stable == false);
+    CHECK(s.stability_reason == StabilityReason::unstable);
+    // By default it tips over to where the spring is slack: 1.5^2 + 1 - 3 cos(a) = 0.9^2.
+    const Solution tipped = solve(m);
+    INFO(tipped.message);
+    REQUIRE(tipped.status == Status::converged);
+    CHECK(stable(tipped));
+    CHECK(std::abs(std::abs(value(tipped, "pointer")) -
+                   std::acos((1.5 * 1.5 + 1 - 0.9 * 0.9) / (2 * 1.5))) < 1e-12);
+  }
+  SECTION("and without one") {
+    Force air;
+    air.name = "air";
+    air.type = ForceType::drag;
+    air.body = "mass";
+    air.linear = 1;
+    m.forces.push_back(air);
+    const Solution s = solve(m);
+    REQUIRE(s.status == Status::converged);
+    check_value(s, "pointer", 0);
+    CHECK(s.stable == false);
+    CHECK(s.stability_reason == StabilityReason::unstable);
+  }
+}
+
+TEST_CASE("rotation can hold what the potential does not") {
+  const double mass = 0.5, stiffness = 50, natural = std::sqrt(stiffness / mass);
+  SECTION("a puck on equal springs, faster than they can hold still") {
+    for (const double share : {0.6, 1.4, 3.}) {
+      const double w = share * natural;
+      // In the inertial frame an oscillator; seen turning: natural +- speed.
+      const std::vector<Complex> wanted{{0, natural + w}, {0, -natural - w}, {0, natural - w}, {0, w - natural}};
+      for (const bool near : {false, true}) {
+        CAPTURE(share, near);
+        SolveOptions options;
+        options.nearest = near;
+        const Solution s = solve(puck(w, stiffness, stiffness, mass), options);
+        REQUIRE(s.status == Status::converged);
+        check_value(s, "x", 0);
+        check_eigenvalues(s, wanted, 1e-7);
+        if (share < 1) {
+          CHECK(stable(s));
+          CHECK(s.stability_reason == StabilityReason::minimum);
+        } else {
+          CHECK_FALSE(s.stable.has_value());
+          CHECK(s.stability_reason == StabilityReason::gyroscopic_only);
+        }
+      }
+    }
+  }
+  SECTION("but not between the two speeds of unequal springs") {
+    const Solution s = solve(puck(std::sqrt(70 / mass), 50, 90, mass), nearest());
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stable == false);
+  }
+  SECTION("and a damper spoils it") {
+    Mechanism m = puck(1.4 * natural, stiffness, stiffness, mass);
+    m.joints[1].coordinates[0].damping = m.joints[2].coordinates[0].damping = 0.5;
+    const Solution s = solve(m, nearest());
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stable == false);
+  }
+  SECTION("a top stands if it spins fast enough") {
+    const double height = 0.1, axial = 0.002, across = 0.003, weight = mass * standard_gravity * height;
+    const double i = across + mass * height * height, enough = 2 * std::sqrt(i * weight) / axial;
+    for (const double share : {0.5, 0.95, 1.05, 2.}) {
+      CAPTURE(share);
+      const Mechanism m = top(share * enough, mass, height, axial, across);
+      const Solution s = solve(m, nearest());
+      REQUIRE(s.status == Status::converged);
+      Eigen::Matrix2d inertia = i * Eigen::Matrix2d::Identity(), velocity;
+      velocity << 0, axial * share * enough, -axial * share * enough, 0;
+      const Eigen::Matrix2d stiffness_matrix = -weight * Eigen::Matrix2d::Identity();
+      check_eigenvalues(s, quadratic_pencil(inertia, velocity, stiffness_matrix), 1e-7);
+      if (share < 1)
+        CHECK(s.stable == false);
+      else
+        CHECK(s.stability_reason == StabilityReason::gyroscopic_only);
+      // Asked for a stable state, it hangs.
+      const Solution hanging = solve(m);
+      INFO(hanging.message);
+      REQUIRE(hanging.status == Status::converged);
+      CHECK(stable(hanging));
+      CHECK(hanging.poses[1].position.y() < -0.99 * height);
+    }
+  }
+}
+
+TEST_CASE("without a potential the eigenvalues judge") {
+  Mechanism m = conical(0.5, 0.2, 6, 0.2);
+  Force air;
+  air.name = "air";
+  air.type = ForceType::drag;
+  air.body = "bob";
+  air.linear = 0.1;
+  m.forces = {air};
+  const Solution s = solve(m);
+  REQUIRE(s.status == Status::converged);
+  CHECK(stable(s));
+  CHECK(s.stability_reason == StabilityReason::asymptotic);
+  REQUIRE(s.eigenvalues.has_value());
+  for (const Complex x : *s.eigenvalues)
+    CHECK(x.real() < 0);
+  // The bob's own swing through the air: m L^2 a'' + c L^2 a' + U'' a.
+  const double a = value(s, "swing"), length = 0.5, w = 6, r = 0.2 + length * std::sin(a);
+  const double k = standard_gravity * length * std::cos(a) -
+                   w * w * length * (length * std::cos(a) * std::cos(a) - r * std::sin(a));
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+  check_eigenvalues(s, quadratic_pencil(length * length * one, 0.1 * length * length * one, k * one));
+}
+
+TEST_CASE("at a critical speed the verdict stays open") {
+  // The pitchfork of the conical pendulum: hanging has no stiffness, but leaning has no balance.
+  const double length = 0.5;
+  const Solution s = solve(conical(length, 0, std::sqrt(standard_gravity / length)));
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(std::abs(value(s, "swing")) < 1e-5);
+  CHECK_FALSE(s.stable.has_value());
+  CHECK(s.stability_reason == StabilityReason::marginal);
+  CHECK(s.neutral.empty());
+}
+
+TEST_CASE("only asked for its sign, stability says the same") {
+  for (const char* scene : {"pendulum", "governor", "conical_pendulum", "rate_gyro", "watt_governor",
+                            "ball_on_string", "fourbar_turntable", "governor_bearing", "chain20"}) {
+    Analysis analysis(shipped(scene));
+    for (const bool near : {false, true}) {
+      SolveOptions options;
+      options.nearest = near;
+      const Solution full = analysis.solve(options);
+      options.details = false;
+      const Solution brief = analysis.solve(options);
+      CAPTURE(scene, near, full.message);
+      CHECK(full.stable == brief.stable);
+      CHECK(full.stability_reason == brief.stability_reason);
+      CHECK(full.neutral == brief.neutral);
+      if (!near) CHECK(full.status == Status::converged);
+    }
+  }
+}

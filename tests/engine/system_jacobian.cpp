@@ -1,0 +1,401 @@
+// f_z against derivatives of the long double residual that owe nothing to its formulas, for each type of joint
+// and force by itself and for random mechanisms; the matrices of the motion against the reference.
+#include "tests/catch.hpp"
+#include "tests/engine/reference/random_mechanism.hpp"
+#include "tests/engine/system_model.hpp"
+
+#include <algorithm>
+#include <functional>
+
+using namespace flyball;
+using namespace flyball::testing;
+using reference::Evaluation;
+using reference::RandomDrives;
+using reference::RandomOptions;
+
+namespace {
+
+// d/dh of f at zero by central differences, extrapolated three times (Richardson): the error is of order h^6.
+template <class Function>
+VectorR slope(const Function& f) {
+  const auto central = [&](Real h) -> VectorR { return (f(h) - f(-h)) / (2 * h); };
+  const Real h = 2e-3L;
+  const VectorR d1 = central(h), d2 = central(h / 2), d4 = central(h / 4);
+  return (16 * (4 * d4 - d2) / 3 - (4 * d2 - d1) / 3) / 15;
+}
+
+void check_jacobian(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda, double t) {
+  const Linearization l = linearize_at(model, q, lambda, t);
+  MatrixR stiffness(model.system.nv, model.system.nv), constraint(model.system.rows, model.system.nv);
+  for (int j = 0; j < model.system.nv; ++j) {
+    const VectorR column = slope([&](Real h) {
+      VectorR moved = q.cast<Real>();
+      retract<Real>(model.system, h * VectorR::Unit(model.system.nv, j), moved);
+      const Point<Real> p = evaluate_at<Real>(model, moved, lambda.cast<Real>(), t);
+      VectorR both(model.system.nv + model.system.rows);
+      both << p.residual.f, p.residual.phi;
+      return both;
+    });
+    stiffness.col(j) = column.head(model.system.nv);
+    constraint.col(j) = column.tail(model.system.rows);
+  }
+  CHECK(largest(MatrixR(l.stiffness.cast<Real>() - stiffness)) < 1e-11 * (1 + largest(stiffness)));
+  CHECK(largest(MatrixR(l.constraint.cast<Real>() - constraint)) < 1e-12 * (1 + largest(constraint)));
+}
+
+void check_jacobian(Model& model, Dice& dice, double size) {
+  for (int pose = 0; pose < 2; ++pose) {
+    CAPTURE(pose);
+    const Eigen::VectorXd q = model.displaced(dice, size);
+    Eigen::VectorXd lambda(model.system.rows);
+    for (double& x : lambda)
+      x = dice.between(-10, 10);
+    model.parameters.speed_scale = pose == 0 ? 1 : 0.7; // as on the way from rest
+    check_jacobian(model, q, lambda, dice.between(-2, 2));
+  }
+  model.parameters.speed_scale = 1;
+}
+
+// Every coordinate of the tree driven at the speed it has, `more` of it added: what the reference needs to
+// evaluate motions with q_R' != 0.
+VectorR balance_in_motion(const Model& model, const Evaluation& still, const ReferenceState& s, const VectorR& more) {
+  Mechanism m = model.mechanism;
+  for (std::size_t i = 0; i < still.tree.coordinates.size(); ++i) {
+    const reference::TreeCoordinate& c = still.tree.coordinates[i];
+    m.joints[static_cast<std::size_t>(c.joint)].coordinates[static_cast<std::size_t>(c.index)].drive =
+        Drive{static_cast<double>(c.speed + more[static_cast<Eigen::Index>(i)])};
+  }
+  return reference::evaluate(m, model.cuts, s).balance;
+}
+
+struct Motion {
+  MatrixR mass, velocity; // by the engine's q_R, twins left out
+};
+
+Motion motion_of(const Model& model, const Eigen::VectorXd& q, double t) {
+  const ReferenceState s = model.state(q, t);
+  const Evaluation e = reference::evaluate(model.mechanism, model.cuts, s);
+  const MatrixR map = model.tangents(q, e.tree);
+  MatrixR absolute = MatrixR::Zero(e.B.rows(), e.B.rows());
+  for (std::size_t b = 0; b < model.mechanism.bodies.size(); ++b) {
+    const Body& body = model.mechanism.bodies[b];
+    const auto& [xx, yy, zz, xy, xz, yz] = body.inertia;
+    reference::Mat3R i;
+    i << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    const auto row = static_cast<Eigen::Index>(6 * b);
+    absolute.block<3, 3>(row, row).diagonal().setConstant(body.mass);
+    absolute.block<3, 3>(row + 3, row + 3) = e.bodies[b].rotation * i * e.bodies[b].rotation.transpose();
+  }
+  const MatrixR b = e.B * map;
+  Motion out{b.transpose() * absolute * b, MatrixR(model.system.nv, model.system.nv)};
+  for (int j = 0; j < model.system.nv; ++j)
+    out.velocity.col(j) = slope([&](Real h) -> VectorR {
+      // The speeds are read as double: take the difference that they really make.
+      const VectorR step = map.col(j) * h;
+      return map.transpose() * balance_in_motion(model, e, s, step);
+    });
+  return out;
+}
+
+// The part of a joint in the rig below.
+enum class Use { tree, reversed, cut };
+
+Joint make_joint(const std::string& name, JointType type, const std::string& a, const std::string& b, const Vec3& at) {
+  Joint j;
+  j.name = name;
+  j.type = type;
+  j.bodies = {a, b};
+  j.at = at;
+  j.axis = {0.3, 1.1, -0.4};
+  j.axis2 = {0.8, -0.2, 0.3};
+  j.coordinates.resize(static_cast<std::size_t>(coordinate_count(type)));
+  for (std::size_t i = 0; i < j.coordinates.size(); ++i)
+    j.coordinates[i].drawn = 0.2 - 0.15 * static_cast<double>(i);
+  return j;
+}
+
+Body make_body(const std::string& name, double mass, const Vec3& position) {
+  Body b;
+  b.name = name;
+  b.mass = mass;
+  b.position = position;
+  b.inertia = {0.05, 0.07, 0.04, 0.01, -0.005, 0.008};
+  b.rotation = Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()));
+  return b;
+}
+
+// A table and a sled that move against each other, an arm on a ball joint on the table and a tool on a free
+// joint from the sled, or hung on the arm by the joint looked at.
+Mechanism rig(JointType type, Use use) {
+  Mechanism m;
+  m.gravity = {1, -9, 3};
+  m.bodies = {make_body("table", 3, {0.1, 0, 0.2}), make_body("sled", 2, {1, 0.3, -0.2}),
+              make_body("arm", 1.5, {0.4, 0.5, 0.1}), make_body("tool", 0.8, {0.7, 0.9, 0.2})};
+  m.joints = {make_joint("turn", JointType::revolute, "ground", "table", {0, 0, 0}),
+              make_joint("drift", JointType::cylindrical, "ground", "sled", {0.9, 0.2, 0}),
+              make_joint("shoulder", JointType::spherical, "table", "arm", {0.3, 0.2, 0.1})};
+  m.joints[0].coordinates[0].drive = Drive{3};
+  m.joints[1].axis = {-1, 0.2, 0.5};
+  m.joints[1].coordinates[0].drive = Drive{-2};
+  m.joints[1].coordinates[1].drive = Drive{0.4};
+  Joint joint = make_joint("joint", type, "arm", "tool", {0.5, 0.7, 0.15});
+  if (use == Use::reversed) std::swap(joint.bodies[0], joint.bodies[1]);
+  if (use == Use::cut) {
+    m.joints.push_back(make_joint("hold", JointType::free, "sled", "tool", {0.8, 0.6, 0}));
+    if (type != JointType::distance && type != JointType::gear) joint.cut = true;
+  }
+  if (type == JointType::distance) joint.points = {Vec3(0.45, 0.6, 0.1), Vec3(0.7, 0.8, 0.3)};
+  m.joints.push_back(joint);
+  return m;
+}
+
+using Dress = std::function<void(Mechanism&)>;
+
+struct Dressing {
+  std::string name;
+  Dress dress;
+};
+
+// What acts on the coordinates of a joint.
+std::vector<Dressing> dressings(const std::string& name) {
+  const auto each = [name](auto act) -> Dress {
+    return [name, act](Mechanism& m) {
+      Joint& joint = m.joints[static_cast<std::size_t>(joint_index(m, name))];
+      for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
+        act(joint.coordinates[i], 1 + 0.4 * static_cast<double>(i));
+    };
+  };
+  const auto stop = [](Coordinate& c, double k, double lower, double upper) {
+    Stop s;
+    s.lower = lower;
+    s.upper = upper;
+    s.stiffness = 60 * k;
+    c.stop = s;
+  };
+  return {{"bare", [](Mechanism&) {}},
+          {"spring", each([](Coordinate& c, double k) { c.spring = CoordinateSpring{30 * k, 0.1 * k, ""}; })},
+          {"lower stop", each([stop](Coordinate& c, double k) { stop(c, k, 2, 4); })},
+          {"upper stop", each([stop](Coordinate& c, double k) { stop(c, k, -4, -2); })},
+          {"idle stop", each([stop](Coordinate& c, double k) { stop(c, k, -4, 4); })},
+          {"damper", each([](Coordinate& c, double k) { c.damping = 2 * k; })}};
+}
+
+Force point_spring(const std::string& a, const std::string& b, const Vec3& on_a, const Vec3& on_b) {
+  Force f;
+  f.name = "force";
+  f.type = ForceType::spring;
+  f.bodies = {a, b};
+  f.points = {on_a, on_b};
+  f.stiffness = 120;
+  return f;
+}
+
+Force on_tool(ForceType type, ForceFrame frame) {
+  Force f;
+  f.name = "force";
+  f.type = type;
+  f.body = "tool";
+  f.at = Vec3(0.9, 1, 0.1);
+  f.vector = {4, -3, 2};
+  f.frame = frame;
+  return f;
+}
+
+std::vector<std::pair<std::string, Force>> forces() {
+  Force spring = point_spring("arm", "tool", {0.3, 0.6, 0}, {0.8, 0.8, 0.4});
+  Force across = point_spring("sled", "arm", {1.1, 0.2, 0}, {0.3, 0.6, 0});
+  across.free_length = 0.5;
+  Force free_of_length = point_spring("table", "tool", {0, 0.1, 0.3}, {0.8, 0.8, 0.4});
+  free_of_length.free_length = 0;
+  Force damped = point_spring("sled", "arm", {1.1, 0.2, 0}, {0.3, 0.6, 0});
+  damped.damping = 7;
+  Force damper = point_spring("tool", "ground", {0.9, 0.8, 0.4}, {0.5, 2, 0});
+  damper.stiffness = 0;
+  damper.damping = 5;
+  Force damped_free = damped;
+  damped_free.free_length = 0;
+  Force to_ground = point_spring("ground", "tool", {2, 0.3, 0}, {0.8, 0.8, 0.4});
+  Force between_drives = point_spring("table", "sled", {0.1, 0.4, 0}, {1.1, 0.2, 0});
+  between_drives.damping = 3;
+  Force drag = on_tool(ForceType::drag, ForceFrame::world), quadratic = drag, both = drag;
+  drag.linear = both.linear = 2;
+  quadratic.quadratic = both.quadratic = 1.5;
+  return {{"spring", spring},
+          {"spring across drives", across},
+          {"spring without free length", free_of_length},
+          {"spring to ground", to_ground},
+          {"spring between drives", between_drives},
+          {"damped spring across drives", damped},
+          {"damped spring without free length", damped_free},
+          {"damper to ground", damper},
+          {"world force", on_tool(ForceType::force, ForceFrame::world)},
+          {"body force", on_tool(ForceType::force, ForceFrame::body)},
+          {"world torque", on_tool(ForceType::torque, ForceFrame::world)},
+          {"body torque", on_tool(ForceType::torque, ForceFrame::body)},
+          {"linear drag", drag},
+          {"quadratic drag", quadratic},
+          {"drag", both}};
+}
+
+RandomOptions several(std::uint32_t seed) {
+  RandomOptions options;
+  options.bodies = 1 + static_cast<int>(seed % 6);
+  options.loops = static_cast<int>(seed % 3);
+  options.drives = seed % 8 == 7 ? RandomDrives::none : RandomDrives::several;
+  options.steady = false;
+  options.skew_universals = seed % 2 == 0;
+  return options;
+}
+
+} // namespace
+
+TEST_CASE("the Jacobian is exact for each type of joint") {
+  const std::vector<JointType> types{JointType::revolute,  JointType::prismatic, JointType::cylindrical,
+                                     JointType::universal, JointType::spherical, JointType::planar,
+                                     JointType::free,      JointType::fixed,     JointType::distance};
+  for (const JointType type : types)
+    for (const Use use : {Use::tree, Use::reversed, Use::cut}) {
+      if (type == JointType::distance && use != Use::cut) continue; // always cut
+      if (type == JointType::free && use == Use::cut) continue;     // holds nothing
+      for (const Dressing& d : dressings("joint")) {
+        INFO(type_name(type) << (use == Use::tree ? "" : use == Use::reversed ? ", reversed" : ", cut") << ", "
+                             << d.name);
+        Mechanism m = rig(type, use);
+        d.dress(m);
+        Model model(m);
+        REQUIRE(model.system.cuts.empty() == (use != Use::cut));
+        const auto joint = std::ranges::find(model.system.tree_joints, "joint", &TreeJoint::name);
+        if (use != Use::cut) REQUIRE(joint->reversed == (use == Use::reversed));
+        Dice dice(7);
+        check_jacobian(model, dice, 0.6);
+      }
+    }
+}
+
+TEST_CASE("the Jacobian is exact for gears between any two axes") {
+  for (const std::string a : {"shoulder.0", "joint", "hold.1"})
+    for (const auto& [type, b] : {std::pair{JointType::revolute, "second"}, {JointType::cylindrical, "second.1"}}) {
+      if (a == "shoulder.0") continue; // a rotation vector has no axis
+      INFO(a << " to " << b);
+      Mechanism m = rig(JointType::revolute, a == "hold.1" ? Use::cut : Use::reversed);
+      m.bodies.push_back(make_body("wheel", 0.5, {0.2, 1, 0}));
+      m.joints.push_back(make_joint("second", type, "wheel", "arm", {0.3, 0.8, 0}));
+      Joint gear;
+      gear.name = "gear";
+      gear.type = JointType::gear;
+      gear.joints = {a, b};
+      gear.ratio = -1.7;
+      m.joints.push_back(gear);
+      Model model(m);
+      REQUIRE(std::ranges::any_of(model.system.cuts, [](const CutJoint& c) { return c.type == JointType::gear; }));
+      Dice dice(8);
+      check_jacobian(model, dice, 0.6);
+    }
+}
+
+TEST_CASE("the Jacobian is exact for each type of force") {
+  for (const JointType type : {JointType::universal, JointType::planar, JointType::free})
+    for (const Use use : {Use::tree, Use::reversed, Use::cut})
+      for (const auto& [name, force] : forces()) {
+        if (type == JointType::free && use == Use::cut) continue;
+        INFO(name << ", " << type_name(type) << " " << static_cast<int>(use));
+        Mechanism m = rig(type, use);
+        m.forces.push_back(force);
+        Model model(m);
+        Dice dice(9);
+        check_jacobian(model, dice, 0.5);
+      }
+}
+
+TEST_CASE("the Jacobian is exact for random mechanisms with several drives") {
+  int drives = 0, twins = 0, dampers = 0;
+  for (std::uint32_t seed = 0; seed < 240; ++seed) {
+    INFO("seed " << seed);
+    Model model(reference::random_mechanism(seed, several(seed)));
+    Dice dice(seed);
+    check_jacobian(model, dice, 0.5);
+    drives += model.system.drives.size() > 1;
+    twins += model.has_twins();
+    dampers += model.has_cut_dampers();
+  }
+  CHECK(drives > 60);
+  CHECK(twins > 40);
+  CHECK(dampers > 5);
+}
+
+TEST_CASE("mass and velocity matrices are the reference's") {
+  int compared = 0;
+  for (std::uint32_t seed = 0; seed < 150; ++seed) {
+    INFO("seed " << seed);
+    RandomOptions options = several(seed);
+    options.bodies = 1 + static_cast<int>(seed % 5);
+    Mechanism mechanism = reference::random_mechanism(seed, options);
+    // A damper in a loop joint acts at the joint, or at its twin: only for closed loops the same (see below).
+    for (Joint& joint : mechanism.joints)
+      if (joint.name.starts_with("loop"))
+        for (Coordinate& c : joint.coordinates)
+          c.damping = 0;
+    const Model model(mechanism);
+    if (model.has_twins() && std::ranges::any_of(model.system.tree_joints, [&](const TreeJoint& t) {
+          return t.closes_loop && std::ranges::any_of(mechanism.joints[static_cast<std::size_t>(t.joint)].coordinates,
+                                                      [](const Coordinate& c) { return c.damping != 0; });
+        }))
+      continue;
+    if (model.has_cut_dampers()) continue;
+    Dice dice(seed);
+    const Eigen::VectorXd q = model.displaced(dice, 0.6);
+    const double t = dice.between(-2, 2);
+    const Linearization l = linearize_at(model, q, Eigen::VectorXd::Zero(model.system.rows), t);
+    const Motion theirs = motion_of(model, q, t);
+    CHECK(largest(MatrixR(l.mass.cast<Real>() - theirs.mass)) < 1e-13 * (1 + largest(theirs.mass)));
+    CHECK(largest(MatrixR(l.velocity.cast<Real>() - theirs.velocity)) < 1e-11 * (1 + largest(theirs.velocity)));
+    ++compared;
+  }
+  CHECK(compared > 100);
+}
+
+TEST_CASE("dampers in loop joints resist the motions that the loops allow") {
+  int compared = 0, resisted = 0;
+  for (std::uint32_t seed = 0; seed < 120; ++seed) {
+    INFO("seed " << seed);
+    RandomOptions options;
+    options.bodies = 3 + static_cast<int>(seed % 3);
+    options.loops = 1;
+    options.parallel_axes = seed % 2 == 0;
+    options.loop_types = {JointType::revolute, JointType::prismatic, JointType::cylindrical, JointType::universal,
+                          JointType::spherical, JointType::planar};
+    Mechanism mechanism = reference::random_mechanism(seed, options);
+    Joint& loop = mechanism.joints.back();
+    for (Coordinate& c : loop.coordinates)
+      c.damping = 3;
+    const Model model(mechanism);
+    if (model.system.cuts.empty()) continue;
+    Dice dice(seed);
+    Eigen::VectorXd q = model.displaced(dice, 0.1);
+    if (!model.close(q, 0)) q = model.drawn;
+    const Linearization l = linearize_at(model, q, Eigen::VectorXd::Zero(model.system.rows), 0);
+    const MatrixR n = null_space(l.constraint.cast<Real>());
+    const MatrixR ours = n.transpose() * l.velocity.cast<Real>() * n;
+    const MatrixR theirs = n.transpose() * motion_of(model, q, 0).velocity * n;
+    CHECK(largest(MatrixR(ours - theirs)) < 1e-10 * (1 + largest(theirs)));
+    compared += n.cols() > 0;
+    resisted += largest(MatrixR(ours)) > 1e-6;
+  }
+  CHECK(compared > 40);
+  CHECK(resisted > 20);
+}
+
+TEST_CASE("without dampers and drag the velocity matrix is gyroscopic") {
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    INFO("seed " << seed);
+    // About a relative equilibrium of one turning frame inertia forces do no work on small motions.
+    RandomOptions options;
+    options.conservative = true;
+    const Model model(reference::random_mechanism(seed, options));
+    Dice dice(seed);
+    const Eigen::VectorXd q = model.displaced(dice, 0.6);
+    const Linearization l = linearize_at(model, q, Eigen::VectorXd::Zero(model.system.rows), 0);
+    const Eigen::MatrixXd symmetric = l.velocity + l.velocity.transpose();
+    CHECK(largest(MatrixR(symmetric.cast<Real>())) < 1e-12 * (1 + largest(MatrixR(l.velocity.cast<Real>()))));
+  }
+}
