@@ -50,4 +50,43 @@ Mechanism SceneArgument::load() const {
   return mechanism;
 }
 
+Range parse_range(std::string_view option, std::string_view text, bool count) {
+  const auto fail = [&] {
+    return SceneError(std::string(option), std::string("expected address=from:to") + (count ? ":count" : "") +
+                                               ", not \"" + std::string(text) + "\"");
+  };
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos || equals == 0) throw fail();
+  std::vector<std::string_view> parts;
+  for (std::size_t from = equals + 1;;) {
+    const std::size_t colon = text.find(':', from);
+    parts.push_back(text.substr(from, colon == std::string_view::npos ? colon : colon - from));
+    if (colon == std::string_view::npos) break;
+    from = colon + 1;
+  }
+  if (parts.size() != (count ? 3u : 2u)) throw fail();
+  Range range;
+  range.address = text.substr(0, equals);
+  const std::string where = std::string(option) + " " + range.address;
+  range.from = parse_number(where, parts[0]);
+  range.to = parse_number(where, parts[1]);
+  if (count) {
+    const double n = parse_number(where, parts[2]);
+    if (n != std::floor(n) || n < 1 || n > 1e7)
+      throw SceneError(where, "expected a whole number of values from 1 to 10000000");
+    range.count = static_cast<int>(n);
+  }
+  return range;
+}
+
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\n") == std::string_view::npos) return std::string(text);
+  std::string out = "\"";
+  for (char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
 } // namespace flyball::cli

@@ -1,4 +1,4 @@
-// What solve, sweep and check have in common: a scene file and --set address=value.
+// What subcommands have in common: a scene file, --set address=value, --vary ranges, and fields of CSV.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -26,5 +26,17 @@ struct SceneArgument {
 std::pair<std::string, double> parse_assignment(std::string_view option, std::string_view text);
 // A finite number, all of the text. Throws SceneError naming the option.
 double parse_number(std::string_view option, std::string_view text);
+
+// "address=from:to" and, where `count` is wanted, ":count" (1 otherwise). Throws SceneError naming the
+// option.
+struct Range {
+  std::string address;
+  double from = 0, to = 0;
+  int count = 1;
+};
+Range parse_range(std::string_view option, std::string_view text, bool count = false);
+
+// Quoted where a comma, a quote or a line end asks for it (RFC 4180).
+std::string csv_field(std::string_view text);
 
 } // namespace flyball::cli

@@ -51,9 +51,9 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   if (!converged) return out;
 
   if (s.potential) out["potential"] = number(*s.potential);
+  out["coordinates"] = coordinates_json(s.coordinates);
   for (const CoordinateSolution& c : s.coordinates) {
     if (c.driven) continue;
-    put(out["coordinates"], c.joint, c.index, c.count, number(c.value));
     put(out["error_estimate"], c.joint, c.index, c.count, number(c.error));
   }
   for (const JointMultipliers& m : s.multipliers) {
@@ -98,6 +98,13 @@ Json to_json(const Mechanism& mechanism, const AllSolutions& all) {
     put(bounds, b.joint, b.index, b.count, {b.lower, b.upper});
   out["search"] = {
       {"bounds", std::move(bounds)}, {"starts", all.starts}, {"complete", false}, {"message", all.message}};
+  return out;
+}
+
+Json coordinates_json(const std::vector<CoordinateSolution>& coordinates) {
+  Json out = Json::object();
+  for (const CoordinateSolution& c : coordinates)
+    if (!c.driven) put(out, c.joint, c.index, c.count, number(c.value));
   return out;
 }
 

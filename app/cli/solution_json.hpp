@@ -11,6 +11,9 @@ namespace flyball::cli {
 // Every key is always there; what is not available is null.
 nlohmann::ordered_json to_json(const Mechanism& mechanism, const Solution& solution);
 
+// {joint: value or array}, driven ones left out.
+nlohmann::ordered_json coordinates_json(const std::vector<CoordinateSolution>& coordinates);
+
 // {"equilibria": [as above], "search": {"bounds", "starts", "complete"}}.
 nlohmann::ordered_json to_json(const Mechanism& mechanism, const AllSolutions& all);
 

@@ -16,34 +16,6 @@
 namespace flyball::cli {
 namespace {
 
-// ADDRESS=FROM:TO:N
-Variation parse_variation(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const std::size_t first = text.find(':', equals), second = text.find(':', first + 1);
-  if (equals == std::string::npos || first == std::string::npos || second == std::string::npos)
-    throw SceneError("--vary", "expected address=from:to:count, not \"" + text + "\"");
-  Variation v;
-  v.address = text.substr(0, equals);
-  const std::string option = "--vary " + v.address;
-  v.from = parse_number(option, std::string_view(text).substr(equals + 1, first - equals - 1));
-  v.to = parse_number(option, std::string_view(text).substr(first + 1, second - first - 1));
-  const double count = parse_number(option, std::string_view(text).substr(second + 1));
-  if (count != std::floor(count) || count < 1 || count > 1e7)
-    throw SceneError(option, "expected a whole number of values from 1 to 10000000");
-  v.count = static_cast<int>(count);
-  return v;
-}
-
-std::string quoted(const std::string& field) {
-  if (field.find_first_of(",\"\n") == std::string::npos) return field;
-  std::string out = "\"";
-  for (char c : field) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + "\"";
-}
-
 struct ColumnName {
   std::string joint;
   int index;
@@ -66,10 +38,10 @@ std::string to_csv(const std::vector<Variation>& variations, const std::vector<S
   const std::vector<ColumnName> columns = coordinate_columns(points);
   std::string out;
   for (const Variation& v : variations)
-    out += quoted(v.address) + ",";
+    out += csv_field(v.address) + ",";
   out += "status";
   for (const ColumnName& c : columns)
-    out += "," + quoted(c.text());
+    out += "," + csv_field(c.text());
   out += ",stable,residual,run_time_s\n";
   for (const SweepPoint& p : points) {
     for (double value : p.parameters)
@@ -179,7 +151,8 @@ void add_sweep(CLI::App& app, int& exit_code) {
     std::vector<Variation> variations;
     double total = 1;
     for (const std::string& text : options->vary) {
-      variations.push_back(parse_variation(text));
+      const Range range = parse_range("--vary", text, true);
+      variations.push_back({range.address, range.from, range.to, range.count});
       total *= variations.back().count;
     }
     if (total > 1e7) throw SceneError("--vary", "expected at most 10000000 combinations");
