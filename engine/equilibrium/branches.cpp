@@ -215,7 +215,9 @@ class Follower {
           locate(state, length, next, [&](const BranchState& s) { return s.determinant * sign < 0; });
       if (!known(at, found_)) {
         found_.push_back(at);
+        // At the crossing itself the balance has two tangents; this is the branch's own.
         crossings_.push_back(at);
+        crossings_.back().tangent = state.tangent;
         add_special(SpecialPointType::branch_point, at, branch);
       }
       explained = true;
@@ -234,7 +236,6 @@ class Follower {
       if (static_cast<int>(out_.branches.size()) >= options_.max_branches) return;
       BranchState first;
       if (!continuation_.switch_branch(at, length, first)) continue;
-      // Not back on a branch that is known.
       if (position(first.parameter) < 0 || position(first.parameter) > 1) continue;
       follow_from_crossing(at, std::move(first));
     }
