@@ -66,10 +66,22 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
     out += fmt::format("  {:{}}  {:>22.9g} {}{}\n", label(d.joint, d.index, d.count), width, d.value,
                        d.angle ? "N m" : "N", d.varying ? "  (changes with the phase)" : "");
   if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
-  for (const Reaction& r : s.reactions)
+  // What is rounding beside the largest reaction is shown as zero.
+  double force = 0, torque = 0;
+  for (const Reaction& r : s.reactions) {
+    force = std::max(force, r.force.norm());
+    torque = std::max(torque, r.torque.norm());
+  }
+  const auto clean = [](const Vec3& v, double size) -> Vec3 {
+    return v.unaryExpr([&](double x) { return std::abs(x) < 1e-12 * size ? 0. : x; });
+  };
+  for (const Reaction& raw : s.reactions) {
+    const Reaction r{raw.joint, clean(raw.force, force), clean(raw.torque, std::max(torque, force)),
+                     raw.varying};
     out += fmt::format("  {:{}}  force [{:.6g}, {:.6g}, {:.6g}] N  torque [{:.6g}, {:.6g}, {:.6g}] N m{}\n",
                        r.joint, width, r.force.x(), r.force.y(), r.force.z(), r.torque.x(), r.torque.y(),
                        r.torque.z(), r.varying ? "  (changes with the phase)" : "");
+  }
   if (s.reactions_nonunique)
     out +=
         "  The loops are redundant: these are the reactions with the least multipliers of many possible.\n";

@@ -40,12 +40,13 @@ struct ViewState {
   bool fit = true;           // wanted at the next update
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
   PartId hovered;
+  Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found
   unsigned texture = 0;      // OpenGL's, with the picture of the view
 };
 
 // Sizes in points, so that they mean the same on every display.
 struct PanelState {
-  float parameters_width = 290, results_width = 330, stacked_width = 320;
+  float parameters_width = 290, results_width = 345, stacked_width = 330;
   float stacked_share = 0.4f; // of the height, for the parameters above the results
   bool springs = true, drives = true, others = true;
   bool torques = true, reactions = false, eigenvalues = false, multipliers = false, system = false;

@@ -1,8 +1,8 @@
 // Where everything settles: each coordinate in the units of the screen and in SI.
 #include "app/panels/panels.hpp"
 #include "app/panels/widgets.hpp"
-#include "engine/mechanism/address.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 namespace flyball {
@@ -11,11 +11,14 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi, millimetres = 1000;
 
+// With more coordinates than this each takes one line, and the rest appears over it.
+constexpr int spacious = 8;
+
 std::string name_of(const CoordinateSolution& c) {
   return c.count > 1 ? c.joint + "." + std::to_string(c.index) : c.joint;
 }
 
-void free_coordinate(App& app, const CoordinateSolution& c) {
+void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
   const NumberStyle& numbers = app.options.numbers;
   const UiColors& colors = colors_of(app);
   const double factor = c.angle ? degrees : millimetres;
@@ -23,20 +26,24 @@ void free_coordinate(App& app, const CoordinateSolution& c) {
   row(app, name_of(c), value_text(c.value * factor, c.error * factor, numbers), c.angle ? "°" : "mm");
   note_widget(app.widgets, "results/" + name_of(c));
   std::string second = value_text(c.value, c.error, numbers) + " " + si;
-  if (c.error > 0) second += "  ± " + magnitude_text(c.error, numbers) + " " + si;
-  right_text(app, second, colors.dim, true);
+  if (c.error > 0) second += "  ± " + magnitude_text(std::max(c.error, numbers.noise), numbers) + " " + si;
+  if (compact)
+    help_on_hover(second.c_str());
+  else {
+    right_digits(app, second, colors.dim);
+    ImGui::Dummy({0, 0});
+  }
 }
 
 } // namespace
 
 void coordinate_results(App& app) {
-  bool any = false;
-  for (const CoordinateSolution& c : app.answer.solution.coordinates) {
-    if (c.driven) continue;
-    if (!any) heading(app, "Where it settles");
-    any = true;
-    free_coordinate(app, c);
-  }
+  const auto& all = app.answer.solution.coordinates;
+  const auto free = std::ranges::count(all, false, &CoordinateSolution::driven);
+  if (free == 0) return;
+  heading(app, "Where it settles");
+  for (const CoordinateSolution& c : all)
+    if (!c.driven) free_coordinate(app, c, free > spacious);
 }
 
 } // namespace flyball

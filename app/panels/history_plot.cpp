@@ -58,7 +58,7 @@ void history_plot(App& app, float width, float height) {
   for (int decade = decades.high; decade >= decades.low; decade -= step) {
     const float at = std::round(y(std::pow(10.0, decade)));
     list.AddLine({left, at}, {right, at}, packed(colors.border), std::max(1.f, std::round(s)));
-    const std::string label = fmt::format("1e{}", decade);
+    const std::string label = decade == 0 ? "1" : fmt::format("1e{}", decade);
     const float wide = font->CalcTextSizeA(text, 1e9f, 0, label.c_str()).x;
     list.AddText(font, text, {left - wide - 6 * s, at - text / 2}, packed(colors.dim), label.c_str());
   }

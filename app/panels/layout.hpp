@@ -17,7 +17,7 @@ struct Layout {
 
 Layout layout_of(const App& app, float width, float height);
 
-// Draws the lines between panels and moves them; after the panels. `height` is that of the window.
+// Draws the lines between panels and moves them; before the panels. `height` is that of the window.
 void drag_splitters(App& app, const Layout& layout, float height);
 // Begins the window of a panel without frame or title; ImGui::End ends it.
 void begin_panel(const char* name, const PanelRect& rect, int more_flags = 0);

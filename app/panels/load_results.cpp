@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace flyball {
 
@@ -11,7 +12,8 @@ namespace {
 
 std::string force_text(double value, double largest, const NumberStyle& numbers) {
   // Digits of the largest: a component that ought to vanish is not told to twelve digits of round-off.
-  return value_text(value, std::max(largest, 1.0) * 1e-6, {6, numbers.noise, numbers.run_times});
+  if (std::abs(value) <= 1e-12 * std::max(largest, 1.0)) return "0";
+  return value_text(value, largest * 1e-6, {6, numbers.noise, numbers.run_times});
 }
 
 void vector_row(App& app, const char* label, const Vec3& v, double largest, const char* unit) {

@@ -63,6 +63,7 @@ std::string without_negative_zero(std::string text) {
 std::string value_text(double value, double error, const NumberStyle& style) {
   if (!std::isfinite(value)) return "not finite";
   const bool known = std::isfinite(error) && error > 0;
+  if (value == 0 && !known) return "0";
   const double size = std::max(std::abs(value), known ? error : style.noise);
   const int leading = size > 0 ? static_cast<int>(std::floor(std::log10(size))) : 0;
   const int last = known ? static_cast<int>(std::floor(std::log10(std::max(error, style.noise)))) : -300;

@@ -67,6 +67,7 @@ std::string what_of(const std::vector<std::string>& parts) {
     else if (!plain || (parts[i] != "drive" && parts[i] != "spring"))
       words = parts[i] + " " + words;
   }
+  std::ranges::replace(words, '_', ' ');
   return words;
 }
 

@@ -5,6 +5,8 @@
 
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+
 namespace flyball {
 
 namespace {
@@ -52,11 +54,11 @@ void value_field(App& app, const ParameterControl& control, double value, float 
     list.AddRectFilled(from, {from.x + width, from.y + height}, packed(colors.raised), ImGui::GetStyle().FrameRounding);
   }
   const float right = from.x + width - 4 * app.scale;
-  const float y = from.y + (height - size.y) / 2;
-  list.AddText(digits, digits->FontSize, {right - unit_width - size.x, y}, packed(colors.text), text.c_str());
+  const float y = from.y + ImGui::GetStyle().FramePadding.y;
+  list.AddText(digits, digits->FontSize, {right - unit_width - size.x, y + digits_drop(app)}, packed(colors.text),
+               text.c_str());
   if (unit_width > 0)
-    list.AddText({right - unit_width + 5 * app.scale, from.y + ImGui::GetStyle().FramePadding.y}, packed(colors.dim),
-                 control.unit.c_str());
+    list.AddText({right - unit_width + 5 * app.scale, y}, packed(colors.dim), control.unit.c_str());
 }
 
 void parameter(App& app, const ParameterControl& control) {
@@ -66,8 +68,8 @@ void parameter(App& app, const ParameterControl& control) {
   ImGui::PushID(control.address.c_str());
 
   const float start = ImGui::GetCursorPosX(), room = ImGui::GetContentRegionAvail().x;
-  const float value_width = std::min(room * 0.55f, 150 * s);
-  const float label_width = room - value_width - reset_width - 8 * s;
+  const float value_width = std::min(room * 0.5f, 150 * s);
+  const float label_width = room - value_width - reset_width - 6 * s;
   ImGui::AlignTextToFramePadding();
   clipped_text(control.name, label_width);
   const float used = ImGui::GetItemRectSize().x;
@@ -77,15 +79,16 @@ void parameter(App& app, const ParameterControl& control) {
     clipped_text(control.what, label_width - used - 6 * s);
     ImGui::PopStyleColor();
   }
-  ImGui::SameLine();
-  ImGui::SetCursorPosX(start + room - value_width - reset_width);
-  value_field(app, control, value, value_width);
   if (value != control.file_value) {
-    ImGui::SameLine(0, 0);
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(start + room - value_width - reset_width);
     if (icon_button(app, "parameters/" + control.address + "/reset", icon::undo,
                     ("Back to the file's " + short_text(control.file_value) + " " + control.unit).c_str()))
       change_parameter(app, control.address, control.file_value);
   }
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(start + room - value_width);
+  value_field(app, control, value, value_width);
   bool type_value = false;
   if (slider(app, "parameters/" + control.address, control, value, type_value))
     change_parameter(app, control.address, value);

@@ -50,7 +50,8 @@ void verdict(App& app) {
   note_widget(app.widgets, "results/verdict");
   if (solution.status == Status::converged && solution.stability_reason)
     paragraph(reason_text(*solution.stability_reason), colors.dim);
-  if (solution.status != Status::converged || solution.net || solution.stable != true)
+  // Where all went well the words above say it already.
+  if (solution.status != Status::converged || solution.message != "Converged.")
     paragraph(solution.message, solution.status == Status::converged ? colors.dim : colors.text);
 }
 

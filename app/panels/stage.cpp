@@ -10,7 +10,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float text_size = 15; // points
+constexpr float text_size = 16; // points
 
 ViewKey key_of(const App& app, const ViewFrame& frame, PixelSize size) {
   ViewKey key;

@@ -65,9 +65,10 @@ void play_buttons(App& app) {
   if (icon_button(app, "toolbar/rewind", icon::step_backward, "Back to the drawn phase of the drives")) rewind(app);
   next(app);
   const auto current = std::ranges::find(factors, app.playback.factor, &Factor::value);
-  ImGui::SetNextItemWidth(74 * app.scale);
+  ImGui::SetNextItemWidth(62 * app.scale);
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
-  if (ImGui::BeginCombo("##factor", current == factors.end() ? "" : current->text)) {
+  if (ImGui::BeginCombo("##factor", current == factors.end() ? "" : current->text,
+                        ImGuiComboFlags_NoArrowButton)) {
     for (const Factor& factor : factors)
       if (ImGui::Selectable(factor.text, factor.value == app.playback.factor)) app.playback.factor = factor.value;
     ImGui::EndCombo();
@@ -128,7 +129,10 @@ void toolbar_panel(App& app, const PanelRect& rect) {
     apply_style(app.theme, app.scale);
   }
   const float line = rect.height - std::max(1.f, std::round(s));
-  ImGui::GetWindowDrawList()->AddRectFilled({0, line}, {rect.width, rect.height}, packed(colors_of(app).border));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRectFullScreen();
+  list.AddRectFilled({0, line}, {rect.width, rect.height}, packed(colors_of(app).border));
+  list.PopClipRect();
   ImGui::End();
 }
 

@@ -38,11 +38,13 @@ void point_at_parts(App& app, const PanelRect& rect) {
   const ImGuiIO& io = ImGui::GetIO();
   if (!ImGui::IsItemHovered() || ImGui::IsItemActive() || !app.open) {
     app.view.hovered = {};
+    app.view.pointed_at = Vec2::Constant(-1);
     return;
   }
   // Looking along a ray takes longest in a mechanism of thousands of bodies: only where the hand moves.
-  if (io.MouseDelta.x == 0 && io.MouseDelta.y == 0) return;
   const Vec2 cursor(static_cast<double>(io.MousePos.x - rect.x), static_cast<double>(io.MousePos.y - rect.y));
+  if (cursor == app.view.pointed_at) return;
+  app.view.pointed_at = cursor;
   const ViewFrame frame = view_frame(app);
   const auto hit = pick(scene_of(frame).instances, frame.camera.ray(cursor, view_size(rect)), 4 * static_cast<double>(app.scale));
   app.view.hovered = hit ? hit->part : PartId{};
@@ -83,7 +85,7 @@ void caption(App& app, const PanelRect& rect) {
   float y = rect.y + 11 * s;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect({rect.x, rect.y}, {rect.x + rect.width - 8 * s, rect.y + rect.height}, true);
-  const float big = std::round(1.2f * app.fonts.strong->FontSize);
+  const float big = app.fonts.strong->FontSize;
   list.AddText(app.fonts.strong, big, {x, y}, packed(colors.text), app.mechanism.name.c_str());
   y += big + 4 * s;
   const bool solved = app.answer.ticket && !app.answer.error && app.answer.solution.status == Status::converged;

@@ -7,7 +7,7 @@ namespace flyball {
 
 namespace {
 
-// Draws text with the font that is pushed for it, whatever is current.
+// Text in a font, whatever is current.
 void text_in(ImFont* font, const ImVec4& color, const std::string& text) {
   ImGui::PushFont(font);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
@@ -84,8 +84,12 @@ bool section(App& app, const std::string& name, const char* text, bool& open) {
   return open;
 }
 
-void right_text(App& app, const std::string& text, const ImVec4& color, bool digits) {
-  ImFont* font = digits ? app.fonts.digits : app.fonts.text;
+float digits_drop(const App& app) {
+  return std::round(app.fonts.text->Ascent - app.fonts.digits->Ascent);
+}
+
+void right_digits(App& app, const std::string& text, const ImVec4& color) {
+  ImFont* font = app.fonts.digits;
   const float width = font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.f, ImGui::GetContentRegionAvail().x - width));
   text_in(font, color, text);
@@ -103,10 +107,12 @@ void row(App& app, const std::string& label, const std::string& value, const cha
   clipped_text(label, room - unit_width - value_width - 8 * app.scale);
   ImGui::PopStyleColor();
   ImGui::SameLine();
-  ImGui::SetCursorPosX(start + std::max(0.f, room - unit_width - value_width));
+  const ImVec2 at(start + std::max(0.f, room - unit_width - value_width), ImGui::GetCursorPosY());
+  ImGui::SetCursorPos({at.x, at.y + digits_drop(app)});
   text_in(app.fonts.digits, colors.text, value);
   if (unit_width > 0) {
-    ImGui::SameLine(0, 5 * app.scale);
+    ImGui::SameLine();
+    ImGui::SetCursorPos({at.x + value_width + 5 * app.scale, at.y});
     text_in(app.fonts.text, colors.dim, unit);
   }
   ImGui::EndGroup();

@@ -25,8 +25,10 @@ void heading(App& app, const char* text);
 // The same, that opens and closes; returns whether it is open.
 bool section(App& app, const std::string& name, const char* text, bool& open);
 
-// Text from here to the right edge, ending there.
-void right_text(App& app, const std::string& text, const ImVec4& color, bool digits);
+// Digits from here to the right edge, ending there.
+void right_digits(App& app, const std::string& text, const ImVec4& color);
+// How much lower digits must begin than words to stand on the same line (pixels).
+float digits_drop(const App& app);
 // "label            value unit": the value in digits. Help appears over the row.
 void row(App& app, const std::string& label, const std::string& value, const char* unit, const char* help = nullptr);
 // Words that may take several lines.

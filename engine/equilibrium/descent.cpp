@@ -10,21 +10,6 @@ double potential_at(const Problem& problem, const Eigen::VectorXd& q, Workspace&
   return u.value;
 }
 
-// Multipliers that balance best, and the linearisation with them.
-void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
-  z.lambda.setZero(problem.system.rows);
-  evaluate(problem, z, 0, w);
-  if (problem.system.rows > 0) {
-    linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
-    factor_constraints(problem, w);
-    w.target = -w.residual.f.cwiseProduct(problem.scaling.column);
-    w.constraints.multipliers(w.target, w.scaled_lambda);
-    z.lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
-    evaluate(problem, z, 0, w);
-  }
-  factor(problem, z, w);
-}
-
 } // namespace
 
 DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::vector<double>* history) {
@@ -56,6 +41,7 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
     double slope = 0, lowest = 0;
     Eigen::Index lowest_index = 0;
     bool down = false;
+    const double rounding = 1e-14 * magnitude;
     for (Eigen::Index k = 0; k < g.size(); ++k) {
       const double mu = hessian.eigenvalues()[k];
       const double along = hessian.eigenvectors().col(k).dot(g);
@@ -63,24 +49,35 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
         lowest = mu;
         lowest_index = k;
       }
+      const Eigen::VectorXd way = basis * hessian.eigenvectors().col(k).cwiseProduct(hessian.scale());
+      const double length = way.lpNorm<Eigen::Infinity>();
+      double distance = std::abs(along / mu) * length;
       if (std::abs(mu) <= ReducedHessian::zero) {
         // Nothing resists here. A force that pushes this way has a long way to go.
-        const Eigen::VectorXd way = hessian.eigenvectors().col(k).cwiseProduct(hessian.scale());
-        const double length = (basis * way).lpNorm<Eigen::Infinity>();
-        if (!(std::abs(gradient.dot(way)) > 1e-9 * force * length)) continue;
-        y -= hessian.eigenvectors().col(k) * (std::copysign(radius, along) / length);
-        slope -= std::abs(along) * radius / length;
+        if (!(std::abs(along) > 1e-9 * force * length)) continue;
+        distance = radius;
+      } else if (distance > 1e-4 && along * along < rounding * std::abs(mu)) {
+        // Nothing resists here either, but what is left of the gradient looks like curvature. A long step
+        // without a gain that can be measured would only wander.
         continue;
       }
-      y -= hessian.eigenvectors().col(k) * (along / std::abs(mu));
-      slope -= along * along / std::abs(mu);
+      const double stride = std::copysign(std::min(distance, radius), along) / length;
+      y -= hessian.eigenvectors().col(k) * stride;
+      slope -= along * stride;
     }
     Eigen::VectorXd step = basis * y.cwiseProduct(hessian.scale());
     double size = step.lpNorm<Eigen::Infinity>();
-    if (lowest < -ReducedHessian::zero && size < 1e-6) {
-      // A saddle: step off along the most unstable direction, on the side the gradient leans to, if it does.
+    bool saddle = lowest < -ReducedHessian::zero && size < 1e-6;
+    Eigen::VectorXd off;
+    if (saddle) {
+      off = basis * hessian.eigenvectors().col(lowest_index).cwiseProduct(hessian.scale());
+      const double amplitude = 0.1 / off.lpNorm<Eigen::Infinity>();
+      saddle = -lowest * amplitude * amplitude > 20 * rounding; // else flat, as far as can be told
+    }
+    if (saddle) {
+      // Step off along the most unstable direction, on the side the gradient leans to, if it does.
       const Eigen::VectorXd v = hessian.eigenvectors().col(lowest_index);
-      step = basis * v.cwiseProduct(hessian.scale());
+      step = off;
       Eigen::Index biggest = 0;
       step.cwiseAbs().maxCoeff(&biggest);
       double side = v.dot(g) > 0 ? -1 : 1;
@@ -94,7 +91,6 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
     }
     double fraction = std::min(1., radius / size);
     bool accepted = false;
-    const double rounding = 1e-14 * magnitude;
     for (int tries = 0; tries < 40; ++tries, fraction /= 2) {
       moved = z.q;
       w.step = fraction * step.cwiseProduct(problem.scaling.column);

@@ -10,52 +10,59 @@
 namespace flyball {
 namespace {
 
-// Whether the drives carry the loops along at the drawn pose: each cut joint that they open counts.
-int loops_opened(const System& system, const Mechanism& mechanism) {
-  if (system.rows == 0 || system.drives.empty()) return 0;
+// How the cut joints fare when the drives go on a little from the drawn pose with all else at rest.
+struct DrivenCuts {
+  int opened = 0;           // cuts that the drives pull open
+  std::vector<bool> turned; // by cut: its ends move against each other, and it stays closed
+};
+
+DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
+  DrivenCuts out;
+  out.turned.resize(system.cuts.size());
+  if (system.rows == 0 || system.drives.empty()) return out;
   Parameters p;
   bind(system, mechanism, p);
-  if (!p.moving) return 0;
   Scaling scaling;
   set_scaling(system, p, scaling);
+  // A drive that stands still now may be set going by a slider, and the cuts must do for that, too.
+  double fastest = 0;
+  for (const DrivenCoordinate& d : system.drives) {
+    const auto l = static_cast<std::size_t>(d.link);
+    if (p.links[l].speed == 0) p.links[l].speed = p.links[l].gear_ratio;
+    fastest = std::max(fastest, std::abs(p.links[l].speed) /
+                                    (system.links[l].type == LinkType::revolute ? 1 : p.length));
+  }
   Configuration<double> q;
   drawn_configuration(system, p, q);
-  Kinematics<double> k;
-  Residual<double> r;
   const Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.rows);
-  const Eigen::VectorXd fastest = [&] {
-    double rate = 0;
-    for (const DrivenCoordinate& d : system.drives) {
-      const auto l = static_cast<std::size_t>(d.link);
-      rate = std::max(rate, std::abs(p.links[l].speed) /
-                                (system.links[l].type == LinkType::revolute ? 1 : p.length));
-    }
-    return Eigen::VectorXd::Constant(1, rate);
-  }();
-  Eigen::VectorXd before, after;
-  const double turn = 0.05 / fastest[0];
-  forward<double>(system, p, q, 0, k);
-  evaluate_residual<double>(system, p, q, lambda, k, r);
-  before = r.phi;
-  forward<double>(system, p, q, turn, k);
-  evaluate_residual<double>(system, p, q, lambda, k, r);
-  after = r.phi;
-  int opened = 0;
-  for (const CutJoint& cut : system.cuts) {
+  Kinematics<double> k[2];
+  Residual<double> r[2];
+  for (int i : {0, 1}) {
+    forward<double>(system, p, q, i * 0.05 / fastest, k[i]);
+    evaluate_residual<double>(system, p, q, lambda, k[i], r[i]);
+  }
+  for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+    const CutJoint& cut = system.cuts[c];
     double change = 0;
     for (int i = cut.first_row; i < cut.first_row + static_cast<int>(cut.rows.size()); ++i)
-      change = std::max(change, std::abs(after[i] - before[i]) * scaling.row[i]);
-    opened += change > 1e-6;
+      change = std::max(change, std::abs(r[1].phi[i] - r[0].phi[i]) * scaling.row[i]);
+    if (change > 1e-6) {
+      ++out.opened;
+    } else if (cut.type != JointType::gear) {
+      const auto relative = [&](int i) {
+        return Mat3(k[i].at(cut.ends.a).R.transpose() * k[i].at(cut.ends.b).R);
+      };
+      out.turned[c] = (relative(1) - relative(0)).norm() > 1e-6;
+    }
   }
-  return opened;
+  return out;
 }
 
 } // namespace
 
 System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& notes) {
   System best = compile(mechanism);
-  int opened = loops_opened(best, mechanism);
-  if (opened == 0) return best;
+  DrivenCuts fate = drive_cuts(best, mechanism);
   std::deque<CutChoice> queue;
   std::vector<std::vector<int>> seen;
   const auto enqueue = [&](const System& from) {
@@ -66,8 +73,8 @@ System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& 
       queue.push_back(std::move(c));
     }
   };
-  enqueue(best);
-  for (int tried = 0; tried < 500 && !queue.empty() && opened > 0; ++tried) {
+  if (fate.opened > 0) enqueue(best);
+  for (int tried = 0; tried < 500 && !queue.empty() && fate.opened > 0; ++tried) {
     const CutChoice choice = std::move(queue.front());
     queue.pop_front();
     System other;
@@ -76,20 +83,18 @@ System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& 
     } catch (const SceneError&) {
       continue; // not admissible: a drive would be cut
     }
-    const int count = loops_opened(other, mechanism);
-    if (count < opened) {
-      opened = count;
+    if (DrivenCuts there = drive_cuts(other, mechanism); there.opened < fate.opened) {
+      fate = std::move(there);
       best = other;
     }
     enqueue(other);
   }
-  if (opened == 0)
-    for (const CutJoint& cut : best.cuts) {
-      const Joint& j = mechanism.joints[static_cast<std::size_t>(cut.joint)];
-      if (j.cut != true && coordinate_count(j.type) > 0)
-        notes.push_back("The loop is cut at " + j.name +
-                        ", which turns or slides at a constant rate in the steady state.");
-    }
+  for (std::size_t c = 0; c < best.cuts.size(); ++c) {
+    const Joint& j = mechanism.joints[static_cast<std::size_t>(best.cuts[c].joint)];
+    if (fate.turned[c] && j.type != JointType::distance)
+      notes.push_back("The loop is cut at " + j.name +
+                      ", which turns at a constant rate in the steady state.");
+  }
   return best;
 }
 

@@ -24,7 +24,13 @@ class Search {
     history_.clear();
     if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, {}, &history_); })) return;
     if (p_.cancelled()) return cancelled();
-    if (!close_loops()) return;
+    if (!close_loops()) {
+      if (!arrived_) {
+        found_.status = Status::infeasible;
+        return;
+      }
+      w_.assembled = candidate_.q; // Newton-Raphson found a way that Gauss-Newton did not
+    }
     if (!arrived_) {
       if (attempt(w_.assembled, Net::damped, [&](Unknowns& z) {
             return newton(p_, z, w_, {200, true}, &history_);
@@ -97,10 +103,10 @@ class Search {
     found_.message = "The solve was cancelled.";
   }
 
-  // Fills w_.assembled or says that it cannot be done.
+  // Fills w_.assembled or finds that it cannot be done.
   bool close_loops() {
     w_.assembled = start_;
-    if (assemble(p_, w_.assembled, 0, w_)) return true;
+    if (assembled()) return true;
     // Gauss-Newton can stall: try from a few places around the start before calling it infeasible.
     record_opening();
     std::mt19937 random(12345);
@@ -111,11 +117,12 @@ class Search {
       for (Eigen::Index k = 0; k < w_.step.size(); ++k)
         w_.step[k] = spread(random) * p_.scaling.column[k];
       retract<double>(p_.system, w_.step, w_.assembled);
-      if (assemble(p_, w_.assembled, 0, w_) && closed_the_right_way(p_, w_.kinematics)) return true;
+      if (assembled()) return true;
     }
-    found_.status = Status::infeasible;
     return false;
   }
+
+  bool assembled() { return assemble(p_, w_.assembled, 0, w_) && closed_the_right_way(p_, w_.kinematics); }
 
   void record_opening() {
     for (std::size_t c = 0; c < p_.system.cuts.size(); ++c) {
@@ -141,7 +148,8 @@ class Search {
     }
     const NewtonOutcome outcome = newton(p_, found_.z, w_, {}, &history_);
     found_.iterations += outcome.iterations;
-    if (!outcome.converged || outcome.largest_step > 0.2) return false;
+    if (!outcome.converged || outcome.largest_step > 0.2 || !closed_the_right_way(p_, w_.kinematics))
+      return false;
     found_.newton = outcome;
     factor(p_, found_.z, w_);
     found_.minimum = p_.symmetric() && w_.hessian.positive_definite();

@@ -83,6 +83,20 @@ void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
   w.hessian.factor(w.reduced, w.noise, problem.symmetric());
 }
 
+void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
+  z.lambda.setZero(problem.system.rows);
+  evaluate(problem, z, 0, w);
+  if (problem.system.rows > 0) {
+    linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
+    factor_constraints(problem, w);
+    w.target = -w.residual.f.cwiseProduct(problem.scaling.column);
+    w.constraints.multipliers(w.target, w.scaled_lambda);
+    z.lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
+    evaluate(problem, z, 0, w);
+  }
+  factor(problem, z, w);
+}
+
 void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::VectorXd& phi, Workspace& w,
                  Eigen::VectorXd& scaled_step, Eigen::VectorXd& lambda) {
   w.scaled_force = f.cwiseProduct(problem.scaling.column);

@@ -22,6 +22,9 @@ void factor_constraints(const Problem& problem, Workspace& w);
 // Linearises and factors at an evaluated state.
 void factor(const Problem& problem, const Unknowns& z, Workspace& w);
 
+// The same at any state, with the multipliers that balance it best.
+void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w);
+
 // The Newton step at a factored state: `step` (scaled, tangent) and `lambda` (new multipliers) for the
 // balance `f` without constraint forces (N m, N) and the constraint values `phi`.
 void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::VectorXd& phi, Workspace& w,

@@ -1,5 +1,7 @@
 #include "engine/equilibrium/reduced_hessian.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 
 void ReducedHessian::factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& noise, bool symmetric) {
@@ -9,7 +11,12 @@ void ReducedHessian::factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd
   null_ = 0;
   scale_.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double size = std::max(std::abs(matrix(i, i)), std::max(noise[i], 1e-300));
+    // By the diagonal, but an entry of rounding alone must come out as zero, and one beside a zero diagonal no
+    // larger than one; entries of definite matrices never ask for the latter.
+    double size = std::max({std::abs(matrix(i, i)), noise[i] / zero, 1e-300});
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (const double a = std::abs(matrix(i, j)); a > 0)
+        size = std::max(size, a * (a / std::max(a, std::abs(matrix(j, j)))));
     scale_[i] = 1 / std::sqrt(size);
   }
   matrix_.resize(n, n);

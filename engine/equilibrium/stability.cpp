@@ -62,6 +62,32 @@ std::vector<Complex> singular_eigenvalues(const Eigen::MatrixXd& mass, const Eig
   return s;
 }
 
+// Whether a way (scaled) along the directions without stiffness leads to another balanced state, the rest
+// giving way as it must: a bob that turns about the vertical goes along an arc.
+bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::MatrixXd& flat,
+                    const Eigen::VectorXd& way, Workspace& w) {
+  Unknowns moved = z;
+  Eigen::VectorXd step = way;
+  for (int i = 0; i < 8; ++i) {
+    w.step = step.cwiseProduct(problem.scaling.column);
+    retract<double>(problem.system, w.step, moved.q);
+    if (!assemble(problem, moved.q, 0, w)) return false;
+    factor_with_multipliers(problem, moved, w);
+    const Eigen::MatrixXd& basis = w.constraints.basis();
+    const Eigen::VectorXd left = basis.transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
+    const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
+    if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
+    const Eigen::HouseholderQR<Eigen::MatrixXd> across(basis.transpose() * flat);
+    const Eigen::MatrixXd all = across.householderQ();
+    const auto rest = all.rightCols(std::max<Eigen::Index>(0, all.cols() - flat.cols()));
+    if (rest.cols() == 0) return false;
+    const Eigen::MatrixXd stiffness = basis.transpose() * w.scaled_stiffness * basis * rest;
+    step = basis * (rest * stiffness.colPivHouseholderQr().solve(-left));
+    if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
+  }
+  return false;
+}
+
 } // namespace
 
 std::vector<Complex> pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
@@ -159,22 +185,9 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
     const double size = direction.lpNorm<Eigen::Infinity>();
     if (!(size > 0)) continue;
     direction /= size;
-    bool balanced = true;
-    for (double distance : {0.05, -0.11}) {
-      Unknowns moved = z;
-      w.step = distance * direction.cwiseProduct(problem.scaling.column);
-      retract<double>(problem.system, w.step, moved.q);
-      if (!assemble(problem, moved.q, 0, w)) balanced = false;
-      evaluate(problem, moved, 0, w);
-      linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
-      factor_constraints(problem, w);
-      w.zero_lambda.setZero(problem.system.rows);
-      const Eigen::VectorXd left =
-          w.constraints.basis().transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
-      const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
-      if (left.size() > 0 && left.lpNorm<Eigen::Infinity>() > 1e-9 * force) balanced = false;
-    }
-    if (!balanced) continue;
+    if (!stays_balanced(problem, z, flat, 0.05 * direction, w) ||
+        !stays_balanced(problem, z, flat, -0.11 * direction, w))
+      continue;
     ++flat_count;
     for (int i = 0; i < problem.system.nv; ++i)
       if (std::abs(direction[i]) > 1e-6 && std::ranges::find(out.neutral, i) == out.neutral.end())

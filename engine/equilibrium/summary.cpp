@@ -29,13 +29,17 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
                           }) ||
       !system.cut_dampers.empty() ||
       std::ranges::any_of(p.springs, [](const PointSpringParameters& s) { return s.damping != 0; });
-  say(damped, "dampers (in the eigenvalues; none acts on the balance of parts that turn together)");
+  say(damped, "dampers: in the eigenvalues, and in the balance where parts turn against each other");
   say(std::ranges::any_of(system.links,
                           [](const Link& l) { return l.type == LinkType::spherical && l.v >= 0; }),
       "rotations as quaternions");
   say(!(system.conservative && system.single_drives),
-      "general matrices (a symmetric one serves conservative forces)");
-  say(!p.phase_free, "checks at other phases of the drives (the mechanism's shape makes all phases alike)");
+      system.conservative && system.single_drives
+          ? "general matrices: the forces are conservative, a symmetric one serves"
+          : "general matrices");
+  say(!p.phase_free, p.phase_free
+                         ? "checks at other phases of the drives: the mechanism's shape makes all alike"
+                         : "checks at other phases of the drives");
   return out;
 }
 

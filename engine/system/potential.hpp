@@ -3,7 +3,8 @@
 // the steady states; its strict minima are stable (Routh; Choi, Park and Yoo's reference [5] for the open
 // system).
 //
-// T_0 serves where the drives' phase is ignorable: always with single drives, otherwise at a steady state.
+// T_0 serves where the drives' phase is ignorable: with single drives that no free coordinate carries,
+// otherwise at a steady state.
 #pragma once
 
 #include "engine/system/kinematics.hpp"

@@ -201,8 +201,28 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
     const double size =
         std::abs(p.springs[i].stiffness) * (s.a.norm() + s.b.norm() + s.length + p.springs[i].free_length) +
         std::abs(s.tension);
-    for (const SupportColumn& c : e.ends.support)
-      out.force[c.v] += size * k.columns[static_cast<std::size_t>(c.v)].at(c.second ? s.b : s.a).norm();
+    // By the whole lever, which is rounded too where the axis points along it.
+    for (const SupportColumn& c : e.ends.support) {
+      const Column<double>& column = k.columns[static_cast<std::size_t>(c.v)];
+      out.force[c.v] += column.angular ? size * ((c.second ? s.b : s.a) - column.o).norm() : size;
+    }
+  }
+  // Multipliers are solved for together, so each carries the rounding of the largest and of what they
+  // balance: compared as forces, moments at the arm of the mechanism's reach.
+  const auto coordinate_arm = [&](int v) {
+    return k.columns[static_cast<std::size_t>(v)].angular ? p.length : 1.;
+  };
+  const auto arm = [&](const CutJoint& cut, const ConstraintRow& row) {
+    if (row.type == RowType::gear) return coordinate_arm(cut.gear_vb);
+    return row.type == RowType::direction ? p.length : 1.;
+  };
+  double largest = 0;
+  const auto count = [&](double force, double at) { largest = std::max(largest, std::abs(force) / at); };
+  for (const CutJoint& cut : system.cuts) {
+    for (const SupportColumn& c : cut.ends.support)
+      count(out.force[c.v], coordinate_arm(c.v));
+    for (std::size_t r = 0; r < cut.rows.size(); ++r)
+      count(lambda[cut.first_row + static_cast<int>(r)], arm(cut, cut.rows[r]));
   }
   for (std::size_t i = 0; i < system.cuts.size(); ++i) {
     const CutJoint& cut = system.cuts[i];
@@ -217,8 +237,9 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
       case RowType::point:
       case RowType::distance: out.phi[row] = p.length; break;
       }
+      const double size = largest * arm(cut, cut.rows[r]);
       row_gradient(cut, p.cuts[i], cut.rows[r], k,
-                   [&](int v, double g) { out.force[v] += std::abs(lambda[row] * g); });
+                   [&](int v, double g) { out.force[v] += size * std::abs(g); });
     }
   }
 }

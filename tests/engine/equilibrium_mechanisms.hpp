@@ -17,6 +17,12 @@
 
 namespace flyball::test {
 
+// Failures are told with all digits: they are about the last ones.
+inline const bool all_digits = [] {
+  Catch::StringMaker<double>::precision = 17;
+  return true;
+}();
+
 inline constexpr double standard_gravity = 9.80665; // m/s^2
 
 inline Mechanism shipped(const std::string& name) {

@@ -22,8 +22,7 @@ bool is_translation(const Joint& joint, std::size_t i) {
 }
 
 // Springs that know no direction, on the three components of a rotation vector and of a free joint's
-// translation, and no stops there: what a rotation of the world must leave alone. The same without labels
-// and dampers in what has no opposite when its bodies are swapped.
+// translation, and no stops there: what a rotation of the world must leave alone.
 void make_isotropic(Joint& joint, std::size_t first) {
   for (std::size_t i = first; i < first + 3; ++i) {
     Coordinate& c = joint.coordinates[i];
@@ -58,7 +57,8 @@ Mechanism sample(std::uint32_t seed) {
 }
 
 Vec3 triple(const Joint& joint, std::size_t first) {
-  return {joint.coordinates[first].drawn, joint.coordinates[first + 1].drawn, joint.coordinates[first + 2].drawn};
+  return {joint.coordinates[first].drawn, joint.coordinates[first + 1].drawn,
+          joint.coordinates[first + 2].drawn};
 }
 
 template <class Map>
@@ -218,6 +218,14 @@ bool swap_bodies(Mechanism& m, std::size_t index) {
   return true;
 }
 
+bool gears_translation(const Mechanism& m) {
+  return std::ranges::any_of(m.joints, [&](const Joint& j) {
+    return j.type == JointType::gear && std::ranges::any_of(j.joints, [&](const std::string& end) {
+             return m.joints[static_cast<std::size_t>(find_coordinate(m, end).joint)].type == JointType::free;
+           });
+  });
+}
+
 struct Answer {
   Status status = Status::not_converged;
   std::map<std::string, Pose> poses;
@@ -238,8 +246,8 @@ Answer answer_of(const Mechanism& m) {
 }
 
 // How far apart two answers put the bodies, the second drawn turned, shifted and in another unit.
-double apart(const Answer& a, const Answer& b, const Quat& r = Quat::Identity(), const Vec3& shift = Vec3::Zero(),
-             double unit = 1) {
+double apart(const Answer& a, const Answer& b, const Quat& r = Quat::Identity(),
+             const Vec3& shift = Vec3::Zero(), double unit = 1) {
   double worst = 0;
   for (const auto& [name, pose] : a.poses) {
     const Pose& other = b.poses.at(name);
@@ -270,8 +278,8 @@ void for_samples(const Check& check) {
   }
 }
 
-void check_same(const Answer& a, const Answer& b, const Quat& r = Quat::Identity(), const Vec3& shift = Vec3::Zero(),
-                double unit = 1) {
+void check_same(const Answer& a, const Answer& b, const Quat& r = Quat::Identity(),
+                const Vec3& shift = Vec3::Zero(), double unit = 1) {
   INFO("then: " << b.message);
   CHECK(b.status == Status::converged);
   if (b.status == Status::converged) CHECK(apart(a, b, r, shift, unit) < 1e-8);
@@ -322,6 +330,7 @@ TEST_CASE("equilibria do not depend on which body a joint names first") {
 
 TEST_CASE("equilibria turn with the world") {
   for_samples([](std::uint32_t seed, const Mechanism& m, const Answer& a) {
+    if (gears_translation(m)) return; // along one axis of the world
     const Quat r = Dice(seed).rotation();
     check_same(a, answer_of(moved(m, r, Vec3::Zero())), r);
   });

@@ -1,5 +1,5 @@
-// f_z against derivatives of the long double residual that owe nothing to its formulas, for each type of joint
-// and force by itself and for random mechanisms; the matrices of the motion against the reference.
+// f_z against derivatives of the long double residual that owe nothing to its formulas, for each type of
+// joint and force by itself and for random mechanisms; the matrices of the motion against the reference.
 #include "tests/catch.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/engine/system_model.hpp"
@@ -58,7 +58,8 @@ void check_jacobian(Model& model, Dice& dice, double size) {
 
 // Every coordinate of the tree driven at the speed it has, `more` of it added: what the reference needs to
 // evaluate motions with q_R' != 0.
-VectorR balance_in_motion(const Model& model, const Evaluation& still, const ReferenceState& s, const VectorR& more) {
+VectorR balance_in_motion(const Model& model, const Evaluation& still, const ReferenceState& s,
+                          const VectorR& more) {
   Mechanism m = model.mechanism;
   for (std::size_t i = 0; i < still.tree.coordinates.size(); ++i) {
     const reference::TreeCoordinate& c = still.tree.coordinates[i];
@@ -104,7 +105,8 @@ Mechanism without_slow_drag(Mechanism m, const Eigen::VectorXd& q, double t) {
   for (std::size_t i = 0; i < model.system.body_forces.size(); ++i) {
     const BodyForceElement& e = model.system.body_forces[i];
     const Vec3 at = p.kinematics.point(e.link, model.parameters.body_forces[i].at);
-    if (p.kinematics.velocity(e.link, at).norm() < 0.5) m.forces[static_cast<std::size_t>(e.force)].quadratic = 0;
+    if (p.kinematics.velocity(e.link, at).norm() < 0.5)
+      m.forces[static_cast<std::size_t>(e.force)].quadratic = 0;
   }
   return m;
 }
@@ -112,7 +114,8 @@ Mechanism without_slow_drag(Mechanism m, const Eigen::VectorXd& q, double t) {
 // The part of a joint in the rig below.
 enum class Use { tree, reversed, cut };
 
-Joint make_joint(const std::string& name, JointType type, const std::string& a, const std::string& b, const Vec3& at) {
+Joint make_joint(const std::string& name, JointType type, const std::string& a, const std::string& b,
+                 const Vec3& at) {
   Joint j;
   j.name = name;
   j.type = type;
@@ -185,7 +188,9 @@ std::vector<Dressing> dressings(const std::string& name) {
     c.stop = s;
   };
   return {{"bare", [](Mechanism&) {}},
-          {"spring", each([](Coordinate& c, double k) { c.spring = CoordinateSpring{30 * k, 0.1 * k, ""}; })},
+          {"spring", each([](Coordinate& c, double k) {
+             c.spring = CoordinateSpring{30 * k, 0.1 * k, ""};
+           })},
           {"lower stop", each([stop](Coordinate& c, double k) { stop(c, k, 2, 4); })},
           {"upper stop", each([stop](Coordinate& c, double k) { stop(c, k, -4, -2); })},
           {"idle stop", each([stop](Coordinate& c, double k) { stop(c, k, -4, 4); })},
@@ -270,8 +275,10 @@ TEST_CASE("the Jacobian is exact for each type of joint") {
       if (type == JointType::distance && use != Use::cut) continue; // always cut
       if (type == JointType::free && use == Use::cut) continue;     // holds nothing
       for (const Dressing& d : dressings("joint")) {
-        INFO(type_name(type) << (use == Use::tree ? "" : use == Use::reversed ? ", reversed" : ", cut") << ", "
-                             << d.name);
+        INFO(type_name(type) << (use == Use::tree       ? ""
+                                 : use == Use::reversed ? ", reversed"
+                                                        : ", cut")
+                             << ", " << d.name);
         Mechanism m = rig(type, use);
         d.dress(m);
         Model model(m);
@@ -286,7 +293,8 @@ TEST_CASE("the Jacobian is exact for each type of joint") {
 
 TEST_CASE("the Jacobian is exact for gears between any two axes") {
   for (const std::string a : {"shoulder.0", "joint", "hold.1"})
-    for (const auto& [type, b] : {std::pair{JointType::revolute, "second"}, {JointType::cylindrical, "second.1"}}) {
+    for (const auto& [type, b] :
+         {std::pair{JointType::revolute, "second"}, {JointType::cylindrical, "second.1"}}) {
       if (a == "shoulder.0") continue; // a rotation vector has no axis
       INFO(a << " to " << b);
       Mechanism m = rig(JointType::revolute, a == "hold.1" ? Use::cut : Use::reversed);
@@ -299,7 +307,8 @@ TEST_CASE("the Jacobian is exact for gears between any two axes") {
       gear.ratio = -1.7;
       m.joints.push_back(gear);
       Model model(m);
-      REQUIRE(std::ranges::any_of(model.system.cuts, [](const CutJoint& c) { return c.type == JointType::gear; }));
+      REQUIRE(std::ranges::any_of(model.system.cuts,
+                                  [](const CutJoint& c) { return c.type == JointType::gear; }));
       Dice dice(8);
       check_jacobian(model, dice, 0.6);
     }
@@ -349,8 +358,9 @@ TEST_CASE("mass and velocity matrices are the reference's") {
           c.damping = 0;
     Model model(mechanism);
     if (model.has_twins() && std::ranges::any_of(model.system.tree_joints, [&](const TreeJoint& t) {
-          return t.closes_loop && std::ranges::any_of(mechanism.joints[static_cast<std::size_t>(t.joint)].coordinates,
-                                                      [](const Coordinate& c) { return c.damping != 0; });
+          return t.closes_loop &&
+                 std::ranges::any_of(mechanism.joints[static_cast<std::size_t>(t.joint)].coordinates,
+                                     [](const Coordinate& c) { return c.damping != 0; });
         }))
       continue;
     if (model.has_cut_dampers()) continue;
@@ -361,7 +371,8 @@ TEST_CASE("mass and velocity matrices are the reference's") {
     const Linearization l = linearize_at(model, q, Eigen::VectorXd::Zero(model.system.rows), t);
     const Motion theirs = motion_of(model, q, t);
     CHECK(largest(MatrixR(l.mass.cast<Real>() - theirs.mass)) < 1e-13 * (1 + largest(theirs.mass)));
-    CHECK(largest(MatrixR(l.velocity.cast<Real>() - theirs.velocity)) < 1e-11 * (1 + largest(theirs.velocity)));
+    CHECK(largest(MatrixR(l.velocity.cast<Real>() - theirs.velocity)) <
+          1e-11 * (1 + largest(theirs.velocity)));
     ++compared;
   }
   CHECK(compared > 100);
@@ -375,8 +386,8 @@ TEST_CASE("dampers in loop joints resist the motions that the loops allow") {
     options.bodies = 3 + static_cast<int>(seed % 3);
     options.loops = 1;
     options.parallel_axes = seed % 2 == 0;
-    options.loop_types = {JointType::revolute, JointType::prismatic, JointType::cylindrical, JointType::universal,
-                          JointType::spherical, JointType::planar};
+    options.loop_types = {JointType::revolute,  JointType::prismatic, JointType::cylindrical,
+                          JointType::universal, JointType::spherical, JointType::planar};
     Mechanism mechanism = reference::random_mechanism(seed, options);
     Joint& loop = mechanism.joints.back();
     for (Coordinate& c : loop.coordinates)

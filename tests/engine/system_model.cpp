@@ -28,8 +28,7 @@ Mechanism written_out(Mechanism m, const System& system) {
 
 } // namespace
 
-Model::Model(const Mechanism& m, const CutChoice& choice)
-    : mechanism(m), system(compile(m, choice)) {
+Model::Model(const Mechanism& m, const CutChoice& choice) : mechanism(m), system(compile(m, choice)) {
   bind(system, m, parameters);
   drawn_configuration(system, parameters, drawn);
   mechanism = written_out(m, system);
@@ -121,14 +120,16 @@ bool Model::close(Eigen::VectorXd& q, double t) const {
 }
 
 template <class S>
-Point<S> evaluate_at(const Model& model, const Configuration<S>& q, const Configuration<S>& lambda, double t) {
+Point<S> evaluate_at(const Model& model, const Configuration<S>& q, const Configuration<S>& lambda,
+                     double t) {
   Point<S> p;
   forward<S>(model.system, model.parameters, q, t, p.kinematics);
   evaluate_residual<S>(model.system, model.parameters, q, lambda, p.kinematics, p.residual);
   return p;
 }
 
-Linearization linearize_at(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda, double t) {
+Linearization linearize_at(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda,
+                           double t) {
   const Point<double> p = evaluate_at<double>(model, q, lambda, t);
   Linearization l;
   linearize(model.system, model.parameters, q, lambda, p.kinematics, p.residual, l);
@@ -153,7 +154,9 @@ double largest(const MatrixR& m) {
   return m.size() == 0 ? 0 : static_cast<double>(m.cwiseAbs().maxCoeff());
 }
 
-template Point<double> evaluate_at(const Model&, const Configuration<double>&, const Configuration<double>&, double);
-template Point<Real> evaluate_at(const Model&, const Configuration<Real>&, const Configuration<Real>&, double);
+template Point<double> evaluate_at(const Model&, const Configuration<double>&, const Configuration<double>&,
+                                   double);
+template Point<Real> evaluate_at(const Model&, const Configuration<Real>&, const Configuration<Real>&,
+                                 double);
 
 } // namespace flyball::testing

@@ -80,7 +80,8 @@ struct Point {
 };
 template <class S>
 Point<S> evaluate_at(const Model& model, const Configuration<S>& q, const Configuration<S>& lambda, double t);
-Linearization linearize_at(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda, double t);
+Linearization linearize_at(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda,
+                           double t);
 
 // Columns that span what `a` maps to zero; singular values below 1e-8 count as zero.
 MatrixR null_space(const MatrixR& a);

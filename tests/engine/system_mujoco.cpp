@@ -41,17 +41,20 @@ TEST_CASE("the balance of open trees is MuJoCo's inverse dynamics") {
     const reference::Tree tree = reference::span_tree(m, {});
     VectorR by_coordinate = VectorR::Zero(static_cast<Eigen::Index>(tree.coordinates.size()));
     for (const auto& [name, forces] : theirs)
-      by_coordinate.segment(tree.first[static_cast<std::size_t>(joint_index(m, name))], forces.size()) = forces;
+      by_coordinate.segment(tree.first[static_cast<std::size_t>(joint_index(m, name))], forces.size()) =
+          forces;
     const Eigen::VectorXd none;
     const Point<double> p = evaluate_at<double>(model, q, none, t);
     const double scale = 1 + largest(by_coordinate);
     const VectorR expected = model.tangents(q, tree).transpose() * by_coordinate;
     CHECK(largest(VectorR(p.residual.f.cast<Real>() - expected)) < 1e-10 * scale);
-    const TransmittedForces forces = transmitted_forces(model.system, model.parameters, none, p.kinematics, p.residual);
+    const TransmittedForces forces =
+        transmitted_forces(model.system, model.parameters, none, p.kinematics, p.residual);
     for (std::size_t d = 0; d < model.system.drives.size(); ++d) {
       const Link& link = model.system.links[static_cast<std::size_t>(model.system.drives[d].link)];
       const std::string& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
-      CHECK(std::abs(forces.drives[d] - static_cast<double>(theirs.at(joint)[link.coordinate])) < 1e-10 * scale);
+      CHECK(std::abs(forces.drives[d] - static_cast<double>(theirs.at(joint)[link.coordinate])) <
+            1e-10 * scale);
     }
     for (const Joint& joint : m.joints)
       seen.insert(joint.type);

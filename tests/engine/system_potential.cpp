@@ -79,7 +79,8 @@ TEST_CASE("differences of the amended potential are the reference's") {
     const Potential ua = potential_at(model, a), ub = potential_at(model, b);
     const Real theirs = reference::potential(model.mechanism, model.cuts, model.state(a, 0)) -
                         reference::potential(model.mechanism, model.cuts, model.state(b, 0));
-    CHECK(std::abs(ua.value - ub.value - static_cast<double>(theirs)) < 1e-14 * (1 + ua.magnitude + ub.magnitude));
+    CHECK(std::abs(ua.value - ub.value - static_cast<double>(theirs)) <
+          1e-14 * (1 + ua.magnitude + ub.magnitude));
     ++compared;
   }
   CHECK(compared > 70);

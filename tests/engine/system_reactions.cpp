@@ -30,7 +30,8 @@ class BodyBalance {
     }
   }
   // By the joint's parent on its child at a point, and back.
-  void add(const std::array<std::string, 2>& bodies, const Vec3& point, const Vec3& force, const Vec3& torque) {
+  void add(const std::array<std::string, 2>& bodies, const Vec3& point, const Vec3& force,
+           const Vec3& torque) {
     for (const int end : {0, 1}) {
       const int b = body_index(mechanism_, bodies[static_cast<std::size_t>(end)]);
       if (b < 0) continue;
@@ -60,11 +61,12 @@ class BodyBalance {
 void check_reactions(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda, double t) {
   const Evaluation e = reference::evaluate(model.mechanism, model.cuts, model.state(q, t));
   const Point<double> p = evaluate_at<double>(model, q, lambda, t);
-  const TransmittedForces forces = transmitted_forces(model.system, model.parameters, lambda, p.kinematics, p.residual);
+  const TransmittedForces forces =
+      transmitted_forces(model.system, model.parameters, lambda, p.kinematics, p.residual);
   BodyBalance balance(model.mechanism, e);
   const auto add = [&](int joint, const JointWrench& w) {
-    balance.add(model.mechanism.joints[static_cast<std::size_t>(joint)].bodies, model.parameters.origin + w.point,
-                w.force, w.torque);
+    balance.add(model.mechanism.joints[static_cast<std::size_t>(joint)].bodies,
+                model.parameters.origin + w.point, w.force, w.torque);
   };
   for (std::size_t i = 0; i < forces.tree.size(); ++i) {
     const TreeJoint& joint = model.system.tree_joints[i];

@@ -19,9 +19,9 @@ using reference::RandomOptions;
 namespace {
 
 struct Tally {
-  int rows = 0;          // compared row by row
-  int projected = 0;     // compared on the motions that the loops allow
-  int drives = 0;        // drive torques
+  int rows = 0;      // compared row by row
+  int projected = 0; // compared on the motions that the loops allow
+  int drives = 0;    // drive torques
   int loops = 0, mobile = 0;
 };
 
@@ -44,7 +44,8 @@ std::vector<Real> motor_forces(const Model& model, const Evaluation& e) {
     const std::string& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
     const int first = e.tree.first[static_cast<std::size_t>(joint_index(model.mechanism, joint))];
     sum[static_cast<std::size_t>(d.motor)] +=
-        Real(model.parameters.links[static_cast<std::size_t>(d.link)].gear_ratio) * e.balance[first + link.coordinate];
+        Real(model.parameters.links[static_cast<std::size_t>(d.link)].gear_ratio) *
+        e.balance[first + link.coordinate];
   }
   return sum;
 }
@@ -60,7 +61,8 @@ void compare_rows(const Model& model, const Eigen::VectorXd& q, double t, Tally&
   CHECK(largest(VectorR(p.residual.f.cast<Real>() - expected)) < 1e-12 * scale);
   ++tally.rows;
 
-  const TransmittedForces forces = transmitted_forces(model.system, model.parameters, none, p.kinematics, p.residual);
+  const TransmittedForces forces =
+      transmitted_forces(model.system, model.parameters, none, p.kinematics, p.residual);
   const std::vector<Real> motors = motor_forces(model, e);
   for (std::size_t d = 0; d < motors.size(); ++d) {
     if (model.system.drives[d].motor != static_cast<int>(d)) {
@@ -81,7 +83,8 @@ void compare_constraints(const Model& model, const Eigen::VectorXd& q, double t)
     const auto phi = p.residual.phi.segment(cut.first_row, static_cast<Eigen::Index>(cut.rows.size()));
     Real theirs = 0;
     for (Eigen::Index i = 0; i < e.constraints.size(); ++i)
-      if (e.constraint_joint[static_cast<std::size_t>(i)] == cut.joint) theirs += e.constraints[i] * e.constraints[i];
+      if (e.constraint_joint[static_cast<std::size_t>(i)] == cut.joint)
+        theirs += e.constraints[i] * e.constraints[i];
     const double ours = phi.norm(), other = std::sqrt(static_cast<double>(theirs));
     CAPTURE(model.mechanism.joints[static_cast<std::size_t>(cut.joint)].name, ours, other);
     CHECK(ours < 1e-13 + 5 * other);
@@ -106,7 +109,8 @@ void compare_on_loops(const Model& model, const Eigen::VectorXd& q, double t, Di
   // Twins follow the joints they stand for: no motion of theirs alone.
   CHECK(null_space(MatrixR(map * n)).cols() == 0);
   const double scale = force_scale(model, q, t) + lambda.norm();
-  CHECK(largest(VectorR(n.transpose() * (p.residual.f.cast<Real>() - map.transpose() * e.balance))) < 1e-11 * scale);
+  CHECK(largest(VectorR(n.transpose() * (p.residual.f.cast<Real>() - map.transpose() * e.balance))) <
+        1e-11 * scale);
   ++tally.projected;
   tally.mobile += n.cols() > 0;
 }
@@ -153,7 +157,8 @@ void compare(const Mechanism& mechanism, const CutChoice& choice, std::uint32_t 
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(model.system.rows);
     const VectorR torn = evaluate_at<double>(model, model.drawn, none, when).residual.phi.cast<Real>();
     if (largest(torn) > 0.01) when = dice.between(-0.02, 0.02);
-    if (model.close(q, when) && loop_dampers_rest(model, q, when)) compare_on_loops(model, q, when, dice, tally);
+    if (model.close(q, when) && loop_dampers_rest(model, q, when))
+      compare_on_loops(model, q, when, dice, tally);
   }
 }
 
@@ -236,7 +241,8 @@ TEST_CASE("bodies held by cut joints, strings and springs balance as by a free j
     Mechanism m = reference::random_mechanism(seed, options);
     Dice dice(seed);
     for (Joint& joint : m.joints) {
-      const bool driven = std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.drive.has_value(); });
+      const bool driven =
+          std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.drive.has_value(); });
       if (!driven && joint.type != JointType::free && dice.chance(0.4)) joint.cut = true;
     }
     compare(m, {}, seed, tally);

@@ -1,0 +1,132 @@
+#include "app/live/live_solver.hpp"
+
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "tests/catch.hpp"
+
+#include <chrono>
+#include <cmath>
+
+using namespace flyball;
+
+namespace {
+
+Mechanism governor(double speed) {
+  Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  set_parameter(mechanism, "joints.spin.drive.speed", speed);
+  return mechanism;
+}
+
+// News from the background thread, waited for with a limit.
+class News {
+ public:
+  void tell() {
+    const std::lock_guard lock(mutex_);
+    ++told_;
+    wake_.notify_all();
+  }
+  template <class Done>
+  bool wait(const Done& done) {
+    std::unique_lock lock(mutex_);
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!done()) {
+      if (std::chrono::steady_clock::now() > limit) return false;
+      wake_.wait_for(lock, std::chrono::milliseconds(20));
+    }
+    return true;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  int told_ = 0;
+};
+
+double slide(const Solution& solution) {
+  for (const CoordinateSolution& c : solution.coordinates)
+    if (c.joint == "slide") return c.value;
+  return NAN;
+}
+
+} // namespace
+
+TEST_CASE("the immediate mode answers before ask returns") {
+  LiveSolver live(LiveSolver::Mode::immediate);
+  CHECK(live.ask({.mechanism = governor(11.0174), .another = true}) == 1);
+  CHECK_FALSE(live.busy());
+  const auto answer = live.take_answer();
+  REQUIRE(answer);
+  CHECK(answer->ticket == 1);
+  CHECK(slide(answer->solution) == Approx(0.1500174581252971).epsilon(1e-12));
+  CHECK_FALSE(live.take_answer());
+  live.ask_poses(0.1);
+  const auto poses = live.take_poses();
+  REQUIRE(poses);
+  CHECK(poses->poses.size() == answer->mechanism.bodies.size());
+  CHECK(poses->ticket == 1);
+}
+
+TEST_CASE("the newest request wins, and whoever asks never waits for an answer") {
+  News news;
+  LiveSolver live(LiveSolver::Mode::background, [&] { news.tell(); });
+  std::uint64_t last = 0;
+  std::optional<LiveAnswer> newest;
+  for (int i = 0; i < 300; ++i) {
+    last = live.ask({.mechanism = governor(5 + 0.05 * i), .another = i == 0});
+    live.ask_poses(0.01 * i);
+    if (auto answer = live.take_answer()) {
+      CHECK(answer->ticket <= last);
+      CHECK((!newest || answer->ticket > newest->ticket));
+      newest = std::move(answer);
+    }
+  }
+  REQUIRE(news.wait([&] {
+    if (auto answer = live.take_answer()) newest = std::move(answer);
+    return newest && newest->ticket == last;
+  }));
+  CHECK_FALSE(live.busy());
+  Solution direct = Analysis(governor(5 + 0.05 * 299)).solve();
+  CHECK(slide(newest->solution) == Approx(slide(direct)).epsilon(1e-9));
+  CHECK(get_parameter(newest->mechanism, "joints.spin.drive.speed") == 5 + 0.05 * 299);
+}
+
+TEST_CASE("poses can be asked for while nothing is solved") {
+  News news;
+  LiveSolver live(LiveSolver::Mode::background, [&] { news.tell(); });
+  live.ask({.mechanism = governor(10), .another = true});
+  std::optional<LiveAnswer> answer;
+  REQUIRE(news.wait([&] { return (answer = live.take_answer()).has_value(); }));
+  // Half a turn of the spindle exchanges the balls.
+  const double half_turn = 3.141592653589793 / 10;
+  live.ask_poses(half_turn);
+  std::optional<LivePoses> poses;
+  REQUIRE(news.wait([&] { return (poses = live.take_poses()).has_value(); }));
+  const auto one = static_cast<std::size_t>(body_index(answer->mechanism, "ball1"));
+  const auto two = static_cast<std::size_t>(body_index(answer->mechanism, "ball2"));
+  CHECK((poses->poses[one].position - answer->poses[two].position).norm() < 1e-9);
+}
+
+TEST_CASE("another mechanism forgets the old one, and one that cannot be compiled says why") {
+  LiveSolver live(LiveSolver::Mode::immediate);
+  live.ask({.mechanism = governor(11), .another = true});
+  Mechanism broken = governor(11);
+  broken.joints[0].bodies[1] = "nobody";
+  live.ask({.mechanism = broken, .another = true});
+  const auto answer = live.take_answer();
+  REQUIRE(answer);
+  REQUIRE(answer->error);
+  CHECK_THAT(*answer->error, ContainsSubstring("nobody"));
+  CHECK(answer->poses.empty());
+  live.ask_poses(1);
+  CHECK_FALSE(live.take_poses());
+}
+
+TEST_CASE("a solver can be left in the middle of its work") {
+  for (int i = 0; i < 20; ++i) {
+    LiveSolver live(LiveSolver::Mode::background);
+    for (int k = 0; k < 5; ++k) {
+      live.ask({.mechanism = governor(5 + k), .another = k == 0});
+      live.ask_poses(k);
+    }
+  }
+}

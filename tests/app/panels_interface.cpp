@@ -1,0 +1,185 @@
+// What a person does at the window, done by a robot off-screen.
+#include "robot.hpp"
+
+#include "app/panels/snapshot.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+
+#include <cmath>
+#include <fstream>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+double value_of(const App& app, const std::string& joint) {
+  for (const CoordinateSolution& c : app.answer.solution.coordinates)
+    if (c.joint == joint) return c.value;
+  return NAN;
+}
+
+double parameter(const App& app, const char* address) {
+  return get_parameter(app.mechanism, address);
+}
+
+constexpr const char* speed = "joints.spin.drive.speed";
+constexpr const char* stiffness = "joints.slide.spring.stiffness";
+
+} // namespace
+
+TEST_CASE("a dragged slider solves at every move") {
+  Robot robot;
+  const double before = value_of(robot.app, "slide");
+  const std::uint64_t answers = robot.app.answer.ticket;
+  robot.drag(std::string("parameters/") + speed, {0.4f, 0.5f}, {0.8f, 0.5f});
+  CHECK(parameter(robot.app, speed) > 20);
+  CHECK(value_of(robot.app, "slide") != before);
+  CHECK(robot.app.answer.ticket >= answers + 4);
+
+  SECTION("and can be put back") {
+    robot.click(std::string("parameters/") + speed + "/reset");
+    CHECK(parameter(robot.app, speed) == 11.0174);
+    CHECK(value_of(robot.app, "slide") == Approx(before).epsilon(1e-9));
+  }
+  SECTION("and back all at once") {
+    robot.click("parameters/reset");
+    CHECK(robot.app.mechanism == robot.app.original);
+  }
+}
+
+TEST_CASE("a stiffness slider is logarithmic") {
+  Robot robot;
+  robot.drag(std::string("parameters/") + stiffness, {0.9f, 0.5f}, {0.5f, 0.5f});
+  CHECK(parameter(robot.app, stiffness) == Approx(1000).epsilon(0.05)); // geometric mean of 50 and 20000
+}
+
+TEST_CASE("a value can be typed, with a unit") {
+  Robot robot;
+  robot.double_click(std::string("parameters/") + speed + "/value");
+  CHECK(robot.app.panels.editing == speed);
+  robot.key('A', true);
+  robot.type("120 rpm");
+  robot.key(key_enter);
+  CHECK(parameter(robot.app, speed) == Approx(4 * 3.141592653589793));
+  CHECK(robot.app.panels.editing.empty());
+}
+
+TEST_CASE("the view is steered with the mouse") {
+  Robot robot;
+  const ViewCamera before = robot.app.view.camera;
+  SECTION("orbit") {
+    robot.drag("view", {0.5f, 0.5f}, {0.6f, 0.5f});
+    CHECK(robot.app.view.camera.azimuth != before.azimuth);
+    CHECK(robot.app.view.camera.target == before.target);
+  }
+  SECTION("pan") {
+    robot.drag("view", {0.5f, 0.5f}, {0.6f, 0.5f}, 1);
+    CHECK(robot.app.view.camera.azimuth == before.azimuth);
+    CHECK(robot.app.view.camera.target != before.target);
+  }
+  SECTION("zoom, and fit again") {
+    robot.wheel("view", 2);
+    CHECK(robot.app.view.camera.distance < before.distance);
+    robot.key('F');
+    CHECK(robot.app.view.camera.distance > before.distance * 0.8);
+  }
+  SECTION("from above") {
+    robot.click("toolbar/top");
+    CHECK(robot.app.view.camera.elevation == Approx(1.5707963267948966));
+  }
+}
+
+TEST_CASE("play turns the mechanism at the drives' speed, and nothing is drawn while nothing changes") {
+  Robot robot;
+  robot.frames(2);
+  const int drawn = robot.stage.views_drawn();
+  robot.frames(5);
+  CHECK(robot.stage.views_drawn() == drawn);
+  robot.key(' ');
+  CHECK(robot.app.playback.playing);
+  const double from = robot.app.playback.time;
+  robot.frames(10, 0.02);
+  CHECK(robot.app.playback.time - from == Approx(0.2));
+  CHECK(robot.stage.views_drawn() >= drawn + 10);
+  robot.key(' ');
+  const double stopped = robot.app.playback.time;
+  robot.frames(3, 0.02);
+  CHECK(robot.app.playback.time == stopped);
+  robot.click("toolbar/rewind");
+  CHECK(robot.app.playback.time == 0);
+}
+
+TEST_CASE("a part under the cursor is named") {
+  Robot robot;
+  const int ball = body_index(robot.app.mechanism, "ball1");
+  const WidgetRect view = robot.widget("view");
+  const ViewSize size{static_cast<double>(view.to.x - view.from.x), static_cast<double>(view.to.y - view.from.y)};
+  const auto at = robot.app.view.camera.project(
+      robot.app.poses[static_cast<std::size_t>(ball)].position, size);
+  REQUIRE(at);
+  robot.point({view.from.x + static_cast<float>(at->x()), view.from.y + static_cast<float>(at->y())});
+  robot.frames(1);
+  CHECK(robot.app.view.hovered == PartId{PartKind::body, ball});
+}
+
+TEST_CASE("a scene that cannot be read says so and leaves the open one") {
+  Robot robot;
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_mistaken_scene.json";
+  std::ofstream(file) << R"({"flyball": 1, "name": "x", "bodies": [], "joints": [], "colour": 1})";
+  open_scene(robot.app, file);
+  robot.frames(3);
+  CHECK_THAT(robot.app.problem, ContainsSubstring("colour"));
+  CHECK(robot.app.mechanism.name == "Governor");
+  robot.click("problem/close");
+  CHECK(robot.app.problem.empty());
+  std::filesystem::remove(file);
+}
+
+TEST_CASE("the open dialog lists scenes and opens one") {
+  Robot robot;
+  robot.key('O', true);
+  robot.frames(2);
+  REQUIRE(robot.app.dialog.showing);
+  robot.click("open/pendulum.json");
+  robot.frames(2);
+  CHECK_FALSE(robot.app.dialog.showing);
+  CHECK(robot.app.file.filename() == "pendulum.json");
+  CHECK(robot.app.answer.solution.status == Status::converged);
+}
+
+TEST_CASE("a picture is exported with and without the panels") {
+  Robot robot;
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_exported.png";
+  std::filesystem::remove(file);
+  robot.key('E', true);
+  robot.frames(2);
+  REQUIRE(robot.app.dialog.showing);
+  robot.click("export/720p"); // leaves the field of the path
+  robot.app.dialog.path = file.string();
+  const bool panels = GENERATE(false, true);
+  if (panels) robot.click("export/panels");
+  robot.click("export/save");
+  REQUIRE(robot.app.export_request);
+  CHECK(robot.app.export_request->panels == panels);
+  robot.app.export_request->width = 320;
+  robot.app.export_request->height = 200;
+  export_picture(robot.app, robot.size);
+  CHECK_THAT(robot.app.notice, ContainsSubstring("Saved"));
+  const Image image = read_png(file);
+  CHECK(image.width == 320);
+  CHECK(image.height == 200);
+  // The window goes on as before.
+  robot.frames(1);
+  CHECK(robot.app.scale == 1);
+  CHECK(robot.widget("view").to.x > 320);
+  std::filesystem::remove(file);
+}
+
+TEST_CASE("nothing is drawn outside a tiny or a huge window") {
+  for (const PixelSize size : {PixelSize{1, 1}, PixelSize{120, 90}, PixelSize{800, 600}, PixelSize{2600, 1400}}) {
+    Robot robot(size);
+    const Image image = robot.picture();
+    CHECK(image.width == size.width);
+  }
+}

@@ -1,0 +1,38 @@
+// A hand at the interface: points at widgets by name and presses, one change of input a frame, as Dear ImGui
+// 1.86 needs it. Draws real frames off-screen.
+#pragma once
+
+#include "app/panels/app.hpp"
+#include "app/panels/stage.hpp"
+#include "app/render/offscreen.hpp"
+
+#include <string>
+
+namespace flyball::test {
+
+class Robot {
+ public:
+  explicit Robot(PixelSize size = {900, 600});
+
+  OffscreenContext context;
+  App app;
+  Stage stage;
+  PixelSize size;
+
+  void frames(int count, double seconds = 0.01);
+  const WidgetRect& widget(const std::string& name);
+  void point(ImVec2 at);
+  void click(const std::string& name);
+  void double_click(const std::string& name);
+  // From one place of the widget to another, both as shares of its size.
+  void drag(const std::string& name, ImVec2 from, ImVec2 to, int button = 0);
+  void wheel(const std::string& name, float notches);
+  // A key by its GLFW code, which for letters is ASCII.
+  void key(int code, bool ctrl = false);
+  void type(const std::string& text);
+  Image picture();
+};
+
+inline constexpr int key_enter = 257, key_escape = 256;
+
+} // namespace flyball::test

@@ -1,0 +1,63 @@
+// Every shipped scene, as the view and as the whole interface.
+#include "stored_picture.hpp"
+
+#include "app/render/offscreen.hpp"
+#include "tests/catch.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+void check_stored(const std::string& name, const Image& image) {
+  const Comparison comparison = compare_with_stored(name, image);
+  INFO(name << ": " << comparison.message);
+  CHECK(comparison.same);
+}
+
+} // namespace
+
+TEST_CASE("every shipped scene looks as it did") {
+  const OffscreenContext context;
+  for (const std::filesystem::path& scene : shipped_scenes()) {
+    const std::string name = scene.stem().string();
+    DYNAMIC_SECTION(name) {
+      App app(steady_options());
+      app.view.samples = 1;
+      open_scene(app, scene);
+      REQUIRE(app.problem.empty());
+      check_stored(name + "-view", view_picture(app, view_size));
+      app.view.fit = true;
+      check_stored(name + "-interface", interface_picture(app, interface_size, 1));
+    }
+  }
+}
+
+TEST_CASE("dark colours and twice the scale look as they did") {
+  const OffscreenContext context;
+  App app(steady_options(Theme::dark));
+  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  app.panels.reactions = app.panels.eigenvalues = app.panels.system = true;
+  check_stored("governor-dark-2x", interface_picture(app, {1920, 1280}, 2));
+}
+
+TEST_CASE("a scene without a steady state says so beside its drawn pose") {
+  const OffscreenContext context;
+  App app(steady_options());
+  app.view.samples = 1;
+  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  // Gravity across the spindle turns with it.
+  change_parameter(app, "gravity.0", -9.80665);
+  CHECK(app.live.busy() == false);
+  check_stored("no-steady-state", interface_picture(app, interface_size, 1));
+  CHECK(app.answer.solution.status == Status::no_steady_state);
+}
+
+TEST_CASE("a scene that cannot be read shows its message") {
+  const OffscreenContext context;
+  App app(steady_options());
+  app.view.samples = 1;
+  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  app.problem = "mistaken.json: joints.spin.axis: expected three numbers, found \"up\"";
+  check_stored("unreadable-scene", interface_picture(app, interface_size, 1));
+}
