@@ -47,9 +47,11 @@ struct ViewState {
 // Sizes in points, so that they mean the same on every display.
 struct PanelState {
   float parameters_width = 290, results_width = 345, stacked_width = 330;
-  float stacked_share = 0.4f; // of the height, for the parameters above the results
+  // Of the height, for the parameters above the results; 0 until the person chooses: as much as they need.
+  float stacked_share = 0;
+  float parameters_height = 0; // what they needed in the last frame
   bool springs = true, drives = true, others = true;
-  bool torques = true, reactions = false, eigenvalues = false, multipliers = false, system = false;
+  bool torques = true, reactions = false, eigenvalues = false, system = false;
   std::string editing;        // address of the parameter whose value is being typed
   std::string typed;          // what was typed so far
   bool focus_typed = false;   // the field has just appeared

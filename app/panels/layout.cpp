@@ -16,6 +16,14 @@ float panel_width(float wanted, float room) {
   return std::clamp(wanted, least_panel, std::max(least_panel, std::min(most_panel, room)));
 }
 
+// Of the height below the toolbar, for the parameters where panels are stacked.
+float stacked_share(const App& app, float below) {
+  const PanelState& panels = app.panels;
+  if (panels.stacked_share > 0) return panels.stacked_share;
+  if (panels.parameters_height == 0) return 0.4f;
+  return std::clamp(panels.parameters_height * app.scale / below, 0.15f, 0.5f);
+}
+
 // Returns how far the person has dragged the line this frame. Each has a small window of its own, above the panels.
 float splitter(App& app, const char* name, const PanelRect& line, bool upright) {
   const float grip = 4 * app.scale, thick = std::max(1.f, std::round(app.scale));
@@ -52,7 +60,7 @@ Layout layout_of(const App& app, float width, float height) {
   layout.stacked = width < narrow * s;
   if (layout.stacked) {
     const float panel = std::round(s * panel_width(app.panels.stacked_width, width / s - least_view));
-    const float upper = std::round(below * std::clamp(app.panels.stacked_share, 0.15f, 0.85f));
+    const float upper = std::round(below * stacked_share(app, below));
     layout.view = {0, top, std::max(width - panel, 1.f), below};
     layout.parameters = {layout.view.width, top, panel, upper};
     layout.results = {layout.view.width, top + upper, panel, below - upper};
@@ -75,7 +83,8 @@ void drag_splitters(App& app, const Layout& layout, float height) {
     const float wide = splitter(app, "splitter/panels", {right.x, layout.view.y, 1, layout.view.height}, true);
     panels.stacked_width = clamped(panels.stacked_width - wide / s);
     const float tall = splitter(app, "splitter/results", {right.x, right.y, right.width, 1}, false);
-    panels.stacked_share = std::clamp(panels.stacked_share + tall / (height - layout.toolbar.height), 0.15f, 0.85f);
+    const float below = height - layout.toolbar.height;
+    if (tall != 0) panels.stacked_share = std::clamp(stacked_share(app, below) + tall / below, 0.15f, 0.85f);
     return;
   }
   const float left_by = splitter(app, "splitter/parameters", {layout.view.x, layout.view.y, 1, layout.view.height}, true);

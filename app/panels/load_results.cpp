@@ -16,11 +16,12 @@ std::string force_text(double value, double largest, const NumberStyle& numbers)
   return value_text(value, largest * 1e-6, {6, numbers.noise, numbers.run_times});
 }
 
-void vector_row(App& app, const char* label, const Vec3& v, double largest, const char* unit) {
+// Five digits of each component; what is round-off beside the largest of all is zero.
+std::string vector_text(const Vec3& v, double largest) {
   std::string text;
   for (int i = 0; i < 3; ++i)
-    text += (i ? "  " : "") + value_text(v[i], std::max(largest * 1e-4, 1e-9), {5, app.options.numbers.noise, false});
-  row(app, label, text, unit);
+    text += (i ? "  " : "") + (std::abs(v[i]) <= 1e-9 * largest ? "0" : short_text(v[i], 5));
+  return text;
 }
 
 void drive_torques(App& app) {
@@ -54,24 +55,11 @@ void reactions(App& app) {
     torque = std::max(torque, r.torque.lpNorm<Eigen::Infinity>());
   }
   for (const Reaction& r : solution.reactions) {
-    clipped_text(r.varying ? r.joint + " (varies)" : r.joint, ImGui::GetContentRegionAvail().x);
-    vector_row(app, "", r.force, force, "N");
-    if (torque > 0) vector_row(app, "", r.torque, torque, "N m");
+    row(app, r.varying ? r.joint + " (varies)" : r.joint, vector_text(r.force, force), "N",
+        r.varying ? "Changes as the drives turn; at the drawn phase." : nullptr);
+    // Torques of a mechanism that has none are round-off of its forces.
+    if (torque > 1e-9 * force) row(app, "", vector_text(r.torque, torque), "N m");
   }
-}
-
-void multipliers(App& app) {
-  const std::vector<JointMultipliers>& all = app.answer.solution.multipliers;
-  if (all.empty()) return;
-  if (!section(app, "results/multipliers", "Multipliers of the cut joints", app.panels.multipliers)) return;
-  double largest = 0;
-  for (const JointMultipliers& m : all)
-    for (const double value : m.values)
-      largest = std::max(largest, std::abs(value));
-  for (const JointMultipliers& m : all)
-    for (std::size_t i = 0; i < m.values.size(); ++i)
-      row(app, m.values.size() > 1 ? m.joint + "." + std::to_string(i) : m.joint,
-          force_text(m.values[i], largest, app.options.numbers), "N, N m");
 }
 
 } // namespace
@@ -79,7 +67,6 @@ void multipliers(App& app) {
 void load_results(App& app) {
   drive_torques(app);
   reactions(app);
-  multipliers(app);
 }
 
 } // namespace flyball

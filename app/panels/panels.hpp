@@ -16,7 +16,7 @@ void export_dialog(App& app);
 // Sections of the results.
 void coordinate_results(App& app);
 void solver_results(App& app);
-void load_results(App& app);       // drive torques, reactions, multipliers
+void load_results(App& app); // drive torques, reactions
 void eigenvalue_results(App& app);
 void system_results(App& app);
 // The residual after each iteration, on a logarithmic scale.

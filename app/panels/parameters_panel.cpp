@@ -123,6 +123,7 @@ void parameters_panel(App& app, const PanelRect& rect) {
       ImGui::SameLine();
       if (text_button(app, "parameters/reset", "Reset all")) reset_parameters(app);
     }
+    app.panels.parameters_height = (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / app.scale;
   } else {
     paragraph("No scene is open.", colors_of(app).dim);
     if (text_button(app, "parameters/open", "Open a scene…", true)) show_open_dialog(app);

@@ -2,6 +2,8 @@
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
 
+#include <cctype>
+
 namespace flyball {
 
 namespace {
@@ -21,6 +23,10 @@ Verdict verdict_of(const Solution& solution, const UiColors& colors) {
   }
   if (solution.stable == true) return {icon::check, "Stable steady state", colors.good};
   if (solution.stable == false) return {icon::warning, "Unstable steady state", colors.bad};
+  if (solution.stability_reason == StabilityReason::neutral)
+    return {icon::check, "Steady state, neutral", colors.good};
+  if (solution.stability_reason == StabilityReason::gyroscopic_only)
+    return {icon::warning, "Steady state, held by spin alone", colors.warn};
   return {icon::question, "Steady state, stability undecided", colors.warn};
 }
 
@@ -34,6 +40,14 @@ const char* reason_text(StabilityReason reason) {
   case StabilityReason::unstable: return "Disturbances grow.";
   }
   return "";
+}
+
+// "No steady state: the weight turns" below a "No steady state".
+std::string without_repetition(const std::string& message, const std::string& headline) {
+  if (!message.starts_with(headline + ": ")) return message;
+  std::string rest = message.substr(headline.size() + 2);
+  if (!rest.empty()) rest[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(rest[0])));
+  return rest;
 }
 
 void verdict(App& app) {
@@ -52,7 +66,7 @@ void verdict(App& app) {
     paragraph(reason_text(*solution.stability_reason), colors.dim);
   // Where all went well the words above say it already.
   if (solution.status != Status::converged || solution.message != "Converged.")
-    paragraph(solution.message, solution.status == Status::converged ? colors.dim : colors.text);
+    paragraph(without_repetition(solution.message, verdict.text), solution.status == Status::converged ? colors.dim : colors.text);
 }
 
 // Directions that nothing resists.

@@ -89,8 +89,7 @@ Solution Analysis::solve(const SolveOptions& options) {
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
   const bool warm = options.warm && s.answered && options.start.empty();
   s.start = warm ? s.answer : s.drawn;
-  for (const auto& [name, value] : options.start)
-    set_start(s.system, s.parameters, name, value, s.start);
+  set_start(s.system, s.parameters, options.start, s.start);
 
   const auto begin = std::chrono::steady_clock::now();
   find_equilibrium(problem, s.start, options.nearest, warm, s.workspace, s.history, s.found);

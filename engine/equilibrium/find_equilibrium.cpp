@@ -231,8 +231,9 @@ bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
       const auto& f = problem.parameters.cuts[c].frame;
       for (int axis : {row.u, row.w}) {
         const Vec3& e = f[static_cast<std::size_t>(axis)];
+        // Where all three axes are held, the rows vanish a third of a turn round, too.
         if ((axis == 2 || cut.type == JointType::fixed || cut.type == JointType::prismatic) &&
-            e.dot(r * e) < 0)
+            e.dot(r * e) < 0.5)
           return false;
       }
     }

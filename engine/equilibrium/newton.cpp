@@ -165,8 +165,14 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     if (size <= settings.step_tolerance && fraction == 1.) {
       // No step is left; but a force that no coordinate resists, or a loop that cannot close, asks for none
       // either.
-      if (scaled_residual(problem, w) > 1e-8) break;
-      outcome.converged = true;
+      const double left = scaled_residual(problem, w);
+      if (left > 1e-8) break;
+      // Where a direction has no stiffness, short steps tell nothing of the force along it.
+      const auto largest = [&](const Eigen::VectorXd& force) {
+        return force.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
+      };
+      outcome.converged =
+          !w.hessian.singular() || largest(w.residual.f) <= 1e-13 * largest(w.magnitudes.force);
     } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {
       outcome.converged = outcome.linear = true;
     }

@@ -29,6 +29,8 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   }
   if (outcome.linear) // about a singular state the error is of the size of the last step
     error = error.cwiseMax(2 * outcome.last_step * problem.scaling.column);
+  // Corrections carry the rounding of the residual that they come from.
+  error += 16 * static_cast<double>(std::numeric_limits<long double>::epsilon()) * problem.scaling.column;
   for (const Link& link : system.links) {
     if (link.v < 0) continue;
     const int n = link.type == LinkType::spherical ? 3 : 1;

@@ -217,19 +217,35 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   if (out.stable == false && in.found.message.empty()) out.message += " This state is unstable.";
 }
 
-void set_start(const System& system, const Parameters& parameters, const std::string& name, double value,
-               Eigen::VectorXd& q) {
-  for (const CoordinateInfo& c : system.coordinates) {
-    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-    const bool one = coordinate_count(joint.type) == 1;
-    if (name != joint.name + "." + std::to_string(c.index) && !(one && name == joint.name)) continue;
-    if (system.links[static_cast<std::size_t>(c.link)].drive >= 0)
+void set_start(const System& system, const Parameters& parameters,
+               const std::vector<std::pair<std::string, double>>& start, Eigen::VectorXd& q) {
+  std::vector<std::optional<double>> values(system.coordinates.size());
+  for (const auto& [name, value] : start) {
+    const auto named = [&](const CoordinateInfo& c) {
+      const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+      return name == joint.name + "." + std::to_string(c.index) ||
+             (coordinate_count(joint.type) == 1 && name == joint.name);
+    };
+    const auto c = std::ranges::find_if(system.coordinates, named);
+    if (c == system.coordinates.end())
+      throw SceneError(name,
+                       "is not a free coordinate; use the joint's name, or name.index where it has several");
+    if (system.links[static_cast<std::size_t>(c->link)].drive >= 0)
       throw SceneError(name, "is driven; a start is for free coordinates");
-    set_coordinate(system, parameters, c, value, q);
-    return;
+    values[static_cast<std::size_t>(c - system.coordinates.begin())] = value;
   }
-  throw SceneError(name,
-                   "is not a free coordinate; use the joint's name, or name.index where it has several");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const CoordinateInfo& c = system.coordinates[i];
+    const Link& link = system.links[static_cast<std::size_t>(c.link)];
+    if (link.type != LinkType::spherical) {
+      if (values[i]) set_coordinate(system, parameters, c, *values[i], q);
+    } else if (c.index == link.coordinate) { // the three components of a rotation vector come together
+      Vec3 r = rotation_vector(link, parameters.links[static_cast<std::size_t>(c.link)], q);
+      for (int k = 0; k < 3; ++k)
+        if (const auto& value = values[i + static_cast<std::size_t>(k)]) r[k] = *value;
+      set_rotation_vector(link, parameters.links[static_cast<std::size_t>(c.link)], r, q);
+    }
+  }
 }
 
 } // namespace flyball

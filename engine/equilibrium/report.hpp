@@ -25,8 +25,9 @@ void report(const ReportInput& input, const Eigen::VectorXd& error, bool details
 
 SystemSummary summarize(const Mechanism& mechanism, const System& system, const Parameters& parameters);
 
-// Sets "joint" or "joint.index" in a configuration. Throws SceneError where there is no such free coordinate.
-void set_start(const System& system, const Parameters& parameters, const std::string& name, double value,
-               Eigen::VectorXd& q);
+// Sets coordinates named "joint" or "joint.index" in a configuration; components of a rotation vector that
+// are not named stay. Throws SceneError where there is no such free coordinate.
+void set_start(const System& system, const Parameters& parameters,
+               const std::vector<std::pair<std::string, double>>& start, Eigen::VectorXd& q);
 
 } // namespace flyball

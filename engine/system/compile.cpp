@@ -471,7 +471,8 @@ class Compiler {
 
   void classify() {
     for (const DrivenCoordinate& d : s_.drives)
-      if (moving_frame(link(d.link).parent) >= 0) s_.single_drives = false;
+      for (int l = link(d.link).parent; l >= 0; l = link(l).parent)
+        if (link(l).drive >= 0 || link(l).v >= 0) s_.single_drives = false;
     for (const BodyForceElement& e : s_.body_forces) {
       const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
       if (f.type != ForceType::force || f.frame != ForceFrame::world) s_.conservative = false;

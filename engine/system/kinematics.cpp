@@ -121,6 +121,10 @@ void set_coordinate(const System& system, const Parameters& parameters, const Co
   const LinkParameters& p = parameters.links[static_cast<std::size_t>(c.link)];
   Vec3 r = rotation_vector(link, p, q);
   r[c.index - link.coordinate] = value;
+  set_rotation_vector(link, p, r, q);
+}
+
+void set_rotation_vector(const Link& link, const LinkParameters& p, const Vec3& r, Eigen::VectorXd& q) {
   Quat d = exp_rotation(r) * p.drawn_rotation.conjugate();
   if (link.reversed) d = d.conjugate();
   q.segment<4>(link.q) << d.w(), d.x(), d.y(), d.z();

@@ -69,9 +69,11 @@ double coordinate_value(const System& system, const Parameters& parameters, cons
 template <class S>
 Vec3T<S> rotation_vector(const Link& link, const LinkParameters& parameters, const Configuration<S>& q);
 
-// Sets coordinates by label. A rotation vector is set as a whole (all three of a link).
+// Sets a coordinate by label; of a rotation vector one component.
 void set_coordinate(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate,
                     double value, Eigen::VectorXd& q);
+void set_rotation_vector(const Link& link, const LinkParameters& parameters, const Vec3& r,
+                         Eigen::VectorXd& q);
 
 // Poses of the mechanism's bodies, in its order.
 void body_poses(const System& system, const Mechanism& mechanism, const Parameters& parameters,

@@ -136,7 +136,8 @@ struct System {
 
   // All forces have a potential. Damping where parts do not turn against each other does no harm.
   bool conservative = true;
-  // No drive rides on another: the inertia forces then have a potential too (see potential.hpp).
+  // No drive rides on another or on a free coordinate: the inertia forces then have a potential, too (see
+  // potential.hpp).
   bool single_drives = true;
 };
 

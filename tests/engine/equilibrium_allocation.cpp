@@ -115,11 +115,9 @@ TEST_CASE("a repeated small solve allocates nothing") {
     WARN("skipped: allocations cannot be counted here (sanitizer, or not glibc)");
     return;
   }
-  // The counter counts.
-  CHECK(allocations_of([] {
-          volatile double* p = new double[100];
-          delete[] p;
-        }) == 1);
+  // The counter counts: through a pointer, since compilers may leave out an allocation nobody uses.
+  void* (*const volatile allocate)(std::size_t) = &::operator new;
+  CHECK(allocations_of([&] { ::operator delete(allocate(100)); }) == 1);
   CHECK(allocations_of([] {
           Eigen::VectorXd x = Eigen::VectorXd::Zero(50);
           counting = counting && x.size() == 50;
@@ -150,10 +148,12 @@ TEST_CASE("a repeated small solve allocates nothing") {
       CHECK(warm_solve(factor) == 0);
       CHECK(solver.found.message.empty());
     }
-    // Cold: from the drawn pose, every time.
-    solver.solve(solver.drawn, false);
-    CHECK(allocations_of([&] { arrived = solver.solve(solver.drawn, false) && arrived; }) == 0);
-    CHECK(allocations_of([&] { arrived = solver.solve(solver.drawn, false) && arrived; }) == 0);
+    // Cold: from the drawn pose, every time, where Newton-Raphson arrives without a net.
+    arrived = solver.solve(solver.drawn, false) && arrived;
+    const bool plain = !solver.found.net && solver.found.message.empty();
+    CHECK(plain == (std::string(scene) != "conical_pendulum"));
+    for (int i = 0; plain && i < 2; ++i)
+      CHECK(allocations_of([&] { arrived = solver.solve(solver.drawn, false) && arrived; }) == 0);
     CHECK(arrived);
     // New numbers cost nothing either.
     CHECK(allocations_of([&] { solver.take_numbers(); }) == 0);

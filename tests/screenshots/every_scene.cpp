@@ -1,6 +1,7 @@
 // Every shipped scene, as the view and as the whole interface.
 #include "stored_picture.hpp"
 
+#include "app/panels/panels.hpp"
 #include "app/render/offscreen.hpp"
 #include "tests/catch.hpp"
 
@@ -38,19 +39,28 @@ TEST_CASE("dark colours and twice the scale look as they did") {
   App app(steady_options(Theme::dark));
   open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
   app.panels.reactions = app.panels.eigenvalues = app.panels.system = true;
-  check_stored("governor-dark-2x", interface_picture(app, {1920, 1280}, 2));
+  check_stored("governor-dark-2x", interface_picture(app, {2400, 1700}, 2));
 }
 
 TEST_CASE("a scene without a steady state says so beside its drawn pose") {
   const OffscreenContext context;
   App app(steady_options());
   app.view.samples = 1;
-  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
-  // Gravity across the spindle turns with it.
-  change_parameter(app, "gravity.0", -9.80665);
-  CHECK(app.live.busy() == false);
+  open_scene(app, FLYBALL_ASSETS "/scenes/pendulum.json");
+  // Gravity across the crank's axis.
+  change_parameter(app, "gravity.1", -9.80665);
   check_stored("no-steady-state", interface_picture(app, interface_size, 1));
   CHECK(app.answer.solution.status == Status::no_steady_state);
+}
+
+TEST_CASE("the dialog for pictures looks as it did") {
+  const OffscreenContext context;
+  App app(steady_options());
+  app.view.samples = 1;
+  open_scene(app, FLYBALL_ASSETS "/scenes/rate_gyro.json");
+  show_export_dialog(app);
+  app.dialog.path = "/home/somebody/rate_gyro.png";
+  check_stored("export-dialog", interface_picture(app, interface_size, 1));
 }
 
 TEST_CASE("a scene that cannot be read shows its message") {
