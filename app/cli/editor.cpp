@@ -54,8 +54,11 @@ std::string title_of(const App& app) {
 }
 
 int run_window(Window& window, const std::filesystem::path& scene, const EditorOptions& options) {
-  App app({.mode = LiveSolver::Mode::background, .on_news = glfwPostEmptyEvent, .scenes = shipped_scenes(),
-           .theme = options.dark ? Theme::dark : Theme::light, .numbers = {}});
+  App app({.mode = LiveSolver::Mode::background,
+           .on_news = glfwPostEmptyEvent,
+           .scenes = shipped_scenes(),
+           .theme = options.dark ? Theme::dark : Theme::light,
+           .numbers = {}});
   const auto scale = [&] { return options.scale.value_or(std::max(window.content_scale(), 1.f)); };
   Stage stage(app, scale());
   ImGui::GetIO().ConfigInputTextCursorBlink = false;
@@ -103,7 +106,8 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
   return exit_done;
 }
 
-int run_without_display(const std::filesystem::path& scene, const EditorOptions& options, const std::string& reason) {
+int run_without_display(const std::filesystem::path& scene, const EditorOptions& options,
+                        const std::string& reason) {
   fmt::print(stderr, "flyball: {}; drawing the interface into a picture instead\n", reason);
   PictureOptions wanted;
   wanted.scale = options.scale.value_or(1.f);

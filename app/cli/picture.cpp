@@ -8,7 +8,10 @@
 namespace flyball::cli {
 
 Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& options) {
-  App app({.mode = LiveSolver::Mode::immediate, .on_news = {}, .scenes = shipped_scenes(), .theme = options.theme,
+  App app({.mode = LiveSolver::Mode::immediate,
+           .on_news = {},
+           .scenes = shipped_scenes(),
+           .theme = options.theme,
            .numbers = {}});
   app.view.samples = options.antialiased ? 4 : 1;
   app.view.solid = !options.drawn_pose;

@@ -27,8 +27,10 @@ std::string read_size(const std::string& text, PictureOptions& options) {
   const bool cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
   const auto height = cross ? std::from_chars(width.ptr + 1, end, options.height) : width;
   const bool read = cross && height.ec == std::errc() && height.ptr == end;
-  const bool fits = options.width > 0 && options.height > 0 && options.width <= largest && options.height <= largest;
-  return read && fits ? "" : fmt::format("expected WIDTHxHEIGHT from 1x1 to {0}x{0}, such as 1280x720", largest);
+  const bool fits =
+      options.width > 0 && options.height > 0 && options.width <= largest && options.height <= largest;
+  return read && fits ? ""
+                      : fmt::format("expected WIDTHxHEIGHT from 1x1 to {0}x{0}, such as 1280x720", largest);
 }
 
 int run_render(const RenderOptions& options) {
@@ -61,10 +63,13 @@ void add_render(CLI::App& app, int& exit_code) {
   command->add_flag("--ui", options->interface, "The window with its panels rather than the view alone");
   command
       ->add_option("--pose", options->pose,
-                   "drawn or equilibrium; a scene without equilibrium is drawn as it is in the file, and the exit code is 1")
+                   "drawn or equilibrium; a scene without equilibrium is drawn as it is in the file, and the "
+                   "exit code is 1")
       ->check(CLI::IsMember({"drawn", "equilibrium"}))
       ->capture_default_str();
-  command->add_option("--scale", options->scale, "Pixels a point has")->check(CLI::Range(0.5, 4.0))->capture_default_str();
+  command->add_option("--scale", options->scale, "Pixels a point has")
+      ->check(CLI::Range(0.5, 4.0))
+      ->capture_default_str();
   command->add_option("--theme", options->theme, "Colours")
       ->check(CLI::IsMember({"light", "dark"}))
       ->capture_default_str();

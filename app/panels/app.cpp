@@ -107,7 +107,8 @@ void change_parameter(App& app, const std::string& address, double value) {
     const double before = get_parameter(app.mechanism, address);
     set_parameter(app.mechanism, address, value);
     // A lone drive keeps its phase, so that nothing jumps when its speed changes.
-    if (address.ends_with(".speed") && app.playback.time != 0 && drive_count(app.mechanism) == 1 && value != 0)
+    if (address.ends_with(".speed") && app.playback.time != 0 && drive_count(app.mechanism) == 1 &&
+        value != 0)
       app.playback.time *= before / value;
   } catch (const SceneError&) {
     return;

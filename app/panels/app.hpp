@@ -36,12 +36,12 @@ struct Playback {
 struct ViewState {
   ViewCamera camera;
   bool ghost = true, grid = true, shadow = true, solid = true; // solid: the equilibrium, else the drawn pose
-  int samples = 4;           // 1: no anti-aliasing
-  bool fit = true;           // wanted at the next update
+  int samples = 4;                                             // 1: no anti-aliasing
+  bool fit = true;                                             // wanted at the next update
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
   PartId hovered;
   Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found
-  unsigned texture = 0;      // OpenGL's, with the picture of the view
+  unsigned texture = 0;                 // OpenGL's, with the picture of the view
 };
 
 // Sizes in points, so that they mean the same on every display.
@@ -52,9 +52,9 @@ struct PanelState {
   float parameters_height = 0; // what they needed in the last frame
   bool springs = true, drives = true, others = true;
   bool torques = true, reactions = false, eigenvalues = false, system = false;
-  std::string editing;        // address of the parameter whose value is being typed
-  std::string typed;          // what was typed so far
-  bool focus_typed = false;   // the field has just appeared
+  std::string editing;      // address of the parameter whose value is being typed
+  std::string typed;        // what was typed so far
+  bool focus_typed = false; // the field has just appeared
 };
 
 enum class Dialog { none, open, export_picture };
@@ -62,7 +62,7 @@ enum class Dialog { none, open, export_picture };
 struct DialogState {
   Dialog wanted = Dialog::none; // to be opened by the next frame
   bool showing = false;
-  std::string path;             // typed
+  std::string path;                // typed
   int width = 1920, height = 1080; // pixels
   bool panels = false;
 };

@@ -17,10 +17,12 @@ bool begin_dialog(App& app, Dialog which, const char* title, float width) {
   ImGui::SetNextWindowSize({std::min(width * s, window.x - 20 * s), 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {18 * s, 16 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  const bool begun = ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
-                                                                ImGuiWindowFlags_NoSavedSettings |
-                                                                ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::PopStyleVar(2);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ImGui::GetStyle().PopupBorderSize);
+  const bool begun =
+      ImGui::BeginPopupModal(title, nullptr,
+                             ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
+                                 ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PopStyleVar(3);
   if (!begun) return false;
   app.dialog.showing = true;
   heading(app, title);

@@ -20,7 +20,8 @@ void eigenvalue_results(App& app) {
   const auto& eigenvalues = app.answer.solution.eigenvalues;
   if (!eigenvalues || eigenvalues->empty()) return;
   if (!section(app, "results/eigenvalues", "Eigenvalues", app.panels.eigenvalues)) return;
-  paragraph("Disturbances grow or die out with the real part and swing with the imaginary part.", colors_of(app).dim);
+  paragraph("Disturbances grow or die out with the real part and swing with the imaginary part.",
+            colors_of(app).dim);
   double largest = 0;
   for (const std::complex<double>& z : *eigenvalues)
     largest = std::max(largest, std::abs(z));

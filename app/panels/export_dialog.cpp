@@ -77,7 +77,8 @@ void export_dialog(App& app) {
   ImGui::Checkbox("With the panels", &dialog.panels);
   note_widget(app.widgets, "export/panels");
 
-  const bool fits = std::min(dialog.width, dialog.height) >= smallest && std::max(dialog.width, dialog.height) <= largest;
+  const bool fits =
+      std::min(dialog.width, dialog.height) >= smallest && std::max(dialog.width, dialog.height) <= largest;
   if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
   ImGui::BeginDisabled(!fits || dialog.path.empty());

@@ -28,7 +28,8 @@ Decades decades_of(const std::vector<double>& history, double noise) {
   }
   Decades decades;
   decades.high = static_cast<int>(std::ceil(std::log10(largest)));
-  decades.low = std::min(static_cast<int>(std::floor(std::log10(std::min(smallest, largest)))), decades.high - 1);
+  decades.low =
+      std::min(static_cast<int>(std::floor(std::log10(std::min(smallest, largest)))), decades.high - 1);
   return decades;
 }
 
@@ -69,7 +70,8 @@ void history_plot(App& app, float width, float height) {
   const char* axis = "residual by iteration";
   const float axis_size = std::round(0.87f * ImGui::GetFontSize());
   const float axis_width = app.fonts.text->CalcTextSizeA(axis_size, 1e9f, 0, axis).x;
-  list.AddText(app.fonts.text, axis_size, {(left + right - axis_width) / 2, bottom + 4 * s}, packed(colors.dim), axis);
+  list.AddText(app.fonts.text, axis_size, {(left + right - axis_width) / 2, bottom + 4 * s},
+               packed(colors.dim), axis);
 
   for (std::size_t i = 0; i + 1 < history.size(); ++i)
     list.AddLine({x(i), y(history[i])}, {x(i + 1), y(history[i + 1])}, packed(colors.accent), 1.5f * s);

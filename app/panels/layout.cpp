@@ -9,7 +9,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float toolbar_height = 42, narrow = 1060;                 // points
+constexpr float toolbar_height = 42, narrow = 1060;                    // points
 constexpr float least_panel = 230, most_panel = 560, least_view = 240; // points
 
 float panel_width(float wanted, float room) {
@@ -24,7 +24,8 @@ float stacked_share(const App& app, float below) {
   return std::clamp(panels.parameters_height * app.scale / below, 0.15f, 0.5f);
 }
 
-// Returns how far the person has dragged the line this frame. Each has a small window of its own, above the panels.
+// Returns how far the person has dragged the line this frame. Each has a small window of its own, above the
+// panels.
 float splitter(App& app, const char* name, const PanelRect& line, bool upright) {
   const float grip = 4 * app.scale, thick = std::max(1.f, std::round(app.scale));
   const ImVec2 from(line.x - (upright ? grip : 0), line.y - (upright ? 0 : grip));
@@ -35,7 +36,8 @@ float splitter(App& app, const char* name, const PanelRect& line, bool upright) 
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar(2);
   ImGui::InvisibleButton("line", size);
   note_widget(app.widgets, name);
@@ -43,8 +45,8 @@ float splitter(App& app, const char* name, const PanelRect& line, bool upright) 
   if (lit) ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
   const UiColors& colors = ui_colors(app.theme);
   const ImVec2 to(line.x + (upright ? thick : line.width), line.y + (upright ? line.height : thick));
-  ImGui::GetWindowDrawList()->AddRectFilled({line.x, line.y}, to,
-                                            ImGui::ColorConvertFloat4ToU32(lit ? colors.accent : colors.border));
+  ImGui::GetWindowDrawList()->AddRectFilled(
+      {line.x, line.y}, to, ImGui::ColorConvertFloat4ToU32(lit ? colors.accent : colors.border));
   ImGui::End();
   if (!active) return 0;
   return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
@@ -66,8 +68,10 @@ Layout layout_of(const App& app, float width, float height) {
     layout.results = {layout.view.width, top + upper, panel, below - upper};
     return layout;
   }
-  const float right = std::round(s * panel_width(app.panels.results_width, width / s - least_view - least_panel));
-  const float left = std::round(s * panel_width(app.panels.parameters_width, (width - right) / s - least_view));
+  const float right =
+      std::round(s * panel_width(app.panels.results_width, width / s - least_view - least_panel));
+  const float left =
+      std::round(s * panel_width(app.panels.parameters_width, (width - right) / s - least_view));
   layout.parameters = {0, top, left, below};
   layout.results = {width - right, top, right, below};
   layout.view = {left, top, std::max(width - left - right, 1.f), below};
@@ -80,14 +84,16 @@ void drag_splitters(App& app, const Layout& layout, float height) {
   const auto clamped = [](float points) { return std::clamp(points, least_panel, most_panel); };
   const PanelRect& right = layout.results;
   if (layout.stacked) {
-    const float wide = splitter(app, "splitter/panels", {right.x, layout.view.y, 1, layout.view.height}, true);
+    const float wide =
+        splitter(app, "splitter/panels", {right.x, layout.view.y, 1, layout.view.height}, true);
     panels.stacked_width = clamped(panels.stacked_width - wide / s);
     const float tall = splitter(app, "splitter/results", {right.x, right.y, right.width, 1}, false);
     const float below = height - layout.toolbar.height;
     if (tall != 0) panels.stacked_share = std::clamp(stacked_share(app, below) + tall / below, 0.15f, 0.85f);
     return;
   }
-  const float left_by = splitter(app, "splitter/parameters", {layout.view.x, layout.view.y, 1, layout.view.height}, true);
+  const float left_by =
+      splitter(app, "splitter/parameters", {layout.view.x, layout.view.y, 1, layout.view.height}, true);
   const float right_by = splitter(app, "splitter/results", {right.x, right.y, 1, right.height}, true);
   panels.parameters_width = clamped(panels.parameters_width + left_by / s);
   panels.results_width = clamped(panels.results_width - right_by / s);

@@ -36,7 +36,8 @@ void drive_torques(App& app) {
     const std::string name = t.count > 1 ? t.joint + "." + std::to_string(t.index) : t.joint;
     row(app, t.varying ? name + " (varies)" : name, force_text(t.value, largest, app.options.numbers),
         t.angle ? "N m" : "N",
-        t.varying ? "Changes as the drives turn; at the drawn phase." : "By the drive, positive along its coordinate.");
+        t.varying ? "Changes as the drives turn; at the drawn phase."
+                  : "By the drive, positive along its coordinate.");
   }
 }
 
@@ -44,10 +45,10 @@ void reactions(App& app) {
   const Solution& solution = app.answer.solution;
   if (solution.reactions.empty()) return;
   if (!section(app, "results/reactions", "Reactions", app.panels.reactions)) return;
-  paragraph(solution.reactions_nonunique
-                ? "Parent on child: x, y, z of the world. The loops hold more than they need; these are the smallest "
-                  "reactions that do it."
-                : "Parent on child: x, y, z of the world.",
+  paragraph(solution.reactions_nonunique ? "Parent on child: x, y, z of the world. The loops hold more than "
+                                           "they need; these are the smallest "
+                                           "reactions that do it."
+                                         : "Parent on child: x, y, z of the world.",
             colors_of(app).dim);
   double force = 0, torque = 0;
   for (const Reaction& r : solution.reactions) {

@@ -72,7 +72,8 @@ std::string value_text(double value, double error, const NumberStyle& style) {
   const int most = std::max(style.most_digits - 1 - leading, 0);
   if (leading >= style.most_digits || (leading < -6 && last < leading))
     return fmt::format("{:.{}e}", value, std::clamp(leading - last, 0, style.most_digits - 1));
-  return without_negative_zero(fmt::format("{:.{}f}", value, std::min({places, most, style.most_digits - 1})));
+  return without_negative_zero(
+      fmt::format("{:.{}f}", value, std::min({places, most, style.most_digits - 1})));
 }
 
 std::string magnitude_text(double value, const NumberStyle& style) {

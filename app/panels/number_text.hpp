@@ -9,8 +9,8 @@ namespace flyball {
 
 struct NumberStyle {
   int most_digits = 12; // significant
-  // Below this a number is round-off and told as "< 1e-16": computers differ in it. Pictures that are to come out the
-  // same everywhere raise it, and leave out run times.
+  // Below this a number is round-off and told as "< 1e-16": computers differ in it. Pictures that are to come
+  // out the same everywhere raise it, and leave out run times.
   double noise = 1e-16;
   bool run_times = true;
 };
@@ -25,8 +25,8 @@ std::string short_text(double value, int digits = 6);
 // "2.4 µs", "13 ms", "1.2 s".
 std::string duration_text(double seconds, const NumberStyle& style);
 
-// What was typed, in `unit` ("rad/s", "N/m", ...): a number alone, or with a unit of the same kind ("105 rpm",
-// "2 kN/m"). Nothing where it cannot be understood or is not finite.
+// What was typed, in `unit` ("rad/s", "N/m", ...): a number alone, or with a unit of the same kind ("105
+// rpm", "2 kN/m"). Nothing where it cannot be understood or is not finite.
 std::optional<double> parse_quantity(std::string_view text, std::string_view unit);
 
 } // namespace flyball

@@ -56,13 +56,14 @@ void list(App& app) {
   std::error_code ignored;
   const fs::path above = fs::absolute(shown, ignored).lexically_normal();
   const fs::path trimmed = above.has_filename() ? above : above.parent_path();
-  if (trimmed.has_relative_path() &&
-      ImGui::Selectable((std::string(icon::folder_open) + "  ..").c_str(), false, ImGuiSelectableFlags_DontClosePopups))
+  if (trimmed.has_relative_path() && ImGui::Selectable((std::string(icon::folder_open) + "  ..").c_str(),
+                                                       false, ImGuiSelectableFlags_DontClosePopups))
     entered = trimmed.parent_path();
   for (const Entry& entry : entries_of(shown)) {
     const std::string name = entry.path.filename().string();
     const std::string text = std::string(entry.folder ? icon::folder_open : icon::file) + "  " + name;
-    if (ImGui::Selectable(text.c_str(), entry.path == app.dialog.path, ImGuiSelectableFlags_DontClosePopups)) {
+    if (ImGui::Selectable(text.c_str(), entry.path == app.dialog.path,
+                          ImGuiSelectableFlags_DontClosePopups)) {
       if (entry.folder)
         entered = entry.path;
       else
@@ -85,8 +86,8 @@ void open_dialog(App& app) {
   if (!begin_dialog(app, Dialog::open, "Open a scene", 560)) return;
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
-  const bool entered = ImGui::InputText("##path", &app.dialog.path,
-                                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  const bool entered = ImGui::InputText(
+      "##path", &app.dialog.path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   note_widget(app.widgets, "open/path");
   list(app);
   ImGui::Dummy({0, 2 * app.scale});

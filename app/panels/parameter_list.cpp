@@ -57,7 +57,8 @@ void choose_range(ParameterControl& control) {
 
 // "drive.0.speed" of a joint with several coordinates becomes "speed 0".
 std::string what_of(const std::vector<std::string>& parts) {
-  if (parts.front() == "gravity") return parts.size() > 1 ? std::string(1, "xyz"[std::atoi(parts[1].c_str()) % 3]) : "";
+  if (parts.front() == "gravity")
+    return parts.size() > 1 ? std::string(1, "xyz"[std::atoi(parts[1].c_str()) % 3]) : "";
   std::string words = parts.back();
   const bool plain = parts.back() == "speed" || parts.back() == "stiffness";
   for (std::size_t i = 2; i + 1 < parts.size(); ++i) {
@@ -84,7 +85,8 @@ ParameterControl control_of(const Mechanism& mechanism, const std::string& addre
 }
 
 bool wanted(const std::string& address) {
-  return address.ends_with(".speed") || (address.ends_with(".stiffness") && address.find(".stop.") == std::string::npos);
+  return address.ends_with(".speed") ||
+         (address.ends_with(".stiffness") && address.find(".stop.") == std::string::npos);
 }
 
 } // namespace

@@ -14,9 +14,9 @@ enum class ParameterGroup { drives, springs, others };
 struct ParameterControl {
   std::string address;
   ParameterGroup group = ParameterGroup::others;
-  std::string name;    // of the joint, body or force
-  std::string what;    // "speed", "stiffness", ...: what of it
-  std::string unit;    // "rad/s", "N/m", ...
+  std::string name; // of the joint, body or force
+  std::string what; // "speed", "stiffness", ...: what of it
+  std::string unit; // "rad/s", "N/m", ...
   double from = 0, to = 1;
   bool log = false;
   double file_value = 0; // as read from the file

@@ -26,8 +26,9 @@ void value_field(App& app, const ParameterControl& control, double value, float 
     const bool understood = parse_quantity(app.panels.typed, control.unit).has_value();
     ImGui::PushStyleColor(ImGuiCol_Text, understood ? colors.text : colors.bad);
     if (app.panels.focus_typed) ImGui::SetKeyboardFocusHere();
-    const bool done = ImGui::InputText("##typed", &app.panels.typed,
-                                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    const bool done =
+        ImGui::InputText("##typed", &app.panels.typed,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     ImGui::PopStyleColor();
     note_widget(app.widgets, name);
     const bool left = !app.panels.focus_typed && ImGui::IsItemDeactivated();
@@ -43,7 +44,8 @@ void value_field(App& app, const ParameterControl& control, double value, float 
   const std::string text = short_text(value);
   const ImFont* digits = app.fonts.digits;
   const ImVec2 size = digits->CalcTextSizeA(digits->FontSize, 1e9f, 0, text.c_str());
-  const float unit_width = control.unit.empty() ? 0 : ImGui::CalcTextSize(control.unit.c_str()).x + 5 * app.scale;
+  const float unit_width =
+      control.unit.empty() ? 0 : ImGui::CalcTextSize(control.unit.c_str()).x + 5 * app.scale;
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetFrameHeight();
   if (ImGui::InvisibleButton(name.c_str(), {width, height})) start_typing(app, control, value);
@@ -51,12 +53,13 @@ void value_field(App& app, const ParameterControl& control, double value, float 
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (ImGui::IsItemHovered()) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_TextInput);
-    list.AddRectFilled(from, {from.x + width, from.y + height}, packed(colors.raised), ImGui::GetStyle().FrameRounding);
+    list.AddRectFilled(from, {from.x + width, from.y + height}, packed(colors.raised),
+                       ImGui::GetStyle().FrameRounding);
   }
   const float right = from.x + width - 4 * app.scale;
   const float y = from.y + ImGui::GetStyle().FramePadding.y;
-  list.AddText(digits, digits->FontSize, {right - unit_width - size.x, y + digits_drop(app)}, packed(colors.text),
-               text.c_str());
+  list.AddText(digits, digits->FontSize, {right - unit_width - size.x, y + digits_drop(app)},
+               packed(colors.text), text.c_str());
   if (unit_width > 0)
     list.AddText({right - unit_width + 5 * app.scale, y}, packed(colors.dim), control.unit.c_str());
 }
@@ -118,7 +121,8 @@ void parameters_panel(App& app, const PanelRect& rect) {
     group(app, ParameterGroup::others, "parameters/others", "Other", app.panels.others);
     ImGui::PopStyleVar();
     if (text_button(app, "parameters/restart", "Restart from drawn pose")) solve_from_drawn_pose(app);
-    help_on_hover("Sliders start from the last answer; this starts from the pose in the file, which may lead elsewhere.");
+    help_on_hover("Sliders start from the last answer; this starts from the pose in the file, which may lead "
+                  "elsewhere.");
     if (app.mechanism != app.original) {
       ImGui::SameLine();
       if (text_button(app, "parameters/reset", "Reset all")) reset_parameters(app);

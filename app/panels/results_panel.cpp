@@ -34,7 +34,8 @@ const char* reason_text(StabilityReason reason) {
   switch (reason) {
   case StabilityReason::minimum: return "A minimum of the amended potential.";
   case StabilityReason::asymptotic: return "Every disturbance dies out.";
-  case StabilityReason::gyroscopic_only: return "Held by gyroscopic effects alone; any damping destabilises it.";
+  case StabilityReason::gyroscopic_only:
+    return "Held by gyroscopic effects alone; any damping destabilises it.";
   case StabilityReason::neutral: return "Stable but for directions that nothing resists.";
   case StabilityReason::marginal: return "Too close to the limit of stability to tell.";
   case StabilityReason::unstable: return "Disturbances grow.";
@@ -66,7 +67,8 @@ void verdict(App& app) {
     paragraph(reason_text(*solution.stability_reason), colors.dim);
   // Where all went well the words above say it already.
   if (solution.status != Status::converged || solution.message != "Converged.")
-    paragraph(without_repetition(solution.message, verdict.text), solution.status == Status::converged ? colors.dim : colors.text);
+    paragraph(without_repetition(solution.message, verdict.text),
+              solution.status == Status::converged ? colors.dim : colors.text);
 }
 
 // Directions that nothing resists.
@@ -76,7 +78,8 @@ void neutral_joints(App& app) {
   std::string names;
   for (const std::string& name : neutral)
     names += (names.empty() ? "" : ", ") + name;
-  row(app, "Nothing resists", names, "", "Joints that take part in a direction in which the mechanism stands anywhere.");
+  row(app, "Nothing resists", names, "",
+      "Joints that take part in a direction in which the mechanism stands anywhere.");
 }
 
 } // namespace

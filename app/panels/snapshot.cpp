@@ -25,8 +25,8 @@ Image interface_picture(App& app, PixelSize size, float scale) {
   Image image;
   {
     Stage stage(app, scale);
-    // Sizes that ImGui learns from one frame settle in the next.
-    for (int i = 0; i < 4; ++i)
+    // Sizes that ImGui learns from one frame settle in the next; the shade behind a dialog takes ten.
+    for (int i = 0; i < 11; ++i)
       stage.frame(app, size, 0);
     Framebuffer target(size.width, size.height, 1);
     target.bind();

@@ -24,14 +24,18 @@ void solver_results(App& app) {
   heading(app, "How it was found");
   const std::string time = duration_text(solution.run_time_s, numbers);
   const auto space = time.find(' ');
-  row(app, "Time", time.substr(0, space), time.c_str() + space + 1, "From the start to the accepted answer, its stability included.");
+  row(app, "Time", time.substr(0, space), time.c_str() + space + 1,
+      "From the start to the accepted answer, its stability included.");
   note_widget(app.widgets, "results/time");
   row(app, "Iterations", std::to_string(solution.iterations), "");
   row(app, "Residual", magnitude_text(solution.residual, numbers), "scaled",
       "The largest equation of the balance, in units in which its terms are of the order of one.");
   if (solution.condition)
-    row(app, "Condition", short_text(*solution.condition, 2), "scaled", "Condition number (2-norm) of the scaled equations.");
-  if (solution.net) row(app, "Caught by", net_text(*solution.net), "", "The safety net that led to the answer where plain Newton-Raphson steps did not.");
+    row(app, "Condition", short_text(*solution.condition, 2), "scaled",
+        "Condition number (2-norm) of the scaled equations.");
+  if (solution.net)
+    row(app, "Caught by", net_text(*solution.net), "",
+        "The safety net that led to the answer where plain Newton-Raphson steps did not.");
   if (solution.history.size() > 1) history_plot(app, ImGui::GetContentRegionAvail().x, 84 * app.scale);
 }
 

@@ -75,7 +75,7 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {width, height};
   io.DisplayFramebufferScale = {1, 1};
-  io.DeltaTime = static_cast<float>(std::max(seconds, 1e-4));
+  io.DeltaTime = std::max(static_cast<float>(seconds), 1.f / 60); // shades behind dialogs fade in with it
   ImGui::NewFrame();
   build_gui(app);
   ImGui::Render();

@@ -39,7 +39,7 @@ void system_results(App& app) {
   if (!summary.implicit_joints.empty()) row(app, "Added joints", joined(summary.implicit_joints), "");
   for (const std::string& note : summary.notes)
     paragraph(note, colors.dim);
-  list_of(app, "In", summary.in, colors.dim);
+  list_of(app, "In use", summary.in, colors.dim);
   list_of(app, "Left out", summary.left_out, colors.dim);
 }
 

@@ -23,15 +23,16 @@ constexpr std::array directions{
     Direction{"toolbar/front", "Front", "Look from the front (1)", 0, 0},
     Direction{"toolbar/side", "Side", "Look from the right (2)", right_angle, 0},
     Direction{"toolbar/top", "Top", "Look from above (3)", 0, right_angle},
-    Direction{"toolbar/iso", "Iso", "Look from the front, right and above (4)", right_angle / 2, 0.6154797086703873},
+    Direction{"toolbar/iso", "Iso", "Look from the front, right and above (4)", right_angle / 2,
+              0.6154797086703873},
 };
 
 struct Factor {
   double value;
   const char* text;
 };
-constexpr std::array factors{Factor{1, "1×"},       Factor{0.5, "0.5×"},   Factor{0.2, "0.2×"},
-                             Factor{0.1, "0.1×"},   Factor{0.05, "0.05×"}, Factor{0.02, "0.02×"},
+constexpr std::array factors{Factor{1, "1×"},      Factor{0.5, "0.5×"},   Factor{0.2, "0.2×"},
+                             Factor{0.1, "0.1×"},  Factor{0.05, "0.05×"}, Factor{0.02, "0.02×"},
                              Factor{0.01, "0.01×"}};
 
 void gap(const App& app) {
@@ -62,7 +63,8 @@ void play_buttons(App& app) {
                   playing ? "Stop the drives (Space)" : "Turn at the drives' speed (Space)", playing))
     play(app, !playing);
   next(app);
-  if (icon_button(app, "toolbar/rewind", icon::step_backward, "Back to the drawn phase of the drives")) rewind(app);
+  if (icon_button(app, "toolbar/rewind", icon::step_backward, "Back to the drawn phase of the drives"))
+    rewind(app);
   next(app);
   const auto current = std::ranges::find(factors, app.playback.factor, &Factor::value);
   ImGui::SetNextItemWidth(62 * app.scale);
@@ -70,7 +72,8 @@ void play_buttons(App& app) {
   if (ImGui::BeginCombo("##factor", current == factors.end() ? "" : current->text,
                         ImGuiComboFlags_NoArrowButton)) {
     for (const Factor& factor : factors)
-      if (ImGui::Selectable(factor.text, factor.value == app.playback.factor)) app.playback.factor = factor.value;
+      if (ImGui::Selectable(factor.text, factor.value == app.playback.factor))
+        app.playback.factor = factor.value;
     ImGui::EndCombo();
   }
   note_widget(app.widgets, "toolbar/factor");
@@ -88,7 +91,8 @@ void direction_buttons(App& app) {
     help_on_hover(direction.help);
     next(app);
   }
-  if (icon_button(app, "toolbar/fit", icon::expand, "All in view (F)")) app.view.fit = app.view.keep_direction = true;
+  if (icon_button(app, "toolbar/fit", icon::expand, "All in view (F)"))
+    app.view.fit = app.view.keep_direction = true;
 }
 
 void toggle(App& app, const char* name, const char* text, const char* help, bool& on) {
@@ -124,7 +128,8 @@ void toolbar_panel(App& app, const PanelRect& rect) {
   const float side = ImGui::GetFrameHeight() + 2 * s;
   ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), rect.width - side - 8 * s));
   const bool dark = app.theme == Theme::dark;
-  if (icon_button(app, "toolbar/theme", dark ? icon::sun : icon::moon, dark ? "Light colours" : "Dark colours")) {
+  if (icon_button(app, "toolbar/theme", dark ? icon::sun : icon::moon,
+                  dark ? "Light colours" : "Dark colours")) {
     app.theme = dark ? Theme::light : Theme::dark;
     apply_style(app.theme, app.scale);
   }

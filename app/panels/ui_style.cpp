@@ -18,15 +18,29 @@ ImVec4 with_alpha(ImVec4 color, float alpha) {
 UiColors make(Theme theme) {
   const ImVec4 accent = to_imgui(palette(theme).accent);
   if (theme == Theme::light) {
-    return {.text = hex(0x20262D), .dim = hex(0x5A6570), .faint = hex(0xC3CBD3),
-            .panel = hex(0xF7F9FA), .raised = hex(0xE9EDF1), .border = hex(0xD3DAE0),
-            .accent = accent, .on_accent = hex(0xFFFFFF),
-            .good = hex(0x00734F), .warn = hex(0x8A5A00), .bad = hex(0xB34700)};
+    return {.text = hex(0x20262D),
+            .dim = hex(0x5A6570),
+            .faint = hex(0xC3CBD3),
+            .panel = hex(0xF7F9FA),
+            .raised = hex(0xE9EDF1),
+            .border = hex(0xD3DAE0),
+            .accent = accent,
+            .on_accent = hex(0xFFFFFF),
+            .good = hex(0x00734F),
+            .warn = hex(0x8A5A00),
+            .bad = hex(0xB34700)};
   }
-  return {.text = hex(0xE3E8ED), .dim = hex(0x9CA8B4), .faint = hex(0x4A545F),
-          .panel = hex(0x1C2126), .raised = hex(0x2A3138), .border = hex(0x353E47),
-          .accent = accent, .on_accent = hex(0x0E1216),
-          .good = hex(0x3CC79B), .warn = hex(0xE6B450), .bad = hex(0xF28C4B)};
+  return {.text = hex(0xE3E8ED),
+          .dim = hex(0x9CA8B4),
+          .faint = hex(0x4A545F),
+          .panel = hex(0x1C2126),
+          .raised = hex(0x2A3138),
+          .border = hex(0x353E47),
+          .accent = accent,
+          .on_accent = hex(0x0E1216),
+          .good = hex(0x3CC79B),
+          .warn = hex(0xE6B450),
+          .bad = hex(0xF28C4B)};
 }
 
 } // namespace

@@ -11,7 +11,7 @@ struct UiColors {
   ImVec4 text, dim, faint; // faint: lines and things that do not apply now
   ImVec4 panel, raised, border;
   ImVec4 accent, on_accent;
-  ImVec4 good, warn, bad;  // as text on `panel`
+  ImVec4 good, warn, bad; // as text on `panel`
 };
 
 const UiColors& ui_colors(Theme theme);

@@ -21,7 +21,8 @@ void steer(App& app, const PanelRect& rect) {
   const ViewSize size = view_size(rect);
   const double dx = static_cast<double>(io.MouseDelta.x), dy = static_cast<double>(io.MouseDelta.y);
   if (ImGui::IsItemActive() && (dx != 0 || dy != 0)) {
-    const bool pan = io.KeyShift || ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+    const bool pan = io.KeyShift || ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
+                     ImGui::IsMouseDown(ImGuiMouseButton_Middle);
     if (pan)
       app.view.camera.pan(dx, dy, size);
     else
@@ -46,7 +47,8 @@ void point_at_parts(App& app, const PanelRect& rect) {
   if (cursor == app.view.pointed_at) return;
   app.view.pointed_at = cursor;
   const ViewFrame frame = view_frame(app);
-  const auto hit = pick(scene_of(frame).instances, frame.camera.ray(cursor, view_size(rect)), 4 * static_cast<double>(app.scale));
+  const auto hit = pick(scene_of(frame).instances, frame.camera.ray(cursor, view_size(rect)),
+                        4 * static_cast<double>(app.scale));
   app.view.hovered = hit ? hit->part : PartId{};
 }
 
@@ -58,7 +60,8 @@ void part_label(App& app) {
   std::string name, what;
   if (part.kind == PartKind::body && i < m.bodies.size()) {
     name = m.bodies[i].name;
-    what = "body, " + (m.bodies[i].mass > 0 ? short_text(m.bodies[i].mass) + " kg" : std::string("without mass"));
+    what = "body, " +
+           (m.bodies[i].mass > 0 ? short_text(m.bodies[i].mass) + " kg" : std::string("without mass"));
   } else if (part.kind == PartKind::joint && i < m.joints.size()) {
     name = m.joints[i].name;
     what = std::string(type_name(m.joints[i].type)) + " joint";
@@ -88,7 +91,8 @@ void caption(App& app, const PanelRect& rect) {
   const float big = app.fonts.strong->FontSize;
   list.AddText(app.fonts.strong, big, {x, y}, packed(colors.text), app.mechanism.name.c_str());
   y += big + 4 * s;
-  const bool solved = app.answer.ticket && !app.answer.error && app.answer.solution.status == Status::converged;
+  const bool solved =
+      app.answer.ticket && !app.answer.error && app.answer.solution.status == Status::converged;
   std::string state;
   if (app.answer.ticket && !solved) state = "Drawn pose";
   if (app.playback.time != 0 && solved)

@@ -72,13 +72,15 @@ bool section(App& app, const std::string& name, const char* text, bool& open) {
   note_widget(app.widgets, name);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (ImGui::IsItemHovered())
-    list.AddRectFilled({from.x - 4 * app.scale, from.y}, {from.x + width, from.y + height}, packed(colors.raised),
-                       ImGui::GetStyle().FrameRounding);
+    list.AddRectFilled({from.x - 4 * app.scale, from.y}, {from.x + width, from.y + height},
+                       packed(colors.raised), ImGui::GetStyle().FrameRounding);
   const float r = 3.5f * app.scale, cx = from.x + r, cy = from.y + height / 2;
   if (open)
-    list.AddTriangleFilled({cx - r, cy - r / 2}, {cx + r, cy - r / 2}, {cx, cy + r / 1.5f}, packed(colors.dim));
+    list.AddTriangleFilled({cx - r, cy - r / 2}, {cx + r, cy - r / 2}, {cx, cy + r / 1.5f},
+                           packed(colors.dim));
   else
-    list.AddTriangleFilled({cx - r / 2, cy - r}, {cx + r / 1.5f, cy}, {cx - r / 2, cy + r}, packed(colors.dim));
+    list.AddTriangleFilled({cx - r / 2, cy - r}, {cx + r / 1.5f, cy}, {cx - r / 2, cy + r},
+                           packed(colors.dim));
   list.AddText(app.fonts.strong, ImGui::GetFontSize(), {from.x + 14 * app.scale, from.y + 3 * app.scale},
                packed(colors.text), text);
   return open;
@@ -135,14 +137,16 @@ void clipped_text(const std::string& text, float width) {
   std::string cut = text;
   while (!cut.empty() && ImGui::CalcTextSize((cut + "…").c_str()).x > width) {
     // Whole characters: bytes of the form 10xxxxxx continue one.
-    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0) == 0x80) cut.pop_back();
+    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0) == 0x80)
+      cut.pop_back();
     if (!cut.empty()) cut.pop_back();
   }
   ImGui::TextUnformatted((cut + "…").c_str());
   help_on_hover(text.c_str());
 }
 
-bool slider(App& app, const std::string& name, const ParameterControl& control, double& value, bool& type_value) {
+bool slider(App& app, const std::string& name, const ParameterControl& control, double& value,
+            bool& type_value) {
   const UiColors& colors = colors_of(app);
   const float s = app.scale, height = 18 * s, radius = 6.5f * s;
   const ImVec2 from = ImGui::GetCursorScreenPos();
@@ -170,13 +174,15 @@ bool slider(App& app, const std::string& name, const ParameterControl& control, 
   const float knob = left + span * static_cast<float>(slider_place(control, value));
   // Filled from zero where the range holds it, else from the lower end.
   const float zero = left + span * static_cast<float>(control.log ? 0 : slider_place(control, 0));
-  list.AddRectFilled({left - line, middle - line}, {left + span + line, middle + line}, packed(colors.faint), line);
+  list.AddRectFilled({left - line, middle - line}, {left + span + line, middle + line}, packed(colors.faint),
+                     line);
   list.AddRectFilled({std::min(zero, knob), middle - line}, {std::max(zero, knob), middle + line},
                      packed(colors.accent), line);
   const float mark = std::round(left + span * static_cast<float>(slider_place(control, control.file_value)));
   list.AddLine({mark, middle + 4 * s}, {mark, middle + 8 * s}, packed(colors.dim), std::max(1.f, s));
   list.AddCircleFilled({knob, middle}, radius, packed(colors.accent), 32);
-  if (!active) list.AddCircleFilled({knob, middle}, radius - 2 * s, packed(hovered ? colors.raised : colors.panel), 32);
+  if (!active)
+    list.AddCircleFilled({knob, middle}, radius - 2 * s, packed(hovered ? colors.raised : colors.panel), 32);
   return moved;
 }
 

@@ -30,14 +30,16 @@ void right_digits(App& app, const std::string& text, const ImVec4& color);
 // How much lower digits must begin than words to stand on the same line (pixels).
 float digits_drop(const App& app);
 // "label            value unit": the value in digits. Help appears over the row.
-void row(App& app, const std::string& label, const std::string& value, const char* unit, const char* help = nullptr);
+void row(App& app, const std::string& label, const std::string& value, const char* unit,
+         const char* help = nullptr);
 // Words that may take several lines.
 void paragraph(const std::string& text, const ImVec4& color);
 // Text cut to the width with "..." where it is longer; the whole of it appears over it.
 void clipped_text(const std::string& text, float width);
 
 // A slim slider over the control's range; returns whether the value was moved. Ctrl-click asks for typing.
-bool slider(App& app, const std::string& name, const ParameterControl& control, double& value, bool& type_value);
+bool slider(App& app, const std::string& name, const ParameterControl& control, double& value,
+            bool& type_value);
 
 void help_on_hover(const char* help);
 

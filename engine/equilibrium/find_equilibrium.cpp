@@ -2,6 +2,7 @@
 
 #include "engine/equilibrium/descent.hpp"
 #include "engine/equilibrium/homotopy.hpp"
+#include "engine/equilibrium/stability.hpp"
 
 #include <random>
 
@@ -75,10 +76,8 @@ class Search {
   // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems
   // without a potential have no such order; their eigenvalues judge.
   bool acceptable(const NewtonOutcome& outcome) {
-    factor(p_, found_.z, w_);
-    found_.minimum = p_.symmetric() && w_.hessian.positive_definite();
-    if (nearest_ || !p_.symmetric()) return true;
-    unstable_ = !found_.minimum && !only_flat();
+    judge();
+    if (nearest_ || !potential_) return true;
     if (unstable_ || outcome.largest_step > 1) return false;
     if (warm_) return true;
     const Potential end = amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics);
@@ -96,7 +95,27 @@ class Search {
     return end.value <= begin.value + 1e-12 * (begin.magnitude + end.magnitude);
   }
 
-  bool only_flat() { return w_.hessian.singular() && w_.hessian.eigenvalues()[0] > -ReducedHessian::zero; }
+  // Whether the state found is a minimum, from the balance factored at it.
+  void judge() {
+    factor(p_, found_.z, w_);
+    if (p_.symmetric()) {
+      potential_ = true;
+      found_.minimum = w_.hessian.positive_definite();
+      unstable_ = !found_.minimum && !only_flat(w_.hessian);
+      return;
+    }
+    potential_ = !nearest_ && has_potential(p_, found_.z, w_);
+    found_.minimum = unstable_ = false;
+    if (!potential_) return;
+    ReducedHessian energy;
+    energy.factor(w_.constraints.rank() == 0 ? w_.scaled_stiffness : w_.reduced, w_.noise, true);
+    found_.minimum = energy.positive_definite();
+    unstable_ = !found_.minimum && !only_flat(energy);
+  }
+
+  static bool only_flat(const ReducedHessian& hessian) {
+    return hessian.singular() && hessian.eigenvalues()[0] > -ReducedHessian::zero;
+  }
 
   void cancelled() {
     found_.status = Status::not_converged;
@@ -151,17 +170,15 @@ class Search {
     if (!outcome.converged || outcome.largest_step > 0.2 || !closed_the_right_way(p_, w_.kinematics))
       return false;
     found_.newton = outcome;
-    factor(p_, found_.z, w_);
-    found_.minimum = p_.symmetric() && w_.hessian.positive_definite();
-    if (p_.symmetric()) {
-      if (!found_.minimum && !only_flat()) return false;
-      // Newton may have been right all along, by a way that had to be checked.
-      if (arrived_ && !unstable_ && candidate_.q.size() > 0 && same(candidate_.q, found_.z.q)) {
-        found_.net = candidate_net_;
-        found_.newton = candidate_outcome_;
-      }
+    const bool left_unstable = arrived_ && unstable_;
+    judge();
+    if (potential_ && unstable_) return false;
+    // Newton may have been right all along, by a way that had to be checked.
+    if (arrived_ && !left_unstable && candidate_.q.size() > 0 && same(candidate_.q, found_.z.q)) {
+      found_.net = candidate_net_;
+      found_.newton = candidate_outcome_;
     }
-    if (arrived_ && unstable_)
+    if (left_unstable)
       found_.message =
           same(candidate_.q, w_.assembled)
               ? "The start is an unstable equilibrium; stepped off it and went downhill to a stable one."
@@ -188,8 +205,7 @@ class Search {
     if (candidate_.q.size() > 0) {
       found_.z = candidate_;
       evaluate(p_, found_.z, 0, w_);
-      factor(p_, found_.z, w_);
-      found_.minimum = p_.symmetric() && w_.hessian.positive_definite();
+      judge();
       found_.newton = candidate_outcome_;
       found_.net = candidate_net_;
       found_.status = Status::converged;
@@ -217,7 +233,7 @@ class Search {
   Unknowns candidate_;
   NewtonOutcome candidate_outcome_;
   std::optional<Net> candidate_net_;
-  bool arrived_ = false, unstable_ = false, fell_ = false;
+  bool arrived_ = false, potential_ = false, unstable_ = false, fell_ = false;
 };
 
 } // namespace

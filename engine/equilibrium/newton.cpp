@@ -168,11 +168,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
       const double left = scaled_residual(problem, w);
       if (left > 1e-8) break;
       // Where a direction has no stiffness, short steps tell nothing of the force along it.
-      const auto largest = [&](const Eigen::VectorXd& force) {
-        return force.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
-      };
-      outcome.converged =
-          !w.hessian.singular() || largest(w.residual.f) <= 1e-13 * largest(w.magnitudes.force);
+      outcome.converged = !w.hessian.singular() || left <= 1e-13;
     } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {
       outcome.converged = outcome.linear = true;
     }

@@ -8,7 +8,7 @@ namespace flyball {
 // Corrects a converged state, evaluated and factored in the workspace, by Newton steps on the residual
 // evaluated in extended precision (iterative refinement; Higham, Accuracy and Stability of Numerical
 // Algorithms, 2002, chapter 12), and fills `error` with the estimated absolute error of each coordinate of
-// q_R (rad, m): the last correction and two units in the last place.
+// q_R (rad, m): the last correction, its rounding, and two units in the last place.
 void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, Workspace& w,
             Eigen::VectorXd& error);
 

@@ -238,8 +238,20 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
       case RowType::distance: out.phi[row] = p.length; break;
       }
       const double size = largest * arm(cut, cut.rows[r]);
-      row_gradient(cut, p.cuts[i], cut.rows[r], k,
-                   [&](int v, double g) { out.force[v] += size * std::abs(g); });
+      if (cut.rows[r].type == RowType::gear) {
+        out.force[cut.gear_va] += size * std::abs(p.cuts[i].ratio);
+        out.force[cut.gear_vb] += size;
+        continue;
+      }
+      // By the whole lever, as for springs.
+      const Vec3 at = k.point(cut.ends.b, p.cuts[i].b);
+      for (const SupportColumn& s : cut.ends.support) {
+        const Column<double>& c = k.columns[static_cast<std::size_t>(s.v)];
+        if (cut.rows[r].type == RowType::direction)
+          out.force[s.v] += c.angular ? size : 0;
+        else
+          out.force[s.v] += c.angular ? size * (at - c.o).norm() : size;
+      }
     }
   }
 }

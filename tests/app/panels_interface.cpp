@@ -114,9 +114,10 @@ TEST_CASE("a part under the cursor is named") {
   Robot robot;
   const int ball = body_index(robot.app.mechanism, "ball1");
   const WidgetRect view = robot.widget("view");
-  const ViewSize size{static_cast<double>(view.to.x - view.from.x), static_cast<double>(view.to.y - view.from.y)};
-  const auto at = robot.app.view.camera.project(
-      robot.app.poses[static_cast<std::size_t>(ball)].position, size);
+  const ViewSize size{static_cast<double>(view.to.x - view.from.x),
+                      static_cast<double>(view.to.y - view.from.y)};
+  const auto at =
+      robot.app.view.camera.project(robot.app.poses[static_cast<std::size_t>(ball)].position, size);
   REQUIRE(at);
   robot.point({view.from.x + static_cast<float>(at->x()), view.from.y + static_cast<float>(at->y())});
   robot.frames(1);
@@ -177,7 +178,8 @@ TEST_CASE("a picture is exported with and without the panels") {
 }
 
 TEST_CASE("nothing is drawn outside a tiny or a huge window") {
-  for (const PixelSize size : {PixelSize{1, 1}, PixelSize{120, 90}, PixelSize{800, 600}, PixelSize{2600, 1400}}) {
+  for (const PixelSize size :
+       {PixelSize{1, 1}, PixelSize{120, 90}, PixelSize{800, 600}, PixelSize{2600, 1400}}) {
     Robot robot(size);
     const Image image = robot.picture();
     CHECK(image.width == size.width);

@@ -5,8 +5,11 @@
 namespace flyball::test {
 
 Robot::Robot(PixelSize wanted)
-    : app({.mode = LiveSolver::Mode::immediate, .on_news = {}, .scenes = FLYBALL_ASSETS "/scenes",
-           .theme = Theme::light, .numbers = {}}),
+    : app({.mode = LiveSolver::Mode::immediate,
+           .on_news = {},
+           .scenes = FLYBALL_ASSETS "/scenes",
+           .theme = Theme::light,
+           .numbers = {}}),
       stage(app, 1), size(wanted) {
   app.view.samples = 1;
   ImGuiIO& io = ImGui::GetIO();
@@ -18,7 +21,8 @@ Robot::Robot(PixelSize wanted)
 }
 
 void Robot::frames(int count, double seconds) {
-  for (int i = 0; i < count; ++i) stage.frame(app, size, seconds);
+  for (int i = 0; i < count; ++i)
+    stage.frame(app, size, seconds);
 }
 
 const WidgetRect& Robot::widget(const std::string& name) {
@@ -53,7 +57,8 @@ void Robot::double_click(const std::string& name) {
 void Robot::drag(const std::string& name, ImVec2 from, ImVec2 to, int button) {
   const WidgetRect rect = widget(name);
   const auto at = [&](ImVec2 share) {
-    return ImVec2(rect.from.x + share.x * (rect.to.x - rect.from.x), rect.from.y + share.y * (rect.to.y - rect.from.y));
+    return ImVec2(rect.from.x + share.x * (rect.to.x - rect.from.x),
+                  rect.from.y + share.y * (rect.to.y - rect.from.y));
   };
   point(at(from));
   ImGui::GetIO().MouseDown[button] = true;

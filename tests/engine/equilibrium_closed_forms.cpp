@@ -391,7 +391,7 @@ TEST_CASE("Watt's governor balances where its potential is stationary") {
       const S sleeve = Real(m.bodies[5].mass) * g * foot_y;
       return Real(2) * (amended(arm, speed) + amended(bar, speed)) + sleeve;
     };
-    const Real wanted = root([&](Real a) { return slope(potential, a); }, 0.15L, 1.2L);
+    const Real wanted = root([&](Real a) { return slope(potential, a); }, 0.01L, 1.2L);
     const Solution s = solve(m);
     CAPTURE(speed, s.message);
     REQUIRE(s.status == Status::converged);

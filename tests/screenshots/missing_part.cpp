@@ -21,7 +21,8 @@ Image changed_governor(const Change& change) {
   view_picture(app, view_size); // places the camera
   ViewFrame frame = view_frame(app);
   Mechanism mechanism = *frame.mechanism;
-  std::vector<Pose> poses(frame.poses.begin(), frame.poses.end()), ghost(frame.ghost.begin(), frame.ghost.end());
+  std::vector<Pose> poses(frame.poses.begin(), frame.poses.end()),
+      ghost(frame.ghost.begin(), frame.ghost.end());
   change(mechanism, poses, ghost, frame);
   frame.mechanism = &mechanism;
   frame.poses = poses;
@@ -44,7 +45,8 @@ TEST_CASE("a missing part is seen, and nothing else is") {
     const Image image = changed_governor([](Mechanism& m, auto& poses, auto& ghost, ViewFrame&) {
       const int collar = body_index(m, "collar");
       REQUIRE(collar >= 0);
-      std::erase_if(m.joints, [](const Joint& j) { return j.bodies[0] == "collar" || j.bodies[1] == "collar"; });
+      std::erase_if(m.joints,
+                    [](const Joint& j) { return j.bodies[0] == "collar" || j.bodies[1] == "collar"; });
       m.bodies.erase(m.bodies.begin() + collar);
       poses.erase(poses.begin() + collar);
       ghost.erase(ghost.begin() + collar);
@@ -52,11 +54,13 @@ TEST_CASE("a missing part is seen, and nothing else is") {
     CHECK_FALSE(compare(stored, image).same);
   }
   SECTION("the arrow of the drive") {
-    const Image image = changed_governor([](auto&, auto&, auto&, ViewFrame& frame) { frame.options.drives = false; });
+    const Image image =
+        changed_governor([](auto&, auto&, auto&, ViewFrame& frame) { frame.options.drives = false; });
     CHECK_FALSE(compare(stored, image).same);
   }
   SECTION("the signs of the joints") {
-    const Image image = changed_governor([](auto&, auto&, auto&, ViewFrame& frame) { frame.options.joints = false; });
+    const Image image =
+        changed_governor([](auto&, auto&, auto&, ViewFrame& frame) { frame.options.joints = false; });
     CHECK_FALSE(compare(stored, image).same);
   }
   SECTION("the ghost") {

@@ -16,7 +16,10 @@ std::vector<fs::path> shipped_scenes() {
 }
 
 AppOptions steady_options(Theme theme) {
-  return {.mode = LiveSolver::Mode::immediate, .on_news = {}, .scenes = {}, .theme = theme,
+  return {.mode = LiveSolver::Mode::immediate,
+          .on_news = {},
+          .scenes = {},
+          .theme = theme,
           .numbers = {.most_digits = 8, .noise = 1e-10, .run_times = false}};
 }
 
@@ -27,7 +30,8 @@ namespace {
 Image coarse(Image image) {
   for (std::uint8_t& value : image.pixels)
     value = static_cast<std::uint8_t>(std::min(255, (value + 2) / 4 * 4));
-  for (std::size_t i = 3; i < image.pixels.size(); i += 4) image.pixels[i] = 255;
+  for (std::size_t i = 3; i < image.pixels.size(); i += 4)
+    image.pixels[i] = 255;
   return image;
 }
 
