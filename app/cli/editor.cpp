@@ -16,6 +16,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 
 namespace flyball::cli {
@@ -45,8 +46,20 @@ class Input {
   }
 };
 
+App& app_of(GLFWwindow* window) {
+  return *static_cast<App*>(glfwGetWindowUserPointer(window));
+}
+
+void press_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+  if (action != GLFW_PRESS) return;
+  const bool ctrl = modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER);
+  const char* name = key == GLFW_KEY_SPACE ? " " : glfwGetKeyName(key, scancode);
+  if (!name || name[0] == 0 || name[1] != 0) return;
+  app_of(window).keys.push_back({static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), ctrl});
+}
+
 void drop_file(GLFWwindow* window, int count, const char** paths) {
-  if (count > 0) open_scene(*static_cast<App*>(glfwGetWindowUserPointer(window)), paths[0]);
+  if (count > 0) open_scene(app_of(window), paths[0]);
 }
 
 std::string title_of(const App& app) {
@@ -64,6 +77,7 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
   ImGui::GetIO().ConfigInputTextCursorBlink = false;
   glfwSetWindowUserPointer(window.handle(), &app);
   glfwSetDropCallback(window.handle(), drop_file);
+  glfwSetKeyCallback(window.handle(), press_key); // before ImGui's, which calls it in turn
   Input input(window);
   open_scene(app, scene);
 

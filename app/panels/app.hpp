@@ -57,6 +57,13 @@ struct PanelState {
   bool focus_typed = false; // the field has just appeared
 };
 
+// A key that went down. Kept as it happened: Dear ImGui 1.86 only sees which keys are down when a frame
+// begins, and misses one that was tapped while a slow frame was drawn.
+struct KeyPress {
+  char letter = 0; // 'A' to 'Z' as the keyboard's layout has it, a digit or ' '
+  bool ctrl = false;
+};
+
 enum class Dialog { none, open, export_picture };
 
 struct DialogState {
@@ -97,6 +104,7 @@ struct App {
   float scale = 1; // pixels a point has
   UiFonts fonts;
   WidgetMap widgets;
+  std::vector<KeyPress> keys; // since the last frame; whoever runs the loop adds, build_gui() empties
 
   // Told to whoever runs the loop, who clears them.
   bool quit = false;

@@ -22,6 +22,9 @@ void system_results(App& app);
 // The residual after each iteration, on a logarithmic scale.
 void history_plot(App& app, float width, float height);
 
+// Elevation (rad) from which three axes at right angles look alike.
+inline constexpr double isometric_elevation = 0.6154797086703873;
+
 // Keys that work whenever nothing is being typed.
 void handle_shortcuts(App& app);
 // Asks for a dialog; the next frame opens it.

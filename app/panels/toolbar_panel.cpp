@@ -24,7 +24,7 @@ constexpr std::array directions{
     Direction{"toolbar/side", "Side", "Look from the right (2)", right_angle, 0},
     Direction{"toolbar/top", "Top", "Look from above (3)", 0, right_angle},
     Direction{"toolbar/iso", "Iso", "Look from the front, right and above (4)", right_angle / 2,
-              0.6154797086703873},
+              isometric_elevation},
 };
 
 struct Factor {

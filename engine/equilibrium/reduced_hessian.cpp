@@ -11,8 +11,8 @@ void ReducedHessian::factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd
   null_ = 0;
   scale_.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    // By the diagonal, but an entry of rounding alone must come out as zero, and one beside a zero diagonal no
-    // larger than one; entries of definite matrices never ask for the latter.
+    // By the diagonal, but an entry of rounding alone must come out as zero, and one beside a zero diagonal
+    // no larger than one; entries of definite matrices never ask for the latter.
     double size = std::max({std::abs(matrix(i, i)), noise[i] / zero, 1e-300});
     for (Eigen::Index j = 0; j < n; ++j)
       if (const double a = std::abs(matrix(i, j)); a > 0)

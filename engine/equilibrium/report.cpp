@@ -47,7 +47,10 @@ void report_coordinates(const ReportInput& in, const Eigen::VectorXd& error, Sol
     x.angle = c.angle;
     x.driven = link.drive >= 0;
     x.value = coordinate_value(system, p, in.found.z.q, c);
-    const bool unwrapped = p.links[static_cast<std::size_t>(c.link)].elastic;
+    const bool geared = std::ranges::any_of(system.cuts, [&](const CutJoint& cut) {
+      return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
+    });
+    const bool unwrapped = geared || p.links[static_cast<std::size_t>(c.link)].elastic;
     if (c.angle && link.type == LinkType::revolute && !unwrapped && !x.driven) x.value = wrapped(x.value);
     x.error = error_of(system, p, c, in.found.z.q, error);
     out.coordinates.push_back(std::move(x));

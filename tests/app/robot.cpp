@@ -81,6 +81,7 @@ void Robot::key(int code, bool ctrl) {
   ImGuiIO& io = ImGui::GetIO();
   io.KeyCtrl = ctrl;
   io.KeysDown[code] = true;
+  if (code < 128) app.keys.push_back({static_cast<char>(code), ctrl});
   frames(1);
   io.KeyCtrl = false;
   io.KeysDown[code] = false;

@@ -123,7 +123,8 @@ TEST_CASE("a repeated small solve allocates nothing") {
           counting = counting && x.size() == 50;
         }) == 1);
 
-  for (const char* scene : {"pendulum", "governor", "governor_bearing", "fourbar_turntable", "conical_pendulum"}) {
+  for (const char* scene :
+       {"pendulum", "governor", "governor_bearing", "fourbar_turntable", "conical_pendulum"}) {
     Solver solver(shipped(scene));
     CAPTURE(scene);
     bool arrived = true;

@@ -33,8 +33,8 @@ Real slope(F f, Real x) {
 template <class S>
 struct PlaneBody {
   Real mass;
-  S x, y;         // m, mass centre
-  S c, s;         // cosine and sine of its turn from the drawn pose
+  S x, y;             // m, mass centre
+  S c, s;             // cosine and sine of its turn from the drawn pose
   Real i11, i22, i12; // kg m^2, drawn pose
 };
 
@@ -52,8 +52,8 @@ PlaneBody<S> carried(const Mechanism& m, const std::string& name, const Vec3& fr
                      S s) {
   const Body& b = m.bodies[static_cast<std::size_t>(body_index(m, name))];
   const Real dx = b.position.x() - from.x(), dy = b.position.y() - from.y();
-  return {b.mass,       to_x + c * dx - s * dy, to_y + s * dx + c * dy, c, s, b.inertia[0],
-          b.inertia[1], b.inertia[3]};
+  return {b.mass, to_x + c * dx - s * dy, to_y + s * dx + c * dy, c,
+          s,      b.inertia[0],           b.inertia[1],           b.inertia[3]};
 }
 
 const Joint& joint_of(const Mechanism& m, const std::string& name) {
@@ -102,8 +102,8 @@ TEST_CASE("a pendulum hinged off the axis has a fold on the far side") {
         return 1 / (std::sin(x) * std::cos(x)) - length * std::cos(x) / (length * std::sin(x) - offset);
       },
       std::asin(Real(offset) / length) + 1e-6L, 1.5L);
-  const auto fold = static_cast<double>(
-      std::sqrt(g * std::tan(p) / (Real(length) * std::sin(p) - Real(offset))));
+  const auto fold =
+      static_cast<double>(std::sqrt(g * std::tan(p) / (Real(length) * std::sin(p) - Real(offset))));
   CHECK(fold > std::sqrt(standard_gravity / length));
   for (const double share : {0.2, 0.7, 0.95, 1.05, 1.5, 4.}) {
     const double speed = share * fold;
@@ -149,8 +149,8 @@ TEST_CASE("a sprung slider on a turntable leaves when its spring is too weak") {
     Mechanism m;
     m.gravity = {0, -standard_gravity, 0};
     m.bodies = {spindle(), body("slider", mass, {radius, 0.1, 0})};
-    m.joints = {spin(speed),
-                sprung(prismatic("slide", "spindle", "slider", {radius, 0.1, 0}, {1, 0, 0}), stiffness, free)};
+    m.joints = {spin(speed), sprung(prismatic("slide", "spindle", "slider", {radius, 0.1, 0}, {1, 0, 0}),
+                                    stiffness, free)};
     CAPTURE(share, speed);
     const Solution s = solve(m);
     REQUIRE(s.status == Status::converged);
@@ -166,14 +166,15 @@ TEST_CASE("a sprung slider on a turntable leaves when its spring is too weak") {
 TEST_CASE("a rate gyro tilts by the rate of turn") {
   for (const double turn : {-3., 0.1, 0.5, 2.}) {
     for (const double rotor_speed : {0., 800.}) {
-      const Mechanism m = shipped(
-          "rate_gyro", {{"joints.turn.drive.speed", turn}, {"joints.spin.drive.speed", rotor_speed}});
+      const Mechanism m =
+          shipped("rate_gyro", {{"joints.turn.drive.speed", turn}, {"joints.spin.drive.speed", rotor_speed}});
       const Body &gimbal = m.bodies[1], &rotor = m.bodies[2];
       // Tilted by a about z the turntable's y axis has components (sin a, cos a, 0) in the gimbal; the torque
       // is dT/da of T = [(Gx (W sin a)^2 + Gy (W cos a)^2) + A (W sin a + s)^2 + B (W cos a)^2] / 2.
       const Real w = turn, spin_rate = rotor_speed;
-      const Real a = rotor.inertia[0], square = w * w * (Real(gimbal.inertia[0]) - Real(gimbal.inertia[1]) +
-                                                         a - Real(rotor.inertia[1]));
+      const Real a = rotor.inertia[0],
+                 square =
+                     w * w * (Real(gimbal.inertia[0]) - Real(gimbal.inertia[1]) + a - Real(rotor.inertia[1]));
       const Real k = m.joints[1].coordinates[0].spring->stiffness;
       const Real tilt = root(
           [&](Real x) {
@@ -299,11 +300,10 @@ TEST_CASE("air resistance holds a trailing arm back") {
       check_value(s, "trail", x);
       CHECK(value(s, "trail") * speed < 0);
       // The drive makes up for what the air takes.
-      const double r = std::hypot(arm + length * std::cos(value(s, "trail")),
-                                  length * std::sin(value(s, "trail")));
+      const double r =
+          std::hypot(arm + length * std::cos(value(s, "trail")), length * std::sin(value(s, "trail")));
       REQUIRE(s.drive_torques.size() == 1);
-      CHECK(s.drive_torques[0].value ==
-            Approx((linear + quadratic * std::abs(speed) * r) * speed * r * r));
+      CHECK(s.drive_torques[0].value == Approx((linear + quadratic * std::abs(speed) * r) * speed * r * r));
       CHECK_FALSE(s.drive_torques[0].varying);
     }
   }
@@ -356,8 +356,8 @@ TEST_CASE("a ball on a string stands out in line with the pull") {
     REQUIRE(s.status == Status::converged);
     // From the arm's tip to the ball's centre: the string and the ball's radius of 35 mm in one line.
     const Real tip = 0.25L, length = 0.535L;
-    const Real x = root([&](Real a) { return conical_slope(length, tip, speed, a); }, 0,
-                        std::numbers::pi_v<Real> / 2);
+    const Real x =
+        root([&](Real a) { return conical_slope(length, tip, speed, a); }, 0, std::numbers::pi_v<Real> / 2);
     const Vec3 wanted(static_cast<double>(tip + length * std::sin(x)),
                       static_cast<double>(Real(0.9L) - length * std::cos(x)), 0);
     CHECK((s.poses[1].position - wanted).norm() < 1e-9);
@@ -391,7 +391,7 @@ TEST_CASE("Watt's governor balances where its potential is stationary") {
       const S sleeve = Real(m.bodies[5].mass) * g * foot_y;
       return Real(2) * (amended(arm, speed) + amended(bar, speed)) + sleeve;
     };
-    const Real wanted = root([&](Real a) { return slope(potential, a); }, 0.01L, 1.2L);
+    const Real wanted = root([&](Real a) { return slope(potential, a); }, 0.01L, 1.4L);
     const Solution s = solve(m);
     CAPTURE(speed, s.message);
     REQUIRE(s.status == Status::converged);

@@ -1,5 +1,5 @@
-// Numbers many powers of ten apart: the answer is right to its error estimate, or there is a refusal in words.
-// Judged by Newton-Raphson in extended precision from the answer, with a Jacobian of differences.
+// Numbers many powers of ten apart: the answer is right to its error estimate, or there is a refusal in
+// words. Judged by Newton-Raphson in extended precision from the answer, with a Jacobian of differences.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/equilibrium/problem.hpp"
@@ -41,8 +41,8 @@ class Judge {
     for (const CoordinateInfo& info : system_.coordinates) {
       const Link& link = system_.links[static_cast<std::size_t>(info.link)];
       if (link.v < 0) continue;
-      const CoordinateSolution& c = coordinate(
-          s, system_.tree_joints[static_cast<std::size_t>(info.tree_joint)].name, info.index);
+      const CoordinateSolution& c =
+          coordinate(s, system_.tree_joints[static_cast<std::size_t>(info.tree_joint)].name, info.index);
       set_coordinate(system_, parameters_, info, c.value, start);
       out.coordinates[static_cast<std::size_t>(link.v)] = &c;
     }

@@ -160,9 +160,8 @@ inline SolveOptions from(const std::string& joint, double value) {
 }
 
 inline const CoordinateSolution& coordinate(const Solution& s, const std::string& joint, int index = 0) {
-  const auto found = std::ranges::find_if(s.coordinates, [&](const CoordinateSolution& c) {
-    return c.joint == joint && c.index == index;
-  });
+  const auto found = std::ranges::find_if(
+      s.coordinates, [&](const CoordinateSolution& c) { return c.joint == joint && c.index == index; });
   INFO(s.message);
   REQUIRE(found != s.coordinates.end());
   return *found;

@@ -29,8 +29,8 @@ const std::vector<Example> examples{
 };
 
 // Residuals r of a Newton-Raphson run shrink quadratically if, once below 1e-2 and until rounding takes over,
-// each step at least gains half again as many digits as are there: r_next <= r^1.5. Linear convergence (r_next
-// = r / 10, say) fails this from the second step on. Counts the steps that show it.
+// each step at least gains half again as many digits as are there: r_next <= r^1.5. Linear convergence
+// (r_next = r / 10, say) fails this from the second step on. Counts the steps that show it.
 int quadratic_steps(const std::vector<double>& history) {
   int steps = 0;
   for (std::size_t i = 0; i + 1 < history.size(); ++i) {

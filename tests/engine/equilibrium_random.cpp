@@ -12,7 +12,8 @@ namespace ref = flyball::reference;
 
 namespace {
 
-// The solution as a state of the reference on the tree that the engine used, the drives turned on by t seconds.
+// The solution as a state of the reference on the tree that the engine used, the drives turned on by t
+// seconds.
 struct Checked {
   std::vector<std::string> cuts;
   ref::ReferenceState state;
@@ -22,8 +23,8 @@ ref::ReferenceState at_phase(const ref::Tree& tree, const Mechanism& m, ref::Ref
                              ref::Real t) {
   for (const ref::TreeCoordinate& c : tree.coordinates)
     if (c.driven)
-      state.coordinates.at(m.joints[static_cast<std::size_t>(c.joint)].name)[static_cast<std::size_t>(
-          c.index)] += c.speed * t;
+      state.coordinates.at(
+          m.joints[static_cast<std::size_t>(c.joint)].name)[static_cast<std::size_t>(c.index)] += c.speed * t;
   return state;
 }
 
@@ -49,13 +50,12 @@ double largest(const ref::VectorR& v) {
   return v.size() == 0 ? 0 : static_cast<double>(v.cwiseAbs().maxCoeff());
 }
 
-// How far the loops are open. Angles that no spring acts on are reported within a turn, so a gear may be whole
-// turns away.
+// How far the loops are open. Angles that no spring acts on are reported within a turn, so a gear may be
+// whole turns away.
 double opening(const ref::Evaluation& e, const Mechanism& m) {
   double worst = 0;
   for (Eigen::Index i = 0; i < e.constraints.size(); ++i) {
-    const Joint& j =
-        m.joints[static_cast<std::size_t>(e.constraint_joint[static_cast<std::size_t>(i)])];
+    const Joint& j = m.joints[static_cast<std::size_t>(e.constraint_joint[static_cast<std::size_t>(i)])];
     double open = std::abs(static_cast<double>(e.constraints[i]));
     if (j.type == JointType::gear)
       for (int a = -8; a <= 8; ++a) {
@@ -153,7 +153,8 @@ TEST_CASE("random mechanisms: what is called a steady state is one") {
     CHECK_FALSE(s.message.empty());
     // They are made closed, and those with a root drive the same at every phase.
     CHECK(s.status != Status::infeasible);
-    if (options.steady && options.drives == ref::RandomDrives::root) CHECK(s.status != Status::no_steady_state);
+    if (options.steady && options.drives == ref::RandomDrives::root)
+      CHECK(s.status != Status::no_steady_state);
     if (options.drives == ref::RandomDrives::none) CHECK(s.status != Status::no_steady_state);
     if (s.status != Status::converged) {
       CHECK(s.coordinates.empty());
@@ -188,8 +189,8 @@ TEST_CASE("random mechanisms: what is called a steady state is one") {
     CHECK(again.status == Status::converged);
   }
   CAPTURE(shares, sprung, converged, minima, phases, worst);
-  // Without springs many fall for ever; with springs nearly all have somewhere to stay, unless the drives turn
-  // it away.
+  // Without springs many fall for ever; with springs nearly all have somewhere to stay, unless the drives
+  // turn it away.
   CHECK(converged >= static_cast<int>(count / 2));
   CHECK(sprung["not_converged"] <= static_cast<int>(count / 2 / 20));
   CHECK(minima >= 40);

@@ -61,7 +61,8 @@ TEST_CASE("every row of a sweep equals a solve of its own") {
 }
 
 TEST_CASE("the number of threads changes nothing") {
-  const std::vector<Variation> variations{{"joints.spin.drive.speed", 2, 25, 6}, {"bodies.collar.mass", 0.5, 3, 5}};
+  const std::vector<Variation> variations{{"joints.spin.drive.speed", 2, 25, 6},
+                                          {"bodies.collar.mass", 0.5, 3, 5}};
   const Mechanism m = shipped("governor");
   const std::vector<SweepPoint> one = sweep(m, variations, 1);
   for (const int threads : {0, 2, 3, 64}) {
@@ -111,6 +112,7 @@ TEST_CASE("what a sweep cannot vary is an error, from any thread") {
     CHECK_THROWS_AS(run({"bodies.nobody.mass", 1, 2, 3}), SceneError);
     CHECK_THROWS_AS(run({"bodies.ball1.mass", 1, -1, 9}), SceneError);
     CHECK_THROWS_WITH(run({"bodies.ball1.mass", 1, -1, 9}), ContainsSubstring("bodies.ball1.mass"));
-    CHECK_THROWS_AS(run({"joints.spin.drive.speed", 1, std::numeric_limits<double>::infinity(), 3}), SceneError);
+    CHECK_THROWS_AS(run({"joints.spin.drive.speed", 1, std::numeric_limits<double>::infinity(), 3}),
+                    SceneError);
   }
 }
