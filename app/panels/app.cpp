@@ -4,9 +4,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace flyball {
 
