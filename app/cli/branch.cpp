@@ -2,6 +2,7 @@
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
+#include "app/plot/svg.hpp"
 #include "engine/equilibrium/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
@@ -10,7 +11,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace flyball::cli {
 namespace {
@@ -66,6 +69,59 @@ std::string diagram_csv(const std::string& address, const ResponseDiagram& d) {
   return out;
 }
 
+std::string coordinate_label(const CoordinateSolution& c) {
+  return c.count == 1 ? c.joint : fmt::format("{}.{}", c.joint, c.index);
+}
+
+// Index of the coordinate to draw: the one named, else the first free one. Throws SceneError naming those
+// there are.
+std::size_t plotted_coordinate(const ResponseDiagram& d, const std::string& name) {
+  std::string known;
+  const std::vector<CoordinateSolution>& all = d.branches.front().points.front().coordinates;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].driven) continue;
+    const std::string label = coordinate_label(all[i]);
+    if (name.empty() || name == label) return i;
+    known += (known.empty() ? "" : ", ") + label;
+  }
+  throw SceneError("--plot " + name,
+                   known.empty() ? "there is no free coordinate to draw" : "expected one of " + known);
+}
+
+// Stable parts solid, others dashed.
+Plot diagram_plot(const Mechanism& m, const std::string& address, const ResponseDiagram& d,
+                  std::size_t coordinate) {
+  const CoordinateSolution& shown = d.branches.front().points.front().coordinates[coordinate];
+  const std::string unit = parameter_unit(m, address);
+  Plot plot;
+  plot.title = m.name;
+  plot.x.label = unit.empty() ? address : fmt::format("{} [{}]", address, unit);
+  plot.y.label = fmt::format("{} [{}]", coordinate_label(shown), shown.angle ? "rad" : "m");
+  bool named[2] = {false, false};
+  for (const ResponseBranch& b : d.branches) {
+    for (std::size_t i = 0; i < b.points.size();) {
+      const bool stable = b.points[i].stable == true;
+      PlotCurve curve;
+      curve.line = stable ? PlotLine::solid : PlotLine::dashed;
+      curve.color = stable ? 0 : 1;
+      if (!std::exchange(named[stable], true)) curve.name = stable ? "stable" : "not stable";
+      for (; i < b.points.size() && (b.points[i].stable == true) == stable; ++i)
+        curve.points.push_back({b.points[i].parameter, b.points[i].coordinates[coordinate].value});
+      // Up to the point where the next part begins, so that no gap is left.
+      if (i < b.points.size())
+        curve.points.push_back({b.points[i].parameter, b.points[i].coordinates[coordinate].value});
+      plot.curves.push_back(std::move(curve));
+    }
+  }
+  for (const SpecialPoint& s : d.special) {
+    std::string label(word(s.type));
+    std::ranges::replace(label, '_', ' ');
+    plot.marks.push_back({{s.at.parameter, s.at.coordinates[coordinate].value},
+                          fmt::format("{} {:.5g}", label, s.at.parameter)});
+  }
+  return plot;
+}
+
 std::string diagram_text(const Mechanism& m, const std::string& address, const ResponseDiagram& d) {
   std::string out = fmt::format("{}: {}\n", m.name, d.message);
   const std::string unit = parameter_unit(m, address);
@@ -91,7 +147,7 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
 void add_branch(CLI::App& app, int& exit_code) {
   struct Options {
     SceneArgument scene;
-    std::string vary, csv;
+    std::string vary, csv, svg, plot;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
@@ -101,6 +157,9 @@ void add_branch(CLI::App& app, int& exit_code) {
   command->add_option("--vary", options->vary, "The parameter: address=from:to")->required();
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "Write a table to a file (-: standard output)");
+  command->add_option("--svg", options->svg, "Draw the curve into a file (-: standard output)");
+  command->add_option("--plot", options->plot,
+                      "The coordinate that --svg draws: joint, or joint.index (default: the first)");
   command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
   command->footer("Example: flyball branch conical_pendulum.json --vary joints.spin.drive.speed=0:10 --json");
   command->callback([options, &exit_code] {
@@ -118,11 +177,14 @@ void add_branch(CLI::App& app, int& exit_code) {
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
+    if (!options->svg.empty() && diagram.status == Status::converged)
+      write_bytes(options->svg, to_svg(diagram_plot(mechanism, range.address, diagram,
+                                                    plotted_coordinate(diagram, options->plot))));
     if (!options->csv.empty())
       write_bytes(options->csv, diagram_csv(range.address, diagram));
     else if (options->json)
       fmt::print("{}\n", diagram_json(diagram).dump(2));
-    else
+    else if (options->svg != "-") // then standard output is the drawing's
       fmt::print("{}", diagram_text(mechanism, range.address, diagram));
     exit_code = diagram.status == Status::converged ? exit_done : exit_no_result;
   });
