@@ -83,7 +83,7 @@ UiFonts load_fonts(ImFontAtlas& atlas, float size, float scale) {
       load(atlas, {"Inter semibold", {"Inter-SemiBold.otf", "Inter-SemiBold.ttf", "DejaVuSans-Bold.ttf"}},
            pixels, icons, fonts);
   fonts.digits = load(atlas, {"JetBrains Mono", {"JetBrainsMono-Regular.ttf", "DejaVuSansMono.ttf"}},
-                      std::round(0.94f * pixels), icons, fonts);
+                      std::round(1.04f * pixels), icons, fonts);
   return fonts;
 }
 
