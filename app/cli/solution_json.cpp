@@ -45,8 +45,8 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["run_time_s"] = s.run_time_s;
   out["stable"] = s.stable ? Json(*s.stable) : Json(nullptr);
   out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);
-  for (const char* key :
-       {"potential", "eigenvalues", "neutral", "drive_torques", "reactions", "poses", "condition"})
+  for (const char* key : {"potential", "eigenvalues", "neutral", "drive_torques", "reactions", "poses",
+                          "sensitivities", "condition"})
     out[key] = nullptr;
   if (!converged) return out;
 
@@ -83,6 +83,12 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
     out["poses"][mechanism.bodies[b].name] = {
         {"position", array(s.poses[b].position)},
         {"rotation", {number(q.w()), number(q.x()), number(q.y()), number(q.z())}}};
+  }
+  out["sensitivities"] = Json::object();
+  for (const Sensitivity& x : s.sensitivities) {
+    out["sensitivities"][x.address] = Json::object();
+    for (const Sensitivity::Rate& r : x.rates)
+      put(out["sensitivities"][x.address], r.joint, r.index, r.count, number(r.value));
   }
   if (s.condition) out["condition"] = number(*s.condition);
   return out;

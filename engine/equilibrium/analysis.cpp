@@ -6,6 +6,7 @@
 #include "engine/equilibrium/find_equilibrium.hpp"
 #include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/report.hpp"
+#include "engine/equilibrium/sensitivity.hpp"
 #include "engine/equilibrium/stability.hpp"
 #include "engine/mechanism/error.hpp"
 
@@ -132,6 +133,12 @@ Solution Analysis::solve(const SolveOptions& options) {
   }
   const ReportInput input{s.mechanism, problem, s.found, existence, stability};
   report(input, s.error, options.details, s.workspace, out);
+  if (options.details)
+    for (const Slider& slider : s.mechanism.sliders) {
+      const Eigen::VectorXd rate =
+          sensitivity(problem, s.mechanism, s.found.z, slider.parameter, s.workspace);
+      if (rate.size() > 0) out.sensitivities.push_back(name_rates(s.system, slider.parameter, rate));
+    }
   return out;
 }
 

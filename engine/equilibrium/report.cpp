@@ -220,6 +220,18 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   if (out.stable == false && in.found.message.empty()) out.message += " This state is unstable.";
 }
 
+Sensitivity name_rates(const System& system, const std::string& address, const Eigen::VectorXd& rate) {
+  Sensitivity out;
+  out.address = address;
+  for (const CoordinateInfo& c : system.coordinates) {
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+    const Link& link = system.links[static_cast<std::size_t>(c.link)];
+    if (link.v < 0 || link.type == LinkType::spherical) continue;
+    out.rates.push_back({joint.name, c.index, coordinate_count(joint.type), rate[link.v]});
+  }
+  return out;
+}
+
 void set_start(const System& system, const Parameters& parameters,
                const std::vector<std::pair<std::string, double>>& start, Eigen::VectorXd& q) {
   std::vector<std::optional<double>> values(system.coordinates.size());

@@ -23,6 +23,9 @@ std::string failure_message(const ReportInput& input, Workspace& w);
 void report(const ReportInput& input, const Eigen::VectorXd& error, bool details, Workspace& w,
             Solution& out);
 
+// Rates of q_R by the names of its coordinates.
+Sensitivity name_rates(const System& system, const std::string& address, const Eigen::VectorXd& rate);
+
 SystemSummary summarize(const Mechanism& mechanism, const System& system, const Parameters& parameters);
 
 // Sets coordinates named "joint" or "joint.index" in a configuration; components of a rotation vector that

@@ -66,6 +66,17 @@ struct Reaction {
   bool varying = false;       // changes with the phase of the drives
 };
 
+// Rates of the coordinates with one parameter: rad or m per its unit. Rotation vectors are left out.
+struct Sensitivity {
+  std::string address;
+  struct Rate {
+    std::string joint;
+    int index = 0, count = 1;
+    double value = 0;
+  };
+  std::vector<Rate> rates;
+};
+
 struct Solution {
   Status status = Status::not_converged;
   std::string message;                         // always a sentence
@@ -82,10 +93,11 @@ struct Solution {
   std::vector<std::string> neutral; // joints that take part in a direction nothing resists
   std::vector<DriveTorque> drive_torques;
   std::vector<Reaction> reactions;
-  bool reactions_nonunique = false; // redundant loops: the minimum-norm multipliers
-  std::vector<Pose> poses;          // in the order of the bodies, at the drawn drive phase
-  std::optional<double> potential;  // J, amended, where there is one
-  std::optional<double> condition;  // 2-norm, of the scaled equations
+  bool reactions_nonunique = false;       // redundant loops: the minimum-norm multipliers
+  std::vector<Pose> poses;                // in the order of the bodies, at the drawn drive phase
+  std::vector<Sensitivity> sensitivities; // to the scene's sliders; none at a singular state
+  std::optional<double> potential;        // J, amended, where there is one
+  std::optional<double> condition;        // 2-norm, of the scaled equations
 };
 
 } // namespace flyball
