@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
+
 namespace flyball::cli {
 
 namespace {
@@ -67,5 +69,9 @@ int run(int argc, char** argv) {
 } // namespace flyball::cli
 
 int main(int argc, char** argv) {
-  return flyball::cli::run(argc, argv);
+  const int exit_code = flyball::cli::run(argc, argv);
+  // A result that could not be written is no result.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    return flyball::cli::report_error("cannot write to standard output");
+  return exit_code;
 }

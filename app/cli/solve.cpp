@@ -21,13 +21,17 @@ void add_solve(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("solve", "Find the steady state");
   options->scene.add_to(*command);
-  command
-      ->add_option("--start", options->start,
-                   "Start elsewhere than drawn: joint=value, or joint.index=value (rad, m)")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_flag("--all", options->all, "All equilibria that a bounded search finds, stable or not");
-  command->add_flag("--nearest", options->nearest, "The plain Newton-Raphson answer, stable or not");
+  CLI::Option* start =
+      command
+          ->add_option("--start", options->start,
+                       "Start elsewhere than drawn: joint=value, or joint.index=value (rad, m)")
+          ->take_all()
+          ->allow_extra_args(false);
+  CLI::Option* nearest =
+      command->add_flag("--nearest", options->nearest, "The plain Newton-Raphson answer, stable or not");
+  command->add_flag("--all", options->all, "All equilibria that a bounded search finds, stable or not")
+      ->excludes(nearest)
+      ->excludes(start);
   command
       ->add_option("--modes", options->modes,
                    "Eigenvalues to print where there are more than 200 coordinates")

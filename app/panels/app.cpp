@@ -116,7 +116,7 @@ void change_parameter(App& app, const std::string& address, double value) {
 
 void reset_parameters(App& app) {
   app.mechanism = app.original;
-  ask(app, false, true);
+  ask(app, false, false);
 }
 
 void solve_from_drawn_pose(App& app) {

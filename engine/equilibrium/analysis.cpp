@@ -94,6 +94,13 @@ Solution Analysis::solve(const SolveOptions& options) {
 
   const auto begin = std::chrono::steady_clock::now();
   find_equilibrium(problem, s.start, options.nearest, warm, s.workspace, s.history, s.found);
+  // A neighbour's answer that had to be left goes back to the definition: what the drawn pose reaches.
+  if (warm &&
+      (s.found.status != Status::converged || s.found.net || (problem.symmetric() && !s.found.minimum)) &&
+      !problem.cancelled()) {
+    s.start = s.drawn;
+    find_equilibrium(problem, s.start, options.nearest, false, s.workspace, s.history, s.found);
+  }
   if (s.found.status == Status::converged) refine(problem, s.found.z, s.found.newton, s.workspace, s.error);
   Existence existence;
   if (s.found.status == Status::converged)

@@ -162,7 +162,12 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
   if (in.found.status == Status::not_converged) return in.found.message;
   if (in.existence.loops_open)
     return "No steady state: as the drives turn, \"" + cut_name(in, in.existence.worst_cut) +
-           "\" cannot be held with all other coordinates constant, whichever joint of its loop is cut.";
+           "\" cannot be held with all other coordinates constant, whichever joint of its loop is cut" +
+           (std::ranges::any_of(
+                in.mechanism.joints,
+                [](const Joint& j) { return j.cut.has_value() && coordinate_count(j.type) > 0; })
+                ? "; the joints marked with \"cut\" were left as marked."
+                : ".");
   return "No steady state: " + blame(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
          " turns with the drives, so the balance holds at one moment only.";
 }

@@ -8,6 +8,8 @@ namespace {
 using Complex = std::complex<double>;
 
 void sort_eigenvalues(std::vector<Complex>& s) {
+  for (Complex& x : s)
+    x += Complex(0, 0); // no negative zeros
   std::ranges::sort(s, [](Complex a, Complex b) {
     if (std::abs(a.imag()) != std::abs(b.imag())) return std::abs(a.imag()) < std::abs(b.imag());
     return a.real() != b.real() ? a.real() > b.real() : a.imag() > b.imag();

@@ -235,6 +235,7 @@ class Compiler {
         s_.nq += part.type == LinkType::spherical ? 4 : 1;
         s_.nv += part.type == LinkType::spherical ? 3 : 1;
       }
+      l.mobile = l.v >= 0 || (l.parent >= 0 && link(l.parent).mobile);
       s_.links.push_back(l);
     }
     s_.tree_joints.push_back(std::move(record));

@@ -15,6 +15,8 @@ Potential amended_potential(const System& system, const Parameters& p, const Eig
     const Link& link = system.links[i];
     const LinkParameters& lp = p.links[i];
     const LinkState<double>& x = k.links[i];
+    // What no free coordinate moves adds a constant, which could drown the rest.
+    if (!link.mobile) continue;
     if (lp.mass != 0) {
       const Vec3 c = x.R * lp.com;
       add(-lp.mass * p.gravity.dot(x.o + c));

@@ -221,6 +221,9 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
   for (const CutJoint& cut : system.cuts) {
     for (const SupportColumn& c : cut.ends.support)
       count(out.force[c.v], coordinate_arm(c.v));
+    if (cut.type == JointType::gear) // ties coordinates that need not lie between two bodies
+      for (int v : {cut.gear_va, cut.gear_vb})
+        count(out.force[v], coordinate_arm(v));
     for (std::size_t r = 0; r < cut.rows.size(); ++r)
       count(lambda[cut.first_row + static_cast<int>(r)], arm(cut, cut.rows[r]));
   }

@@ -25,10 +25,11 @@ struct Link {
   int tree_joint = -1; // in System::tree_joints
   int coordinate = 0;  // of the joint; the first of three for spherical
   bool reversed = false;
-  int axis = 0;   // 0: the joint's axis, 1: its second axis, 2: normal x x_axis; 3, 4, 5: world x, y, z
-  int q = -1;     // first entry in the configuration (spherical: a quaternion w x y z, four entries)
-  int v = -1;     // first entry in q_R as a tangent vector (spherical: three); -1 where driven or fixed
-  int drive = -1; // in System::drives
+  int axis = 0;        // 0: the joint's axis, 1: its second axis, 2: normal x x_axis; 3, 4, 5: world x, y, z
+  int q = -1;          // first entry in the configuration (spherical: a quaternion w x y z, four entries)
+  int v = -1;          // first entry in q_R as a tangent vector (spherical: three); -1 where driven or fixed
+  int drive = -1;      // in System::drives
+  bool mobile = false; // some coordinate of q_R moves it
 };
 
 // A joint of the mechanism in the tree, or one made to hold a body on strings and springs.

@@ -270,3 +270,58 @@ TEST_CASE("directions that nothing resists are said to be neutral") {
     CHECK(stable(s));
   }
 }
+
+TEST_CASE("a gear to a coordinate that carries no load of its own leaves the other free to settle",
+          "[gear]") {
+  for (double ratio : {-3., -2., -1., 0.5, 2., 3., 7.}) {
+    INFO("ratio " << ratio);
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies = {body("arm", 1, {1, 0, 0}), body("wheel", 1, {3, 0, 0}, {0.1, 0.1, 0.1})};
+    m.joints = {joint(JointType::revolute, "a", "ground", "arm", Vec3::Zero()),
+                joint(JointType::revolute, "b", "ground", "wheel", {3, 0, 0})};
+    Joint gear;
+    gear.name = "g";
+    gear.type = JointType::gear;
+    gear.joints = {"a", "b"};
+    gear.ratio = ratio;
+    m.joints.push_back(gear);
+    const Solution s = Analysis(m).solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stable == true);
+    CHECK(std::abs(s.coordinates[0].value + std::numbers::pi / 2) < 1e-12);
+    CHECK(std::abs(s.coordinates[1].value - ratio * s.coordinates[0].value) < 1e-12);
+  }
+}
+
+TEST_CASE("a heavy hub's constant energy does not hide which way is down", "[descent]") {
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("hub", 1e6, Vec3::Zero(), {1e6, 1e6, 1e6}), body("bob", 1e-9, {0.001, -0.7, 0})};
+  m.joints = {joint(JointType::revolute, "spin", "ground", "hub", Vec3::Zero(), Vec3::UnitY()),
+              joint(JointType::revolute, "swing", "hub", "bob", Vec3::Zero())};
+  m.joints[0].coordinates[0].drive = Drive{6};
+  const Solution s = Analysis(m).solve();
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+}
+
+TEST_CASE("sliding a parameter away and back gives the answer of a fresh start", "[warm]") {
+  Mechanism m = shipped("governor");
+  Analysis analysis(m);
+  const Solution fresh = analysis.solve();
+  SolveOptions warm;
+  warm.warm = true;
+  const auto slide = [&](double speed, double stiffness) {
+    set_parameter(m, "joints.spin.drive.speed", speed);
+    set_parameter(m, "joints.slide.spring.stiffness", stiffness);
+    analysis.update(m);
+    return analysis.solve(warm);
+  };
+  for (double speed : {11., 5., 0., 3., 15., 11.0174})
+    slide(speed, 98);
+  const Solution back = slide(11.0174, 1000);
+  REQUIRE(back.status == Status::converged);
+  CHECK(std::abs(back.coordinates[1].value - fresh.coordinates[1].value) < 1e-9);
+  CHECK(std::abs(back.coordinates[2].value - fresh.coordinates[2].value) < 1e-9);
+}
