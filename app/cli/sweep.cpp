@@ -22,20 +22,17 @@ struct ColumnName {
   std::string text() const { return index < 0 ? joint : joint + "." + std::to_string(index); }
 };
 
-// The free coordinates; the same at every point.
-std::vector<ColumnName> coordinate_columns(const std::vector<SweepPoint>& points) {
+// The free coordinates; the same at every point, whether it has an answer or not.
+std::vector<ColumnName> coordinate_columns(const Mechanism& mechanism) {
   std::vector<ColumnName> columns;
-  for (const SweepPoint& p : points) {
-    if (p.solution.coordinates.empty()) continue;
-    for (const CoordinateSolution& c : p.solution.coordinates)
-      if (!c.driven) columns.push_back({c.joint, c.count == 1 ? -1 : c.index});
-    break;
-  }
+  for (const CoordinateSolution& c : Analysis(mechanism).summary().coordinates)
+    if (!c.driven) columns.push_back({c.joint, c.count == 1 ? -1 : c.index});
   return columns;
 }
 
-std::string to_csv(const std::vector<Variation>& variations, const std::vector<SweepPoint>& points) {
-  const std::vector<ColumnName> columns = coordinate_columns(points);
+std::string to_csv(const Mechanism& m, const std::vector<Variation>& variations,
+                   const std::vector<SweepPoint>& points) {
+  const std::vector<ColumnName> columns = coordinate_columns(m);
   std::string out;
   for (const Variation& v : variations)
     out += csv_field(v.address) + ",";
@@ -83,7 +80,7 @@ std::string to_json(const std::vector<Variation>& variations, const std::vector<
 
 std::string to_table(const Mechanism& m, const std::vector<Variation>& variations,
                      const std::vector<SweepPoint>& points) {
-  const std::vector<ColumnName> columns = coordinate_columns(points);
+  const std::vector<ColumnName> columns = coordinate_columns(m);
   std::vector<std::vector<std::string>> rows(1);
   for (const Variation& v : variations) {
     const std::string unit = parameter_unit(m, v.address);
@@ -165,7 +162,7 @@ void add_sweep(CLI::App& app, int& exit_code) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
     if (!options->csv.empty())
-      write_bytes(options->csv, to_csv(variations, points));
+      write_bytes(options->csv, to_csv(mechanism, variations, points));
     else
       fmt::print("{}", options->json ? to_json(variations, points) : to_table(mechanism, variations, points));
     const bool any = std::ranges::any_of(

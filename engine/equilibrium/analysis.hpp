@@ -26,6 +26,7 @@ struct SolveOptions {
 struct SystemSummary {
   std::vector<std::string> in, left_out; // passes, in words
   int bodies = 0, free_coordinates = 0, driven_coordinates = 0, constraint_equations = 0;
+  std::vector<CoordinateSolution> coordinates; // names and kinds; values of the drawn pose
   std::vector<std::string> tree_joints, cut_joints, implicit_joints;
   std::vector<std::string> notes; // choices worth telling: "the bearing was cut so that ..."
 };

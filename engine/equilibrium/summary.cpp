@@ -10,6 +10,14 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   out.free_coordinates = system.nv;
   out.driven_coordinates = static_cast<int>(system.drives.size());
   out.constraint_equations = system.rows;
+  Eigen::VectorXd drawn;
+  drawn_configuration(system, p, drawn);
+  for (const CoordinateInfo& c : system.coordinates) {
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+    out.coordinates.push_back({joint.name, c.index, coordinate_count(joint.type), c.angle,
+                               system.links[static_cast<std::size_t>(c.link)].drive >= 0,
+                               coordinate_value(system, p, drawn, c), 0});
+  }
   for (const TreeJoint& t : system.tree_joints)
     (t.joint < 0 ? out.implicit_joints : out.tree_joints).push_back(t.name);
   for (const CutJoint& c : system.cuts)
