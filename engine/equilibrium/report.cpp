@@ -216,6 +216,9 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   }
   out.message = in.found.message;
   if (out.message.empty()) out.message = "Converged.";
+  if (const int rank = w.constraints.rank(); rank < system.rows)
+    out.message += " The loops are redundant: " + std::to_string(rank) + " of " +
+                   std::to_string(system.rows) + " constraint equations are independent.";
   if (!out.neutral.empty()) {
     out.message += " Nothing resists";
     for (std::size_t i = 0; i < out.neutral.size(); ++i)
