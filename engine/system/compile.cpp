@@ -1,5 +1,5 @@
 #include "engine/mechanism/error.hpp"
-#include "engine/system/system.hpp"
+#include "engine/system/joint_parts.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -9,54 +9,6 @@ namespace flyball {
 namespace {
 
 constexpr int ground = -1;
-
-// An axis of a joint and the coordinate that moves along or about it.
-struct ChainPart {
-  LinkType type;
-  int axis;
-  int coordinate;
-};
-
-std::vector<ChainPart> chain_of(JointType type) {
-  using enum LinkType;
-  switch (type) {
-  case JointType::revolute: return {{revolute, 0, 0}};
-  case JointType::prismatic: return {{prismatic, 0, 0}};
-  case JointType::cylindrical: return {{revolute, 0, 0}, {prismatic, 0, 1}};
-  case JointType::universal: return {{revolute, 0, 0}, {revolute, 1, 1}};
-  case JointType::spherical: return {{spherical, 0, 0}};
-  case JointType::planar: return {{prismatic, 1, 0}, {prismatic, 2, 1}, {revolute, 0, 2}};
-  case JointType::free: return {{prismatic, 3, 0}, {prismatic, 4, 1}, {prismatic, 5, 2}, {spherical, 0, 3}};
-  case JointType::fixed: return {{fixed, 0, 0}};
-  case JointType::distance:
-  case JointType::gear: break;
-  }
-  return {};
-}
-
-// Constraint equations of a joint that closes a loop, in its frame with z along the axis.
-std::vector<ConstraintRow> rows_of(JointType type) {
-  const ConstraintRow px{RowType::point, 0, 0}, py{RowType::point, 1, 1}, pz{RowType::point, 2, 2};
-  const ConstraintRow xz{RowType::direction, 0, 2}, yz{RowType::direction, 1, 2};
-  const ConstraintRow xy{RowType::direction, 0, 1}, zx{RowType::direction, 2, 0};
-  switch (type) {
-  case JointType::revolute: return {px, py, pz, xz, yz};
-  case JointType::prismatic: return {px, py, xy, yz, zx};
-  case JointType::cylindrical: return {px, py, xz, yz};
-  case JointType::universal: return {px, py, pz, {RowType::direction, 2, 3}};
-  case JointType::spherical: return {px, py, pz};
-  case JointType::planar: return {pz, xz, yz};
-  case JointType::fixed: return {px, py, pz, xy, yz, zx};
-  case JointType::distance: return {{RowType::distance, 0, 0}};
-  case JointType::gear: return {{RowType::gear, 0, 0}};
-  case JointType::free: break;
-  }
-  return {};
-}
-
-bool joins_trees(JointType type) {
-  return type != JointType::distance && type != JointType::gear;
-}
 
 class UnionFind {
  public:
@@ -499,44 +451,6 @@ class Compiler {
 
 System compile(const Mechanism& mechanism, const CutChoice& choice) {
   return Compiler(mechanism, choice).run();
-}
-
-std::vector<CutChoice> neighbouring_cuts(const Mechanism& mechanism, const System& system) {
-  std::vector<int> chosen;
-  for (const CutJoint& c : system.cuts) {
-    const Joint& x = mechanism.joints[static_cast<std::size_t>(c.joint)];
-    if (joins_trees(x.type) && x.cut != true) chosen.push_back(c.joint);
-  }
-  std::vector<CutChoice> result;
-  for (int cut : chosen) {
-    const auto c = std::ranges::find(system.cuts, cut, &CutJoint::joint);
-    // The tree joints of the loop: those that are on one side's way to the root, but not on both.
-    std::vector<int> loop;
-    const auto walk = [&](int l) {
-      for (int last = -1; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
-        const int t = system.links[static_cast<std::size_t>(l)].tree_joint;
-        if (t == last) continue;
-        last = t;
-        if (const auto it = std::ranges::find(loop, t); it != loop.end())
-          loop.erase(it);
-        else
-          loop.push_back(t);
-      }
-    };
-    walk(c->ends.a);
-    walk(c->ends.b);
-    for (int t : loop) {
-      const TreeJoint& tree = system.tree_joints[static_cast<std::size_t>(t)];
-      if (tree.joint < 0 || tree.closes_loop) continue;
-      const Joint& x = mechanism.joints[static_cast<std::size_t>(tree.joint)];
-      const auto moved = [&](const Link& l) { return l.tree_joint == t && l.drive >= 0; };
-      if (x.cut == false || x.type == JointType::free || std::ranges::any_of(system.links, moved)) continue;
-      CutChoice other{chosen};
-      *std::ranges::find(other.cut, cut) = tree.joint;
-      result.push_back(std::move(other));
-    }
-  }
-  return result;
 }
 
 } // namespace flyball
