@@ -4,7 +4,10 @@
 #include "app/cli/command.hpp"
 #include "app/cli/picture.hpp"
 #include "app/cli/report_error.hpp"
+#include "app/cli/state_folder.hpp"
+#include "app/cli/window_keys.hpp"
 #include "app/cli/window_state.hpp"
+#include "app/panels/file_commands.hpp"
 #include "app/panels/snapshot.hpp"
 #include "app/panels/ui_style.hpp"
 #include "app/render/window.hpp"
@@ -16,7 +19,6 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 
 namespace flyball::cli {
@@ -51,19 +53,27 @@ App& app_of(GLFWwindow* window) {
 }
 
 void press_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
-  if (action != GLFW_PRESS) return;
-  const bool ctrl = modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER);
-  const char* name = key == GLFW_KEY_SPACE ? " " : glfwGetKeyName(key, scancode);
-  if (!name || name[0] == 0 || name[1] != 0) return;
-  app_of(window).keys.push_back({static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), ctrl});
+  if (const auto press = pressed_key(key, scancode, action, modifiers)) app_of(window).keys.push_back(*press);
+}
+
+void type_character(GLFWwindow* window, unsigned character) {
+  if (const auto press = typed_sign(character)) app_of(window).keys.push_back(*press);
 }
 
 void drop_file(GLFWwindow* window, int count, const char** paths) {
-  if (count > 0) open_scene(app_of(window), paths[0]);
+  if (count > 0) open_file(app_of(window), paths[0]);
 }
 
 std::string title_of(const App& app) {
-  return app.open ? app.mechanism.name + " - Flyball" : "Flyball";
+  return (has_unsaved_work(app) ? "● " : "") + document_name(app) + " - Flyball";
+}
+
+void open_first(App& app, const std::filesystem::path& scene) {
+  if (scene.empty())
+    open_scene(app, shipped_scenes() / "governor.json"); // not of the person's choice: not noted as recent
+  else
+    open_file(app, scene);
+  begin_files(app);
 }
 
 int run_window(Window& window, const std::filesystem::path& scene, const EditorOptions& options) {
@@ -71,28 +81,39 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
            .on_news = glfwPostEmptyEvent,
            .scenes = shipped_scenes(),
            .theme = options.dark ? Theme::dark : Theme::light,
-           .numbers = {}});
+           .numbers = {},
+           .state = state_folder()});
   const auto scale = [&] { return options.scale.value_or(std::max(window.content_scale(), 1.f)); };
   Stage stage(app, scale());
   ImGui::GetIO().ConfigInputTextCursorBlink = false;
   glfwSetWindowUserPointer(window.handle(), &app);
   glfwSetDropCallback(window.handle(), drop_file);
-  glfwSetKeyCallback(window.handle(), press_key); // before ImGui's, which calls it in turn
+  glfwSetKeyCallback(window.handle(), press_key); // before ImGui's, which call these in turn
+  glfwSetCharCallback(window.handle(), type_character);
   Input input(window);
-  open_scene(app, scene);
+  open_first(app, scene);
 
   using Clock = std::chrono::steady_clock;
   auto last = Clock::now();
   int settling = settling_frames;
   std::string title, state;
-  while (!app.quit && !window.should_close()) {
+  while (!app.quit) {
     const bool waits = settling == 0 && !in_motion(app);
-    window.wait_events(waits ? idle : 0);
-    settling = waits ? settling_frames : std::max(settling - 1, 0);
+    const double longest = waits ? std::min(idle, next_file_update(app)) : 0;
+    window.wait_events(longest);
     const auto now = Clock::now();
-    // Time spent waiting is no time of the motion's.
-    const double seconds = waits ? 0 : std::min(std::chrono::duration<double>(now - last).count(), 0.1);
+    const double elapsed = std::chrono::duration<double>(now - last).count();
     last = now;
+    const bool news = update_files(app, elapsed);
+    // One frame is enough where it was only time to look at the disk.
+    settling = waits ? (elapsed < longest || news ? settling_frames : 0) : std::max(settling - 1, 0);
+    // Time spent waiting is no time of the motion's.
+    const double seconds = waits ? 0 : std::min(elapsed, 0.1);
+    if (window.should_close()) {
+      window.set_should_close(false);
+      quit(app);
+      settling = settling_frames;
+    }
 
     const auto pixels = window.framebuffer_size();
     const PixelSize size{pixels.width, pixels.height};
@@ -110,7 +131,7 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
       export_picture(app, size);
       settling = settling_frames;
     }
-    if (ImGui::IsAnyItemActive()) settling = std::max(settling, 1);
+    if (ImGui::IsAnyItemActive() || app.files.gallery.drawing) settling = std::max(settling, 1);
     if (title_of(app) != title) window.set_title(title = title_of(app));
     if (!options.state_file.empty()) {
       std::string now_shown = window_state(app);
@@ -142,7 +163,6 @@ int run_without_display(const std::filesystem::path& scene, const EditorOptions&
 } // namespace
 
 int run_editor(const std::filesystem::path& scene, const EditorOptions& options) {
-  const std::filesystem::path file = scene.empty() ? shipped_scenes() / "governor.json" : scene;
   std::string reason;
   std::optional<Window> window;
   if (display_available(&reason)) {
@@ -152,7 +172,8 @@ int run_editor(const std::filesystem::path& scene, const EditorOptions& options)
       reason = error.what();
     }
   }
-  return window ? run_window(*window, file, options) : run_without_display(file, options, reason);
+  if (window) return run_window(*window, scene, options);
+  return run_without_display(scene.empty() ? shipped_scenes() / "governor.json" : scene, options, reason);
 }
 
 } // namespace flyball::cli

@@ -12,17 +12,17 @@ namespace flyball::cli {
 namespace {
 
 // A word that is no file is most likely a subcommand with a slip of the finger.
-int open_editor(const CLI::App& app, const std::string& scene, const EditorOptions& options) {
+bool is_slip(const std::string& scene) {
   std::error_code ignored;
-  if (!scene.empty() && scene.find('.') == std::string::npos && !std::filesystem::exists(scene, ignored)) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands({}))
-      names.push_back(command->get_name());
-    const std::vector<std::string_view> views(names.begin(), names.end());
-    return report_error(
-        fmt::format("there is no file or subcommand {}{}", scene, did_you_mean(scene, views)));
-  }
-  return run_editor(scene, options);
+  return !scene.empty() && scene.find('.') == std::string::npos && !std::filesystem::exists(scene, ignored);
+}
+
+int report_slip(const CLI::App& app, const std::string& scene) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({}))
+    names.push_back(command->get_name());
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return report_error(fmt::format("there is no file or subcommand {}{}", scene, did_you_mean(scene, views)));
 }
 
 int run(int argc, char** argv) {
@@ -53,9 +53,11 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     options.dark = theme == "dark";
-    if (app.get_subcommands().empty()) exit_code = open_editor(app, scene, options);
+    if (app.get_subcommands().empty())
+      exit_code = is_slip(scene) ? report_slip(app, scene) : run_editor(scene, options);
     return exit_code;
   } catch (const CLI::ParseError& error) {
+    if (app.get_subcommands().empty() && is_slip(scene)) return report_slip(app, scene);
     return report_usage(app, error);
   } catch (const SceneError& error) {
     return report_error(error);

@@ -14,9 +14,12 @@ Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& o
            .theme = options.theme,
            .numbers = {}});
   app.view.samples = options.antialiased ? 4 : 1;
-  app.view.solid = !options.drawn_pose;
   app.scale = options.scale;
-  open_mechanism(app, load_scene(scene), scene);
+  open_document(app, Document(load_scene(scene), scene));
+  if (options.drawn_pose) {
+    app.mode = Mode::build;
+    app.view.ghost = false;
+  }
   const OffscreenContext context;
   const PixelSize size{options.width, options.height};
   Picture picture;

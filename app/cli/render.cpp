@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <memory>
 
@@ -42,6 +44,10 @@ int run_render(const RenderOptions& options) {
   wanted.antialiased = !options.plain;
   if (const std::string wrong = read_size(options.size, wanted); !wrong.empty())
     return report_error("--size: " + wrong);
+  std::string ending = options.out.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (!ending.empty() && ending != ".png")
+    return report_error(fmt::format("--out: pictures are PNG files, found {}", options.out.string()));
   const Picture picture = draw_picture(options.scene, wanted);
   write_png(options.out, picture.image);
   if (wanted.drawn_pose) return exit_done;

@@ -7,7 +7,11 @@
 namespace flyball::cli {
 
 std::string window_state(const App& app) {
-  nlohmann::ordered_json state = {{"file", app.file.string()},
+  nlohmann::ordered_json state = {{"file", app.document.file().string()},
+                                  {"name", app.mechanism().name},
+                                  {"unsaved", app.document.unsaved()},
+                                  {"autosave", app.files.autosave.path().string()},
+                                  {"leftovers", app.files.leftovers.size()},
                                   {"problem", app.problem},
                                   {"notice", app.notice},
                                   {"dialog", app.dialog.showing},
@@ -15,7 +19,7 @@ std::string window_state(const App& app) {
                                   {"answer", app.answer.ticket},
                                   {"status", std::string(word(app.answer.solution.status))}};
   for (const ParameterControl& control : app.parameters)
-    state["parameters"][control.address] = get_parameter(app.mechanism, control.address);
+    state["parameters"][control.address] = get_parameter(app.mechanism(), control.address);
   for (const CoordinateSolution& c : app.answer.solution.coordinates)
     state["coordinates"][c.count > 1 ? c.joint + "." + std::to_string(c.index) : c.joint] = c.value;
   for (const auto& [name, rect] : app.widgets)

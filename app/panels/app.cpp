@@ -1,21 +1,35 @@
 #include "app/panels/app.hpp"
 
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/error.hpp"
-#include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/validate.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace flyball {
 
 namespace {
 
+// Asks for the document's steady state, or knows better.
 void ask(App& app, bool another, bool warm) {
-  app.live.ask({.mechanism = app.mechanism, .time = app.playback.time, .another = another, .warm = warm});
+  app.mistakes = find_mistakes(app.mechanism());
+  if (app.mechanism().bodies.empty() || !app.mistakes.empty()) {
+    app.answer = {};
+    app.poses.clear();
+    app.awaited = std::numeric_limits<std::uint64_t>::max(); // what may be under way is of no use any more
+    app.waited = 0;
+    return;
+  }
+  app.awaited = app.live.ask(
+      {.mechanism = app.mechanism(), .time = app.playback.time, .another = another, .warm = warm});
 }
 
-bool converged(const App& app) {
-  return app.answer.ticket && !app.answer.error && app.answer.solution.status == Status::converged;
+// After the document's mechanism has changed.
+void take_document(App& app, bool another, bool warm) {
+  app.parameters = parameter_controls(app.mechanism(), app.document.saved());
+  app.drawn = drawn_poses(app.mechanism());
+  app.moved_time = true;
+  ask(app, another, warm);
 }
 
 int drive_count(const Mechanism& mechanism) {
@@ -27,9 +41,9 @@ int drive_count(const Mechanism& mechanism) {
 }
 
 void take_answer(App& app) {
-  if (std::optional<LiveAnswer> answer = app.live.take_answer()) {
+  if (std::optional<LiveAnswer> answer = app.live.take_answer();
+      answer && app.awaited != std::numeric_limits<std::uint64_t>::max() && answer->ticket >= app.opened) {
     app.answer = std::move(*answer);
-    app.drawn = drawn_poses(app.answer.mechanism);
     app.poses = app.answer.poses;
     // The time may have gone on, or back, while this was solved.
     app.moved_time = app.moved_time || app.answer.time != app.playback.time;
@@ -47,7 +61,7 @@ void take_answer(App& app) {
 }
 
 void fit_view(App& app, ViewSize size) {
-  if (!app.view.fit || !app.open) return;
+  if (!app.view.fit) return;
   const ViewFrame frame = view_frame(app);
   Bounds bounds = scene_of(frame).bounds;
   if (app.view.ghost)
@@ -58,69 +72,117 @@ void fit_view(App& app, ViewSize size) {
   else
     app.view.camera = initial_camera(*frame.mechanism, bounds, size);
   // Until the first answer is there nobody knows what will have to be in view.
-  if (app.answer.ticket) app.view.fit = false;
+  if (!solving(app)) app.view.fit = false;
 }
 
 } // namespace
 
 App::App(AppOptions chosen)
-    : options(std::move(chosen)), live(options.mode, options.on_news), theme(options.theme) {}
+    : options(std::move(chosen)), live(options.mode, options.on_news), theme(options.theme) {
+  open_document(*this, Document());
+}
 
-void open_mechanism(App& app, Mechanism mechanism, const std::filesystem::path& file) {
-  const bool same_file = app.open && file == app.file;
+void open_document(App& app, Document document) {
+  const bool same_file = !document.file().empty() && document.file() == app.document.file();
   app.problem.clear();
   app.notice.clear();
-  app.file = file;
-  app.original = app.mechanism = std::move(mechanism);
-  app.open = true;
-  app.parameters = parameter_controls(app.mechanism);
+  app.document = std::move(document);
   app.answer = {};
   app.poses.clear();
-  app.drawn = drawn_poses(app.mechanism);
-  app.panels.editing.clear();
+  InspectorState fresh;
+  fresh.history = app.inspector.history;
+  app.inspector = std::move(fresh);
+  app.tool = {.snap = app.tool.snap};
   if (!same_file) {
     app.playback = {.factor = app.playback.factor};
+    app.mode = app.mechanism().bodies.empty() ? Mode::build : Mode::explore;
     app.view.fit = true;
     app.view.keep_direction = false;
   }
   app.view.hovered = {};
-  ask(app, true, false);
+  take_document(app, true, false);
+  app.opened = app.awaited;
 }
 
-void open_scene(App& app, const std::filesystem::path& file) {
+void edit(App& app, const std::string& name, const std::function<void(Mechanism&, Selection&)>& change) {
+  Mechanism next = app.mechanism();
+  Selection selection = app.selection();
   try {
-    open_mechanism(app, load_scene(file), file);
+    change(next, selection);
   } catch (const SceneError& error) {
-    app.problem = error.what();
+    app.notice = error.what();
+    return;
   }
+  app.notice.clear();
+  const std::uint64_t before = app.document.revision();
+  app.document.edit(name, std::move(next), std::move(selection), app.gesture);
+  if (app.document.revision() != before) take_document(app, false, false);
 }
 
-void reload_scene(App& app) {
-  if (!app.file.empty()) open_scene(app, std::filesystem::path(app.file));
+void undo(App& app) {
+  if (!app.document.can_undo()) return;
+  app.notice = "Undone: " + app.document.steps()[app.document.position()].name;
+  app.document.undo();
+  take_document(app, false, false);
+}
+
+void redo(App& app) {
+  if (!app.document.redo()) return;
+  app.notice = "Redone: " + app.document.steps()[app.document.position()].name;
+  take_document(app, false, false);
+}
+
+void go_to_step(App& app, std::size_t step) {
+  if (step == app.document.position()) return;
+  app.document.go_to(step);
+  take_document(app, false, false);
+}
+
+void select(App& app, Selection selection) {
+  app.document.select(std::move(selection));
 }
 
 void change_parameter(App& app, const std::string& address, double value) {
-  if (!app.open || !std::isfinite(value)) return;
+  if (!std::isfinite(value)) return;
+  Mechanism next = app.mechanism();
   try {
-    const double before = get_parameter(app.mechanism, address);
-    set_parameter(app.mechanism, address, value);
+    const double before = get_parameter(next, address);
+    set_parameter(next, address, value);
     // A lone drive keeps its phase, so that nothing jumps when its speed changes.
-    if (address.ends_with(".speed") && app.playback.time != 0 && drive_count(app.mechanism) == 1 &&
-        value != 0)
+    if (address.ends_with(".speed") && app.playback.time != 0 && drive_count(next) == 1 && value != 0)
       app.playback.time *= before / value;
   } catch (const SceneError&) {
     return;
   }
-  ask(app, false, true);
+  const std::uint64_t before = app.document.revision();
+  app.document.edit("Set " + parameter_phrase(address), std::move(next), app.selection(), app.gesture);
+  if (app.document.revision() != before) take_document(app, false, true);
 }
 
 void reset_parameters(App& app) {
-  app.mechanism = app.original;
-  ask(app, false, false);
+  edit(app, "Reset sliders", [&](Mechanism& mechanism, Selection&) {
+    for (const ParameterControl& control : app.parameters)
+      set_parameter(mechanism, control.address, control.file_value);
+  });
 }
 
 void solve_from_drawn_pose(App& app) {
-  if (app.open) ask(app, false, false);
+  ask(app, false, false);
+}
+
+void set_mode(App& app, Mode mode) {
+  app.mode = mode;
+  if (mode == Mode::build) {
+    play(app, false);
+    rewind(app);
+  } else {
+    app.tool.tool = Tool::select;
+  }
+}
+
+void set_tool(App& app, Tool tool) {
+  if (tool != Tool::select && tool != Tool::box) set_mode(app, Mode::build);
+  app.tool.tool = tool;
 }
 
 void look_from(App& app, double azimuth, double elevation) {
@@ -130,7 +192,8 @@ void look_from(App& app, double azimuth, double elevation) {
 }
 
 void play(App& app, bool playing) {
-  app.playback.playing = playing && app.open;
+  app.playback.playing = playing && !app.mechanism().bodies.empty();
+  if (app.playback.playing) app.mode = Mode::explore;
 }
 
 void rewind(App& app) {
@@ -144,22 +207,39 @@ void update(App& app, double seconds, ViewSize view) {
     app.moved_time = true;
   }
   take_answer(app);
+  app.waited = solving(app) ? app.waited + seconds : 0;
   fit_view(app, view);
+}
+
+bool converged(const App& app) {
+  return app.answer.ticket && !app.answer.error && app.answer.solution.status == Status::converged;
+}
+
+bool solving(const App& app) {
+  return app.awaited != std::numeric_limits<std::uint64_t>::max() && app.answer.ticket < app.awaited;
 }
 
 ViewFrame view_frame(const App& app) {
   ViewFrame frame;
-  if (!app.open) return frame;
-  frame.mechanism = app.answer.ticket ? &app.answer.mechanism : &app.mechanism;
-  if (converged(app) && app.view.solid) {
-    frame.poses = app.poses;
-    if (app.view.ghost) frame.ghost = app.drawn;
+  const bool solved = converged(app);
+  if (app.mode == Mode::build) {
+    frame.mechanism = &app.mechanism();
+    // The answer may still be that to an earlier edit.
+    if (solved && app.view.ghost && app.poses.size() == app.mechanism().bodies.size())
+      frame.ghost = app.poses;
+  } else {
+    frame.mechanism = app.answer.ticket ? &app.answer.mechanism : &app.mechanism();
+    if (solved) {
+      frame.poses = app.poses;
+      if (app.view.ghost && app.drawn.size() == app.poses.size()) frame.ghost = app.drawn;
+    }
   }
   frame.camera = app.view.camera;
   frame.theme = app.theme;
   frame.options.grid = app.view.grid;
   frame.options.shadow = app.view.shadow;
   frame.options.scale = app.scale;
+  frame.selected = find_parts(*frame.mechanism, app.selection());
   frame.hovered = app.view.hovered;
   frame.cut_joints = app.answer.summary.cut_joints;
   return frame;

@@ -2,17 +2,24 @@
 // draws and edits. Neither needs OpenGL; see stage.hpp for what turns it into a picture.
 #pragma once
 
+#include "app/document/document.hpp"
 #include "app/live/live_solver.hpp"
+#include "app/panels/command_state.hpp"
+#include "app/panels/file_state.hpp"
+#include "app/panels/inspector_state.hpp"
 #include "app/panels/number_text.hpp"
 #include "app/panels/parameter_list.hpp"
+#include "app/panels/tool_state.hpp"
 #include "app/panels/widget_map.hpp"
 #include "app/render/fonts.hpp"
 #include "app/viewport/camera.hpp"
 #include "app/viewport/scene_list.hpp"
 #include "app/viewport/view_renderer.hpp"
+#include "engine/mechanism/error.hpp"
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +32,7 @@ struct AppOptions {
   std::filesystem::path scenes;  // the shipped scenes; may be empty
   Theme theme = Theme::light;
   NumberStyle numbers;
+  std::filesystem::path state{}; // folder for recent files and autosaves; empty: nothing is kept anywhere
 };
 
 struct Playback {
@@ -35,9 +43,9 @@ struct Playback {
 
 struct ViewState {
   ViewCamera camera;
-  bool ghost = true, grid = true, shadow = true, solid = true; // solid: the equilibrium, else the drawn pose
-  int samples = 4;                                             // 1: no anti-aliasing
-  bool fit = true;                                             // wanted at the next update
+  bool ghost = true, grid = true, shadow = true;
+  int samples = 4;             // 1: no anti-aliasing
+  bool fit = true;             // wanted at the next update
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
   PartId hovered;
   Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found
@@ -50,21 +58,21 @@ struct PanelState {
   // Of the height, for the parameters above the results; 0 until the person chooses: as much as they need.
   float stacked_share = 0;
   float parameters_height = 0; // what they needed in the last frame
-  bool springs = true, drives = true, others = true;
+  float inspector_share =
+      0.55f; // of the height, for the inspector above the results, or the outline above it
+  bool pinned = true, springs = true, drives = true;
   bool torques = true, reactions = false, eigenvalues = false, system = false;
-  std::string editing;      // address of the parameter whose value is being typed
-  std::string typed;        // what was typed so far
-  bool focus_typed = false; // the field has just appeared
 };
 
 // A key that went down. Kept as it happened: Dear ImGui 1.86 only sees which keys are down when a frame
 // begins, and misses one that was tapped while a slow frame was drawn.
 struct KeyPress {
-  char letter = 0; // 'A' to 'Z' as the keyboard's layout has it, a digit or ' '
-  bool ctrl = false;
+  int key = 0; // 'A' to 'Z' as the keyboard's layout has it, a digit, ' ', a sign, or from 256 on GLFW's code
+  bool ctrl = false, shift = false;
+  bool operator==(const KeyPress&) const = default;
 };
 
-enum class Dialog { none, open, export_picture };
+enum class Dialog { none, open, save, gallery, unsaved, recover, export_picture, mirror, circular };
 
 struct DialogState {
   Dialog wanted = Dialog::none; // to be opened by the next frame
@@ -80,22 +88,35 @@ struct ExportRequest {
   bool panels = false;
 };
 
+// Building shows the drawn pose, which is what is edited, with the equilibrium beside it as a ghost;
+// exploring shows the equilibrium, which is what sliders move.
+enum class Mode { explore, build };
+
 struct App {
   explicit App(AppOptions options);
 
   AppOptions options;
-  // The open scene: as in its file, and with the numbers moved since.
-  std::filesystem::path file;
-  Mechanism original, mechanism;
-  bool open = false;
+  Document document;
   std::string problem; // why the file last asked for could not be opened
   std::vector<ParameterControl> parameters;
+  std::vector<SceneError> mistakes; // of the document; while there are any it is not solved
 
   LiveSolver live;
   LiveAnswer answer;
-  std::vector<Pose> drawn, poses; // poses: of the answer at playback.time; empty where there is none
-  bool moved_time = false;        // playback.time changed: poses are to be asked for
+  std::vector<Pose> drawn, poses; // drawn: of the document; poses: of the answer at playback.time; empty
+                                  // where there is none
+  bool moved_time = false; // playback.time changed: poses are to be asked for
+  // Tickets: of the newest request (the largest number where the document is not fit to be solved), and of
+  // the first since the document was opened.
+  std::uint64_t awaited = std::numeric_limits<std::uint64_t>::max(), opened = 0;
+  double waited = 0;         // s for an answer to it; 0 where there is one
+  std::uint64_t gesture = 1; // of the hand: rises with every press of a button or key
 
+  Mode mode = Mode::explore;
+  ToolState tool;
+  FileState files;
+  InspectorState inspector;
+  CommandState commands;
   Playback playback;
   ViewState view;
   PanelState panels;
@@ -110,18 +131,33 @@ struct App {
   bool quit = false;
   std::optional<ExportRequest> export_request;
   std::string notice; // what was last done, in words: shown in the view
+
+  const Mechanism& mechanism() const { return document.mechanism(); }
+  const Selection& selection() const { return document.selection(); }
 };
 
-// Opens a mechanism, read from `file`.
-void open_mechanism(App& app, Mechanism mechanism, const std::filesystem::path& file);
-// Reads and opens a scene; where it cannot be read, says so in `problem` and leaves the open one as it is.
+// Takes a document's place; what was open is gone (see file_commands.hpp for asking first).
+void open_document(App& app, Document document);
+// Reads and opens a scene, finished or not; where it cannot be read, says so in `problem` and leaves the open
+// one as it is.
 void open_scene(App& app, const std::filesystem::path& file);
-void reload_scene(App& app);
-// The same address as in a scene file; solves at once. Not finite values and unknown addresses are ignored.
+
+// An edit: a step that can be undone, solved at once. `change` gets the mechanism and the selection, and may
+// throw SceneError: then nothing has changed and the notice says why. Edits of the same name while a button
+// is held (app.gesture) are one step.
+void edit(App& app, const std::string& name, const std::function<void(Mechanism&, Selection&)>& change);
+void undo(App& app);
+void redo(App& app);
+void go_to_step(App& app, std::size_t step);
+void select(App& app, Selection selection);
+// The same address as in a scene file; solves at once from the last answer. Not finite values and unknown
+// addresses are ignored.
 void change_parameter(App& app, const std::string& address, double value);
-void reset_parameters(App& app);
+void reset_parameters(App& app); // sliders back to what the file says
 void solve_from_drawn_pose(App& app);
 
+void set_mode(App& app, Mode mode);
+void set_tool(App& app, Tool tool);
 // The direction the view looks in, from azimuth and elevation (rad), with all in view.
 void look_from(App& app, double azimuth, double elevation);
 void play(App& app, bool playing);
@@ -132,6 +168,9 @@ void update(App& app, double seconds, ViewSize view);
 // The whole interface, between ImGui::NewFrame and ImGui::Render.
 void build_gui(App& app);
 
+// Whether the last answer is a steady state; whether the one to the newest request is still to come.
+bool converged(const App& app);
+bool solving(const App& app);
 // What the 3-D view shows. Refers to the app: use before it changes.
 ViewFrame view_frame(const App& app);
 // Whether anything moves by itself.

@@ -1,21 +1,59 @@
+#include "app/panels/commands.hpp"
+#include "app/panels/edit_commands.hpp"
 #include "app/panels/panels.hpp"
+#include "app/panels/tools.hpp"
+#include "app/panels/typed_field.hpp"
 
 namespace flyball {
 
+namespace {
+
+using Panel = void (*)(App&, const PanelRect&);
+
+void show(App& app, Panel panel, const PanelRect& rect) {
+  if (rect.width > 0) panel(app, rect);
+}
+
+// A new movement of the hand begins: what it changes is one step.
+void notice_gestures(App& app) {
+  bool pressed = !app.keys.empty();
+  for (int button = 0; button < 3; ++button)
+    pressed = pressed || ImGui::IsMouseClicked(button);
+  if (pressed) ++app.gesture;
+}
+
+} // namespace
+
 void build_gui(App& app) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const Layout layout = layout_of(app, size.x, size.y);
   app.widgets.clear();
+  notice_gestures(app);
+  take_tool_keys(app);
   handle_shortcuts(app);
+  const Layout layout = layout_of(app, size.x, size.y);
   // ImGui puts windows that never come to the front behind those it has: the first is the topmost.
-  drag_splitters(app, layout, size.y);
+  drag_splitters(app, layout);
   viewport_panel(app, layout.view);
-  parameters_panel(app, layout.parameters);
-  results_panel(app, layout.results);
+  file_banner(app, layout.view);
+  welcome(app, layout.view);
+  show(app, outline_panel, layout.outline);
+  show(app, parameters_panel, layout.parameters);
+  show(app, inspector_panel, layout.inspector);
+  show(app, results_panel, layout.results);
   toolbar_panel(app, layout.toolbar);
+  if (app.inspector.history) history_panel(app);
   app.dialog.showing = false;
   open_dialog(app);
+  save_dialog(app);
+  gallery_dialog(app);
   export_dialog(app);
+  mirror_dialog(app);
+  circular_dialog(app);
+  recovery_dialog(app);
+  unsaved_dialog(app);
+  shortcut_sheet(app);
+  command_palette(app);
+  settle_fields(app);
 }
 
 } // namespace flyball

@@ -6,6 +6,15 @@
 
 namespace flyball {
 
+namespace {
+
+// A key that brought the dialog answers nothing in it.
+bool key_pressed(ImGuiKey key) {
+  return !ImGui::IsWindowAppearing() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false);
+}
+
+} // namespace
+
 bool begin_dialog(App& app, Dialog which, const char* title, float width) {
   const float s = app.scale;
   if (app.dialog.wanted == which) {
@@ -38,7 +47,27 @@ void close_dialog() {
 }
 
 bool escape_pressed() {
-  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
+  return key_pressed(ImGuiKey_Escape);
+}
+
+bool enter_pressed() {
+  return key_pressed(ImGuiKey_Enter) || key_pressed(ImGuiKey_KeyPadEnter);
+}
+
+int choice_buttons(App& app, std::span<const Choice> choices, int& marked) {
+  const int count = static_cast<int>(choices.size());
+  if (ImGui::IsWindowAppearing()) marked = 0;
+  const bool back = key_pressed(ImGuiKey_LeftArrow) || (ImGui::GetIO().KeyShift && key_pressed(ImGuiKey_Tab));
+  const bool on = !back && (key_pressed(ImGuiKey_RightArrow) || key_pressed(ImGuiKey_Tab));
+  marked = (marked + (on ? 1 : 0) + (back ? count - 1 : 0)) % count;
+  int pressed = enter_pressed() ? marked : -1;
+  ImGui::Dummy({0, 4 * app.scale});
+  for (int i = 0; i < count; ++i) {
+    const Choice& choice = choices[static_cast<std::size_t>(i)];
+    if (i > 0) ImGui::SameLine();
+    if (text_button(app, choice.name, choice.text, i == marked)) pressed = i;
+  }
+  return pressed;
 }
 
 } // namespace flyball

@@ -3,6 +3,8 @@
 
 #include "app/panels/app.hpp"
 
+#include <span>
+
 namespace flyball {
 
 // Opens the dialog if it was asked for and begins it; where it returns true, end_dialog ends it.
@@ -11,5 +13,15 @@ void end_dialog();
 void close_dialog();
 // Escape, where no field swallows it.
 bool escape_pressed();
+// Enter, where no field swallows it; not the one that brought the dialog.
+bool enter_pressed();
+
+struct Choice {
+  const char* name; // for the widget map
+  const char* text;
+};
+// A row of buttons of which `marked` is the one that Enter means; the arrow keys and Tab mark another. Returns
+// the one pressed, or -1.
+int choice_buttons(App& app, std::span<const Choice> choices, int& marked);
 
 } // namespace flyball

@@ -1,8 +1,8 @@
 #include "app/panels/dialog.hpp"
+#include "app/panels/file_commands.hpp"
+#include "app/panels/file_list.hpp"
 #include "app/panels/panels.hpp"
 #include "app/panels/widgets.hpp"
-
-#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,9 @@ void number(App& app, const char* name, int& value) {
 
 void save(App& app) {
   DialogState& dialog = app.dialog;
-  app.export_request = ExportRequest{dialog.path, std::clamp(dialog.width, smallest, largest),
+  const std::filesystem::path file = typed_file(app, ".png");
+  if (!may_replace(app, file)) return;
+  app.export_request = ExportRequest{file, std::clamp(dialog.width, smallest, largest),
                                      std::clamp(dialog.height, smallest, largest), dialog.panels};
   close_dialog();
 }
@@ -41,18 +43,18 @@ void save(App& app) {
 
 void show_export_dialog(App& app) {
   app.dialog.wanted = Dialog::export_picture;
-  const std::string stem = app.file.empty() ? "empty" : app.file.stem().string();
   std::error_code ignored;
-  app.dialog.path = (std::filesystem::current_path(ignored) / ("flyball-" + stem + ".png")).string();
+  show_folder(app, std::filesystem::current_path(ignored));
+  app.files.replacing.clear();
+  const std::filesystem::path& file = app.document.file();
+  const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
+  app.dialog.path = (app.files.list.shown / ("flyball-" + stem + ".png")).string();
 }
 
 void export_dialog(App& app) {
   if (!begin_dialog(app, Dialog::export_picture, "Save a picture", 480)) return;
   DialogState& dialog = app.dialog;
-  ImGui::SetNextItemWidth(-1);
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-  bool accepted = ImGui::InputText("##path", &dialog.path, ImGuiInputTextFlags_EnterReturnsTrue);
-  note_widget(app.widgets, "export/path");
+  bool accepted = path_field(app, "export", "Name");
 
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Size");
@@ -80,9 +82,12 @@ void export_dialog(App& app) {
   const bool fits =
       std::min(dialog.width, dialog.height) >= smallest && std::max(dialog.width, dialog.height) <= largest;
   if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app).bad);
+  const std::filesystem::path file = typed_file(app, ".png");
+  const bool replaces = file == app.files.replacing;
+  if (replaces) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
   ImGui::Dummy({0, 2 * app.scale});
   ImGui::BeginDisabled(!fits || dialog.path.empty());
-  accepted = text_button(app, "export/save", "Save", true) || accepted;
+  accepted = text_button(app, "export/save", replaces ? "Replace" : "Save", true) || accepted;
   ImGui::EndDisabled();
   if (accepted && fits && !dialog.path.empty()) save(app);
   ImGui::SameLine();

@@ -9,19 +9,30 @@ namespace flyball {
 
 namespace {
 
-constexpr float toolbar_height = 42, narrow = 1060;                    // points
+constexpr float toolbar_height = 68, narrow = 1060;                    // points
 constexpr float least_panel = 230, most_panel = 560, least_view = 240; // points
 
 float panel_width(float wanted, float room) {
   return std::clamp(wanted, least_panel, std::max(least_panel, std::min(most_panel, room)));
 }
 
-// Of the height below the toolbar, for the parameters where panels are stacked.
-float stacked_share(const App& app, float below) {
+// Of the height of two panels, for the upper one.
+float upper_share(const App& app, const Layout& layout, float height) {
   const PanelState& panels = app.panels;
-  if (panels.stacked_share > 0) return panels.stacked_share;
-  if (panels.parameters_height == 0) return 0.4f;
-  return std::clamp(panels.parameters_height * app.scale / below, 0.15f, 0.5f);
+  if (layout.stacked && app.mode == Mode::explore) {
+    if (panels.stacked_share > 0) return panels.stacked_share;
+    if (panels.parameters_height == 0) return 0.4f;
+    return std::clamp(panels.parameters_height * app.scale / height, 0.15f, 0.5f);
+  }
+  return panels.inspector_share;
+}
+
+// Two panels one above the other.
+void divide(const PanelRect& whole, float share, PanelRect& upper, PanelRect& lower) {
+  upper = lower = whole;
+  upper.height = std::round(whole.height * share);
+  lower.y += upper.height;
+  lower.height -= upper.height;
 }
 
 // Returns how far the person has dragged the line this frame. Each has a small window of its own, above the
@@ -56,47 +67,54 @@ float splitter(App& app, const char* name, const PanelRect& line, bool upright) 
 
 Layout layout_of(const App& app, float width, float height) {
   const float s = app.scale;
+  const bool building = app.mode == Mode::build;
   Layout layout;
   const float top = std::round(toolbar_height * s), below = std::max(height - top, 1.f);
   layout.toolbar = {0, 0, width, top};
   layout.stacked = width < narrow * s;
   if (layout.stacked) {
     const float panel = std::round(s * panel_width(app.panels.stacked_width, width / s - least_view));
-    const float upper = std::round(below * stacked_share(app, below));
     layout.view = {0, top, std::max(width - panel, 1.f), below};
-    layout.parameters = {layout.view.width, top, panel, upper};
-    layout.results = {layout.view.width, top + upper, panel, below - upper};
+    layout.side = {layout.view.width, top, panel, below};
+    const float share = upper_share(app, layout, below);
+    if (building)
+      divide(layout.side, share, layout.outline, layout.inspector);
+    else
+      divide(layout.side, share, layout.parameters, layout.results);
     return layout;
   }
   const float right =
       std::round(s * panel_width(app.panels.results_width, width / s - least_view - least_panel));
   const float left =
       std::round(s * panel_width(app.panels.parameters_width, (width - right) / s - least_view));
-  layout.parameters = {0, top, left, below};
-  layout.results = {width - right, top, right, below};
+  (building ? layout.outline : layout.parameters) = {0, top, left, below};
+  layout.side = {width - right, top, right, below};
+  if (building || !app.selection().empty())
+    divide(layout.side, upper_share(app, layout, below), layout.inspector, layout.results);
+  else
+    layout.results = layout.side;
   layout.view = {left, top, std::max(width - left - right, 1.f), below};
   return layout;
 }
 
-void drag_splitters(App& app, const Layout& layout, float height) {
+void drag_splitters(App& app, const Layout& layout) {
   const float s = app.scale;
   PanelState& panels = app.panels;
   const auto clamped = [](float points) { return std::clamp(points, least_panel, most_panel); };
-  const PanelRect& right = layout.results;
-  if (layout.stacked) {
-    const float wide =
-        splitter(app, "splitter/panels", {right.x, layout.view.y, 1, layout.view.height}, true);
-    panels.stacked_width = clamped(panels.stacked_width - wide / s);
-    const float tall = splitter(app, "splitter/results", {right.x, right.y, right.width, 1}, false);
-    const float below = height - layout.toolbar.height;
-    if (tall != 0) panels.stacked_share = std::clamp(stacked_share(app, below) + tall / below, 0.15f, 0.85f);
-    return;
+  const PanelRect& side = layout.side;
+  float& side_width = layout.stacked ? panels.stacked_width : panels.results_width;
+  if (!layout.stacked) {
+    const float by = splitter(app, "splitter/left", {layout.view.x, layout.view.y, 1, side.height}, true);
+    panels.parameters_width = clamped(panels.parameters_width + by / s);
   }
-  const float left_by =
-      splitter(app, "splitter/parameters", {layout.view.x, layout.view.y, 1, layout.view.height}, true);
-  const float right_by = splitter(app, "splitter/results", {right.x, right.y, 1, right.height}, true);
-  panels.parameters_width = clamped(panels.parameters_width + left_by / s);
-  panels.results_width = clamped(panels.results_width - right_by / s);
+  side_width =
+      clamped(side_width - splitter(app, "splitter/right", {side.x, side.y, 1, side.height}, true) / s);
+  const PanelRect& lower = layout.results.height > 0 ? layout.results : layout.inspector;
+  if (lower.height == side.height) return;
+  const float by = splitter(app, "splitter/lower", {side.x, lower.y, side.width, 1}, false);
+  if (by == 0) return;
+  const float share = std::clamp(upper_share(app, layout, side.height) + by / side.height, 0.15f, 0.85f);
+  (layout.stacked && app.mode == Mode::explore ? panels.stacked_share : panels.inspector_share) = share;
 }
 
 void begin_panel(const char* name, const PanelRect& rect, int more_flags) {

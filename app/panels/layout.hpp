@@ -1,5 +1,6 @@
-// Where the panels are. Fixed places with splitters between them; in a narrow window the two side panels
-// stand one above the other.
+// Where the panels are. Fixed places with splitters between them. While building there are the outline and
+// the inspector, while exploring the sliders and the results; a wide window also has the results below the
+// inspector.
 #pragma once
 
 #include "app/panels/app.hpp"
@@ -11,14 +12,16 @@ struct PanelRect {
 };
 
 struct Layout {
-  PanelRect toolbar, parameters, results, view;
+  PanelRect toolbar, view;
+  PanelRect outline, parameters, inspector, results; // of width 0 where not shown
+  PanelRect side;                                    // the right column, of one panel or two
   bool stacked = false;
 };
 
 Layout layout_of(const App& app, float width, float height);
 
-// Draws the lines between panels and moves them; before the panels. `height` is that of the window.
-void drag_splitters(App& app, const Layout& layout, float height);
+// Draws the lines between panels and moves them; before the panels.
+void drag_splitters(App& app, const Layout& layout);
 // Begins the window of a panel without frame or title; ImGui::End ends it.
 void begin_panel(const char* name, const PanelRect& rect, int more_flags = 0);
 

@@ -3,43 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <numbers>
 
 namespace flyball {
 
 namespace {
-
-struct UnitFactor {
-  std::string_view unit, typed;
-  double factor; // value in `unit` of one `typed`
-};
-
-constexpr double degree = std::numbers::pi / 180;
-constexpr std::array unit_factors{
-    UnitFactor{"rad/s", "rpm", std::numbers::pi / 30},
-    UnitFactor{"rad/s", "deg/s", degree},
-    UnitFactor{"rad/s", "Hz", 2 * std::numbers::pi},
-    UnitFactor{"m/s", "mm/s", 1e-3},
-    UnitFactor{"m/s", "km/h", 1 / 3.6},
-    UnitFactor{"rad", "deg", degree},
-    UnitFactor{"rad", "°", degree},
-    UnitFactor{"m", "mm", 1e-3},
-    UnitFactor{"m", "cm", 1e-2},
-    UnitFactor{"kg", "g", 1e-3},
-    UnitFactor{"N/m", "N/mm", 1e3},
-    UnitFactor{"N/m", "kN/m", 1e3},
-    UnitFactor{"N m/rad", "N m/deg", 1 / degree},
-    UnitFactor{"N m/rad", "kN m/rad", 1e3},
-};
-
-std::string_view trimmed(std::string_view text) {
-  const auto from = text.find_first_not_of(" \t");
-  if (from == std::string_view::npos) return {};
-  return text.substr(from, text.find_last_not_of(" \t") + 1 - from);
-}
 
 std::string without_trailing_zeros(std::string text) {
   const auto exponent = text.find('e');
@@ -93,18 +61,6 @@ std::string duration_text(double seconds, const NumberStyle& style) {
   if (seconds < 999.5e-6) return digits(seconds * 1e6) + " µs";
   if (seconds < 999.5e-3) return digits(seconds * 1e3) + " ms";
   return digits(seconds) + " s";
-}
-
-std::optional<double> parse_quantity(std::string_view text, std::string_view unit) {
-  const std::string number(trimmed(text));
-  char* end = nullptr;
-  const double value = std::strtod(number.c_str(), &end);
-  if (end == number.c_str() || !std::isfinite(value)) return std::nullopt;
-  const std::string_view typed = trimmed(end);
-  if (typed.empty() || typed == unit) return value;
-  for (const UnitFactor& known : unit_factors)
-    if (known.unit == unit && known.typed == typed) return value * known.factor;
-  return std::nullopt;
 }
 
 } // namespace flyball

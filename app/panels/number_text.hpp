@@ -1,9 +1,7 @@
-// Numbers as a person reads them: no more digits than are known, and a unit that can be typed too.
+// Numbers as a person reads them: no more digits than are known.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <string_view>
 
 namespace flyball {
 
@@ -24,9 +22,5 @@ std::string magnitude_text(double value, const NumberStyle& style);
 std::string short_text(double value, int digits = 6);
 // "2.4 µs", "13 ms", "1.2 s".
 std::string duration_text(double seconds, const NumberStyle& style);
-
-// What was typed, in `unit` ("rad/s", "N/m", ...): a number alone, or with a unit of the same kind ("105
-// rpm", "2 kN/m"). Nothing where it cannot be understood or is not finite.
-std::optional<double> parse_quantity(std::string_view text, std::string_view unit);
 
 } // namespace flyball

@@ -1,9 +1,9 @@
 #include "app/panels/dialog.hpp"
+#include "app/panels/file_commands.hpp"
+#include "app/panels/file_list.hpp"
 #include "app/panels/panels.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
-
-#include <imgui_stdlib.h>
 
 #include <algorithm>
 
@@ -13,96 +13,77 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Entry {
-  fs::path path;
-  bool folder = false;
-};
+constexpr float list_height = 250; // points
 
-// The folder that is being looked in: what was typed, or the folder of the file that was typed.
-fs::path folder_of(const std::string& typed) {
+void choose(App& app, const fs::path& file) {
   std::error_code ignored;
-  const fs::path path(typed);
-  return fs::is_directory(path, ignored) ? path : path.parent_path();
-}
-
-// Its folders and scenes, by name.
-std::vector<Entry> entries_of(const fs::path& folder) {
-  std::vector<Entry> entries;
-  std::error_code failed;
-  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
-    std::error_code ignored;
-    const bool is_folder = it->is_directory(ignored);
-    const std::string name = it->path().filename().string();
-    if (name.starts_with('.') || (!is_folder && it->path().extension() != ".json")) continue;
-    entries.push_back({it->path(), is_folder});
+  if (!fs::exists(file, ignored)) {
+    app.files.message = "There is no " + file.string() + ".";
+    return;
   }
-  std::ranges::sort(entries, [](const Entry& a, const Entry& b) {
-    return a.folder != b.folder ? a.folder : a.path.filename() < b.path.filename();
-  });
-  return entries;
-}
-
-void choose(App& app, const fs::path& path) {
-  open_scene(app, path);
-  // Where it cannot be read the view says why.
   close_dialog();
+  // Where it cannot be read the view says why.
+  open_file(app, file);
 }
 
-void list(App& app) {
-  ImGui::BeginChild("files", {0, 230 * app.scale});
-  const fs::path folder = folder_of(app.dialog.path);
-  const fs::path shown = folder.empty() ? fs::path(".") : folder;
-  fs::path entered;
-  std::error_code ignored;
-  const fs::path above = fs::absolute(shown, ignored).lexically_normal();
-  const fs::path trimmed = above.has_filename() ? above : above.parent_path();
-  if (trimmed.has_relative_path() && ImGui::Selectable((std::string(icon::folder_open) + "  ..").c_str(),
-                                                       false, ImGuiSelectableFlags_DontClosePopups))
-    entered = trimmed.parent_path();
-  for (const Entry& entry : entries_of(shown)) {
-    const std::string name = entry.path.filename().string();
-    const std::string text = std::string(entry.folder ? icon::folder_open : icon::file) + "  " + name;
-    if (ImGui::Selectable(text.c_str(), entry.path == app.dialog.path,
-                          ImGuiSelectableFlags_DontClosePopups)) {
-      if (entry.folder)
-        entered = entry.path;
-      else
-        choose(app, entry.path);
-    }
-    note_widget(app.widgets, "open/" + name);
+// Returns the one that was clicked.
+fs::path recent_list(App& app) {
+  fs::path clicked;
+  ImGui::BeginChild("recent", {0, list_height * app.scale});
+  ImGui::TextDisabled("Recent");
+  for (std::size_t i = 0; i < app.files.recent.size(); ++i) {
+    const fs::path& file = app.files.recent[i];
+    ImGui::PushID(file.c_str());
+    const std::string text = std::string(icon::file) + "  " + file.filename().string();
+    if (ImGui::Selectable(text.c_str(), false, ImGuiSelectableFlags_DontClosePopups)) clicked = file;
+    ImGui::PopID();
+    note_widget(app.widgets, "open/recent/" + std::to_string(i));
+    help_on_hover(file.c_str());
   }
-  if (!entered.empty()) app.dialog.path = entered.string();
   ImGui::EndChild();
+  return clicked;
 }
 
 } // namespace
 
 void show_open_dialog(App& app) {
+  const fs::path& file = app.document.file();
+  show_folder(app, !file.empty() ? file.parent_path() : usual_folder(app));
   app.dialog.wanted = Dialog::open;
-  app.dialog.path = app.file.empty() ? app.options.scenes.string() : app.file.string();
+  app.dialog.path.clear();
 }
 
 void open_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::open, "Open a scene", 560)) return;
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-  ImGui::SetNextItemWidth(-1);
-  const bool entered = ImGui::InputText(
-      "##path", &app.dialog.path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-  note_widget(app.widgets, "open/path");
-  list(app);
+  const bool with_recent = !app.files.recent.empty();
+  if (!begin_dialog(app, Dialog::open, "Open a scene", with_recent ? 720 : 560)) return;
+  const bool entered = path_field(app, "open", "Name, or part of it, or a path");
+  std::optional<fs::path> file;
+  if (with_recent && ImGui::BeginTable("lists", 2, ImGuiTableFlags_BordersInnerV)) {
+    ImGui::TableSetupColumn("recent", ImGuiTableColumnFlags_WidthFixed, 210 * app.scale);
+    ImGui::TableSetupColumn("folder");
+    ImGui::TableNextColumn();
+    if (const fs::path recent = recent_list(app); !recent.empty()) file = recent;
+    ImGui::TableNextColumn();
+  }
+  folder_line(app, "open");
+  const float line = ImGui::GetFrameHeightWithSpacing() + 2 * app.scale;
+  if (auto clicked = file_list(app, "open", ".json", true, list_height * app.scale - line)) file = clicked;
+  if (with_recent) ImGui::EndTable();
+  if (!app.files.message.empty()) paragraph(app.files.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
-  std::error_code ignored;
-  const bool usable = !app.dialog.path.empty() && !std::filesystem::is_directory(app.dialog.path, ignored);
-  ImGui::BeginDisabled(!usable);
   const bool pressed = text_button(app, "open/open", "Open", true);
-  ImGui::EndDisabled();
-  if (usable && (entered || pressed)) choose(app, app.dialog.path);
+  if (entered || pressed)
+    if (auto typed = entered_file(app, true)) file = typed;
   ImGui::SameLine();
   if (text_button(app, "open/cancel", "Cancel") || escape_pressed()) close_dialog();
   if (!app.options.scenes.empty()) {
     ImGui::SameLine();
-    if (text_button(app, "open/shipped", "Shipped scenes")) app.dialog.path = app.options.scenes.string();
+    if (text_button(app, "open/examples", "Examples…")) {
+      close_dialog();
+      show_gallery(app);
+    }
   }
+  if (file) choose(app, *file);
   end_dialog();
 }
 

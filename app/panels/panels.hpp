@@ -8,10 +8,22 @@ namespace flyball {
 
 void toolbar_panel(App& app, const PanelRect& rect);
 void viewport_panel(App& app, const PanelRect& rect);
+void outline_panel(App& app, const PanelRect& rect); // the parts, as a tree
+void inspector_panel(App& app,
+                     const PanelRect& rect); // the selected parts' numbers; of the whole scene where none is
 void parameters_panel(App& app, const PanelRect& rect);
 void results_panel(App& app, const PanelRect& rect);
+void welcome(App& app, const PanelRect& view);     // over the view of an empty document: what to do first
+void status_chip(App& app, const PanelRect& view); // solved, solving, or what is missing
+void history_panel(App& app);                      // the steps, to go back to
+void start_rename(App& app);                       // of the selected part, in its place in the outline
 void open_dialog(App& app);
+void save_dialog(App& app);
+void unsaved_dialog(App& app);
+void recovery_dialog(App& app);
+void gallery_dialog(App& app);
 void export_dialog(App& app);
+void file_banner(App& app, const PanelRect& view); // over the view: what happened to the file on disk
 
 // Sections of the results.
 void coordinate_results(App& app);
@@ -24,11 +36,5 @@ void history_plot(App& app, float width, float height);
 
 // Elevation (rad) from which three axes at right angles look alike.
 inline constexpr double isometric_elevation = 0.6154797086703873;
-
-// Keys that work whenever nothing is being typed.
-void handle_shortcuts(App& app);
-// Asks for a dialog; the next frame opens it.
-void show_open_dialog(App& app);
-void show_export_dialog(App& app);
 
 } // namespace flyball

@@ -1,18 +1,23 @@
 #include "app/panels/parameter_list.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace flyball {
 
 namespace {
 
-std::vector<std::string> split(const std::string& address) {
+std::vector<std::string> split(std::string_view address) {
   std::vector<std::string> parts(1);
   for (const char c : address) {
     if (c == '.')
@@ -21,11 +26,6 @@ std::vector<std::string> split(const std::string& address) {
       parts.back() += c;
   }
   return parts;
-}
-
-ParameterGroup group_of(const std::vector<std::string>& parts) {
-  if (parts.back() == "speed") return ParameterGroup::drives;
-  return parts.back() == "stiffness" ? ParameterGroup::springs : ParameterGroup::others;
 }
 
 // 1, 2 or 5 times a power of ten, not below the value.
@@ -40,79 +40,183 @@ double power_of_ten(double value) {
   return std::pow(10, std::round(std::log10(value)));
 }
 
-void choose_range(ParameterControl& control) {
-  const double value = control.file_value, size = std::abs(value);
-  if (control.group == ParameterGroup::springs && value > 0) {
-    control.log = true;
-    control.from = power_of_ten(value / 100);
-    control.to = power_of_ten(value * 100);
-  } else if (size == 0) {
-    control.from = control.group == ParameterGroup::drives ? -20 : 0;
-    control.to = control.group == ParameterGroup::drives ? 20 : 1000;
-  } else {
-    control.from = value < 0 ? -round_up(2 * size) : 0;
-    control.to = value < 0 ? 0 : round_up(2 * size);
-  }
+struct Range {
+  double from = 0, to = 1;
+  bool log = false;
+};
+
+// For a number that is zero: what a person may want to try.
+double usual(std::string_view unit) {
+  if (unit == "rad/s") return 20;
+  if (unit == "rad") return 3;
+  if (unit == "m/s^2") return 10;
+  if (unit == "N/m" || unit == "N m/rad") return 1000;
+  return unit == "N" || unit == "N m" || unit == "N s/m" ? 100 : 1;
 }
 
-// "drive.0.speed" of a joint with several coordinates becomes "speed 0".
+Range range_for(double value, std::string_view unit, bool stiffness) {
+  const double size = std::abs(value);
+  if (stiffness && value > 0) return {power_of_ten(value / 100), power_of_ten(value * 100), true};
+  // What has no direction is not negative.
+  const bool one_sided = unit == "kg" || unit == "kg m^2" || unit == "s" || unit == "N s/m" ||
+                         unit == "N m s/rad" || unit == "N s^2/m^2" || stiffness;
+  if (size == 0) return {one_sided ? 0 : -usual(unit), usual(unit), false};
+  return value < 0 ? Range{-round_up(2 * size), 0, false} : Range{0, round_up(2 * size), false};
+}
+
+bool is_stiffness(std::string_view address) {
+  return address.ends_with(".stiffness");
+}
+
+// "drive.0.speed" of a joint with several coordinates becomes "speed 0", and "position.1" "position y".
 std::string what_of(const std::vector<std::string>& parts) {
-  if (parts.front() == "gravity")
-    return parts.size() > 1 ? std::string(1, "xyz"[std::atoi(parts[1].c_str()) % 3]) : "";
+  const auto is_index = [](const std::string& part) {
+    return part.find_first_not_of("0123456789") == std::string::npos;
+  };
+  const auto axis = [](const std::string& index) {
+    return std::string(1, "xyz"[static_cast<std::size_t>(std::atoi(index.c_str())) % 3]);
+  };
+  if (parts.front() == "gravity") return parts.size() > 1 ? axis(parts[1]) : "";
+  if (parts.size() > 3 && parts[2] == "inertia")
+    return "inertia " +
+           std::array<std::string, 6>{
+               "xx", "yy", "zz", "xy", "xz", "yz"}[static_cast<std::size_t>(std::atoi(parts[3].c_str()) % 6)];
+  constexpr std::array vectors{"position", "at", "axis", "axes", "x_axis", "points", "vector"};
+  const bool vector = parts.size() > 3 && std::ranges::find(vectors, parts[2]) != vectors.end();
+  if (vector) return parts[2] + (parts.size() > 4 ? " " + parts[3] : "") + " " + axis(parts.back());
+  if (parts.size() > 3 && is_index(parts.back())) return parts[2] + " " + parts.back();
   std::string words = parts.back();
   const bool plain = parts.back() == "speed" || parts.back() == "stiffness";
   for (std::size_t i = 2; i + 1 < parts.size(); ++i) {
-    const bool index = parts[i].find_first_not_of("0123456789") == std::string::npos;
-    if (index)
+    if (is_index(parts[i]))
       words += " " + parts[i];
     else if (!plain || (parts[i] != "drive" && parts[i] != "spring"))
       words = parts[i] + " " + words;
   }
-  std::ranges::replace(words, '_', ' ');
   return words;
 }
 
-ParameterControl control_of(const Mechanism& mechanism, const std::string& address) {
+std::optional<double> number_at(const Mechanism& mechanism, const std::string& address) {
+  try {
+    return get_parameter(mechanism, address);
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
+ParameterControl named_control(const std::string& address, ParameterGroup group, std::string unit,
+                               double value, std::optional<double> file_value) {
   ParameterControl control;
   const std::vector<std::string> parts = split(address);
   control.address = address;
-  control.group = group_of(parts);
+  control.group = group;
   control.name = parts.size() > 2 ? parts[1] : parts[0];
   control.what = what_of(parts);
-  control.unit = parameter_unit(mechanism, address);
-  control.file_value = get_parameter(mechanism, address);
+  std::ranges::replace(control.what, '_', ' ');
+  control.unit = std::move(unit);
+  control.value = value;
+  control.file_value = file_value.value_or(value);
   return control;
 }
 
-bool wanted(const std::string& address) {
-  return address.ends_with(".speed") ||
-         (address.ends_with(".stiffness") && address.find(".stop.") == std::string::npos);
+// Where the parts of the file are, by name.
+struct FileParts {
+  explicit FileParts(const Mechanism& file) {
+    for (const Joint& joint : file.joints)
+      joints.emplace(joint.name, &joint);
+    for (const Force& force : file.forces)
+      forces.emplace(force.name, &force);
+  }
+  const Coordinate* coordinate(const std::string& joint, std::size_t i) const {
+    const auto found = joints.find(joint);
+    return found != joints.end() && i < found->second->coordinates.size() ? &found->second->coordinates[i]
+                                                                          : nullptr;
+  }
+  std::unordered_map<std::string_view, const Joint*> joints;
+  std::unordered_map<std::string_view, const Force*> forces;
+};
+
+// Of every drive and spring, in the scene's order.
+std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, const Mechanism& file) {
+  const FileParts saved(file);
+  std::vector<ParameterControl> controls;
+  for (const Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      const Coordinate& coordinate = joint.coordinates[i];
+      const Coordinate* before = saved.coordinate(joint.name, i);
+      const bool angle = is_angle(joint.type, static_cast<int>(i));
+      const std::string path = "joints." + joint.name + ".";
+      const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
+      std::optional<double> stiffness, speed;
+      if (before && before->spring) stiffness = before->spring->stiffness;
+      if (before && before->drive) speed = before->drive->speed;
+      if (coordinate.spring)
+        controls.push_back(named_control(path + "spring" + index + ".stiffness", ParameterGroup::springs,
+                                         angle ? "N m/rad" : "N/m", coordinate.spring->stiffness, stiffness));
+      if (coordinate.drive)
+        controls.push_back(named_control(path + "drive" + index + ".speed", ParameterGroup::drives,
+                                         angle ? "rad/s" : "m/s", coordinate.drive->speed, speed));
+    }
+  for (const Force& force : mechanism.forces) {
+    // A damper is a spring without stiffness.
+    if (force.type != ForceType::spring || force.stiffness == 0) continue;
+    const auto found = saved.forces.find(force.name);
+    const bool was_spring = found != saved.forces.end() && found->second->type == ForceType::spring;
+    controls.push_back(named_control("forces." + force.name + ".stiffness", ParameterGroup::springs, "N/m",
+                                     force.stiffness,
+                                     was_spring ? std::optional(found->second->stiffness) : std::nullopt));
+  }
+  for (ParameterControl& control : controls) {
+    const Range range = range_for(control.file_value, control.unit, is_stiffness(control.address));
+    control.from = range.from;
+    control.to = range.to;
+    control.log = range.log;
+  }
+  return controls;
 }
 
 } // namespace
 
-std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism) {
+std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, const Mechanism& file) {
   std::vector<ParameterControl> controls;
-  const auto listed = [&](const std::string& address) {
-    return std::ranges::any_of(controls, [&](const ParameterControl& c) { return c.address == address; });
-  };
+  std::unordered_set<std::string> pinned;
   for (const Slider& slider : mechanism.sliders) {
-    if (listed(slider.parameter)) continue;
-    ParameterControl& control = controls.emplace_back(control_of(mechanism, slider.parameter));
+    // Of an unfinished mechanism, it may be of a number that is not there.
+    const std::optional<double> value = number_at(mechanism, slider.parameter);
+    if (!value || !pinned.insert(slider.parameter).second) continue;
+    ParameterControl& control = controls.emplace_back(
+        named_control(slider.parameter, ParameterGroup::pinned, parameter_unit(mechanism, slider.parameter),
+                      *value, number_at(file, slider.parameter)));
     control.from = slider.from;
     control.to = slider.to;
     control.log = slider.scale == SliderScale::log;
   }
-  for (const std::string& address : parameter_addresses(mechanism)) {
-    if (!wanted(address) || listed(address)) continue;
-    choose_range(controls.emplace_back(control_of(mechanism, address)));
-  }
+  for (ParameterControl& control : automatic_controls(mechanism, file))
+    if (!pinned.contains(control.address)) controls.push_back(std::move(control));
   for (ParameterControl& control : controls) {
     const double span = std::abs(control.to - control.from);
     if (!control.log && span > 0) control.step = std::pow(10, std::floor(std::log10(span / 200)));
   }
   std::ranges::stable_sort(controls, {}, &ParameterControl::group);
   return controls;
+}
+
+Slider slider_for(const Mechanism& mechanism, const std::string& address) {
+  const Range range =
+      range_for(get_parameter(mechanism, address), parameter_unit(mechanism, address), is_stiffness(address));
+  Slider slider;
+  slider.parameter = address;
+  slider.from = range.from;
+  slider.to = range.to;
+  slider.scale = range.log ? SliderScale::log : SliderScale::linear;
+  return slider;
+}
+
+std::string parameter_phrase(std::string_view address) {
+  const std::vector<std::string> parts = split(address);
+  std::string what = what_of(parts);
+  std::ranges::replace(what, '_', ' ');
+  return what + " of " + (parts.size() > 2 ? parts[1] : parts[0]);
 }
 
 double slider_place(const ParameterControl& control, double value) {

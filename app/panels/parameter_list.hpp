@@ -1,30 +1,39 @@
-// Which numbers of a mechanism get a slider: those the scene asks for, every drive's speed and every
+// Which numbers of a mechanism get a slider: those pinned in the scene, every drive's speed and every
 // spring's stiffness.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flyball {
 
-enum class ParameterGroup { drives, springs, others };
+enum class ParameterGroup { pinned, drives, springs };
 
 struct ParameterControl {
   std::string address;
-  ParameterGroup group = ParameterGroup::others;
+  ParameterGroup group = ParameterGroup::pinned;
   std::string name; // of the joint, body or force
   std::string what; // "speed", "stiffness", ...: what of it
   std::string unit; // "rad/s", "N/m", ...
+  double value = 0;
   double from = 0, to = 1;
   bool log = false;
   double file_value = 0; // as read from the file
   double step = 0;       // values a slider stops at: multiples of it; 0 for log
 };
 
-// In groups; within a group the scene's own sliders first.
-std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism);
+// In groups; within a group in the scene's order. `file` is what the file says (of which the mechanism may
+// have gone away by edits): file_value and an automatic slider's range come from there where it has the
+// number.
+std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, const Mechanism& file);
+
+// A slider with a range that suits the number's present value. Throws SceneError for an unknown address.
+Slider slider_for(const Mechanism& mechanism, const std::string& address);
+// "speed of spin", "mass of ball1", "y of gravity".
+std::string parameter_phrase(std::string_view address);
 
 // The control's place on a slider from 0 to 1, and back to a value rounded to what a hand can set.
 double slider_place(const ParameterControl& control, double value);

@@ -1,3 +1,4 @@
+#include "app/panels/mistake_list.hpp"
 #include "app/panels/panels.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
@@ -82,15 +83,36 @@ void neutral_joints(App& app) {
       "Joints that take part in a direction in which the mechanism stands anywhere.");
 }
 
+// Why there is nothing to tell: the first mistake in large, the others below.
+void refusal(App& app) {
+  const UiColors& colors = colors_of(app);
+  constexpr std::size_t most = 12;
+  ImGui::PushFont(app.fonts.strong);
+  ImGui::TextColored(colors.warn, "%s", icon::warning);
+  ImGui::SameLine(0, 7 * app.scale);
+  mistake_row(app, "results/mistakes", 0, colors.warn);
+  ImGui::PopFont();
+  const std::string advice = advice_for(app.mistakes.front());
+  paragraph(advice.empty() ? "There is a steady state to look for once this is mended." : advice, colors.dim);
+  if (app.mistakes.size() == 1) return;
+  heading(app, "And");
+  mistake_rows(app, "results/mistakes", 1, most);
+}
+
 } // namespace
 
 void results_panel(App& app, const PanelRect& rect) {
   begin_panel("results", rect);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 4 * app.scale});
-  if (app.open && app.answer.error) {
+  if (app.mechanism().bodies.empty()) {
+    paragraph("Place a body and join it to the ground: where everything settles is told here, at every step.",
+              colors_of(app).dim);
+  } else if (!app.mistakes.empty()) {
+    refusal(app);
+  } else if (app.answer.error) {
     ImGui::TextColored(colors_of(app).bad, "%s  Cannot be solved", icon::warning);
     paragraph(*app.answer.error, colors_of(app).text);
-  } else if (app.open && app.answer.ticket) {
+  } else if (app.answer.ticket) {
     verdict(app);
     neutral_joints(app);
     coordinate_results(app);
@@ -98,7 +120,7 @@ void results_panel(App& app, const PanelRect& rect) {
     load_results(app);
     eigenvalue_results(app);
     system_results(app);
-  } else if (app.open) {
+  } else if (solving(app)) {
     paragraph("Solving…", colors_of(app).dim);
   }
   ImGui::PopStyleVar();

@@ -19,7 +19,10 @@ ViewKey key_of(const App& app, const ViewFrame& frame, PixelSize size) {
   key.ghost = app.view.ghost;
   key.grid = app.view.grid;
   key.shadow = app.view.shadow;
-  key.solid = app.view.solid;
+  key.mode = app.mode;
+  // While exploring, the picture waits for the answer.
+  if (app.mode == Mode::build || !app.answer.ticket) key.revision = app.document.revision();
+  key.selection = app.selection();
   key.theme = app.theme;
   key.scale = app.scale;
   key.hovered = app.view.hovered;
@@ -72,6 +75,7 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   const PanelRect view = layout_of(app, width, height).view;
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
   draw_view(app, {static_cast<int>(view.width), static_cast<int>(view.height)});
+  scene_pictures_.update(app, view_renderer_);
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {width, height};
   io.DisplayFramebufferScale = {1, 1};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/panels/app.hpp"
+#include "app/panels/scene_pictures.hpp"
 #include "app/render/imgui_renderer.hpp"
 
 #include <array>
@@ -19,7 +20,10 @@ struct PixelSize {
 struct ViewKey {
   PixelSize size;
   int samples = 0;
-  bool ghost = false, grid = false, shadow = false, solid = false;
+  bool ghost = false, grid = false, shadow = false;
+  Mode mode = Mode::explore;
+  std::uint64_t revision = 0; // of the document, where it is what is drawn
+  Selection selection;
   Theme theme = Theme::light;
   float scale = 1;
   PartId hovered;
@@ -53,6 +57,7 @@ class Stage {
   std::unique_ptr<ImGuiContext, void (*)(ImGuiContext*)> context_;
   ImGuiRenderer renderer_;
   ViewRenderer view_renderer_;
+  ScenePictures scene_pictures_;
   std::optional<Framebuffer> view_;
   ViewKey drawn_;
   int views_drawn_ = 0;

@@ -1,3 +1,4 @@
+#include "app/panels/commands.hpp"
 #include "app/panels/panels.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
@@ -49,12 +50,53 @@ void next(const App& app) {
   ImGui::SameLine(0, 2 * app.scale);
 }
 
+// A command's button; its tooltip is the command's sentence with its key.
+void command_button(App& app, const char* id, const char* icon, bool show_state = false) {
+  const Command& wanted = command(id);
+  const std::string keys = key_text(wanted.key);
+  const std::string help =
+      (wanted.label ? label_of(app, wanted) : wanted.help) + (keys.empty() ? "" : " (" + keys + ")");
+  ImGui::BeginDisabled(!is_enabled(app, wanted));
+  const bool on = show_state && wanted.checked && wanted.checked(app);
+  if (icon_button(app, "toolbar/" + std::string(id).substr(std::string(id).find('.') + 1), icon, help.c_str(),
+                  on))
+    wanted.run(app);
+  ImGui::EndDisabled();
+  next(app);
+}
+
 void file_buttons(App& app) {
-  if (icon_button(app, "toolbar/open", icon::folder_open, "Open a scene (Ctrl+O)")) show_open_dialog(app);
+  command_button(app, "file.new", icon::file);
+  command_button(app, "file.open", icon::folder_open);
+  command_button(app, "file.save", icon::save);
+  command_button(app, "file.export", icon::camera);
+  gap(app);
+  command_button(app, "edit.undo", icon::undo);
+  command_button(app, "edit.redo", icon::redo);
+}
+
+// Two words, of which one is lit.
+void mode_switch(App& app) {
+  const UiColors& colors = colors_of(app);
+  const auto word = [&](const char* name, const char* text, Mode mode, const char* help) {
+    const bool on = app.mode == mode;
+    ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.on_accent : colors.text);
+    ImGui::PushStyleColor(ImGuiCol_Button, on ? colors.accent : colors.raised);
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, on ? colors.accent : colors.border);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {10 * app.scale, 5 * app.scale});
+    ImGui::PushID(name);
+    if (ImGui::Button(text)) set_mode(app, mode);
+    ImGui::PopID();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor(3);
+    note_widget(app.widgets, name);
+    help_on_hover(help);
+  };
+  word("toolbar/build", "Build", Mode::build,
+       "Edit the drawn pose; the steady state is the ghost beside it (Tab)");
+  ImGui::SameLine(0, 0);
+  word("toolbar/explore", "Explore", Mode::explore, "Move sliders and see where it settles (Tab)");
   next(app);
-  if (icon_button(app, "toolbar/reload", icon::refresh, "Read the file again (Ctrl+R)")) reload_scene(app);
-  next(app);
-  if (icon_button(app, "toolbar/export", icon::camera, "Save a picture (Ctrl+E)")) show_export_dialog(app);
 }
 
 void play_buttons(App& app) {
@@ -114,15 +156,23 @@ void toggle(App& app, const char* name, const char* text, const char* help, bool
 void toolbar_panel(App& app, const PanelRect& rect) {
   const float s = app.scale;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 7 * s});
-  begin_panel("toolbar", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  begin_panel("toolbar", rect,
+              ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_MenuBar);
   ImGui::PopStyleVar();
+  menu_bar(app);
   file_buttons(app);
   gap(app);
-  play_buttons(app);
+  mode_switch(app);
   gap(app);
+  if (app.mode == Mode::explore) {
+    play_buttons(app);
+    gap(app);
+  }
   direction_buttons(app);
   gap(app);
-  toggle(app, "toolbar/ghost", "Ghost", "The drawn pose, in grey (G)", app.view.ghost);
+  toggle(app, "toolbar/ghost", "Ghost",
+         app.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)",
+         app.view.ghost);
   toggle(app, "toolbar/grid", "Grid", "The floor", app.view.grid);
   toggle(app, "toolbar/shadow", "Shadow", "Shadow on the floor", app.view.shadow);
   const float side = ImGui::GetFrameHeight() + 2 * s;

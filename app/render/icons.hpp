@@ -25,6 +25,8 @@ inline constexpr char eye[] = "\uF06E";
 inline constexpr char eye_off[] = "\uF070";
 inline constexpr char warning[] = "\uF071";
 inline constexpr char folder_open[] = "\uF07C";
+inline constexpr char folder[] = "\uF114";
+inline constexpr char folder_up[] = "\uF148";
 inline constexpr char save[] = "\uF0C7";
 inline constexpr char link[] = "\uF0C1";
 inline constexpr char cut[] = "\uF0C4";
@@ -41,5 +43,7 @@ inline constexpr char sliders[] = "\uF1DE";
 inline constexpr char line_chart[] = "\uF201";
 inline constexpr char cube[] = "\uF1B2";
 inline constexpr char bolt[] = "\uF0E7";
+inline constexpr char pin[] = "\uF08D";
+inline constexpr char swap[] = "\uF0EC";
 
 } // namespace flyball::icon

@@ -35,6 +35,7 @@ struct ViewCamera {
   Vec3 up = Vec3::UnitY();    // unit length
   double field_of_view = 0.5; // rad, vertical; an orthographic view shows the same height at the target
   bool orthographic = false;
+  bool operator==(const ViewCamera&) const = default;
 
   Vec3 right() const; // unit vectors of the picture, in the world
   Vec3 screen_up() const;

@@ -31,8 +31,9 @@ double ring_distance(const Vec3& p, double radius) {
   return std::hypot(std::hypot(p.x(), p.y()) - radius, p.z());
 }
 
-// Signed distance (m) from the instance's surface; coils, spirals and gears count as the solid they sweep, so
-// that one can point at them between the turns.
+} // namespace
+
+// One can point at coils between the turns.
 double surface_distance(const Instance& instance, const Vec3& point) {
   const Vec3 p = instance.rotation.conjugate() * (point - instance.position);
   const Vec3& e = instance.extent;
@@ -55,6 +56,8 @@ double surface_distance(const Instance& instance, const Vec3& point) {
   }
   return std::numeric_limits<double>::infinity();
 }
+
+namespace {
 
 struct Pass {
   double along = 0; // m, where the ray is nearest to the surface, or where it meets it
@@ -98,7 +101,8 @@ std::optional<Hit> pick(std::span<const Instance> instances, const Ray& ray, dou
     best_pass = *pass;
   }
   if (!best) return std::nullopt;
-  return Hit{best->part, best_pass.along, ray.origin + best_pass.along * ray.direction};
+  return Hit{best->part, best_pass.along, ray.origin + best_pass.along * ray.direction,
+             static_cast<std::size_t>(best - instances.data())};
 }
 
 } // namespace flyball

@@ -2,6 +2,7 @@
 // and picking see exactly what the renderer sees.
 #pragma once
 
+#include "app/document/part.hpp"
 #include "app/viewport/bounds.hpp"
 #include "app/viewport/theme.hpp"
 
@@ -10,14 +11,6 @@
 #include <vector>
 
 namespace flyball {
-
-// A part of the mechanism a person can point at.
-enum class PartKind { none, body, joint, force };
-struct PartId {
-  PartKind kind = PartKind::none;
-  int index = -1; // in the mechanism's list
-  bool operator==(const PartId&) const = default;
-};
 
 // Unit solids. The surface point of a vertex is  position + rotation * (core * extent + normal * round):
 // `extent` scales the core of the solid, `round` (m) is the radius of its edges, ends, tube or wire.

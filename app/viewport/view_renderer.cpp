@@ -68,11 +68,16 @@ struct Stage {
   }
 };
 
-std::vector<Instance> of_part(const SceneList& scene, PartId part) {
+bool before(const PartId& a, const PartId& b) {
+  return std::pair(a.kind, a.index) < std::pair(b.kind, b.index);
+}
+
+std::vector<Instance> of_parts(const SceneList& scene, std::vector<PartId> parts) {
   std::vector<Instance> found;
-  if (part.kind == PartKind::none) return found;
+  std::ranges::sort(parts, before);
   for (const Instance& instance : scene.instances)
-    if (instance.part == part) found.push_back(instance);
+    if (instance.part.kind != PartKind::none && std::ranges::binary_search(parts, instance.part, before))
+      found.push_back(instance);
   return found;
 }
 
@@ -302,10 +307,10 @@ ViewReport ViewRenderer::draw(const ViewFrame& frame, Framebuffer& target) {
     s.use_lit(stage, frame, scene, shadowed, false);
     s.report.draw_calls += s.meshes.draw(s.solids);
     s.report.passes.push_back("solid");
-    if (!(frame.hovered == frame.selected))
-      s.draw_outline(stage, frame, of_part(scene, frame.hovered),
+    if (std::ranges::find(frame.selected, frame.hovered) == frame.selected.end())
+      s.draw_outline(stage, frame, of_parts(scene, {frame.hovered}),
                      mix(stage.colors->accent, stage.colors->slack, 0.5f), 1.5f);
-    s.draw_outline(stage, frame, of_part(scene, frame.selected), stage.colors->accent, 2.5f);
+    s.draw_outline(stage, frame, of_parts(scene, frame.selected), stage.colors->accent, 2.5f);
   }
   if (floor) s.draw_floor(stage, frame, shadowed);
   if (frame.mechanism && !frame.motion.empty()) {

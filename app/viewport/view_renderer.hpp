@@ -30,7 +30,8 @@ struct ViewFrame {
   ViewCamera camera;
   Theme theme = Theme::light;
   ViewOptions options;
-  PartId selected, hovered;
+  std::vector<PartId> selected;
+  PartId hovered;
   std::span<const std::string> cut_joints; // names
 };
 

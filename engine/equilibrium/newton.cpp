@@ -135,6 +135,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     if (outcome.converged || i >= settings.max_iterations || !std::isfinite(residual) || problem.cancelled())
       break;
     factor(problem, z, w);
+    if (!w.hessian.known()) break;
     // The multipliers are solved for whole at every step, so the step needs the balance without them.
     w.trial.q = z.q;
     w.trial.lambda = z.lambda;

@@ -24,10 +24,13 @@ void ReducedHessian::factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd
     for (Eigen::Index i = 0; i < n; ++i)
       matrix_(i, j) = (symmetric ? (matrix(i, j) + matrix(j, i)) / 2 : matrix(i, j)) * scale_[i] * scale_[j];
   if (n == 0) {
-    positive_ = true;
+    positive_ = known_ = true;
     return;
   }
-  if (!matrix_.allFinite()) {
+  known_ = matrix_.allFinite();
+  if (!known_) {
+    matrix_.setZero();
+    if (symmetric) decompose();
     null_ = static_cast<int>(n);
     return;
   }

@@ -18,6 +18,8 @@ class ReducedHessian {
   // Directions without stiffness get no component.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x);
 
+  // False where an entry overflowed: then the matrix counts as zero.
+  bool known() const { return known_; }
   int size() const { return static_cast<int>(scale_.size()); }
   // Symmetric: every eigenvalue well above zero.
   bool positive_definite() const { return positive_; }
@@ -37,7 +39,7 @@ class ReducedHessian {
   static constexpr double zero = 1e-11; // of the equilibrated matrix
 
  private:
-  bool symmetric_ = true, positive_ = false, decomposed_ = false;
+  bool known_ = true, symmetric_ = true, positive_ = false, decomposed_ = false;
   int null_ = 0;
   Eigen::VectorXd scale_, work_;
   Eigen::MatrixXd matrix_;

@@ -24,7 +24,8 @@ void fill_screws(const System& system, const Parameters& p, const Kinematics<dou
       const Vec3& a = column.axis;
       s.sw = column.angular ? a : Vec3(Vec3::Zero());
       s.sv = column.angular ? Vec3(Vec3::Zero()) : a;
-      const LinkState<double>& parent = k.at(link.parent);
+      // Own motion about or along a single axis changes nothing here; about three it does.
+      const LinkState<double>& parent = link.type == LinkType::spherical ? k.links[i] : k.at(link.parent);
       if (!p.moving) {
         s.dw.setZero();
         s.dv.setZero();

@@ -20,7 +20,7 @@ double value_of(const App& app, const std::string& joint) {
 }
 
 double parameter(const App& app, const char* address) {
-  return get_parameter(app.mechanism, address);
+  return get_parameter(app.mechanism(), address);
 }
 
 constexpr const char* speed = "joints.spin.drive.speed";
@@ -44,7 +44,7 @@ TEST_CASE("a dragged slider solves at every move") {
   }
   SECTION("and back all at once") {
     robot.click("parameters/reset");
-    CHECK(robot.app.mechanism == robot.app.original);
+    CHECK(robot.app.mechanism() == robot.app.document.saved());
   }
 }
 
@@ -57,12 +57,12 @@ TEST_CASE("a stiffness slider is logarithmic") {
 TEST_CASE("a value can be typed, with a unit") {
   Robot robot;
   robot.double_click(std::string("parameters/") + speed + "/value");
-  CHECK(robot.app.panels.editing == speed);
+  CHECK(robot.app.inspector.typing.name == std::string("parameters/") + speed + "/value");
   robot.key('A', true);
   robot.type("120 rpm");
   robot.key(key_enter);
   CHECK(parameter(robot.app, speed) == Approx(4 * 3.141592653589793));
-  CHECK(robot.app.panels.editing.empty());
+  CHECK(robot.app.inspector.typing.name.empty());
 }
 
 TEST_CASE("the view is steered with the mouse") {
@@ -112,7 +112,7 @@ TEST_CASE("play turns the mechanism at the drives' speed, and nothing is drawn w
 
 TEST_CASE("a part under the cursor is named") {
   Robot robot;
-  const int ball = body_index(robot.app.mechanism, "ball1");
+  const int ball = body_index(robot.app.mechanism(), "ball1");
   const WidgetRect view = robot.widget("view");
   const ViewSize size{static_cast<double>(view.to.x - view.from.x),
                       static_cast<double>(view.to.y - view.from.y)};
@@ -131,7 +131,7 @@ TEST_CASE("a scene that cannot be read says so and leaves the open one") {
   open_scene(robot.app, file);
   robot.frames(3);
   CHECK_THAT(robot.app.problem, ContainsSubstring("colour"));
-  CHECK(robot.app.mechanism.name == "Governor");
+  CHECK(robot.app.mechanism().name == "Governor");
   robot.click("problem/close");
   CHECK(robot.app.problem.empty());
   std::filesystem::remove(file);
@@ -145,7 +145,7 @@ TEST_CASE("the open dialog lists scenes and opens one") {
   robot.click("open/pendulum.json");
   robot.frames(2);
   CHECK_FALSE(robot.app.dialog.showing);
-  CHECK(robot.app.file.filename() == "pendulum.json");
+  CHECK(robot.app.document.file().filename() == "pendulum.json");
   CHECK(robot.app.answer.solution.status == Status::converged);
 }
 

@@ -2,6 +2,8 @@
 
 #include "tests/catch.hpp"
 
+#include <cmath>
+
 namespace flyball::test {
 
 Robot::Robot(PixelSize wanted)
@@ -37,12 +39,24 @@ void Robot::point(ImVec2 at) {
   frames(1);
 }
 
-void Robot::click(const std::string& name) {
-  point(widget(name).center());
-  ImGui::GetIO().MouseDown[0] = true;
+void Robot::press(int button) {
+  ImGui::GetIO().MouseDown[button] = true;
   frames(1);
-  ImGui::GetIO().MouseDown[0] = false;
+}
+
+void Robot::release(int button) {
+  ImGui::GetIO().MouseDown[button] = false;
   frames(2);
+}
+
+void Robot::click(ImVec2 at, int button) {
+  point(at);
+  press(button);
+  release(button);
+}
+
+void Robot::click(const std::string& name) {
+  click(widget(name).center());
 }
 
 void Robot::double_click(const std::string& name) {
@@ -60,15 +74,17 @@ void Robot::drag(const std::string& name, ImVec2 from, ImVec2 to, int button) {
     return ImVec2(rect.from.x + share.x * (rect.to.x - rect.from.x),
                   rect.from.y + share.y * (rect.to.y - rect.from.y));
   };
-  point(at(from));
-  ImGui::GetIO().MouseDown[button] = true;
-  frames(1);
+  drag(at(from), at(to), button);
+}
+
+void Robot::drag(ImVec2 from, ImVec2 to, int button) {
+  point(from);
+  press(button);
   for (int i = 1; i <= 5; ++i) {
     const float t = static_cast<float>(i) / 5;
-    point(at({from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)}));
+    point({from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)});
   }
-  ImGui::GetIO().MouseDown[button] = false;
-  frames(2);
+  release(button);
 }
 
 void Robot::wheel(const std::string& name, float notches) {
@@ -77,15 +93,48 @@ void Robot::wheel(const std::string& name, float notches) {
   frames(2);
 }
 
-void Robot::key(int code, bool ctrl) {
+void Robot::key(int code, bool ctrl, bool shift) {
   ImGuiIO& io = ImGui::GetIO();
-  io.KeyCtrl = ctrl;
+  const bool held_ctrl = io.KeyCtrl, held_shift = io.KeyShift;
+  hold(ctrl, shift);
   io.KeysDown[code] = true;
-  if (code < 128) app.keys.push_back({static_cast<char>(code), ctrl});
+  app.keys.push_back({code, ctrl, shift});
   frames(1);
-  io.KeyCtrl = false;
+  hold(held_ctrl, held_shift);
   io.KeysDown[code] = false;
   frames(2);
+}
+
+void Robot::hold(bool ctrl, bool shift) {
+  ImGui::GetIO().KeyCtrl = ctrl;
+  ImGui::GetIO().KeyShift = shift;
+}
+
+ImVec2 Robot::pixel(const Vec3& world) {
+  const WidgetRect view = widget("view");
+  const ViewSize view_size{static_cast<double>(view.to.x - view.from.x),
+                           static_cast<double>(view.to.y - view.from.y)};
+  const auto at = app.view.camera.project(world, view_size);
+  REQUIRE(at);
+  return {view.from.x + static_cast<float>(at->x()), view.from.y + static_cast<float>(at->y())};
+}
+
+void Robot::point_at(const Vec3& world) {
+  point(pixel(world));
+}
+
+void Robot::click_at(const Vec3& world) {
+  click(pixel(world));
+}
+
+void Robot::begin_empty(double height) {
+  open_document(app, Document());
+  look_from(app, 0, 0);
+  frames(3);
+  app.view.fit = false;
+  app.view.camera.target = Vec3::Zero();
+  app.view.camera.distance = height / (2 * std::tan(app.view.camera.field_of_view / 2));
+  frames(1);
 }
 
 void Robot::type(const std::string& text) {

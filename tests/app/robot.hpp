@@ -22,13 +22,25 @@ class Robot {
   void frames(int count, double seconds = 0.01);
   const WidgetRect& widget(const std::string& name);
   void point(ImVec2 at);
+  void press(int button = 0);
+  void release(int button = 0);
+  void click(ImVec2 at, int button = 0);
   void click(const std::string& name);
   void double_click(const std::string& name);
   // From one place of the widget to another, both as shares of its size.
   void drag(const std::string& name, ImVec2 from, ImVec2 to, int button = 0);
+  void drag(ImVec2 from, ImVec2 to, int button = 0); // pixels of the window
   void wheel(const std::string& name, float notches);
   // A key by its GLFW code, which for letters is ASCII.
-  void key(int code, bool ctrl = false);
+  void key(int code, bool ctrl = false, bool shift = false);
+  void hold(bool ctrl, bool shift); // from now on
+
+  // Places of the mechanism, in the 3-D view as its camera stands.
+  ImVec2 pixel(const Vec3& world);
+  void point_at(const Vec3& world);
+  void click_at(const Vec3& world);
+  // An empty document, looked at from the front, `height` (m) of it in view around the origin.
+  void begin_empty(double height);
   void type(const std::string& text);
   Image picture();
 };

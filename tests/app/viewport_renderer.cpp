@@ -42,7 +42,7 @@ TEST_CASE("passes that are not needed are left out") {
   const Image plain = target.read();
 
   frame.ghost = frame.motion = drawn;
-  frame.selected = {PartKind::body, 1};
+  frame.selected = {{PartKind::body, 1}, {PartKind::joint, 2}};
   report = renderer.draw(frame, target);
   CHECK(has(report, "ghost"));
   CHECK(has(report, "motion"));

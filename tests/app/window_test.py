@@ -1,4 +1,5 @@
-"""The real program in a real window, under Xvfb with xdotool: drag a slider, save a picture, quit.
+"""The real program in a real window, under Xvfb with xdotool: drag a slider, save a picture, quit; and crash, and
+recover.
 
 Usage: window_test.py FLYBALL SCENE. Exits 77 with a message where Xvfb or xdotool are missing.
 """
@@ -13,6 +14,7 @@ import time
 
 SKIPPED = 77
 LIMIT = 60  # seconds, for anything to happen
+SPEED = "joints.spin.drive.speed"
 
 
 def start_display():
@@ -32,11 +34,18 @@ def start_display():
 
 
 class Window:
-    def __init__(self, display, state_file, program):
-        self.environment = {**os.environ, "DISPLAY": display}
+    def __init__(self, display, folder, program, scene):
+        self.environment = {**os.environ, "DISPLAY": display, "XDG_STATE_HOME": str(folder / "state")}
         self.environment.pop("WAYLAND_DISPLAY", None)
-        self.state_file = state_file
-        self.program = program
+        self.state_file = folder / "state.json"
+        self.state_file.unlink(missing_ok=True)
+        self.program = subprocess.Popen([program, scene, "--state-file", self.state_file], cwd=folder,
+                                        env=self.environment)
+
+    def end(self):
+        if self.program.poll() is None:
+            self.program.kill()
+        self.program.wait()
 
     def state(self):
         try:
@@ -70,18 +79,25 @@ class Window:
         self.do("mousedown", 1)
         self.do("mouseup", 1)
 
+    def drag_speed(self):
+        """Waits for the first answer, drags the slider and returns the states before and after."""
+        first = self.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
+        slider = "parameters/" + SPEED
+        self.do("mousemove", *self.place(slider, 0.4))
+        self.do("mousedown", 1)
+        for share in (0.5, 0.6, 0.7):
+            self.do("mousemove", *self.place(slider, share))
+        self.do("mouseup", 1)
+        return first, self.wait("another solution",
+                                lambda s: s["answer"] > first["answer"] and s["parameters"][SPEED] > 15)
 
-def run(window, folder):
-    speed = "joints.spin.drive.speed"
-    first = window.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
+    def ends_well(self):
+        if self.program.wait(LIMIT) != 0:
+            raise SystemExit(f"the program ended with {self.program.returncode}")
 
-    slider = "parameters/" + speed
-    window.do("mousemove", *window.place(slider, 0.4))
-    window.do("mousedown", 1)
-    for share in (0.5, 0.6, 0.7):
-        window.do("mousemove", *window.place(slider, share))
-    window.do("mouseup", 1)
-    moved = window.wait("another solution", lambda s: s["answer"] > first["answer"] and s["parameters"][speed] > 15)
+
+def explore(window, folder):
+    first, moved = window.drag_speed()
     if moved["coordinates"]["slide"] == first["coordinates"]["slide"]:
         raise SystemExit("the slider moved and the solution did not")
 
@@ -98,8 +114,42 @@ def run(window, folder):
         raise SystemExit(f"{picture} is no PNG of the wanted size: {size}")
 
     window.do("key", "ctrl+q")
-    if window.program.wait(LIMIT) != 0:
-        raise SystemExit(f"the program ended with {window.program.returncode}")
+    window.wait("a question", lambda s: s["unsaved"] and "unsaved/discard" in s["widgets"])
+    window.click("unsaved/discard")
+    window.ends_well()
+
+
+def hidden_files(folder):
+    return [file.name for file in folder.iterdir() if file.name.startswith(".")]
+
+
+def crash(window):
+    """Edits, and dies without a word three seconds later; returns the value that would be lost."""
+    window.drag_speed()
+    time.sleep(3)
+    value = window.state()["parameters"][SPEED]
+    window.program.kill()
+    window.program.wait()
+    return value
+
+
+def recover(window, scene, value):
+    if len(hidden_files(scene.parent)) != 1:
+        raise SystemExit(f"no autosave was left, but {hidden_files(scene.parent)}")
+    offered = window.wait("an offer to recover", lambda s: s["leftovers"] == 1 and "recover/recover" in s["widgets"])
+    if offered["parameters"][SPEED] == value or offered["unsaved"]:
+        raise SystemExit("the file says what was never saved to it")
+    window.click("recover/recover")
+    window.wait("the work is back", lambda s: s["parameters"][SPEED] == value and s["unsaved"])
+    window.do("key", "ctrl+s")
+    window.wait("it is saved", lambda s: not s["unsaved"] and s["notice"].startswith("Saved"))
+    joints = {joint["name"]: joint for joint in json.loads(scene.read_text())["joints"]}
+    if joints["spin"]["drive"]["speed"] != value:
+        raise SystemExit(f"saved {joints['spin']['drive']['speed']} instead of {value}")
+    if hidden_files(scene.parent):
+        raise SystemExit(f"left behind: {hidden_files(scene.parent)}")
+    window.do("key", "ctrl+q")
+    window.ends_well()
 
 
 def main():
@@ -109,22 +159,27 @@ def main():
             print(f"skipped: {tool} is missing")
             sys.exit(SKIPPED)
     server, display = start_display()
-    running = None
+    windows = []
     try:
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            state_file = folder / "state.json"
-            environment = {**os.environ, "DISPLAY": display}
-            environment.pop("WAYLAND_DISPLAY", None)
-            running = subprocess.Popen([program, scene, "--state-file", state_file], cwd=folder, env=environment)
-            run(Window(display, state_file, running), folder)
+            own = folder / "own"
+            own.mkdir()
+            copy = pathlib.Path(shutil.copy(scene, own))
+
+            def start(file):
+                windows.append(Window(display, folder, program, file))
+                return windows[-1]
+
+            explore(start(scene), folder)
+            value = crash(start(copy))
+            recover(start(copy), copy, value)
     finally:
-        if running and running.poll() is None:
-            running.kill()
-            running.wait()
+        for window in windows:
+            window.end()
         server.terminate()
         server.wait()
-    print("the window solves, draws and saves")
+    print("the window solves, draws, saves and recovers")
 
 
 if __name__ == "__main__":

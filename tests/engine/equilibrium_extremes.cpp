@@ -194,3 +194,14 @@ TEST_CASE("numbers far apart: right to the estimate, or refused in words") {
     CHECK(solved >= all * 8 / 10);
   }
 }
+
+TEST_CASE("a place so far away that stiffnesses overflow ends in words") {
+  Mechanism m;
+  m.gravity = {0.3, 0.8, -0.3};
+  m.bodies = {body("block", 0.01, {-0.2, -0.1, -0.8}, {3e-6, 3e-6, 3e-7})};
+  m.joints = {joint(JointType::planar, "plane", "ground", "block", {0.1, -0.4, -1e300}, {0.8, 0.4, 1})};
+  m.joints[0].axis2 = {-0.8, -0.6, 0.9};
+  const Solution s = solve(m);
+  CHECK(s.status != Status::converged);
+  CHECK_FALSE(s.message.empty());
+}

@@ -1,0 +1,76 @@
+#include "app/document/file_watch.hpp"
+
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
+
+#include <sys/stat.h>
+
+namespace flyball {
+
+namespace {
+
+std::optional<std::string> text_of(const std::filesystem::path& file) {
+  try {
+    return read_bytes(file);
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
+} // namespace
+
+std::filesystem::path resolved(const std::filesystem::path& file) {
+  std::error_code failed;
+  const std::filesystem::path absolute = std::filesystem::absolute(file, failed);
+  if (failed || !absolute.has_filename() || absolute.filename() == "." || absolute.filename() == "..") {
+    const std::filesystem::path folder = std::filesystem::weakly_canonical(absolute, failed);
+    return failed ? absolute : folder;
+  }
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(absolute.parent_path(), failed);
+  return (failed ? absolute.parent_path() : folder) / absolute.filename();
+}
+
+std::uint64_t text_hash(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325U; // FNV-1a
+  for (const char c : text)
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return hash;
+}
+
+std::optional<FileStamp> stamp_of(const std::filesystem::path& file) {
+  struct stat found {};
+  if (::stat(file.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return std::nullopt;
+  constexpr std::int64_t nanoseconds = 1'000'000'000;
+  return FileStamp{static_cast<std::uint64_t>(found.st_dev), static_cast<std::uint64_t>(found.st_ino),
+                   static_cast<std::uint64_t>(found.st_size),
+                   found.st_mtim.tv_sec * nanoseconds + found.st_mtim.tv_nsec};
+}
+
+FileWatch::FileWatch(std::filesystem::path file, std::string_view text)
+    : file_(std::move(file)), hash_(text_hash(text)) {}
+
+FileWatch::Look FileWatch::look() {
+  if (file_.empty()) return {};
+  const std::optional<FileStamp> now = stamp_of(file_);
+  missing_ = now ? 0 : missing_ + 1;
+  if (!now) return {.news = missing_ == looks_missing ? News::vanished : News::none, .text = {}};
+  const bool still = now == last_;
+  last_ = now;
+  if (now == known_ || !still) return {};
+  std::optional<std::string> text = text_of(file_);
+  if (!text) return {};
+  known_ = now;
+  const std::uint64_t hash = text_hash(*text);
+  if (hash == hash_) return {};
+  hash_ = hash;
+  return {News::changed, std::move(*text)};
+}
+
+bool FileWatch::differs() const {
+  const std::optional<FileStamp> now = stamp_of(file_);
+  if (!now || now == known_) return false;
+  const std::optional<std::string> text = text_of(file_);
+  return text && text_hash(*text) != hash_;
+}
+
+} // namespace flyball

@@ -1,0 +1,61 @@
+// Looks after the file of the open document, which other programs may change meanwhile.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace flyball {
+
+// Absolute, without dots and links but for the name itself: two ways to a file are told to be the same, and
+// what a person calls a file stays its name.
+std::filesystem::path resolved(const std::filesystem::path& file);
+
+// Equal texts have equal hashes, others almost certainly not.
+std::uint64_t text_hash(std::string_view text);
+
+// Differs whenever a file was written or replaced.
+struct FileStamp {
+  std::uint64_t device = 0, inode = 0, size = 0;
+  std::int64_t modified = 0; // ns since 1970
+  bool operator==(const FileStamp&) const = default;
+};
+// Nothing where there is no regular file.
+std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
+
+class FileWatch {
+ public:
+  FileWatch() = default; // of nothing
+  // `text` is what was just read from the file, or written to it.
+  FileWatch(std::filesystem::path file, std::string_view text);
+
+  const std::filesystem::path& file() const { return file_; }
+  std::uint64_t hash() const { return file_.empty() ? 0 : hash_; } // of what the file is known to hold
+  bool vanished() const { return missing_ >= looks_missing; }
+
+  enum class News { none, changed, vanished };
+  struct Look {
+    News news = News::none;
+    std::string text; // what is there now, where it has changed
+  };
+  // What has happened since the last look that was not told yet. A file is changed once it has stood still
+  // from one look to the next, so that one who writes it slowly is not interrupted; touching it is no change.
+  Look look();
+  // Whether the file holds something else than is known.
+  bool differs() const;
+
+ private:
+  static constexpr int looks_missing = 2; // in a row: some programs delete a file and then write it anew
+
+  std::filesystem::path file_;
+  std::uint64_t hash_ = 0;
+  // The stamp with which it held what is known. Nothing at first: a stamp taken after reading might be that
+  // of a newer text.
+  std::optional<FileStamp> known_;
+  std::optional<FileStamp> last_; // at the last look
+  int missing_ = 0;               // looks in a row
+};
+
+} // namespace flyball

@@ -1,0 +1,108 @@
+#include "app/document/image.hpp"
+
+#include "app/document/coordinate_image.hpp"
+
+#include <array>
+
+namespace flyball {
+namespace {
+
+Quat tidy(const Quat& q) {
+  const Quat unit = q.normalized();
+  const double sign = unit.w() < 0 ? -1 : 1;
+  return Quat(
+      Eigen::Vector4d(unit.coeffs().unaryExpr([&](double x) { return without_round_off(sign * x); })));
+}
+
+// Without round-off where nothing turns.
+Quat turned(const Mat3& rotation, const Quat& q) {
+  return rotation.isIdentity(0) ? q : tidy(Quat(rotation) * q);
+}
+
+} // namespace
+
+FrameImage image_of_frame(const Quat& rotation, const Isometry& isometry) {
+  if (isometry.sense() > 0) return {turned(isometry.linear, rotation), Vec3::Ones()};
+  const Mat3 axes = rotation.normalized().toRotationMatrix();
+  // A tie goes to the first, here and in the image of the image.
+  constexpr double tie = 1e-9;
+  int nearest = 0;
+  const auto turn = [&](int i) { return axes.col(i).dot(isometry.linear * axes.col(i)); };
+  for (int i = 1; i < 3; ++i)
+    if (turn(i) < turn(nearest) - tie) nearest = i;
+  const Vec3 axis = axes.col(nearest);
+  const Mat3 flip = Mat3::Identity() - 2 * axis * axis.transpose();
+  FrameImage image{turned(isometry.linear * flip, rotation), Vec3::Ones()};
+  image.signs[nearest] = -1;
+  return image;
+}
+
+Body image_of(const Body& body, const Isometry& isometry) {
+  Body image = body;
+  image.position = isometry.point(body.position);
+  const FrameImage frame = image_of_frame(body.rotation, isometry);
+  image.rotation = frame.rotation;
+  const Vec3& s = frame.signs;
+  const auto& [xx, yy, zz, xy, xz, yz] = body.inertia;
+  image.inertia = {xx, yy, zz, s.x() * s.y() * xy + 0.0, s.x() * s.z() * xz + 0.0, s.y() * s.z() * yz + 0.0};
+  for (Shape& shape : image.shapes) {
+    if (shape.at) shape.at = isometry.point(*shape.at);
+    if (shape.type != ShapeType::cylinder && shape.type != ShapeType::capsule) continue;
+    shape.from = isometry.point(shape.from);
+    shape.to = isometry.point(shape.to);
+  }
+  return image;
+}
+
+Joint image_of(const Joint& joint, const Isometry& isometry) {
+  Joint image = joint;
+  image.coordinates = image_of(joint.coordinates, joint.type, isometry);
+  if (has_at(joint.type)) image.at = isometry.point(joint.at);
+  switch (joint.type) {
+  case JointType::revolute: image.axis = isometry.axial(joint.axis); break;
+  case JointType::prismatic:
+  case JointType::cylindrical: image.axis = isometry.vector(joint.axis); break;
+  case JointType::universal:
+    image.axis = isometry.axial(joint.axis);
+    image.axis2 = isometry.axial(joint.axis2);
+    break;
+  case JointType::planar: // the second in-plane axis is normal x x_axis, a vector as it should be
+    image.axis = isometry.axial(joint.axis);
+    image.axis2 = isometry.vector(joint.axis2);
+    break;
+  case JointType::distance:
+    for (Vec3& point : image.points)
+      point = isometry.point(point);
+    break;
+  case JointType::spherical:
+  case JointType::free:
+  case JointType::fixed:
+  case JointType::gear: break;
+  }
+  return image;
+}
+
+Force image_of(const Force& force, const Isometry& isometry, const Quat& body, bool body_too) {
+  Force image = force;
+  if (force.type == ForceType::spring) {
+    for (Vec3& point : image.points)
+      point = isometry.point(point);
+    return image;
+  }
+  if (force.at) image.at = isometry.point(*force.at);
+  if (force.type == ForceType::drag) return image;
+  const bool axial = force.type == ForceType::torque;
+  if (force.frame == ForceFrame::world) {
+    image.vector = axial ? isometry.axial(force.vector) : isometry.vector(force.vector);
+  } else if (body_too) {
+    const double sign = axial ? isometry.sense() : 1;
+    image.vector = (sign * image_of_frame(body, isometry).signs.cwiseProduct(force.vector)).array() + 0.0;
+  } else {
+    const Mat3 axes = body.normalized().toRotationMatrix();
+    const Isometry in_body{axes.transpose() * isometry.linear * axes, Vec3::Zero()};
+    image.vector = axial ? in_body.axial(force.vector) : in_body.vector(force.vector);
+  }
+  return image;
+}
+
+} // namespace flyball

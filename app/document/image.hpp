@@ -1,0 +1,26 @@
+// Parts as an isometry puts them elsewhere: equal coordinates (see coordinate_image.hpp) mean poses that are
+// images of one another.
+#pragma once
+
+#include "app/document/isometry.hpp"
+
+namespace flyball {
+
+// Axes of a body's image: a right-handed frame even where the isometry is a reflection. Then the body axis
+// nearest to the plane's normal is turned round in it, so that a body with the world's axes keeps them.
+struct FrameImage {
+  Quat rotation = Quat::Identity();
+  Vec3 signs = Vec3::Ones(); // of a vector's image in the new axes, by the vector in the old ones
+};
+FrameImage image_of_frame(const Quat& rotation, const Isometry& isometry);
+
+Body image_of(const Body& body, const Isometry& isometry);
+
+// Of a joint with its coordinates; a gear, which has no place, stays as it is.
+Joint image_of(const Joint& joint, const Isometry& isometry);
+
+// `body`: axes of the body acted on, if any. With `body_too` that body becomes its image as well, and what
+// is in its axes keeps to it.
+Force image_of(const Force& force, const Isometry& isometry, const Quat& body, bool body_too);
+
+} // namespace flyball

@@ -1,0 +1,100 @@
+#include "app/panels/edit_commands.hpp"
+
+#include "app/document/clipboard.hpp"
+#include "app/document/copies.hpp"
+#include "app/document/create.hpp"
+#include "app/document/remove.hpp"
+
+#include <imgui.h>
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// "ball1", or "3 parts".
+std::string words_for(const Selection& selection) {
+  if (selection.parts.size() == 1) return selection.parts.front().name;
+  return std::to_string(selection.parts.size()) + " parts";
+}
+
+} // namespace
+
+void delete_selected(App& app) {
+  if (app.selection().empty()) return;
+  edit(app, "Delete " + words_for(app.selection()), [](Mechanism& mechanism, Selection& selection) {
+    remove_parts(mechanism, selection);
+    selection = {};
+  });
+}
+
+void duplicate_selected(App& app) {
+  if (app.selection().empty()) return;
+  // Far enough to be seen, a round number of metres.
+  const double step = std::pow(10, std::round(std::log10(app.view.camera.distance / 8)));
+  edit(app, "Duplicate " + words_for(app.selection()), [&](Mechanism& mechanism, Selection& selection) {
+    selection = duplicate_parts(mechanism, selection, step * Vec3(1, 0, 0));
+  });
+}
+
+void copy_selected(App& app) {
+  if (app.selection().empty()) return;
+  try {
+    ImGui::SetClipboardText(copy_text(app.mechanism(), app.selection()).c_str());
+    app.notice = "Copied " + words_for(app.selection());
+  } catch (const SceneError& error) {
+    app.notice = error.what();
+  }
+}
+
+void cut_selected(App& app) {
+  copy_selected(app);
+  if (app.selection().empty()) return;
+  edit(app, "Cut " + words_for(app.selection()), [](Mechanism& mechanism, Selection& selection) {
+    remove_parts(mechanism, selection);
+    selection = {};
+  });
+}
+
+void paste_parts(App& app) {
+  const char* text = ImGui::GetClipboardText();
+  if (!text || !*text) {
+    app.notice = "Nothing has been copied.";
+    return;
+  }
+  edit(app, "Paste", [&](Mechanism& mechanism, Selection& selection) {
+    try {
+      selection = paste_text(mechanism, text);
+    } catch (const SceneError&) {
+      throw SceneError("", "What was copied is no part of a mechanism.");
+    }
+  });
+}
+
+void select_all(App& app) {
+  Selection all;
+  for (const Body& body : app.mechanism().bodies)
+    all.parts.push_back({PartKind::body, body.name});
+  for (const Joint& joint : app.mechanism().joints)
+    all.parts.push_back({PartKind::joint, joint.name});
+  for (const Force& force : app.mechanism().forces)
+    all.parts.push_back({PartKind::force, force.name});
+  select(app, std::move(all));
+}
+
+void gear_selected(App& app) {
+  const std::vector<std::string> joints = app.selection().names(PartKind::joint);
+  if (joints.size() != 2) return;
+  edit(app, "Gear " + joints[0] + " and " + joints[1], [&](Mechanism& mechanism, Selection& selection) {
+    std::array<std::string, 2> ends;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Joint& joint = mechanism.joints[static_cast<std::size_t>(joint_index(mechanism, joints[i]))];
+      if (joint.coordinates.empty()) throw SceneError(joint.name, "a gear needs a joint with a coordinate");
+      ends[i] = coordinate_name(joint, 0);
+    }
+    selection.set({PartKind::joint, add_gear(mechanism, ends, -1)});
+  });
+}
+
+} // namespace flyball

@@ -1,0 +1,58 @@
+// What is being typed and looked at in the inspector, the outline and other fields.
+#pragma once
+
+#include "app/document/part.hpp"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+struct App;
+
+// Why a text cannot be taken, as a sentence; empty where it can.
+using TextCheck = std::function<std::string(const std::string&)>;
+using TextTaker = std::function<void(App&, const std::string&)>;
+
+// The one field that is being typed in.
+struct Typing {
+  std::string name{}; // of the widget; empty: there is none
+  std::string text{}, original{};
+  std::string mistake{}, checked{}; // why `checked` cannot be taken
+  TextCheck check{};
+  TextTaker take{};
+  bool wants_focus = false; // to be given the keyboard when it is drawn next
+  int idle = 0;             // frames in which it had not the keyboard
+};
+
+// A number that is dragged by its label.
+struct Scrub {
+  std::string name;
+  double start = 0, step = 0; // in the field's unit
+  float travelled = 0;        // pixels
+};
+
+struct InspectorState {
+  bool history = false;   // the list of steps is shown
+  int history_shown = -1; // the step last brought into view there
+  Typing typing;
+  Scrub scrub;
+  // Edits wait until the panels are drawn, which refer to the mechanism as it was before.
+  std::vector<std::function<void(App&)>> later;
+  std::optional<double> plain;                   // what was typed in a field outside the document
+  std::map<std::string, bool, std::less<>> open; // sections that were opened or closed by hand
+
+  std::string search;        // in the outline
+  std::string choice_search; // in the open list of names
+  Part anchor, revealed;     // where a range of rows begins; the last one brought into view
+  Part independent;          // a body whose mass does not follow its shapes, though it could
+  bool mass_alone = false;   // a typed position moves the mass centre alone
+  Part turned;               // whose rotation the angles below are
+  Quat turned_to = Quat::Identity();
+  Vec3 turns = Vec3::Zero(); // deg, about x, y and z
+};
+
+} // namespace flyball

@@ -1,0 +1,34 @@
+// What a person most likely means by a joint at a point.
+#pragma once
+
+#include "app/document/part.hpp"
+#include "app/viewport/scene_list.hpp"
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+// Parent and child: the two selected bodies, else two that are at the point (within `reach`, m), else the
+// ground and the nearest. What hangs on the ground already is the parent of what does not. Empty names
+// without any body. `instances` is the mechanism's scene in its drawn pose.
+std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<const Instance> instances,
+                                        const Selection& selected, const Vec3& at, double reach);
+
+// A direction that the two bodies have to offer beside the world's.
+struct BodyAxis {
+  std::string label; // "rod1", "block1 x"
+  Vec3 axis = Vec3::UnitZ();
+};
+std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std::string, 2>& bodies);
+
+// Along a rod, or upwards, where the joint slides; otherwise across the picture. `normal` is the world axis
+// (0 to 2) nearest to the line of sight.
+Vec3 guess_axis(const Mechanism& mechanism, JointType type, const std::array<std::string, 2>& bodies,
+                int normal);
+// A world axis at right angles to the axis, or its part that is.
+Vec3 axis_across(const Vec3& axis);
+
+} // namespace flyball

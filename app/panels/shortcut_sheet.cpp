@@ -1,0 +1,87 @@
+#include "app/panels/commands.hpp"
+#include "app/panels/widgets.hpp"
+
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+struct Line {
+  const char* keys;
+  const char* does;
+};
+constexpr std::array mouse{
+    Line{"Drag", "Orbit"},
+    Line{"Right drag, Shift+drag", "Pan"},
+    Line{"Wheel", "Zoom at the cursor"},
+    Line{"Click", "Select; with Ctrl or Shift one more"},
+    Line{"Ctrl+drag", "Select a box"},
+    Line{"Double-click", "All in view"},
+    Line{"Ctrl+click a slider", "Type its value"},
+    Line{"Shift+drag a slider", "Finer"},
+};
+
+void line(App& app, const std::string& keys, const std::string& does) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).accent);
+  ImGui::TextUnformatted(keys.c_str());
+  ImGui::PopStyleColor();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(does.c_str());
+}
+
+void lines(App& app, const char* title, std::string_view prefix) {
+  heading(app, title);
+  if (!ImGui::BeginTable(title, 2, ImGuiTableFlags_SizingFixedFit)) return;
+  for (const Command& command : commands()) {
+    if (!std::string_view(command.id).starts_with(prefix) || command.key.key == 0) continue;
+    const std::string also = key_text(command.also);
+    line(app, key_text(command.key) + (also.empty() ? "" : ", " + also), command.title);
+  }
+  ImGui::EndTable();
+}
+
+} // namespace
+
+void shortcut_sheet(App& app) {
+  if (!app.commands.shortcuts) return;
+  const float s = app.scale;
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(880 * s, window.x - 20 * s), std::min(560 * s, window.y - 20 * s)});
+  ImGui::SetNextWindowFocus();
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ImGui::GetStyle().PopupBorderSize);
+  ImGui::Begin("shortcuts", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar(3);
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {8 * s, 2 * s});
+  if (ImGui::BeginTable("columns", 3, ImGuiTableFlags_SizingStretchSame)) {
+    ImGui::TableNextColumn();
+    lines(app, "File", "file.");
+    lines(app, "Insert", "insert.");
+    ImGui::TableNextColumn();
+    lines(app, "Edit", "edit.");
+    lines(app, "Help", "help.");
+    ImGui::TableNextColumn();
+    lines(app, "View", "view.");
+    heading(app, "Mouse in the view");
+    if (ImGui::BeginTable("mouse", 2, ImGuiTableFlags_SizingFixedFit)) {
+      for (const Line& entry : mouse)
+        line(app, entry.keys, entry.does);
+      ImGui::EndTable();
+    }
+    ImGui::EndTable();
+  }
+  ImGui::PopStyleVar();
+  if (text_button(app, "shortcuts/close", "Close", true) ||
+      (ImGui::IsMouseClicked(0) && !ImGui::IsWindowHovered(ImGuiHoveredFlags_RootAndChildWindows)))
+    app.commands.shortcuts = false;
+  ImGui::End();
+}
+
+} // namespace flyball

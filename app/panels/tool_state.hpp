@@ -1,0 +1,109 @@
+// What the hand on the view is about to do, and how far it has come with it.
+#pragma once
+
+#include "app/document/snap_points.hpp"
+#include "app/document/transform.hpp"
+#include "app/viewport/gizmo.hpp"
+#include "app/viewport/scene_list.hpp"
+#include "app/viewport/work_plane.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+namespace flyball {
+
+enum class Tool {
+  select, // and move with the gizmo
+  rotate, // select, and turn with the gizmo
+  box,    // select what a dragged frame holds
+  ball,
+  block,
+  rod,
+  plate,
+  joint,    // of any type but distance and gear
+  distance, // between two points, as springs and dampers
+  spring,
+  damper,
+  force,
+  torque,
+  drag,
+};
+
+// A place that a click would mean.
+struct Aim {
+  Vec3 point = Vec3::Zero(); // m, drawn pose
+  std::string body{ground_name};
+  std::string what; // that it snapped to: "arm1", "centre of ball1"; empty: to nothing
+  WorkPlane plane;  // that the cursor moves on
+  double step = 0;  // m, of the plane's grid; 0: none
+};
+
+// A handle of the gizmo, or a point of the selected part, held by the hand.
+struct Grab {
+  Handle handle = Handle::plane;
+  std::optional<PointId> point; // where it is a point
+  int normal = 2;               // as in Gizmo
+  std::shared_ptr<const Mechanism> before;
+  Selection selection;
+  Vec3 centre = Vec3::Zero(); // m, of what is moved, as it was
+  Ray from;
+  std::vector<SnapPoint> targets; // that do not move along
+  std::uint64_t gesture = 0;
+  std::string name;            // of the step
+  Vec3 by = Vec3::Zero();      // m, so far
+  double angle = 0, swept = 0; // rad, so far; swept: without snapping
+  std::string what;            // that it snapped to
+  std::string typed;           // a number instead of the hand's
+};
+
+// A joint before it is made.
+struct JointDraft {
+  Vec3 at = Vec3::Zero();            // m
+  std::array<std::string, 2> bodies; // parent, child
+  Vec3 axis = Vec3::UnitZ(), axis2 = Vec3::UnitX();
+  bool axis_chosen = false, axis2_chosen = false; // by the person
+  bool picking_axis = false;                      // by two points
+  std::optional<Vec3> axis_from;                  // the first of them
+  Selection before;                               // selected when it was begun
+};
+
+// Kept so that nothing is looked for twice while neither hand nor mechanism moves.
+struct ToolCaches {
+  std::uint64_t snap_revision = 0; // 0: never
+  std::vector<SnapPoint> snap_points;
+  std::uint64_t scene_revision = 0, scene_ticket = 0;
+  SceneList scene; // of the drawn pose
+  std::uint64_t centre_revision = 0;
+  Selection centre_selection;
+  std::optional<Vec3> centre; // of the selection
+  std::uint64_t aim_revision = 0;
+  Vec2 aim_cursor = Vec2::Zero();
+  ViewCamera aim_camera;
+  bool aim_snaps = false;
+  Aim aim;
+  std::uint64_t hover_revision = 0; // for which App::view.hovered was found
+};
+
+struct ToolState {
+  Tool tool = Tool::select;
+  bool snap = true;                           // to points, the grid and round angles
+  JointType joint_type = JointType::revolute; // of the next joint
+  std::optional<Vec3> last_point{};           // m, that was used: the next one is on a plane through it
+
+  // Of one movement of the hand, or of the few clicks that a tool takes.
+  Tool begun = Tool::select; // the tool that these belong to
+  Handle hovered = Handle::none;
+  std::optional<PointId> hovered_point{};
+  std::optional<Grab> grab{};
+  std::optional<Vec2> frame{}; // pixel of the view where a selecting frame began
+  std::optional<Aim> first{};  // where the button went down, or the first of two clicks
+  bool first_clicked = false;  // the latter
+  std::optional<JointDraft> joint{};
+  float card_height = 0; // pixels, of the joint's card in the last frame
+  bool spent = false;    // the button that is down has done its work
+
+  ToolCaches caches{};
+};
+
+} // namespace flyball

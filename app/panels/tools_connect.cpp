@@ -1,0 +1,112 @@
+// What has two ends: rods, links, springs and dampers. Two clicks, or a drag from one end to the other.
+#include "app/panels/aim.hpp"
+#include "app/panels/body_preview.hpp"
+#include "app/panels/tools.hpp"
+#include "app/panels/view_drawing.hpp"
+#include "app/panels/widgets.hpp"
+#include "app/viewport/snapping.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+namespace {
+
+constexpr double rod_radius = 5;                 // points of the picture
+constexpr double stiffness = 1000, damping = 10; // N/m, N s/m
+
+std::string word_of(Tool tool) {
+  switch (tool) {
+  case Tool::rod: return "rod";
+  case Tool::distance: return "link";
+  case Tool::spring: return "spring";
+  case Tool::damper: return "damper";
+  default: return "";
+  }
+}
+
+NewBody rod_between(const ViewInput& input, const Vec3& from, const Vec3& to) {
+  NewBody rod;
+  rod.form = BodyForm::rod;
+  rod.from = from;
+  rod.to = to;
+  const double thick = nearest_step(rod_radius * input.point * input.metres_per_pixel());
+  rod.radius = std::min(thick, nearest_step((to - from).norm() / 8));
+  return rod;
+}
+
+void add(App& app, const ViewInput& input, const Aim& from, const Aim& to) {
+  const std::array<std::string, 2> bodies{from.body, to.body};
+  const std::array<Vec3, 2> points{from.point, to.point};
+  const Tool tool = app.tool.tool;
+  edit(app, "Add " + word_of(tool), [&](Mechanism& mechanism, Selection& selection) {
+    switch (tool) {
+    case Tool::rod:
+      return selection.set({PartKind::body, add_body(mechanism, rod_between(input, points[0], points[1]))});
+    case Tool::distance: return selection.set({PartKind::joint, add_distance(mechanism, bodies, points)});
+    case Tool::spring:
+      return selection.set({PartKind::force, add_spring(mechanism, bodies, points, stiffness, 0)});
+    default: return selection.set({PartKind::force, add_spring(mechanism, bodies, points, 0, damping)});
+    }
+  });
+}
+
+// Why the two ends cannot be joined; empty where they can.
+std::string obstacle(Tool tool, const Aim& from, const Aim& to) {
+  if (tool != Tool::rod && from.body == to.body)
+    return from.body == ground_name ? "Both ends are on the ground: one has to be on a body."
+                                    : "Both ends are on " + from.body + ": click a point of something else.";
+  const bool together = (from.point - to.point).norm() == 0;
+  if (together && tool != Tool::spring && tool != Tool::damper) return "The ends have to be apart.";
+  return "";
+}
+
+void draw_end(const App& app, const ViewInput& input, const Vec3& at) {
+  if (const auto pixel = input.on_screen(at)) draw_dot(app, *pixel, 4);
+}
+
+void draw_between(const App& app, const ViewInput& input, const Vec3& from, const Vec3& to) {
+  if (app.tool.tool == Tool::rod) {
+    draw_body_outline(app, input, rod_between(input, from, to));
+  } else {
+    const auto p = input.on_screen(from), q = input.on_screen(to);
+    if (p && q) draw_line(app, *p, *q, palette(app.theme).accent, 2);
+  }
+  draw_end(app, input, from);
+}
+
+} // namespace
+
+void use_connecting(App& app, const ViewInput& input) {
+  ToolState& tool = app.tool;
+  if (!input.hovered && !tool.first) return;
+  const Aim aim = aim_at(app, input);
+  if (tool.first) {
+    const Aim& from = *tool.first;
+    draw_between(app, input, from.point, aim.point);
+    draw_aim(app, input, aim,
+             "length " + length_text((aim.point - from.point).norm(), 0.1 * aim.step) + " m" +
+                 (tool.tool == Tool::rod || aim.body == ground_name ? "" : "  on " + aim.body));
+  } else {
+    draw_aim(app, input, aim);
+  }
+  if (tool.spent) return;
+  if (input.pressed && !tool.first) tool.first = aim;
+  if (!input.released || !tool.first) return;
+  const Aim from = *tool.first;
+  if (!tool.first_clicked && !input.moved) {
+    tool.first_clicked = true;
+    tool.last_point = from.point;
+    return;
+  }
+  if (const std::string reason = obstacle(tool.tool, from, aim); !reason.empty()) {
+    app.notice = reason;
+    if (!tool.first_clicked) tool.first.reset();
+    return;
+  }
+  add(app, input, from, aim);
+  tool.last_point = aim.point;
+  end_tool(app, input);
+}
+
+} // namespace flyball

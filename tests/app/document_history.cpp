@@ -1,0 +1,68 @@
+#include "app/document/document.hpp"
+#include "tests/catch.hpp"
+
+#include <limits>
+
+using namespace flyball;
+
+namespace {
+
+Mechanism with_gravity(double down) {
+  Mechanism m = Document::empty_mechanism();
+  m.gravity.y() = -down;
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("an edit is a step, and nothing is none") {
+  Document document;
+  document.edit("Change gravity", with_gravity(1), {});
+  document.edit("Change gravity", with_gravity(1), {});
+  REQUIRE(document.steps().size() == 2);
+  CHECK(document.unsaved());
+  CHECK(document.undo());
+  CHECK_FALSE(document.undo());
+  CHECK(document.mechanism() == Document::empty_mechanism());
+  CHECK_FALSE(document.unsaved());
+  CHECK(document.redo());
+  CHECK_FALSE(document.redo());
+  CHECK(document.mechanism() == with_gravity(1));
+}
+
+TEST_CASE("a drag is one step, and none once it is back where it began") {
+  Document document;
+  for (const double down : {1, 2, 3})
+    document.edit("Drag", with_gravity(down), {}, 7);
+  CHECK(document.steps().size() == 2);
+  document.edit("Drag", Document::empty_mechanism(), {}, 7);
+  CHECK(document.steps().size() == 1);
+  CHECK_FALSE(document.can_undo());
+  document.edit("Drag", with_gravity(4), {}, 7);
+  document.edit("Drag", with_gravity(5), {}, 8);
+  CHECK(document.steps().size() == 3);
+  CHECK(document.undo());
+  CHECK(document.mechanism() == with_gravity(4));
+}
+
+TEST_CASE("what could not be saved is no edit") {
+  Document document;
+  document.edit("Change gravity", with_gravity(std::numeric_limits<double>::infinity()), {});
+  Mechanism sized = Document::empty_mechanism();
+  sized.bodies.resize(1);
+  sized.bodies[0].shapes.resize(1);
+  sized.bodies[0].shapes[0].at = Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0);
+  document.edit("Size", sized, {});
+  CHECK(document.steps().size() == 1);
+}
+
+TEST_CASE("the oldest steps are dropped, the rest stays exact") {
+  Document document;
+  for (int i = 1; i <= 1500; ++i)
+    document.edit("Change gravity", with_gravity(i), {});
+  REQUIRE(document.steps().size() == Document::most_steps);
+  document.go_to(0);
+  CHECK(document.mechanism() == with_gravity(501));
+  document.go_to(5000);
+  CHECK(document.mechanism() == with_gravity(1500));
+}

@@ -1,0 +1,671 @@
+// The outline, the inspector of every kind of part, the history list and pinned sliders, used by a robot.
+#include "robot.hpp"
+
+#include "app/document/create.hpp"
+#include "app/document/mass_properties.hpp"
+#include "app/panels/inspector_parts.hpp"
+#include "app/panels/layout.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <functional>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr PixelSize window{1280, 900};
+constexpr int key_tab = 258, key_up = 265, key_f2 = 291;
+
+// In a window, with a scene open and being built.
+struct Hand : Robot {
+  explicit Hand(PixelSize in = window) : Robot(in) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.KeyMap[ImGuiKey_Tab] = key_tab;
+    io.KeyMap[ImGuiKey_UpArrow] = key_up;
+    app.panels.inspector_share = 0.85f;
+    set_mode(app, Mode::build);
+    frames(2);
+  }
+
+  const Mechanism& mechanism() const { return app.mechanism(); }
+  const Body& body(const char* name) const {
+    return mechanism().bodies.at(static_cast<std::size_t>(body_index(mechanism(), name)));
+  }
+  const Joint& joint(const char* name) const {
+    return mechanism().joints.at(static_cast<std::size_t>(joint_index(mechanism(), name)));
+  }
+  const Force& force(const char* name) const {
+    return mechanism().forces.at(static_cast<std::size_t>(force_index(mechanism(), name)));
+  }
+
+  void choose(PartKind kind, const char* name) {
+    select(app, {{{kind, name}}});
+    frames(2);
+  }
+  // Scrolls the inspector until all of the widget can be seen.
+  void reveal(const std::string& name) {
+    const PanelRect panel =
+        layout_of(app, static_cast<float>(size.width), static_cast<float>(size.height)).inspector;
+    const auto seen = [&] {
+      const auto found = app.widgets.find(name);
+      return found != app.widgets.end() && found->second.from.y >= panel.y &&
+             found->second.to.y <= panel.y + panel.height;
+    };
+    for (const float notches : {20.f, -1.f})
+      for (int i = 0; i < 40 && !seen(); ++i) {
+        point({panel.x + 4, panel.y + panel.height / 2});
+        ImGui::GetIO().MouseWheel = notches;
+        frames(2);
+      }
+  }
+  void press_widget(const std::string& name) {
+    if (name.starts_with("inspector/")) reveal(name);
+    click(name);
+  }
+  void fill(const std::string& field, const std::string& text) {
+    press_widget(field);
+    type(text);
+    key(key_enter);
+  }
+  void choose_from(const std::string& list, const std::string& item) {
+    press_widget(list);
+    click(list + "/" + item);
+  }
+  std::string last_step() const { return app.document.steps()[app.document.position()].name; }
+  // What `act` does is one step, and undoing it leaves nothing behind.
+  void one_step(const std::function<void()>& act) {
+    const Mechanism before = mechanism();
+    const std::size_t position = app.document.position();
+    act();
+    REQUIRE(app.document.position() == position + 1);
+    const Mechanism after = mechanism();
+    undo(app);
+    frames(2);
+    CHECK(mechanism() == before);
+    redo(app);
+    frames(2);
+    CHECK(mechanism() == after);
+  }
+};
+
+Body body_called(const std::string& name) {
+  Body body;
+  body.name = name;
+  body.mass = 1;
+  return body;
+}
+
+double settles(const App& app, const std::string& joint) {
+  for (const CoordinateSolution& c : app.answer.solution.coordinates)
+    if (c.joint == joint) return c.value;
+  return NAN;
+}
+
+} // namespace
+
+TEST_CASE("a body's numbers are typed, each a step") {
+  Hand hand;
+  hand.choose(PartKind::body, "ball1");
+  hand.one_step([&] { hand.fill("inspector/mass", "1500 g"); });
+  CHECK(hand.body("ball1").mass == 1.5);
+  CHECK(hand.last_step() == "Set mass of ball1");
+  hand.one_step([&] { hand.fill("inspector/inertia/yy", "0.2*0.5"); });
+  CHECK(hand.body("ball1").inertia[1] == 0.1);
+  hand.press_widget("inspector/products");
+  hand.one_step([&] { hand.fill("inspector/inertia/xy", "1e-3"); });
+  CHECK(hand.body("ball1").inertia[3] == 1e-3);
+  hand.one_step([&] { hand.fill("inspector/description", "the heavy one"); });
+  CHECK(hand.body("ball1").description == "the heavy one");
+
+  SECTION("a position takes along what is on the body") {
+    const Vec3 end = hand.joint("link1").points[0];
+    hand.one_step([&] { hand.fill("inspector/position/y", "0.21 m"); });
+    CHECK(hand.body("ball1").position.y() == 0.21);
+    CHECK(hand.joint("link1").points[0].y() == Approx(end.y() + 0.01));
+  }
+  SECTION("unless the mass centre is to move alone") {
+    const Vec3 end = hand.joint("link1").points[0];
+    hand.press_widget("inspector/mass alone");
+    hand.one_step([&] { hand.fill("inspector/position/y", "21 cm"); });
+    CHECK(hand.body("ball1").position.y() == Approx(0.21));
+    CHECK(hand.joint("link1").points[0] == end);
+  }
+  SECTION("a rotation is typed in degrees and stays as typed") {
+    hand.press_widget("inspector/rotation section");
+    hand.one_step([&] { hand.fill("inspector/rotation/z", "270"); });
+    CHECK(hand.app.inspector.turns.z() == 270);
+    const Vec3 x = hand.body("ball1").rotation * Vec3::UnitX();
+    CHECK((x + Vec3::UnitY()).norm() < 1e-14);
+    hand.one_step([&] { hand.fill("inspector/rotation/x", "pi/2 rad"); });
+    CHECK(hand.app.inspector.turns == Vec3(90, 0, 270));
+    CHECK(find_mistakes(hand.mechanism()).empty());
+  }
+}
+
+TEST_CASE("mass and inertia follow the size of a uniform solid until they are typed") {
+  Hand hand;
+  hand.one_step([&] {
+    edit(hand.app, "Add", [](Mechanism& mechanism, Selection& selection) {
+      selection.set({PartKind::body, add_body(mechanism, {.form = BodyForm::ball, .at = {1, 0, 0}})});
+    });
+    hand.frames(2);
+  });
+  const std::string name = hand.app.selection().parts.front().name;
+  const auto ball = [&]() -> const Body& { return hand.body(name.c_str()); };
+  REQUIRE(is_uniform_solid(ball()));
+  const double mass = ball().mass, inertia = ball().inertia[0];
+  hand.one_step([&] { hand.fill("inspector/shapes/0/radius", "0.1"); });
+  CHECK(ball().mass == Approx(8 * mass));
+  CHECK(ball().inertia[0] == Approx(32 * inertia));
+  hand.one_step([&] { hand.fill("inspector/density", "1 g/cm^3"); });
+  CHECK(density_of(ball()) == Approx(1000));
+  hand.one_step([&] { hand.fill("inspector/mass", "2"); });
+  CHECK(ball().mass == Approx(2));
+  CHECK(ball().inertia[0] == Approx(0.4 * 2 * 0.01));
+  CHECK(is_uniform_solid(ball()));
+
+  SECTION("typed inertia is kept when the mass changes") {
+    hand.fill("inspector/inertia/xx", "0.1");
+    hand.fill("inspector/mass", "4");
+    CHECK(ball().inertia[0] == 0.1);
+    CHECK(ball().inertia[1] == Approx(0.4 * 2 * 0.01));
+    // And a tick makes it a solid again.
+    hand.one_step([&] { hand.press_widget("inspector/uniform"); });
+    CHECK(ball().inertia[0] == Approx(0.4 * 4 * 0.01));
+  }
+  SECTION("the tick taken away, the size changes alone") {
+    hand.press_widget("inspector/uniform");
+    hand.one_step([&] { hand.fill("inspector/shapes/0/radius", "0.2"); });
+    CHECK(ball().mass == Approx(2));
+  }
+  SECTION("shapes are changed, coloured, added and taken away") {
+    hand.one_step([&] { hand.choose_from("inspector/shapes/0/type", "box"); });
+    CHECK(ball().shapes[0].type == ShapeType::box);
+    CHECK(ball().shapes[0].size == Vec3(0.2, 0.2, 0.2));
+    CHECK(ball().mass == Approx(1000 * 0.008 * (2 / (1000 * 4.0 / 3 * 3.141592653589793 * 0.001))));
+    hand.one_step([&] { hand.fill("inspector/shapes/0/size/y", "0.4"); });
+    CHECK(ball().shapes[0].size.y() == 0.4);
+    hand.one_step([&] { hand.choose_from("inspector/shapes/0/type", "cylinder"); });
+    CHECK((ball().shapes[0].to - ball().shapes[0].from).norm() == Approx(0.4));
+    hand.one_step([&] { hand.press_widget("inspector/shapes/0/color/2"); });
+    REQUIRE(ball().shapes[0].color);
+    CHECK((*ball().shapes[0].color)[1] == Approx(158 / 255.0)); // Okabe and Ito's green
+    hand.one_step([&] { hand.press_widget("inspector/shapes/add"); });
+    CHECK(ball().shapes.size() == 2);
+    hand.one_step([&] { hand.press_widget("inspector/shapes/0/remove"); });
+    CHECK(ball().shapes.size() == 1);
+    CHECK(ball().shapes[0].type == ShapeType::sphere);
+  }
+}
+
+TEST_CASE("what cannot be taken stays in the field and says why") {
+  Hand hand;
+  hand.choose(PartKind::body, "ball1");
+  const std::size_t steps = hand.app.document.steps().size();
+  hand.fill("inspector/mass", "12 m");
+  CHECK(hand.app.inspector.typing.name == "inspector/mass");
+  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("Expected a mass"));
+  hand.frames(3);
+
+  SECTION("Escape puts the old back") {
+    hand.key(key_escape);
+    CHECK(hand.app.inspector.typing.name.empty());
+    CHECK_FALSE(hand.app.selection().empty());
+  }
+  SECTION("so does leaving, with a word") {
+    hand.click("inspector/title");
+    CHECK(hand.app.inspector.typing.name.empty());
+    CHECK_THAT(hand.app.notice, ContainsSubstring("“12 m” was not taken"));
+  }
+  SECTION("it can be mended at once") {
+    hand.key('A', true);
+    hand.type("12 kg");
+    hand.key(key_enter);
+    CHECK(hand.body("ball1").mass == 12);
+    return;
+  }
+  CHECK(hand.body("ball1").mass == 1);
+  CHECK(hand.app.document.steps().size() == steps);
+  hand.fill("inspector/mass", "-1");
+  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("zero or more"));
+}
+
+TEST_CASE("looking into a field changes nothing, and leaving takes what was typed") {
+  Hand hand;
+  hand.choose(PartKind::joint, "spin");
+  edit(hand.app, "Third", [](Mechanism& m, Selection&) { set_parameter(m, "joints.spin.at.0", 1.0 / 3); });
+  hand.frames(1);
+  const std::size_t steps = hand.app.document.steps().size();
+  hand.press_widget("inspector/at/x");
+  hand.press_widget("inspector/title");
+  CHECK(hand.joint("spin").at.x() == 1.0 / 3);
+  CHECK(hand.app.document.steps().size() == steps);
+
+  SECTION("to another field") {
+    hand.press_widget("inspector/at/x");
+    hand.type("0.5");
+    hand.press_widget("inspector/at/z");
+    CHECK(hand.joint("spin").at.x() == 0.5);
+  }
+  SECTION("by Tab, to the next field") {
+    hand.press_widget("inspector/at/x");
+    hand.type("0.5");
+    hand.key(key_tab);
+    CHECK(hand.joint("spin").at.x() == 0.5);
+    CHECK(hand.app.inspector.typing.name == "inspector/at/y");
+    hand.type("0.6");
+    hand.key(key_tab, false, true);
+    CHECK(hand.joint("spin").at.y() == 0.6);
+    CHECK(hand.app.inspector.typing.name == "inspector/at/x");
+    CHECK(hand.app.mode == Mode::build); // where Tab is a shortcut otherwise
+  }
+  SECTION("to another part, of which the field is not the one typed in") {
+    hand.press_widget("inspector/at/x");
+    hand.type("0.5");
+    hand.click("outline/joints/slide");
+    hand.frames(3);
+    CHECK(hand.joint("spin").at.x() == 0.5);
+    CHECK(hand.joint("slide").at.x() == 0);
+    CHECK(hand.app.selection().has({PartKind::joint, "slide"}));
+  }
+}
+
+TEST_CASE("a number is dragged by its label and stepped by the arrow keys") {
+  Hand hand;
+  hand.choose(PartKind::body, "ball1");
+  hand.reveal("inspector/mass/label");
+  hand.one_step([&] { hand.drag("inspector/mass/label", {0.2f, 0.5f}, {0.8f, 0.5f}); });
+  CHECK(hand.body("ball1").mass > 1);
+  // Not below what it may be.
+  for (int i = 0; i < 12; ++i)
+    hand.drag("inspector/mass/label", {1.0f, 0.5f}, {-9.0f, 0.5f});
+  CHECK(hand.body("ball1").mass >= 0);
+
+  hand.fill("inspector/mass", "2");
+  hand.press_widget("inspector/mass");
+  hand.one_step([&] { hand.key(key_up); });
+  CHECK(hand.body("ball1").mass == 2.01);
+  CHECK(hand.app.inspector.typing.text == "2.01 kg");
+}
+
+TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
+  Hand hand;
+  hand.choose(PartKind::joint, "slide");
+  REQUIRE(hand.joint("slide").coordinates[0].spring);
+  hand.one_step([&] { hand.fill("inspector/spring/stiffness", "1.2 N/mm"); });
+  CHECK(hand.joint("slide").coordinates[0].spring->stiffness == Approx(1200));
+  hand.one_step([&] { hand.fill("inspector/spring/free", "15 cm"); });
+  CHECK(hand.joint("slide").coordinates[0].spring->free == Approx(0.15));
+  hand.one_step([&] { hand.fill("inspector/damping", "40"); });
+  CHECK(hand.joint("slide").coordinates[0].damping == 40);
+  hand.one_step([&] { hand.press_widget("inspector/stop"); });
+  REQUIRE(hand.joint("slide").coordinates[0].stop);
+  hand.one_step([&] { hand.fill("inspector/stop/lower", "50 mm"); });
+  CHECK(hand.joint("slide").coordinates[0].stop->lower == Approx(0.05));
+  hand.one_step([&] { hand.press_widget("inspector/stop/upper/reset"); });
+  CHECK_FALSE(hand.joint("slide").coordinates[0].stop->upper);
+  hand.one_step([&] { hand.press_widget("inspector/stop/upper/add"); });
+  CHECK(hand.joint("slide").coordinates[0].stop->upper);
+  hand.one_step([&] { hand.fill("inspector/coordinate", "0.2 - 0.1256"); });
+  CHECK(hand.joint("slide").coordinates[0].drawn == Approx(0.0744));
+  CHECK(find_mistakes(hand.mechanism()).empty());
+
+  SECTION("a drive is refused beside a spring") {
+    hand.press_widget("inspector/drive");
+    CHECK_FALSE(hand.joint("slide").coordinates[0].drive);
+  }
+  SECTION("and taken off again") {
+    for (const char* tick : {"inspector/spring", "inspector/stop", "inspector/damper"})
+      hand.one_step([&] { hand.press_widget(tick); });
+    CHECK(hand.joint("slide").coordinates[0] ==
+          Coordinate{.drawn = 0.2 - 0.1256, .spring = {}, .stop = {}, .drive = {}});
+    // The pinned slider of the spring is gone with it, or the scene could not be solved.
+    CHECK(find_mistakes(hand.mechanism()).empty());
+    hand.one_step([&] { hand.press_widget("inspector/drive"); });
+    hand.one_step([&] { hand.fill("inspector/drive/speed", "20 mm/s"); });
+    CHECK(hand.joint("slide").coordinates[0].drive->speed == 0.02);
+    // And now the spring is refused.
+    hand.press_widget("inspector/spring");
+    CHECK_FALSE(hand.joint("slide").coordinates[0].spring);
+  }
+}
+
+TEST_CASE("a joint's place, axis, bodies and type are edited") {
+  Hand hand;
+  hand.choose(PartKind::joint, "arm1");
+  hand.one_step([&] { hand.fill("inspector/axis/y", "0.1"); });
+  CHECK(hand.joint("arm1").axis == Vec3(0, 0.1, 1));
+  hand.one_step([&] { hand.press_widget("inspector/axis/along/x"); });
+  CHECK(hand.joint("arm1").axis == Vec3(1, 0, 0));
+  hand.one_step([&] { hand.press_widget("inspector/axis/flip"); });
+  CHECK(hand.joint("arm1").axis == Vec3(-1, 0, 0));
+  hand.one_step([&] { hand.press_widget("inspector/bodies/swap"); });
+  CHECK(hand.joint("arm1").bodies == std::array<std::string, 2>{"ball1", "spindle"});
+  hand.one_step([&] { hand.choose_from("inspector/bodies/1", "ground"); });
+  CHECK(hand.joint("arm1").bodies == std::array<std::string, 2>{"ball1", "ground"});
+  // The other end's body: they change places.
+  hand.one_step([&] { hand.choose_from("inspector/bodies/1", "ball1"); });
+  CHECK(hand.joint("arm1").bodies == std::array<std::string, 2>{"ground", "ball1"});
+
+  hand.choose(PartKind::joint, "slide");
+  hand.one_step([&] { hand.choose_from("inspector/type", "cylindrical"); });
+  REQUIRE(hand.joint("slide").coordinates.size() == 2);
+  CHECK_FALSE(hand.joint("slide").coordinates[0].spring);
+  CHECK(hand.joint("slide").coordinates[1].spring->stiffness == 1000);
+  CHECK(hand.mechanism().sliders[1].parameter == "joints.slide.spring.1.stiffness");
+  CHECK(find_mistakes(hand.mechanism()).empty());
+  hand.one_step([&] { hand.press_widget("inspector/drive/0"); });
+  CHECK(hand.joint("slide").coordinates[0].drive);
+  hand.one_step([&] { hand.fill("inspector/spring/1/stiffness", "2 kN/m"); });
+  CHECK(hand.joint("slide").coordinates[1].spring->stiffness == 2000);
+}
+
+TEST_CASE("a type changed keeps what fits, in gears and sliders too") {
+  Mechanism m;
+  m.bodies = {body_called("a"), body_called("b")};
+  const std::string one = add_joint(m, JointType::cylindrical, {"ground", "a"}, Vec3::Zero(), Vec3::UnitZ());
+  const std::string two = add_joint(m, JointType::revolute, {"ground", "b"}, Vec3::Zero(), Vec3::UnitZ());
+  add_gear(m, {one + ".0", two}, 1);
+  m.joints[0].coordinates[0].drive.emplace().speed = 3;
+  m.joints[0].coordinates[1].damping = 7;
+  for (const char* number : {".drive.0.speed", ".damping.1"})
+    m.sliders.emplace_back().parameter = "joints." + one + number;
+  change_joint_type(m, one, JointType::revolute);
+  CHECK(m.joints[0].coordinates.size() == 1);
+  CHECK(m.joints[0].coordinates[0].drive->speed == 3);
+  CHECK(m.joints[2].joints[0] == one);
+  REQUIRE(m.sliders.size() == 1);
+  CHECK(m.sliders[0].parameter == "joints." + one + ".drive.speed");
+  change_joint_type(m, one, JointType::planar); // x, y, angle
+  CHECK(m.joints[0].coordinates[2].drive->speed == 3);
+  CHECK(m.joints[2].joints[0] == one + ".2");
+  CHECK(m.sliders[0].parameter == "joints." + one + ".drive.2.speed");
+  CHECK(m.joints[0].axis.cross(m.joints[0].axis2).norm() > 0.1);
+  change_joint_type(m, one, JointType::spherical); // its rotation vector cannot be driven
+  for (const Coordinate& coordinate : m.joints[0].coordinates)
+    CHECK_FALSE(coordinate.drive);
+  CHECK(m.sliders.empty());
+  change_joint_type(m, one, JointType::distance);
+  CHECK(m.joints[0].coordinates.empty());
+}
+
+TEST_CASE("distance joints and gears are edited") {
+  Hand hand;
+  hand.choose(PartKind::joint, "link1");
+  const Joint before = hand.joint("link1");
+  hand.one_step([&] { hand.fill("inspector/length", "110 mm"); });
+  CHECK(hand.joint("link1").length == Approx(0.11));
+  hand.one_step([&] { hand.press_widget("inspector/length/reset"); });
+  CHECK_FALSE(hand.joint("link1").length);
+  hand.one_step([&] { hand.fill("inspector/points/1/y", "0.12"); });
+  CHECK(hand.joint("link1").points[1].y() == 0.12);
+  hand.one_step([&] { hand.press_widget("inspector/bodies/swap"); });
+  CHECK(hand.joint("link1").bodies[0] == before.bodies[1]);
+  CHECK(hand.joint("link1").points[1] == before.points[0]);
+
+  edit(hand.app, "Gear", [](Mechanism& m, Selection& s) {
+    s.set({PartKind::joint, add_gear(m, {"arm1", "arm2"}, -1)});
+  });
+  hand.frames(2);
+  const std::string gear = hand.app.selection().parts.front().name;
+  hand.one_step([&] { hand.fill("inspector/ratio", "-1/2"); });
+  CHECK(hand.joint(gear.c_str()).ratio == -0.5);
+  hand.one_step([&] { hand.choose_from("inspector/joints/1", "spin"); });
+  CHECK(hand.joint(gear.c_str()).joints[1] == "spin");
+  hand.one_step([&] { hand.fill("inspector/offset", "90 deg"); });
+  CHECK(hand.joint(gear.c_str()).offset == Approx(1.5707963267948966));
+}
+
+TEST_CASE("forces of every type are edited") {
+  Hand hand;
+  const auto add = [&](const auto& make) {
+    edit(hand.app, "Add", [&](Mechanism& m, Selection& s) { s.set({PartKind::force, make(m)}); });
+    hand.frames(2);
+    return hand.app.selection().parts.front().name;
+  };
+  SECTION("spring") {
+    const std::string name = add([](Mechanism& m) {
+      return add_spring(m, {"ground", "ball1"}, {Vec3(0, 0, 0), Vec3(-0.16, 0.2, 0)}, 10, 0);
+    });
+    const auto spring = [&]() -> const Force& { return hand.force(name.c_str()); };
+    hand.one_step([&] { hand.fill("inspector/stiffness", "1 kN/m"); });
+    CHECK(spring().stiffness == 1000);
+    hand.one_step([&] { hand.fill("inspector/free_length", "0.2"); });
+    CHECK(spring().free_length == 0.2);
+    hand.one_step([&] { hand.press_widget("inspector/free_length/reset"); });
+    CHECK_FALSE(spring().free_length);
+    hand.one_step([&] { hand.fill("inspector/damping", "3"); });
+    CHECK(spring().damping == 3);
+    hand.one_step([&] { hand.fill("inspector/points/0/z", "0.1"); });
+    CHECK(spring().points[0].z() == 0.1);
+    hand.one_step([&] { hand.choose_from("inspector/bodies/0", "spindle"); });
+    CHECK(spring().bodies[0] == "spindle");
+  }
+  SECTION("force") {
+    const std::string name = add([](Mechanism& m) {
+      return add_force(m, ForceType::force, "ball1", {-0.16, 0.2, 0}, {0, 1, 0});
+    });
+    const auto force = [&]() -> const Force& { return hand.force(name.c_str()); };
+    hand.one_step([&] { hand.fill("inspector/vector/x", "2 kg * 9.81 m/s^2"); });
+    CHECK(force().vector == Vec3(19.62, 1, 0));
+    hand.one_step([&] { hand.choose_from("inspector/frame", "body"); });
+    CHECK(force().frame == ForceFrame::body);
+    hand.one_step([&] { hand.choose_from("inspector/body", "collar"); });
+    CHECK(force().body == "collar");
+    hand.one_step([&] { hand.fill("inspector/at/x", "0.01"); });
+    CHECK(force().at->x() == 0.01);
+    hand.one_step([&] { hand.press_widget("inspector/at/x/reset"); });
+    CHECK_FALSE(force().at);
+  }
+  SECTION("torque") {
+    const std::string name = add([](Mechanism& m) {
+      return add_force(m, ForceType::torque, "ball1", {0, 0, 0}, {0, 0, 1});
+    });
+    hand.one_step([&] { hand.fill("inspector/vector/z", "500 N mm"); });
+    CHECK(hand.force(name.c_str()).vector.z() == Approx(0.5));
+  }
+  SECTION("drag") {
+    const std::string name = add([](Mechanism& m) {
+      return add_force(m, ForceType::drag, "ball1", {0, 0, 0}, {0, 0, 0});
+    });
+    hand.one_step([&] { hand.fill("inspector/quadratic", "0.02"); });
+    CHECK(hand.force(name.c_str()).quadratic == 0.02);
+    hand.one_step([&] { hand.fill("inspector/linear", "0.5"); });
+    CHECK(hand.force(name.c_str()).linear == 0.5);
+  }
+}
+
+TEST_CASE("the scene's own numbers are there while nothing is selected") {
+  Hand hand;
+  REQUIRE(hand.app.selection().empty());
+  hand.one_step([&] { hand.press_widget("inspector/gravity/none"); });
+  CHECK(hand.mechanism().gravity == Vec3::Zero());
+  hand.one_step([&] { hand.press_widget("inspector/gravity/-z"); });
+  CHECK(hand.mechanism().gravity == Vec3(0, 0, -9.80665));
+  hand.one_step([&] { hand.fill("inspector/gravity/z", "-1.62 m/s^2"); });
+  CHECK(hand.mechanism().gravity.z() == -1.62);
+  hand.one_step([&] { hand.fill("inspector/name", "On the moon"); });
+  CHECK(hand.mechanism().name == "On the moon");
+  hand.press_widget("inspector/simulation section");
+  hand.one_step([&] { hand.fill("inspector/duration", "2 min"); });
+  CHECK(hand.mechanism().simulation.duration == 120);
+  hand.one_step([&] { hand.press_widget("inspector/damped"); });
+  CHECK_FALSE(hand.mechanism().simulation.damped);
+}
+
+TEST_CASE("several parts are given one number") {
+  Hand hand;
+  hand.click("outline/bodies/ball1");
+  hand.hold(true, false);
+  hand.click("outline/bodies/ball2");
+  hand.hold(false, false);
+  REQUIRE(hand.app.selection().parts.size() == 2);
+  hand.one_step([&] { hand.fill("inspector/all/mass", "3"); });
+  CHECK(hand.body("ball1").mass == 3);
+  CHECK(hand.body("ball2").mass == 3);
+  CHECK(hand.body("spindle").mass == 200);
+  hand.one_step([&] { hand.press_widget("inspector/edit.delete"); });
+  CHECK(body_index(hand.mechanism(), "ball1") < 0);
+}
+
+TEST_CASE("renaming takes every reference along and refuses names that are taken") {
+  Hand hand;
+  SECTION("in the outline, by a double click") {
+    hand.double_click("outline/bodies/ball1");
+    REQUIRE(hand.app.inspector.typing.name == "outline/bodies/ball1/name");
+  }
+  SECTION("in the outline, by F2") {
+    hand.click("outline/bodies/ball1");
+    hand.key(key_f2);
+    REQUIRE(hand.app.inspector.typing.name == "outline/bodies/ball1/name");
+  }
+  SECTION("in the inspector") {
+    hand.click("outline/bodies/ball1");
+    hand.press_widget("inspector/name");
+  }
+  hand.frames(2);
+  hand.type("ball2");
+  hand.key(key_enter);
+  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("ball2"));
+  hand.frames(3);
+  hand.key('A', true);
+  hand.type("a.b");
+  hand.key(key_enter);
+  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("dots"));
+  hand.frames(3);
+  hand.key('A', true);
+  hand.type("left weight");
+  hand.one_step([&] { hand.key(key_enter); });
+  CHECK(hand.last_step() == "Rename ball1 to left weight");
+  CHECK(hand.joint("arm1").bodies[1] == "left weight");
+  CHECK(hand.app.selection().has({PartKind::body, "left weight"}));
+  CHECK(hand.app.mistakes.empty());
+}
+
+TEST_CASE("the outline selects one, some and a range, and shows what is pointed at") {
+  Hand hand;
+  hand.click("outline/bodies/spindle");
+  CHECK(hand.app.selection().parts == std::vector<Part>{{PartKind::body, "spindle"}});
+  CHECK(hand.app.view.hovered.kind == PartKind::body); // the hand still lies on it
+  hand.hold(false, true);
+  hand.click("outline/joints/spin");
+  hand.hold(false, false);
+  CHECK(hand.app.selection().parts.size() == hand.mechanism().bodies.size() + 1);
+  hand.hold(true, false);
+  hand.click("outline/bodies/spindle");
+  hand.hold(false, false);
+  CHECK_FALSE(hand.app.selection().has({PartKind::body, "spindle"}));
+  hand.click("outline/joints/spin");
+  CHECK(hand.app.selection().parts.size() == 1);
+  hand.click("outline/joints");
+  CHECK_FALSE(hand.app.widgets.contains("outline/joints/spin"));
+}
+
+TEST_CASE("ten thousand bodies are listed a screenful at a time and searched") {
+  Hand hand;
+  Mechanism many;
+  many.name = "Many";
+  for (int i = 0; i < 10000; ++i)
+    many.bodies.push_back(body_called("body" + std::to_string(i)));
+  open_document(hand.app, Document(many));
+  set_mode(hand.app, Mode::build);
+  hand.frames(2);
+  const auto listed = [&] {
+    return std::ranges::count_if(hand.app.widgets,
+                                 [](const auto& w) { return w.first.starts_with("outline/bodies/"); });
+  };
+  CHECK(listed() > 10);
+  CHECK(listed() < 100);
+  // What is selected elsewhere is brought into view.
+  hand.choose(PartKind::body, "body9000");
+  hand.frames(2);
+  CHECK(hand.app.widgets.contains("outline/bodies/body9000"));
+  hand.click("outline/search");
+  hand.type("ODY7777");
+  hand.frames(2);
+  CHECK(listed() == 1);
+  CHECK(hand.app.widgets.contains("outline/bodies/body7777"));
+}
+
+TEST_CASE("what is missing is told and leads to the part") {
+  Hand hand;
+  edit(hand.app, "Add", [](Mechanism& m, Selection& s) {
+    add_body(m, {.form = BodyForm::ball, .at = {0.3, 0, 0}});
+    add_body(m, {.form = BodyForm::ball, .at = {0.5, 0, 0}});
+    s = {};
+  });
+  hand.frames(2);
+  REQUIRE(hand.app.mistakes.size() == 2);
+  const std::string second = hand.mechanism().bodies.back().name;
+  SECTION("below the outline") {
+    hand.click("mistakes/1");
+  }
+  SECTION("in place of results") {
+    hand.click("results/mistakes/1");
+  }
+  CHECK(hand.app.selection().parts == std::vector<Part>{{PartKind::body, second}});
+}
+
+TEST_CASE("numbers are pinned as sliders with a range, and taken off again") {
+  Hand hand;
+  const std::string address = "bodies.ball1.mass";
+  hand.choose(PartKind::body, "ball1");
+  hand.reveal("inspector/pin/" + address);
+  hand.one_step([&] { hand.press_widget("inspector/pin/" + address); });
+  CHECK(hand.last_step() == "Pin mass of ball1");
+  CHECK(hand.mechanism().sliders.back() ==
+        Slider{.parameter = address, .from = 0, .to = 2, .description = ""});
+
+  set_mode(hand.app, Mode::explore);
+  select(hand.app, {});
+  hand.frames(2);
+  CHECK(hand.app.parameters[2].group == ParameterGroup::pinned);
+  const double before = settles(hand.app, "slide");
+  hand.one_step([&] { hand.drag("parameters/" + address, {0.5f, 0.5f}, {0.75f, 0.5f}); });
+  CHECK(hand.body("ball1").mass == Approx(1.5).margin(0.05));
+  CHECK(settles(hand.app, "slide") != before);
+
+  hand.point(hand.widget("parameters/" + address).center());
+  hand.click("parameters/" + address + "/gear");
+  hand.one_step([&] { hand.fill("parameters/" + address + "/range/to", "5 kg"); });
+  CHECK(hand.mechanism().sliders.back().to == 5);
+  hand.one_step([&] { hand.click("parameters/" + address + "/range/log"); });
+  CHECK(hand.mechanism().sliders.back().scale == SliderScale::log);
+  CHECK(hand.mechanism().sliders.back().from == 0.005);
+  hand.fill("parameters/" + address + "/range/from", "-1"); // no logarithm
+  CHECK(hand.mechanism().sliders.back().from == 0.005);
+  hand.one_step([&] { hand.click("parameters/" + address + "/range/pin"); });
+  CHECK(hand.mechanism().sliders.size() == 2);
+  CHECK(std::ranges::count(hand.app.parameters, address, &ParameterControl::address) == 0);
+}
+
+TEST_CASE("while exploring, the inspector's numbers are solved from the last answer") {
+  Hand hand;
+  set_mode(hand.app, Mode::explore);
+  hand.choose(PartKind::joint, "spin");
+  const double before = settles(hand.app, "slide");
+  hand.one_step([&] { hand.fill("inspector/drive/speed", "120 rpm"); });
+  CHECK(hand.joint("spin").coordinates[0].drive->speed == Approx(12.566370614359172));
+  CHECK(settles(hand.app, "slide") != before);
+}
+
+TEST_CASE("the history goes to any step") {
+  Hand hand;
+  hand.choose(PartKind::body, "ball1");
+  hand.fill("inspector/mass", "2");
+  hand.fill("inspector/mass", "3");
+  hand.fill("inspector/mass", "4");
+  hand.app.inspector.history = true;
+  hand.frames(3);
+  hand.click("history/1");
+  CHECK(hand.body("ball1").mass == 2);
+  CHECK(hand.app.document.steps().size() == 4);
+  hand.click("history/3");
+  CHECK(hand.body("ball1").mass == 4);
+  hand.click("history/0");
+  CHECK(hand.mechanism() == hand.app.document.saved());
+}
