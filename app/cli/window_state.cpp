@@ -7,7 +7,8 @@
 namespace flyball::cli {
 
 std::string window_state(const App& app) {
-  nlohmann::ordered_json state = {{"file", app.document.file().string()},
+  nlohmann::ordered_json state = {{"frame", ImGui::GetFrameCount()},
+                                  {"file", app.document.file().string()},
                                   {"name", app.mechanism().name},
                                   {"unsaved", app.document.unsaved()},
                                   {"autosave", app.files.autosave.path().string()},

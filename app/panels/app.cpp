@@ -20,7 +20,7 @@ void ask(App& app, bool another, bool warm) {
     app.waited = 0;
     return;
   }
-  app.awaited = app.live.ask(
+  app.awaited = app.asked = app.live.ask(
       {.mechanism = app.mechanism(), .time = app.playback.time, .another = another, .warm = warm});
 }
 
@@ -100,8 +100,8 @@ void open_document(App& app, Document document) {
     app.view.keep_direction = false;
   }
   app.view.hovered = {};
+  app.opened = app.asked + 1;
   take_document(app, true, false);
-  app.opened = app.awaited;
 }
 
 void edit(App& app, const std::string& name, const std::function<void(Mechanism&, Selection&)>& change) {

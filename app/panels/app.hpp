@@ -106,9 +106,9 @@ struct App {
   std::vector<Pose> drawn, poses; // drawn: of the document; poses: of the answer at playback.time; empty
                                   // where there is none
   bool moved_time = false; // playback.time changed: poses are to be asked for
-  // Tickets: of the newest request (the largest number where the document is not fit to be solved), and of
-  // the first since the document was opened.
-  std::uint64_t awaited = std::numeric_limits<std::uint64_t>::max(), opened = 0;
+  // Tickets: of the newest request (the largest number where the document is not fit to be solved), of the
+  // last that was asked, and of the first since the document was opened.
+  std::uint64_t awaited = std::numeric_limits<std::uint64_t>::max(), asked = 0, opened = 0;
   double waited = 0;         // s for an answer to it; 0 where there is one
   std::uint64_t gesture = 1; // of the hand: rises with every press of a button or key
 

@@ -142,7 +142,7 @@ void draw_handles(const App& app, const ViewInput& input, const std::vector<Hand
                   Handle lit) {
   for (const HandleShape& shape : shapes)
     draw_handle(app, input, shape, shape.handle == lit,
-                lit == Handle::none || shape.handle == lit ? 1.f : 0.45f);
+                lit == Handle::none || shape.handle == lit ? 1.f : 0.6f);
 }
 
 void draw_grabbed(const App& app, const ViewInput& input) {

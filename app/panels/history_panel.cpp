@@ -36,15 +36,18 @@ void step_row(App& app, std::size_t i, float height) {
 void history_panel(App& app) {
   const float s = app.scale;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, 110 * s}, ImGuiCond_FirstUseEver, {0.5f, 0});
-  ImGui::SetNextWindowSize({260 * s, std::min(320 * s, 0.7f * screen.y)}, ImGuiCond_FirstUseEver);
+  const PanelRect view = layout_of(app, screen.x, screen.y).view;
+  const float height = ImGui::GetTextLineHeight() + 8 * s, bar = ImGui::GetFrameHeight();
+  const float rows = static_cast<float>(std::min<std::size_t>(app.document.steps().size(), 14));
+  ImGui::SetNextWindowPos({view.x + view.width - 10 * s, view.y + 10 * s}, ImGuiCond_FirstUseEver, {1, 0});
+  ImGui::SetNextWindowSize({std::min(250 * s, view.width), bar + rows * height + 12 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {6 * s, 6 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
   if (ImGui::Begin("History", &app.inspector.history,
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav)) {
-    const float height = ImGui::GetTextLineHeight() + 8 * s;
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
+                       ImGuiWindowFlags_NoResize)) {
     const auto count = static_cast<int>(app.document.steps().size());
     const auto present = static_cast<int>(app.document.position());
     // The present step stays in view.

@@ -158,10 +158,18 @@ void mass_section(App& app, const Body& body) {
   if (follows)
     mass.set = [name = body.name](App& changed, double value) {
       edit(changed, "Set mass of " + name, [&](Mechanism& mechanism, Selection&) {
-        for (Body& same : mechanism.bodies)
-          if (same.name == name)
-            if (const auto density = density_of(same))
-              take_mass_properties(same, *density / same.mass * value);
+        for (Body& same : mechanism.bodies) {
+          if (same.name != name) continue;
+          const auto density = density_of(same);
+          if (value == 0) { // a drawing without mass: no density says so
+            same.mass = 0;
+            same.inertia = {};
+          } else if (density && same.mass > 0) {
+            take_mass_properties(same, *density / same.mass * value);
+          } else {
+            same.mass = value;
+          }
+        }
       });
     };
   quantity_row(app, "Mass", mass);
@@ -215,7 +223,7 @@ void body_inspector(App& app, const Body& body) {
                  move_body(changed, name, axis, value);
                }});
   if (check_row(
-          app, "inspector/mass alone", "Mass centre alone", app.inspector.mass_alone,
+          app, "inspector/mass alone", "Move mass centre alone", app.inspector.mass_alone,
           "Typing a position or rotation moves the mass centre and the axes of inertia, and leaves shapes "
           "and ends of springs where they are."))
     app.inspector.mass_alone = !app.inspector.mass_alone;

@@ -77,7 +77,7 @@ void cut_row(App& app, const Joint& joint) {
   const SystemSummary& summary = app.answer.summary;
   const bool can = joint.type != JointType::free && joint.type != JointType::distance;
   if (!can || (!joint.cut && summary.cut_joints.empty())) return;
-  constexpr std::array<std::string_view, 3> options{"chosen", "cut here", "not here"};
+  constexpr std::array<std::string_view, 3> options{"automatic", "cut here", "not cut here"};
   const std::size_t present = !joint.cut ? 0 : *joint.cut ? 1 : 2;
   const bool cut_now = std::ranges::find(summary.cut_joints, joint.name) != summary.cut_joints.end();
   const auto chosen =

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cmath>
 
 namespace flyball {
 
@@ -34,9 +36,9 @@ bool contains(const std::string& text, const std::string& part) {
 bool begin_choice(App& app, const std::string& name, const std::string& label, const std::string& chosen,
                   const char* help) {
   ImGui::SetNextItemWidth(row_label(app, label, help));
-  ImGui::PushID(name.c_str());
-  const bool open = ImGui::BeginCombo("##choice", chosen.c_str());
-  ImGui::PopID();
+  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
+  const bool open = ImGui::BeginCombo(("##" + name).c_str(), chosen.c_str());
+  ImGui::PopStyleColor();
   if (!open) {
     note_widget(app.widgets, name);
     help_on_hover(help);
@@ -199,7 +201,12 @@ bool check_row(App& app, const std::string& name, const std::string& label, bool
   bool now = on;
   ImGui::BeginDisabled(refused != nullptr);
   ImGui::PushID(name.c_str());
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.f, std::round(app.scale)));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {8 * app.scale, 1 * app.scale});
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 3 * app.scale);
   const bool clicked = ImGui::Checkbox(label.c_str(), &now);
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 3 * app.scale);
+  ImGui::PopStyleVar(2);
   ImGui::PopID();
   ImGui::EndDisabled();
   note_widget(app.widgets, name);
@@ -248,15 +255,8 @@ void body_pair_rows(App& app, const std::array<const char*, 2>& labels,
     }
     if (end == 0) continue;
     ImGui::SameLine(0, 0);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
-    ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
-    const float side = ImGui::GetFontSize() + 8 * app.scale;
-    if (ImGui::Button(icon::swap, {margin_width(app), side}))
+    if (margin_button(app, "inspector/bodies/swap", icon::swap, "Swap the two."))
       later(app, [take, bodies](App& changed) { take(changed, {bodies[1], bodies[0]}); });
-    ImGui::PopStyleColor();
-    ImGui::PopStyleVar();
-    note_widget(app.widgets, "inspector/bodies/swap");
-    help_on_hover("Swap the two.");
   }
 }
 

@@ -149,20 +149,11 @@ struct ShapeRows {
       edit_shape(app, body.name, index, "Shape",
                  [type = static_cast<ShapeType>(*chosen)](Body& b, Shape& s) { s = shape_as(s, type, b); });
     ImGui::SameLine(0, 0);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
-    ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
-    ImGui::PushID(name.c_str());
-    const float side = ImGui::GetFontSize() + 8 * app.scale;
-    if (ImGui::Button(icon::close, {margin_width(app), side}))
+    if (margin_button(app, name + "/remove", icon::close, "Take this shape away; the mass stays."))
       edit_body(app, "Remove a shape of " + body.name, body.name, [index = index](Body& same) {
         if (index < same.shapes.size())
           same.shapes.erase(same.shapes.begin() + static_cast<std::ptrdiff_t>(index));
       });
-    ImGui::PopID();
-    ImGui::PopStyleColor();
-    ImGui::PopStyleVar();
-    note_widget(app.widgets, name + "/remove");
-    help_on_hover("Take this shape away; the mass stays.");
   }
 };
 

@@ -180,14 +180,18 @@ void second_axis_row(App& app) {
   }
 }
 
-// Beside the point, within the view, and not over the point.
-void place_card(const App& app, const ViewInput& input, ImVec2 size) {
+// Beside the point, rather on the side where less of the mechanism is, and within the view.
+void place_card(App& app, const ViewInput& input, ImVec2 size) {
   const float s = app.scale, gap = 28 * s, edge = 8 * s;
   const PanelRect& rect = input.rect;
-  const auto at = input.on_screen(app.tool.joint->at).value_or(ImVec2(rect.x, rect.y));
-  ImVec2 from(at.x + gap, at.y - 100 * s); // not by its height, which changes with the type
-  if (from.x + size.x > rect.x + rect.width - edge) from.x = at.x - gap - size.x;
-  from.x = std::clamp(from.x, rect.x + edge, std::max(rect.x + edge, rect.x + rect.width - size.x - edge));
+  const ImVec2 corner(rect.x, rect.y);
+  const ImVec2 at = input.on_screen(app.tool.joint->at).value_or(corner);
+  const ImVec2 middle = input.on_screen(cached_scene(app).bounds.center()).value_or(corner);
+  const float right = at.x + gap, left = at.x - gap - size.x;
+  const float most = rect.x + rect.width - size.x - edge, least = rect.x + edge;
+  const bool to_left = left >= least && (at.x < middle.x || right > most);
+  ImVec2 from(to_left || (right > most && at.x > rect.x + rect.width / 2) ? left : right, at.y - 100 * s);
+  from.x = std::clamp(from.x, least, std::max(least, most));
   from.y = std::clamp(from.y, rect.y + edge, std::max(rect.y + edge, rect.y + rect.height - size.y - edge));
   ImGui::SetNextWindowPos({std::round(from.x), std::round(from.y)});
 }

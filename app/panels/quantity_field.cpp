@@ -121,7 +121,7 @@ std::string tooltip(const QuantityField& field) {
     std::string exact = with_unit(number_text(field.value), field.unit);
     if (field.unit == "rad") exact += " = " + short_text(field.value * degrees, 9) + "°";
     if (field.unit == "rad/s") exact += " = " + short_text(field.value * degrees / 6, 9) + " rpm";
-    line(exact + (field.standard ? ", as drawn" : ""));
+    line(exact + (field.standard ? ", as the scene does not say otherwise" : ""));
   }
   if (!field.address.empty()) line(field.address);
   return text;
@@ -201,6 +201,19 @@ float margin_width(const App& app) {
   return 20 * app.scale;
 }
 
+bool margin_button(App& app, const std::string& name, const char* icon, const char* help) {
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+  ImGui::PushID(name.c_str());
+  const bool pressed = ImGui::Button(icon, {margin_width(app), 0});
+  ImGui::PopID();
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
+  note_widget(app.widgets, name);
+  help_on_hover(help);
+  return pressed;
+}
+
 float label_width(const App& app) {
   return std::clamp(0.34f * ImGui::GetContentRegionAvail().x, 76 * app.scale, 130 * app.scale);
 }
@@ -253,17 +266,9 @@ void quantity_row(App& app, const std::string& label, const QuantityField& field
   const float letter = field.axis < 0 ? 0 : 14 * app.scale;
   scrub_label(app, label, field, labels - letter - (reset ? margin : 0));
   if (reset) {
-    const float side = ImGui::GetFrameHeight();
     ImGui::SameLine(0, 0);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
-    ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
-    ImGui::PushID(field.name.c_str());
-    if (ImGui::Button(icon::undo, {margin, side})) later(app, reset);
-    ImGui::PopID();
-    ImGui::PopStyleColor();
-    ImGui::PopStyleVar();
-    note_widget(app.widgets, field.name + "/reset");
-    help_on_hover("Leave it to the drawn pose.");
+    if (margin_button(app, field.name + "/reset", icon::undo, "Leave it to the drawn pose."))
+      later(app, reset);
   }
   if (field.axis >= 0) draw_letter(app, field.axis, {from.x + labels - letter, from.y});
   ImGui::SameLine(0, 0);

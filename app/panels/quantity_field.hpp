@@ -48,5 +48,7 @@ double hand_step(double value, const std::string& unit);
 float label_width(const App& app);
 // Pixels at the right end of rows, for pins and small buttons.
 float margin_width(const App& app);
+// A small button of an icon as wide as the margin.
+bool margin_button(App& app, const std::string& name, const char* icon, const char* help);
 
 } // namespace flyball

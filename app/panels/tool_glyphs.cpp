@@ -64,8 +64,8 @@ void draw_pointer(const GlyphPen& pen) {
 }
 
 void draw_turning(const GlyphPen& pen) {
-  pen.arc({0, 0}, 0.8f, -0.35f * pi, 1.3f * pi);
-  pen.head({0.1f, -0.98f}, 0.8f * pi, 0.6f);
+  pen.arc({0, 0}, 0.8f, -0.1f * pi, 1.4f * pi);
+  pen.head({0.32f, -0.8f}, 0.06f * pi, 0.7f);
   pen.fill({{-0.25f, -0.25f}, {0.25f, -0.25f}, {0.25f, 0.25f}, {-0.25f, 0.25f}});
 }
 
@@ -147,17 +147,13 @@ void draw_torque(const GlyphPen& pen) {
   pen.head({-0.2f, 0.8f}, pi, 0.66f);
 }
 
-// Lines that stream round something.
+// Wind: three lines, of which two curl.
 void draw_stream(const GlyphPen& pen) {
-  pen.disc({-0.3f, 0.02f}, 0.3f);
-  for (const float side : {-1.f, 1.f})
-    pen.line({{-0.95f, side * 0.3f},
-              {-0.62f, side * 0.42f},
-              {-0.3f, side * 0.62f},
-              {0.1f, side * 0.5f},
-              {0.5f, side * 0.28f},
-              {0.98f, side * 0.26f}});
-  pen.line({{0.25f, 0.02f}, {0.98f, 0.02f}});
+  pen.line({{-0.95f, -0.3f}, {0.3f, -0.3f}});
+  pen.arc({0.3f, -0.6f}, 0.3f, 0.5f * pi, -0.85f * pi);
+  pen.line({{-0.95f, 0.05f}, {0.95f, 0.05f}});
+  pen.line({{-0.6f, 0.4f}, {0.2f, 0.4f}});
+  pen.arc({0.2f, 0.67f}, 0.27f, -0.5f * pi, 0.85f * pi);
 }
 
 } // namespace

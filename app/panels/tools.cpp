@@ -121,7 +121,6 @@ void end_tool(App& app, const ViewInput& input) {
 
 std::string tool_hint(const App& app) {
   const ToolState& tool = app.tool;
-  const std::string turning = "  Shift + wheel button turns the view.";
   if (tool.grab)
     return std::string(tool.snap ? "Ctrl moves freely." : "Ctrl snaps.") +
            " A number can be typed. Esc takes it back.";
@@ -130,16 +129,15 @@ std::string tool_hint(const App& app) {
   case Tool::rotate:
     return app.selection().empty() ? "Select what is to be turned." : "Drag a ring. Esc ends.";
   case Tool::box: return "Drag a frame round the parts; Shift adds. Esc ends.";
-  case Tool::ball: return "Click where the centre is, or drag from there to the radius. Esc ends." + turning;
+  case Tool::ball: return "Click where the centre is, or drag from there to the radius. Esc ends.";
   case Tool::block:
-  case Tool::plate: return "Click where the centre is, or drag from there to a corner. Esc ends." + turning;
+  case Tool::plate: return "Click where the centre is, or drag from there to a corner. Esc ends.";
   case Tool::rod:
   case Tool::distance:
   case Tool::spring:
   case Tool::damper:
-    return (tool.first ? "Click the other end. Esc drops the first."
-                       : "Click one end, then the other. Esc ends.") +
-           turning;
+    return tool.first ? "Click the other end. Esc drops the first."
+                      : "Click one end, then the other. Esc ends.";
   case Tool::joint:
     if (!tool.joint) return "Click the point where two bodies meet. Esc ends.";
     return tool.joint->picking_axis

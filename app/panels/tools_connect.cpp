@@ -85,7 +85,7 @@ void use_connecting(App& app, const ViewInput& input) {
     const Aim& from = *tool.first;
     draw_between(app, input, from.point, aim.point);
     draw_aim(app, input, aim,
-             "length " + length_text((aim.point - from.point).norm(), 0.1 * aim.step) + " m" +
+             "length " + short_text((aim.point - from.point).norm(), 4) + " m" +
                  (tool.tool == Tool::rod || aim.body == ground_name ? "" : "  on " + aim.body));
   } else {
     draw_aim(app, input, aim);

@@ -65,8 +65,8 @@ NewBody drawn_out(const ViewInput& input, BodyForm form, const Aim& from, const 
 
 std::string size_text(const NewBody& body, double step) {
   if (body.form == BodyForm::ball) return "radius " + length_text(body.radius, step) + " m";
-  return length_text(body.size.x(), step / 100) + " × " + length_text(body.size.y(), step / 100) + " × " +
-         length_text(body.size.z(), step / 100) + " m";
+  return short_text(body.size.x(), 4) + " × " + short_text(body.size.y(), 4) + " × " +
+         short_text(body.size.z(), 4) + " m";
 }
 
 } // namespace

@@ -38,7 +38,10 @@ void begin(App& app, const TextField& field, std::string typed) {
 
 // Below the field, wherever the mouse is.
 void show_mistake(App& app, const std::string& mistake) {
-  ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + 3 * app.scale});
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+  const bool right = from.x + to.x > ImGui::GetIO().DisplaySize.x;
+  ImGui::SetNextWindowPos({right ? to.x : from.x, to.y + 3 * app.scale}, ImGuiCond_Always,
+                          {right ? 1.f : 0.f, 0});
   ImGui::BeginTooltip();
   ImGui::PushFont(app.fonts.text);
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 20);

@@ -85,6 +85,7 @@ void apply_style(Theme theme, float scale) {
   colors[ImGuiCol_WindowBg] = c.panel;
   colors[ImGuiCol_ChildBg] = with_alpha(c.panel, 0);
   colors[ImGuiCol_PopupBg] = c.panel;
+  colors[ImGuiCol_MenuBarBg] = c.panel;
   colors[ImGuiCol_Border] = c.border;
   colors[ImGuiCol_Separator] = c.border;
   colors[ImGuiCol_SeparatorHovered] = with_alpha(c.accent, 0.7f);

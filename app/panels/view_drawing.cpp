@@ -4,6 +4,8 @@
 #include "app/panels/widgets.hpp"
 #include "app/viewport/snapping.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -102,8 +104,11 @@ void draw_tag(const App& app, const ViewInput& input, Vec2 beside, const std::st
 }
 
 std::string length_text(double metres, double step) {
-  if (!(step > 0)) return short_text(metres, 4);
-  return short_text(round_to(metres, 1e-3 * step), 9);
+  if (metres == 0 || !(step > 0) || std::abs(metres - round_to(metres, step)) > 1e-9 * step)
+    return short_text(metres, 4);
+  // On the grid always as many digits, so that the label keeps its width.
+  const int places = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+  return fmt::format("{:.{}f}", metres, places);
 }
 
 std::string place_text(const Vec3& point, double step) {

@@ -18,7 +18,9 @@ void draw_line(const App& app, const PanelRect& rect, const std::string& text, c
   if (text.empty()) return;
   const UiColors& colors = colors_of(app);
   const float s = app.scale, pad = 9 * s;
-  const float room = std::max(rect.width - 24 * s - 2 * pad, 40 * s);
+  // Clear of the axes in the corner.
+  const float margin = std::min(96 * s, rect.width / 8);
+  const float room = std::max(rect.width - 2 * margin - 2 * pad, 40 * s);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, room);
   const float x = std::round(rect.x + (rect.width - size.x) / 2);
   y -= size.y + 8 * s;

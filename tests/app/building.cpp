@@ -85,14 +85,19 @@ class Builder {
     return 2 * camera.distance * std::tan(camera.field_of_view / 2);
   }
 
-  // Scrolls the inspector until the field can be seen.
+  // Scrolls the inspector until the field can be seen as a whole.
   void reveal(const std::string& name) {
-    if (!name.starts_with("inspector/") || robot_.app.widgets.contains(name)) return;
-    const PanelRect panel = layout_of(robot_.app, static_cast<float>(robot_.size.width),
-                                      static_cast<float>(robot_.size.height))
-                                .inspector;
+    if (!name.starts_with("inspector/")) return;
+    const PanelRect panel =
+        layout_of(robot_.app, static_cast<float>(robot_.size.width), static_cast<float>(robot_.size.height))
+            .inspector;
+    const auto seen = [&] {
+      const auto found = robot_.app.widgets.find(name);
+      return found != robot_.app.widgets.end() && found->second.from.y >= panel.y &&
+             found->second.to.y <= panel.y + panel.height;
+    };
     for (const float notches : {20.f, -1.f})
-      for (int i = 0; i < 40 && !robot_.app.widgets.contains(name); ++i) {
+      for (int i = 0; i < 40 && !seen(); ++i) {
         robot_.point({panel.x + panel.width - 12, panel.y + panel.height / 2});
         ImGui::GetIO().MouseWheel = notches;
         robot_.frames(2);

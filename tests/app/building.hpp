@@ -1,6 +1,6 @@
-// The paper's two mechanisms built from an empty document as a person builds them: with the mouse in the view,
-// the keys and the inspector's fields, nothing else. Tests read the answer; the tutorial takes pictures on
-// the way.
+// The paper's two mechanisms built from an empty document as a person builds them: with the mouse in the
+// view, the keys and the inspector's fields, nothing else. Tests read the answer; the tutorial takes pictures
+// on the way.
 #pragma once
 
 #include "robot.hpp"

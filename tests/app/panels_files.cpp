@@ -62,6 +62,13 @@ fs::path governor_in(const TemporaryFolder& folder, const char* name = "governor
   return folder / name;
 }
 
+Body a_body(const char* name) {
+  Body body;
+  body.name = name;
+  body.mass = 1;
+  return body;
+}
+
 double speed_in(const fs::path& file) {
   return get_parameter(parse_scene(read_bytes(file)), speed);
 }
@@ -92,7 +99,7 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
   CHECK_FALSE(app.dialog.showing); // nothing would be lost
   CHECK(app.mechanism() == Document::empty_mechanism());
   CHECK(document_name(app) == "Untitled");
-  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back({.name = "ball", .mass = 1}); });
+  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(a_body("ball")); });
   CHECK(app.document.unsaved());
 
   robot.key('S', true);
@@ -272,7 +279,7 @@ TEST_CASE("an untitled document can be saved on the way out, or not after all") 
   FileRobot robot(folder);
   App& app = robot.app;
   robot.key('N', true);
-  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back({.name = "ball", .mass = 1}); });
+  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(a_body("ball")); });
   robot.key('Q', true);
   robot.click("unsaved/save");
   robot.frames(2);
@@ -458,7 +465,7 @@ TEST_CASE("untitled work that a crash has left is offered at the next start") {
     robot.key('N', true);
     edit(robot.app, "Add", [&](Mechanism& m, Selection&) {
       m.name = name;
-      m.bodies.push_back({.name = name, .mass = 1});
+      m.bodies.push_back(a_body(name));
     });
     robot.pass(2);
   }

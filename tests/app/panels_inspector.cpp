@@ -113,8 +113,8 @@ TEST_CASE("a body's numbers are typed, each a step") {
   hand.one_step([&] { hand.fill("inspector/mass", "1500 g"); });
   CHECK(hand.body("ball1").mass == 1.5);
   CHECK(hand.last_step() == "Set mass of ball1");
-  hand.one_step([&] { hand.fill("inspector/inertia/yy", "0.2*0.5"); });
-  CHECK(hand.body("ball1").inertia[1] == 0.1);
+  hand.one_step([&] { hand.fill("inspector/inertia/yy", "0.3*0.5"); });
+  CHECK(hand.body("ball1").inertia[1] == 0.15);
   hand.press_widget("inspector/products");
   hand.one_step([&] { hand.fill("inspector/inertia/xy", "1e-3"); });
   CHECK(hand.body("ball1").inertia[3] == 1e-3);

@@ -6,12 +6,12 @@
 
 namespace flyball::test {
 
-Robot::Robot(PixelSize wanted)
+Robot::Robot(PixelSize wanted, const NumberStyle& numbers)
     : app({.mode = LiveSolver::Mode::immediate,
            .on_news = {},
            .scenes = FLYBALL_ASSETS "/scenes",
            .theme = Theme::light,
-           .numbers = {}}),
+           .numbers = numbers}),
       stage(app, 1), size(wanted) {
   app.view.samples = 1;
   ImGuiIO& io = ImGui::GetIO();

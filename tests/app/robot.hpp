@@ -12,7 +12,7 @@ namespace flyball::test {
 
 class Robot {
  public:
-  explicit Robot(PixelSize size = {900, 600});
+  explicit Robot(PixelSize size = {900, 600}, const NumberStyle& numbers = {});
 
   OffscreenContext context;
   App app;

@@ -21,7 +21,7 @@ def start_display():
     """Xvfb on a number of its own choice; returns the process and the number."""
     read, write = os.pipe()
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
+        ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-noreset"],
         pass_fds=[write], stderr=subprocess.DEVNULL)
     os.close(write)
     with os.fdopen(read) as pipe:
@@ -66,9 +66,13 @@ class Window:
         raise SystemExit(f"never happened: {what}; the last state was {self.state()}")
 
     def do(self, *words):
-        """One xdotool command, then time for a few frames: ImGui 1.86 sees one change of input a frame."""
+        """One xdotool command, then a few frames: ImGui 1.86 sees one change of input a frame."""
+        before = self.state().get("frame", 0)
         subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True)
-        time.sleep(0.3)
+        end = time.time() + 3  # what changes nothing draws nothing
+        while self.state().get("frame", 0) < before + 3 and time.time() < end:
+            time.sleep(0.05)
+        time.sleep(0.1)
 
     def place(self, widget, share=0.5):
         left, top, right, bottom = self.wait(f"{widget} is there", lambda s: widget in s["widgets"])["widgets"][widget]

@@ -1,6 +1,7 @@
 // Every shipped scene, as the view and as the whole interface.
 #include "stored_picture.hpp"
 
+#include "app/panels/file_commands.hpp"
 #include "app/panels/panels.hpp"
 #include "app/render/offscreen.hpp"
 #include "tests/catch.hpp"

@@ -1,0 +1,149 @@
+// The editor in its main states, brought about by mouse and keys.
+#include "building.hpp"
+#include "stored_picture.hpp"
+
+#include "app/panels/commands.hpp"
+#include "app/panels/file_commands.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr PixelSize window{1200, 760};
+
+// A robot whose pictures come out the same everywhere.
+class Hand : public Robot {
+ public:
+  explicit Hand(const char* scene = nullptr) : Robot(window, steady_options().numbers) {
+    if (scene)
+      open_scene(app, std::filesystem::path(FLYBALL_ASSETS "/scenes") / scene);
+    else
+      open_document(app, Document());
+    set_mode(app, Mode::build);
+    frames(3);
+  }
+  void choose(PartKind kind, const char* name) {
+    Selection selection;
+    selection.set({kind, name});
+    select(app, selection);
+    frames(3);
+  }
+  void check(const std::string& name) {
+    point({-1000, -1000}); // away from whatever would light up
+    frames(11);            // shades behind dialogs fade in
+    const Comparison comparison = compare_with_stored(name, picture());
+    INFO(name << ": " << comparison.message);
+    CHECK(comparison.same);
+  }
+};
+
+} // namespace
+
+TEST_CASE("an empty document says what to do first") {
+  Hand hand;
+  hand.check("editor-empty");
+}
+
+TEST_CASE("a joint is being placed") {
+  Hand hand("governor.json");
+  hand.key('1');
+  hand.key('J');
+  hand.click_at({0, 0.1256, 0});
+  REQUIRE(hand.app.tool.joint);
+  hand.check("editor-placing-joint");
+}
+
+TEST_CASE("each kind of part has its inspector") {
+  SECTION("body") {
+    Hand hand("governor.json");
+    hand.choose(PartKind::body, "ball1");
+    hand.check("inspector-body");
+  }
+  SECTION("joint") {
+    Hand hand("governor.json");
+    hand.choose(PartKind::joint, "slide");
+    hand.check("inspector-joint");
+  }
+  SECTION("distance joint") {
+    Hand hand("governor.json");
+    hand.choose(PartKind::joint, "link1");
+    hand.check("inspector-distance");
+  }
+  SECTION("spring") {
+    Hand hand("pendulum.json");
+    hand.key('1');
+    hand.key('S');
+    hand.click_at({1, 0, 0});
+    hand.click_at({1, -1, 0});
+    REQUIRE(hand.app.mechanism().forces.size() == 1);
+    hand.check("inspector-spring");
+  }
+  SECTION("scene") {
+    Hand hand("conical_pendulum.json");
+    hand.check("inspector-scene");
+  }
+  SECTION("several parts") {
+    Hand hand("governor.json");
+    hand.key('A', true);
+    hand.check("inspector-several");
+  }
+}
+
+TEST_CASE("an unfinished mechanism says what is missing") {
+  Hand hand("governor.json");
+  hand.choose(PartKind::joint, "spin");
+  hand.key(keys::del);
+  REQUIRE_FALSE(hand.app.mistakes.empty());
+  hand.check("editor-unfinished");
+}
+
+TEST_CASE("the command palette finds commands by words") {
+  Hand hand("governor.json");
+  hand.key('P', true);
+  hand.frames(2);
+  hand.type("copy");
+  hand.check("command-palette");
+}
+
+TEST_CASE("the sheet of shortcuts lists every key") {
+  Hand hand("governor.json");
+  hand.key('?');
+  hand.check("shortcut-sheet");
+}
+
+TEST_CASE("the examples have pictures") {
+  Hand hand;
+  show_gallery(hand.app);
+  hand.frames(30);
+  hand.check("gallery");
+}
+
+TEST_CASE("parts are turned with rings") {
+  Hand hand("governor.json");
+  hand.choose(PartKind::body, "ball2");
+  hand.key('R');
+  hand.check("editor-rotating");
+}
+
+TEST_CASE("the tutorial's pictures are what its steps lead to") {
+  Robot robot(building_size, steady_options().numbers);
+  robot.app.view.samples = 4;
+  build_governor(robot, [&](const std::string& step) {
+    for (const char* shown : {"empty", "bodies", "joining hinge1", "one arm", "mirror", "explored"}) {
+      if (step != shown) continue;
+      const ImVec2 hand = ImGui::GetIO().MousePos;
+      robot.point({-1000, -1000});
+      robot.frames(11);
+      std::string name = "tutorial-" + step;
+      std::ranges::replace(name, ' ', '-');
+      const Comparison comparison = compare_with_stored(name, robot.picture());
+      INFO(name << ": " << comparison.message);
+      CHECK(comparison.same);
+      robot.point(hand);
+    }
+  });
+}
