@@ -37,15 +37,33 @@ class Input {
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
-  // The interface counts in pixels; on some desktops the mouse counts in points.
-  void read(const Window& window) {
+  // The interface counts in pixels; on some desktops the mouse counts in points. `keys` went down since the
+  // last frame: Dear ImGui 1.86 would not see one that is up again by now.
+  void read(const Window& window, const std::vector<KeyPress>& keys) {
     ImGui_ImplGlfw_NewFrame();
+    hold(window, keys);
     ImGuiIO& io = ImGui::GetIO();
     const auto points = window.size(), pixels = window.framebuffer_size();
     if (points.width <= 0 || points.width == pixels.width || !ImGui::IsMousePosValid()) return;
     const float ratio = static_cast<float>(pixels.width) / static_cast<float>(points.width);
     io.MousePos = {io.MousePos.x * ratio, io.MousePos.y * ratio};
   }
+
+ private:
+  void hold(const Window& window, const std::vector<KeyPress>& keys) {
+    ImGuiIO& io = ImGui::GetIO();
+    for (const int key : held_)
+      io.KeysDown[key] = glfwGetKey(window.handle(), key) == GLFW_PRESS;
+    held_.clear();
+    for (const KeyPress& press : keys) {
+      const bool known = press.key >= GLFW_KEY_SPACE && press.key <= GLFW_KEY_LAST;
+      if (!known || io.KeysDown[press.key]) continue;
+      io.KeysDown[press.key] = true;
+      held_.push_back(press.key);
+    }
+  }
+
+  std::vector<int> held_; // shown as down for one frame
 };
 
 App& app_of(GLFWwindow* window) {
@@ -122,7 +140,7 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
       continue;
     }
     if (app.scale != scale()) stage.set_scale(app, scale());
-    input.read(window);
+    input.read(window, app.keys);
     stage.frame(app, size, seconds);
     bind_window_framebuffer(size.width, size.height);
     stage.render(app, size);

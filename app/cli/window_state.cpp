@@ -7,22 +7,40 @@
 namespace flyball::cli {
 
 std::string window_state(const App& app) {
-  nlohmann::ordered_json state = {{"frame", ImGui::GetFrameCount()},
-                                  {"file", app.document.file().string()},
-                                  {"name", app.mechanism().name},
-                                  {"unsaved", app.document.unsaved()},
-                                  {"autosave", app.files.autosave.path().string()},
-                                  {"leftovers", app.files.leftovers.size()},
-                                  {"problem", app.problem},
-                                  {"notice", app.notice},
-                                  {"dialog", app.dialog.showing},
-                                  {"playing", app.playback.playing},
-                                  {"answer", app.answer.ticket},
-                                  {"status", std::string(word(app.answer.solution.status))}};
+  nlohmann::ordered_json state = {
+      {"frame", ImGui::GetFrameCount()},
+      {"file", app.document.file().string()},
+      {"name", app.mechanism().name},
+      {"unsaved", app.document.unsaved()},
+      {"autosave", app.files.autosave.path().string()},
+      {"leftovers", app.files.leftovers.size()},
+      {"problem", app.problem},
+      {"notice", app.notice},
+      {"dialog", app.dialog.showing},
+      {"tool", static_cast<int>(app.tool.tool)},
+      {"typing", app.inspector.typing.name},
+      {"selected", app.selection().parts.empty() ? "" : app.selection().parts.back().name},
+      {"mode", app.mode == Mode::build ? "build" : "explore"},
+      {"playing", app.playback.playing},
+      {"answer", app.answer.ticket},
+      {"status", std::string(word(app.answer.solution.status))}};
   for (const ParameterControl& control : app.parameters)
     state["parameters"][control.address] = get_parameter(app.mechanism(), control.address);
   for (const CoordinateSolution& c : app.answer.solution.coordinates)
     state["coordinates"][c.count > 1 ? c.joint + "." + std::to_string(c.index) : c.joint] = c.value;
+  // Where points of the plane z = 0 are, while looked at from the front.
+  if (const auto view = app.widgets.find("view"); view != app.widgets.end()) {
+    const WidgetRect& rect = view->second;
+    const ViewSize size{static_cast<double>(rect.to.x - rect.from.x),
+                        static_cast<double>(rect.to.y - rect.from.y)};
+    const auto place = [&](const Vec3& world) -> nlohmann::ordered_json {
+      const auto at = app.view.camera.project(world, size);
+      if (!at) return nullptr;
+      return {static_cast<double>(rect.from.x) + at->x(), static_cast<double>(rect.from.y) + at->y()};
+    };
+    state["screen"] = {
+        {"origin", place(Vec3::Zero())}, {"x", place(Vec3::UnitX())}, {"y", place(Vec3::UnitY())}};
+  }
   for (const auto& [name, rect] : app.widgets)
     state["widgets"][name] = {rect.from.x, rect.from.y, rect.to.x, rect.to.y};
   return state.dump(1) + "\n";

@@ -33,9 +33,9 @@ void build_gui(App& app) {
   const Layout layout = layout_of(app, size.x, size.y);
   // ImGui puts windows that never come to the front behind those it has: the first is the topmost.
   drag_splitters(app, layout);
+  welcome(app, layout.view);
   viewport_panel(app, layout.view);
   file_banner(app, layout.view);
-  welcome(app, layout.view);
   show(app, outline_panel, layout.outline);
   show(app, parameters_panel, layout.parameters);
   show(app, inspector_panel, layout.inspector);

@@ -60,7 +60,7 @@ bool command_row(App& app, const Command& command, bool chosen) {
   const float width = ImGui::GetContentRegionAvail().x;
   const std::string keys = key_text(command.key);
   ImGui::PushID(command.id);
-  ImGui::PushStyleColor(ImGuiCol_Text, enabled ? colors.text : colors.faint);
+  ImGui::PushStyleColor(ImGuiCol_Text, enabled ? colors.text : colors.dim);
   const bool clicked =
       ImGui::Selectable(label_of(app, command).c_str(), chosen, ImGuiSelectableFlags_DontClosePopups) &&
       enabled;
@@ -71,7 +71,8 @@ bool command_row(App& app, const Command& command, bool chosen) {
   const float gap = 18 * app.scale;
   ImGui::SameLine(label_width + gap);
   ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
-  clipped_text(command.help, std::max(width - label_width - keys_width - 2 * gap, 1.f));
+  clipped_text(enabled ? command.help : "Not now: there is nothing selected that it applies to.",
+               std::max(width - label_width - keys_width - 2 * gap, 1.f));
   ImGui::SameLine(width - keys_width);
   ImGui::TextUnformatted(keys.c_str());
   ImGui::PopStyleColor();
@@ -92,7 +93,13 @@ void command_palette(App& app) {
   }
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, 70 * s}, ImGuiCond_Always, {0.5f, 0});
-  ImGui::SetNextWindowSize({std::min(620 * s, window.x - 20 * s), std::min(430 * s, window.y - 90 * s)});
+  const std::vector<const Command*> found = found_commands(app);
+  const int count = static_cast<int>(found.size());
+  // As tall as what is found, up to a dozen rows.
+  const float row = ImGui::GetTextLineHeight() + ImGui::GetStyle().ItemSpacing.y;
+  const float list = row * static_cast<float>(std::clamp(count, 1, 14)) + 4 * s;
+  const float height = list + ImGui::GetFrameHeightWithSpacing() + 24 * s;
+  ImGui::SetNextWindowSize({std::min(660 * s, window.x - 20 * s), std::min(height, window.y - 90 * s)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {12 * s, 12 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   state.palette_showing =
@@ -104,8 +111,6 @@ void command_palette(App& app) {
   ImGui::SetNextItemWidth(-1);
   if (ImGui::InputTextWithHint("##search", "Find a command", &state.search)) state.chosen = 0;
   note_widget(app.widgets, "palette/search");
-  const std::vector<const Command*> found = found_commands(app);
-  const int count = static_cast<int>(found.size());
   bool accepted = false, moved = false, left = escape_pressed();
   for (const KeyPress& key : std::exchange(app.keys, {})) {
     if (key.key == keys::enter) accepted = true;

@@ -9,6 +9,7 @@
 #include "engine/mechanism/scene.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 namespace flyball {
@@ -17,7 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float pad = 8, text_lines = 2; // points; lines of description below a name
+constexpr float pad = 8, gap = 12;  // points
+constexpr int about_lines = 3;      // below a name
+constexpr float about_size = 0.88f; // of the text's
 
 std::string first_sentence(const std::string& text) {
   return text.substr(0, std::min(text.find(". "), text.size()) + 1);
@@ -41,9 +44,12 @@ std::vector<SceneCard> read_cards(const fs::path& folder) {
   return cards;
 }
 
+float about_height(const App& app) {
+  return about_lines * std::round(about_size * app.fonts.text->FontSize);
+}
+
 float card_height(const App& app) {
-  return scene_picture_height * app.scale + (1 + text_lines) * ImGui::GetTextLineHeightWithSpacing() +
-         pad * app.scale;
+  return (scene_picture_height + 2 * pad) * app.scale + ImGui::GetTextLineHeight() + about_height(app);
 }
 
 // Returns whether it was clicked.
@@ -69,20 +75,19 @@ bool show_card(App& app, int i, float width) {
                          IM_COL32_WHITE, 6 * s, ImDrawFlags_RoundCornersTop);
   list.AddRect(from, to, packed(chosen ? colors.accent : colors.border), 6 * s, 0,
                std::max(1.f, std::round((chosen ? 2.f : 1.f) * s)));
-  const float x = from.x + pad * s, room = width - 2 * pad * s;
-  float y = bottom + 5 * s;
-  list.PushClipRect(from, {to.x - pad * s, to.y}, true);
-  list.AddText(app.fonts.strong, app.fonts.strong->FontSize, {x, y}, packed(colors.text),
-               card.mechanism.name.c_str());
-  y += ImGui::GetTextLineHeight() + 2 * s;
+  const ImVec2 text(from.x + pad * s, bottom + 5 * s);
+  const float room = width - 2 * pad * s;
   ImFont* font = app.fonts.text;
-  const float small = std::round(0.88f * font->FontSize);
-  list.PushClipRect({x, y}, {to.x, y + text_lines * small + 2 * s}, true);
-  list.AddText(font, small, {x, y}, packed(colors.dim), card.about.c_str(), nullptr, room);
+  const float size = std::round(about_size * font->FontSize);
+  list.PushClipRect(from, {to.x - pad * s, to.y}, true);
+  list.AddText(app.fonts.strong, app.fonts.strong->FontSize, text, packed(colors.text),
+               card.mechanism.name.c_str());
+  const ImVec2 about(text.x, text.y + ImGui::GetTextLineHeight() + 2 * s);
+  list.PushClipRect(about, {to.x, about.y + about_height(app) + s}, true);
+  list.AddText(font, size, about, packed(colors.dim), card.about.c_str(), nullptr, room);
   list.PopClipRect();
   list.PopClipRect();
-  if (hovered && ImGui::CalcTextSize(card.about.c_str(), nullptr, false, room).y * small >
-                     font->FontSize * (text_lines * small + 2 * s))
+  if (hovered && font->CalcTextSizeA(size, FLT_MAX, room, card.about.c_str()).y > about_height(app) + s)
     help_on_hover(card.about.c_str());
   return clicked;
 }
@@ -111,18 +116,21 @@ void gallery_dialog(App& app) {
   GalleryState& gallery = app.files.gallery;
   const float s = app.scale;
   gallery.showing = false;
-  if (!begin_dialog(app, Dialog::gallery, "Examples", 3 * scene_picture_width + 84)) return;
+  if (!begin_dialog(app, Dialog::gallery, "Examples", 3 * scene_picture_width + 2 * gap + 47)) return;
   gallery.showing = true;
   const int count = static_cast<int>(gallery.cards.size());
-  const float gap = 12 * s, bar = ImGui::GetStyle().ScrollbarSize;
-  const float room = ImGui::GetContentRegionAvail().x - bar;
-  const int columns = std::max(1, static_cast<int>((room + gap) / (scene_picture_width * s * 0.8f + gap)));
-  const float width = std::min((room + gap) / static_cast<float>(columns) - gap, scene_picture_width * s);
+  const float between = gap * s;
+  const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
+  const int columns =
+      std::max(1, static_cast<int>((room + between) / (scene_picture_width * s * 0.8f + between)));
+  const float width =
+      std::min((room + between) / static_cast<float>(columns) - between, scene_picture_width * s);
   const float rows = std::ceil(static_cast<float>(count) / static_cast<float>(columns));
-  const float height = std::min(rows * (card_height(app) + gap), ImGui::GetIO().DisplaySize.y - 150 * s);
+  const float height =
+      std::min(rows * (card_height(app) + between) - between, ImGui::GetIO().DisplaySize.y - 150 * s);
   const bool moved = move_by_keys(app, columns);
   fs::path opened;
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {between, between});
   ImGui::BeginChild("cards", {0, std::max(height, 60 * s)});
   if (count == 0) paragraph("There are no examples beside this program.", colors_of(app).dim);
   for (int i = 0; i < count; ++i) {

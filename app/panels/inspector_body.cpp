@@ -37,7 +37,7 @@ Vec3 turns_of(const Quat& rotation) {
   const double z = locked ? std::atan2(-r(0, 1), r(1, 1)) : std::atan2(r(1, 0), r(0, 0));
   Vec3 turns = Vec3(x, y, z) * degrees;
   for (double& turn : turns)
-    turn = std::strtod(fmt::format("{:.9f}", turn).c_str(), nullptr);
+    turn = std::strtod(fmt::format("{:.9f}", turn).c_str(), nullptr) + 0.0; // no negative zero
   return turns;
 }
 

@@ -12,27 +12,11 @@ std::string address_of(const Force& force, const std::string& key) {
 }
 
 void spring_rows(App& app, const Force& force) {
-  body_pair_rows(app, {"From", "To"}, force.bodies,
-                 [name = force.name](App& changed, const std::array<std::string, 2>& bodies) {
-                   edit_force(changed, "Bodies of " + name, name, [bodies](Force& same) {
-                     // The ends stay on their bodies.
-                     if (same.bodies[0] == bodies[1] && same.bodies[1] == bodies[0])
-                       std::swap(same.points[0], same.points[1]);
-                     same.bodies = bodies;
-                   });
-                 });
-  vector_rows(app, "From",
-              {.name = "inspector/points/0",
-               .value = force.points[0],
-               .unit = "m",
-               .help = "The end on the first body, in the world, as drawn.",
-               .address = address_of(force, "points.0")});
-  vector_rows(app, "To",
-              {.name = "inspector/points/1",
-               .value = force.points[1],
-               .unit = "m",
-               .help = "The end on the second body, in the world, as drawn.",
-               .address = address_of(force, "points.1")});
+  const Part part{PartKind::force, force.name};
+  for (std::size_t end = 0; end < 2; ++end) {
+    body_end_row(app, part, force.bodies, end, end == 0 ? "From" : "To");
+    end_point_rows(app, part, force.points, end);
+  }
   quantity_row(app, "Stiffness",
                {.name = "inspector/stiffness",
                 .value = force.stiffness,

@@ -100,17 +100,9 @@ void joint_inspector(App& app, const Joint& joint) {
            });
   if (joint.type == JointType::gear) return gear_rows(app, joint);
   type_row(app, joint);
-  const bool distance = joint.type == JointType::distance;
-  body_pair_rows(app, {distance ? "From" : "Parent", distance ? "To" : "Child"}, joint.bodies,
-                 [name = joint.name](App& changed, const std::array<std::string, 2>& bodies) {
-                   edit_joint(changed, "Bodies of " + name, name, [bodies](Joint& same) {
-                     // The ends of a distance joint stay on their bodies.
-                     if (same.bodies[0] == bodies[1] && same.bodies[1] == bodies[0])
-                       std::swap(same.points[0], same.points[1]);
-                     same.bodies = bodies;
-                   });
-                 });
-  if (distance) return distance_rows(app, joint);
+  if (joint.type == JointType::distance) return distance_rows(app, joint);
+  body_end_row(app, {PartKind::joint, joint.name}, joint.bodies, 0, "Parent");
+  body_end_row(app, {PartKind::joint, joint.name}, joint.bodies, 1, "Child");
   vector_rows(app, "Point",
               {.name = "inspector/at",
                .value = joint.at,
@@ -123,19 +115,11 @@ void joint_inspector(App& app, const Joint& joint) {
 }
 
 void distance_rows(App& app, const Joint& joint) {
-  const std::string points = address_of(joint, "points.");
-  vector_rows(app, "From",
-              {.name = "inspector/points/0",
-               .value = joint.points[0],
-               .unit = "m",
-               .help = "The end on the first body, in the world, as drawn.",
-               .address = points + "0"});
-  vector_rows(app, "To",
-              {.name = "inspector/points/1",
-               .value = joint.points[1],
-               .unit = "m",
-               .help = "The end on the second body, in the world, as drawn.",
-               .address = points + "1"});
+  const Part part{PartKind::joint, joint.name};
+  for (std::size_t end = 0; end < 2; ++end) {
+    body_end_row(app, part, joint.bodies, end, end == 0 ? "From" : "To");
+    end_point_rows(app, part, joint.points, end);
+  }
   std::function<void(App&)> reset;
   if (joint.length)
     reset = [name = joint.name](App& changed) {

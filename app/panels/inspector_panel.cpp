@@ -59,9 +59,10 @@ void inspector_panel(App& app, const PanelRect& rect) {
   begin_panel("inspector", rect,
               app.inspector.typing.name.empty() ? static_cast<int>(ImGuiWindowFlags_NoNavInputs) : 0);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, ImGui::GetStyle().FramePadding.y});
   title(app);
   contents(app);
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(2);
   ImGui::End();
 }
 

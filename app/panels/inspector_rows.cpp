@@ -46,6 +46,22 @@ bool begin_choice(App& app, const std::string& name, const std::string& label, c
   return open;
 }
 
+// Of a joint or force, whose fields are called the same.
+template <class Change>
+void change_bodies(App& app, const Part& part, const Change& change) {
+  if (part.kind == PartKind::joint)
+    edit_joint(app, "Bodies of " + part.name, part.name, change);
+  else
+    edit_force(app, "Bodies of " + part.name, part.name, change);
+}
+
+void swap_bodies(App& app, const Part& part) {
+  change_bodies(app, part, [](auto& held) {
+    std::swap(held.bodies[0], held.bodies[1]);
+    std::swap(held.points[0], held.points[1]);
+  });
+}
+
 } // namespace
 
 void edit_later(App& app, const std::string& step, std::function<void(Mechanism&, Selection&)> change) {
@@ -238,26 +254,31 @@ std::vector<std::string> body_choices(const Mechanism& mechanism, bool ground) {
   return names;
 }
 
-void body_pair_rows(App& app, const std::array<const char*, 2>& labels,
-                    const std::array<std::string, 2>& bodies,
-                    const std::function<void(App&, std::array<std::string, 2>)>& take) {
+void body_end_row(App& app, const Part& part, const std::array<std::string, 2>& bodies, std::size_t end,
+                  const char* label) {
   const std::vector<std::string> choices = body_choices(app.mechanism(), true);
-  const std::array<const char*, 2> help{"The first body: what coordinates and reactions are counted from.",
-                                        "The second body, which a positive coordinate moves."};
-  for (std::size_t end = 0; end < 2; ++end) {
-    const std::string name = "inspector/bodies/" + std::to_string(end);
-    const auto chosen = name_choice_row(app, name, labels[end], choices, bodies[end], help[end]);
-    if (chosen) {
-      std::array<std::string, 2> next = bodies;
-      if (*chosen == bodies[1 - end]) next[1 - end] = bodies[end]; // two ends on one body have no meaning
-      next[end] = *chosen;
-      later(app, [take, next](App& changed) { take(changed, next); });
-    }
-    if (end == 0) continue;
-    ImGui::SameLine(0, 0);
-    if (margin_button(app, "inspector/bodies/swap", icon::swap, "Swap the two."))
-      later(app, [take, bodies](App& changed) { take(changed, {bodies[1], bodies[0]}); });
+  const std::string name = "inspector/bodies/" + std::to_string(end);
+  const char* help = end == 0 ? "The first body: what coordinates and reactions are counted from."
+                              : "The second body, which a positive coordinate moves.";
+  if (const auto chosen = name_choice_row(app, name, label, choices, bodies[end], help)) {
+    if (*chosen == bodies[1 - end]) // two ends on one body have no meaning
+      swap_bodies(app, part);
+    else
+      change_bodies(app, part, [end, body = *chosen](auto& held) { held.bodies[end] = body; });
   }
+  if (end == 0) return;
+  ImGui::SameLine(0, 0);
+  if (margin_button(app, "inspector/bodies/swap", icon::swap, "Swap the two.")) swap_bodies(app, part);
+}
+
+void end_point_rows(App& app, const Part& part, const std::array<Vec3, 2>& points, std::size_t end) {
+  const char* list = part.kind == PartKind::joint ? "joints." : "forces.";
+  vector_rows(app, "at",
+              {.name = "inspector/points/" + std::to_string(end),
+               .value = points[end],
+               .unit = "m",
+               .help = "Where it holds that body, in the world, as drawn.",
+               .address = list + part.name + ".points." + std::to_string(end)});
 }
 
 } // namespace flyball

@@ -58,10 +58,12 @@ void vector_rows(App& app, const std::string& label, const VectorField& field,
 
 // The bodies' names, after the ground's where it may be chosen.
 std::vector<std::string> body_choices(const Mechanism& mechanism, bool ground);
-// Two bodies of a joint or spring with a button that swaps them.
-void body_pair_rows(App& app, const std::array<const char*, 2>& labels,
-                    const std::array<std::string, 2>& bodies,
-                    const std::function<void(App&, std::array<std::string, 2>)>& take);
+// One of the two bodies of a joint or spring; beside the second a button that swaps them. The ends of both
+// stay on their bodies.
+void body_end_row(App& app, const Part& part, const std::array<std::string, 2>& bodies, std::size_t end,
+                  const char* label);
+// The point of that end, of a distance joint or spring.
+void end_point_rows(App& app, const Part& part, const std::array<Vec3, 2>& points, std::size_t end);
 
 inline constexpr std::array<const char*, 3> axis_letters{"x", "y", "z"};
 

@@ -46,6 +46,7 @@ struct InspectorState {
   std::map<std::string, bool, std::less<>> open; // sections that were opened or closed by hand
 
   std::string search;        // in the outline
+  float missing_height = 0;  // pixels, of what is missing below the outline
   std::string choice_search; // in the open list of names
   Part anchor, revealed;     // where a range of rows begins; the last one brought into view
   Part independent;          // a body whose mass does not follow its shapes, though it could

@@ -267,6 +267,15 @@ void search_field(App& app) {
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##search", "Search", &app.inspector.search);
   note_widget(app.widgets, "outline/search");
+  ImGui::Dummy({0, 4 * app.scale});
+}
+
+void what_is_missing(App& app) {
+  const float top = ImGui::GetCursorPosY();
+  ImGui::Dummy({0, 6 * app.scale});
+  heading(app, "What is missing");
+  mistake_rows(app, "mistakes", 0, most_mistakes);
+  app.inspector.missing_height = ImGui::GetCursorPosY() - top;
 }
 
 } // namespace
@@ -280,30 +289,31 @@ void start_rename(App& app) {
 }
 
 void outline_panel(App& app, const PanelRect& rect) {
-  begin_panel("outline", rect,
-              app.inspector.typing.name.empty() ? static_cast<int>(ImGuiWindowFlags_NoNavInputs) : 0);
+  const int quiet = app.inspector.typing.name.empty() ? ImGuiWindowFlags_NoNavInputs : 0;
+  begin_panel("outline", rect, quiet);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 0});
+  search_field(app);
+  // What is missing stays in view below the list.
+  const float footer = app.mistakes.empty() ? 0 : app.inspector.missing_height;
+  const float room = ImGui::GetContentRegionAvail().y;
+  ImGui::BeginChild("parts", {0, std::max(room - footer, room / 3)}, false, quiet);
   Outline outline{app, {}, body_colors(app.mechanism(), app.theme), {}, 0};
   outline.height = ImGui::GetTextLineHeight() + 8 * app.scale;
   for (std::size_t i = 0; i < app.mistakes.size(); ++i)
     if (Part part = part_of(app.mechanism(), app.mistakes[i]); part.kind != PartKind::none)
       outline.mistakes.emplace(std::move(part), i);
-  search_field(app);
   for (const SectionWords& words : sections)
     part_section(outline, words);
   const bool none = app.mechanism().bodies.empty() && app.mechanism().joints.empty();
   if (none) paragraph("The parts of the mechanism are listed here.", colors_of(app).dim);
   if (!none && outline.rows.empty() && !app.inspector.search.empty())
     paragraph("No part is called so.", colors_of(app).dim);
-  if (!none && !app.mistakes.empty()) {
-    ImGui::Dummy({0, 8 * app.scale});
-    heading(app, "What is missing");
-    mistake_rows(app, "mistakes", 0, most_mistakes);
-  }
-  ImGui::PopStyleVar();
   // A click beside the rows selects nothing.
   if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())
     later(app, [](App& changed) { select(changed, {}); });
+  ImGui::EndChild();
+  if (!none && !app.mistakes.empty()) what_is_missing(app);
+  ImGui::PopStyleVar();
   ImGui::End();
 }
 

@@ -14,8 +14,8 @@ struct Line {
 constexpr std::array mouse{
     Line{"Drag", "Orbit"},
     Line{"Right drag, Shift+drag", "Pan"},
-    Line{"Wheel", "Zoom at the cursor"},
-    Line{"Click", "Select; with Ctrl or Shift one more"},
+    Line{"Wheel", "Zoom"},
+    Line{"Click", "Select; Ctrl adds"},
     Line{"Ctrl+drag", "Select a box"},
     Line{"Double-click", "All in view"},
     Line{"Ctrl+click a slider", "Type its value"},
@@ -50,7 +50,7 @@ void shortcut_sheet(App& app) {
   const float s = app.scale;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({std::min(880 * s, window.x - 20 * s), std::min(560 * s, window.y - 20 * s)});
+  ImGui::SetNextWindowSize({std::min(1000 * s, window.x - 20 * s), std::min(600 * s, window.y - 20 * s)});
   ImGui::SetNextWindowFocus();
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);

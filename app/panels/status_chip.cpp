@@ -1,4 +1,5 @@
 // One line at the foot of the view: solved, solving, or what is missing.
+#include "app/panels/mistake_list.hpp"
 #include "app/panels/panels.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
@@ -22,8 +23,7 @@ StatusLine status_line(const App& app) {
   if (app.mechanism().bodies.empty()) return {};
   if (!app.mistakes.empty()) {
     const std::size_t more = app.mistakes.size() - 1;
-    return {std::string(app.mistakes.front().what()) +
-                (more > 0 ? "  (and " + std::to_string(more) + " more)" : ""),
+    return {words_for(app.mistakes.front()) + (more > 0 ? "  (and " + std::to_string(more) + " more)" : ""),
             colors.warn, icon::warning};
   }
   if (solving(app) && (app.waited > patience || !app.answer.ticket))

@@ -74,9 +74,10 @@ struct ToolCaches {
   std::vector<SnapPoint> snap_points;
   std::uint64_t scene_revision = 0, scene_ticket = 0;
   SceneList scene; // of the drawn pose
-  std::uint64_t centre_revision = 0;
-  Selection centre_selection;
+  std::uint64_t selected_revision = 0;
+  Selection selected;
   std::optional<Vec3> centre; // of the selection
+  std::vector<Vec3> ends;     // of the selected part, where it alone is selected
   std::uint64_t aim_revision = 0;
   Vec2 aim_cursor = Vec2::Zero();
   ViewCamera aim_camera;

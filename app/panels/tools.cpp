@@ -173,14 +173,33 @@ const SceneList& cached_scene(App& app) {
   return cache.scene;
 }
 
-std::optional<Vec3> cached_centre(App& app) {
+namespace {
+
+void look_at_selection(App& app) {
   ToolCaches& cache = app.tool.caches;
-  if (cache.centre_revision != app.document.revision() || cache.centre_selection != app.selection()) {
-    cache.centre = centre_of(app.mechanism(), app.selection());
-    cache.centre_selection = app.selection();
-    cache.centre_revision = app.document.revision();
-  }
-  return cache.centre;
+  if (cache.selected_revision == app.document.revision() && cache.selected == app.selection()) return;
+  cache.selected_revision = app.document.revision();
+  cache.selected = app.selection();
+  cache.centre = centre_of(app.mechanism(), app.selection());
+  cache.ends.clear();
+  if (app.selection().parts.size() != 1) return;
+  for (const int end : {0, 1})
+    if (const auto point = point_position(app.mechanism(), {app.selection().parts[0], end}))
+      cache.ends.push_back(*point);
+  // What has one point only is moved by its middle.
+  if (cache.ends.size() == 1) cache.ends.clear();
+}
+
+} // namespace
+
+std::optional<Vec3> cached_centre(App& app) {
+  look_at_selection(app);
+  return app.tool.caches.centre;
+}
+
+const std::vector<Vec3>& cached_ends(App& app) {
+  look_at_selection(app);
+  return app.tool.caches.ends;
 }
 
 } // namespace flyball

@@ -42,5 +42,7 @@ bool places(Tool tool);
 const std::vector<SnapPoint>& cached_snap_points(App& app);
 const SceneList& cached_scene(App& app);     // of the drawn pose
 std::optional<Vec3> cached_centre(App& app); // of the selection
+// Of the selected spring or link, where it alone is selected; else none. Their indices are those of PointId.
+const std::vector<Vec3>& cached_ends(App& app);
 
 } // namespace flyball

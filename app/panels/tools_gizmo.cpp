@@ -25,15 +25,6 @@ std::optional<PointId> only_point(const Mechanism& mechanism, const Selection& s
   return first;
 }
 
-// The ends of the selected spring or link.
-std::vector<PointId> loose_ends(const App& app) {
-  const Selection& selection = app.selection();
-  if (selection.parts.size() != 1) return {};
-  const PointId first{selection.parts[0], 0}, second{selection.parts[0], 1};
-  if (!point_position(app.mechanism(), second)) return {};
-  return {first, second};
-}
-
 void move_grabbed(Mechanism& mechanism, const Grab& grab, const Vec3& target) {
   if (const auto point = grab.point ? grab.point : only_point(mechanism, grab.selection))
     set_point(mechanism, *point, target);
@@ -149,18 +140,20 @@ void hold(App& app, const ViewInput& input, const Gizmo& gizmo) {
 
 void draw_ends(App& app, const ViewInput& input) {
   app.tool.hovered_point.reset();
-  for (const PointId& end : loose_ends(app)) {
-    const auto at = input.on_screen(*point_position(app.mechanism(), end));
+  const std::vector<Vec3>& ends = cached_ends(app);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const auto at = input.on_screen(ends[i]);
     if (!at) continue;
+    const PointId end{app.selection().parts[0], static_cast<int>(i)};
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const float reach = 8 * app.scale;
     const bool held = app.tool.grab && app.tool.grab->point == end;
-    const bool lit = held || (!app.tool.grab && input.hovered && !input.active &&
+    const bool lit = held || (!app.tool.grab && input.hovered && (!input.active || input.pressed) &&
                               std::max(std::abs(mouse.x - at->x), std::abs(mouse.y - at->y)) < reach);
     if (lit) app.tool.hovered_point = end;
     draw_square(app, *at, 4, lit);
-    app.widgets["gizmo/end" + std::to_string(end.end)] = {{at->x - reach / 2, at->y - reach / 2},
-                                                          {at->x + reach / 2, at->y + reach / 2}};
+    app.widgets["gizmo/end" + std::to_string(i)] = {{at->x - reach / 2, at->y - reach / 2},
+                                                    {at->x + reach / 2, at->y + reach / 2}};
   }
 }
 
@@ -217,7 +210,7 @@ void use_gizmo(App& app, const ViewInput& input) {
   if (tool.hovered_point || tool.hovered != Handle::none) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   if (!input.pressed) return;
   if (tool.hovered_point) {
-    gizmo.centre = *point_position(app.mechanism(), *tool.hovered_point);
+    gizmo.centre = cached_ends(app)[static_cast<std::size_t>(tool.hovered_point->end)];
     take_hold(app, input, gizmo, Handle::plane, tool.hovered_point);
   } else if (tool.hovered != Handle::none) {
     take_hold(app, input, gizmo, tool.hovered, std::nullopt);

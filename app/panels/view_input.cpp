@@ -54,7 +54,7 @@ void steer(App& app, const ViewInput& input) {
   if (io.MouseWheel != 0)
     app.view.camera.zoom(std::pow(zoom_step, static_cast<double>(io.MouseWheel)), input.cursor, input.size);
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && app.view.hovered.kind == PartKind::none &&
-      !takes_left_drag(app, input))
+      !places(app.tool.tool) && !takes_left_drag(app, input))
     app.view.fit = app.view.keep_direction = true;
 }
 

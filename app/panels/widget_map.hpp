@@ -16,9 +16,14 @@ struct WidgetRect {
 // Names are paths: "toolbar/play", "parameters/joints.spin.drive.speed", "results/reactions", "view".
 using WidgetMap = std::map<std::string, WidgetRect, std::less<>>;
 
-// Puts ImGui's last item on the map, if any of it can be seen.
+// Puts what can be seen of ImGui's last item on the map.
 inline void note_widget(WidgetMap& map, const std::string& name) {
-  if (ImGui::IsItemVisible()) map[name] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+  if (!ImGui::IsItemVisible()) return;
+  const ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 from = list.GetClipRectMin(), to = list.GetClipRectMax();
+  const ImVec2 item_from = ImGui::GetItemRectMin(), item_to = ImGui::GetItemRectMax();
+  map[name] = {{item_from.x > from.x ? item_from.x : from.x, item_from.y > from.y ? item_from.y : from.y},
+               {item_to.x < to.x ? item_to.x : to.x, item_to.y < to.y ? item_to.y : to.y}};
 }
 
 } // namespace flyball

@@ -397,6 +397,7 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
     CHECK_FALSE(app.dialog.showing);
     CHECK(hidden(folder, ".autosave") == 0);
     CHECK(hidden(folder, ".discarded") == 1);
+    robot.frames(1);
     robot.click("banner/bring_back");
     robot.frames(2);
     REQUIRE(robot.shows("recover/recover"));
@@ -676,7 +677,9 @@ TEST_CASE("the open dialog finds files by part of a name and by path") {
   }
   SECTION("a folder and back up, with the mouse") {
     robot.click("open/inner");
+    CHECK(robot.shows("open/deep.json"));
     robot.click("open/up");
+    CHECK(robot.shows("open/inner"));
     robot.click("open/resting.json");
     CHECK(app.document.file() == other);
   }

@@ -136,12 +136,13 @@ TEST_CASE("a body's numbers are typed, each a step") {
   }
   SECTION("a rotation is typed in degrees and stays as typed") {
     hand.press_widget("inspector/rotation section");
-    hand.one_step([&] { hand.fill("inspector/rotation/z", "270"); });
+    hand.fill("inspector/rotation/z", "270");
     CHECK(hand.app.inspector.turns.z() == 270);
     const Vec3 x = hand.body("ball1").rotation * Vec3::UnitX();
     CHECK((x + Vec3::UnitY()).norm() < 1e-14);
-    hand.one_step([&] { hand.fill("inspector/rotation/x", "pi/2 rad"); });
+    hand.fill("inspector/rotation/x", "pi/2 rad");
     CHECK(hand.app.inspector.turns == Vec3(90, 0, 270));
+    hand.one_step([&] { hand.fill("inspector/rotation/y", "1"); });
     CHECK(find_mistakes(hand.mechanism()).empty());
   }
 }
@@ -298,8 +299,8 @@ TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
   REQUIRE(hand.joint("slide").coordinates[0].spring);
   hand.one_step([&] { hand.fill("inspector/spring/stiffness", "1.2 N/mm"); });
   CHECK(hand.joint("slide").coordinates[0].spring->stiffness == Approx(1200));
-  hand.one_step([&] { hand.fill("inspector/spring/free", "15 cm"); });
-  CHECK(hand.joint("slide").coordinates[0].spring->free == Approx(0.15));
+  hand.one_step([&] { hand.fill("inspector/spring/free", "16 cm"); });
+  CHECK(hand.joint("slide").coordinates[0].spring->free == Approx(0.16));
   hand.one_step([&] { hand.fill("inspector/damping", "40"); });
   CHECK(hand.joint("slide").coordinates[0].damping == 40);
   hand.one_step([&] { hand.press_widget("inspector/stop"); });

@@ -206,19 +206,23 @@ TEST_CASE("a joint is made by a click and the card beside it") {
   SECTION("about a world axis") {
     d.click("tools/axis/y");
     d.click("tools/join");
+    REQUIRE(d.m().joints.size() == 1);
     CHECK(d.m().joints[0].axis == Vec3::UnitY());
   }
   SECTION("about an axis through two points") {
     d.click("tools/axis/points");
     d.click_at({0.05, 0.1, 0}); // the card is to the left
     d.click_at({0.25, 0.3, 0});
+    CHECK_FALSE(d.app.tool.joint->picking_axis);
     d.click("tools/join");
+    REQUIRE(d.m().joints.size() == 1);
     CHECK((d.m().joints[0].axis - Vec3(1, 1, 0).normalized()).norm() < 1e-12);
     CHECK(d.m().joints[0].at == Vec3::Zero());
   }
   SECTION("the other way round") {
     d.click("tools/swap");
     d.click("tools/join");
+    REQUIRE(d.m().joints.size() == 1);
     CHECK(d.m().joints[0].bodies == std::array<std::string, 2>{"rod1", "ground"});
   }
   SECTION("with a second axis") {
@@ -226,6 +230,7 @@ TEST_CASE("a joint is made by a click and the card beside it") {
     CHECK(std::abs(d.app.tool.joint->axis.dot(d.app.tool.joint->axis2)) < 1e-15);
     d.click("tools/axis2/y");
     d.click("tools/join");
+    REQUIRE(d.m().joints.size() == 1);
     CHECK(d.m().joints[0].axis == Vec3::UnitZ());
     CHECK(d.m().joints[0].axis2 == Vec3::UnitY());
   }
