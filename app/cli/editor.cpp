@@ -19,6 +19,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 namespace flyball::cli {
@@ -26,7 +27,7 @@ namespace flyball::cli {
 namespace {
 
 // Frames after the last thing that happened: what ImGui learns from one shows in the next.
-constexpr int settling_frames = 3;
+constexpr int settling_frames = 6;
 constexpr double idle = 3600; // s, to wait for something to happen
 
 // Input from GLFW for the stage's ImGui context.
@@ -42,14 +43,24 @@ class Input {
   void read(const Window& window, const std::vector<KeyPress>& keys) {
     ImGui_ImplGlfw_NewFrame();
     hold(window, keys);
+    look(keys);
     ImGuiIO& io = ImGui::GetIO();
     const auto points = window.size(), pixels = window.framebuffer_size();
     if (points.width <= 0 || points.width == pixels.width || !ImGui::IsMousePosValid()) return;
     const float ratio = static_cast<float>(pixels.width) / static_cast<float>(points.width);
     io.MousePos = {io.MousePos.x * ratio, io.MousePos.y * ratio};
   }
+  // Whether the last read() found anything new.
+  bool changed() const { return changed_; }
 
  private:
+  void look(const std::vector<KeyPress>& keys) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const std::array now{io.MousePos.x, io.MousePos.y, io.MouseDown[0] ? 1.f : 0.f,
+                         io.MouseDown[1] ? 1.f : 0.f, io.MouseDown[2] ? 1.f : 0.f};
+    changed_ = now != mouse_ || io.MouseWheel != 0 || io.InputQueueCharacters.Size > 0 || !keys.empty();
+    mouse_ = now;
+  }
   void hold(const Window& window, const std::vector<KeyPress>& keys) {
     ImGuiIO& io = ImGui::GetIO();
     for (const int key : held_)
@@ -64,6 +75,8 @@ class Input {
   }
 
   std::vector<int> held_; // shown as down for one frame
+  std::array<float, 5> mouse_{};
+  bool changed_ = false;
 };
 
 App& app_of(GLFWwindow* window) {
@@ -141,6 +154,8 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
     }
     if (app.scale != scale()) stage.set_scale(app, scale());
     input.read(window, app.keys);
+    // What comes while the last thing settles has to settle, too.
+    if (input.changed()) settling = settling_frames;
     stage.frame(app, size, seconds);
     bind_window_framebuffer(size.width, size.height);
     stage.render(app, size);

@@ -122,8 +122,6 @@ void type_rows(App& app, const ViewInput& input) {
     }
   }
   ImGui::PopStyleVar();
-  for (const TypeChoice& type : types)
-    if (type.type == app.tool.joint_type) paragraph(type.help, colors_of(app).dim);
 }
 
 void axis_rows(App& app, const ViewInput& input) {

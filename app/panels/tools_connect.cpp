@@ -84,9 +84,12 @@ void use_connecting(App& app, const ViewInput& input) {
   if (tool.first) {
     const Aim& from = *tool.first;
     draw_between(app, input, from.point, aim.point);
-    draw_aim(app, input, aim,
-             "length " + short_text((aim.point - from.point).norm(), 4) + " m" +
-                 (tool.tool == Tool::rod || aim.body == ground_name ? "" : "  on " + aim.body));
+    std::string head = "length " + short_text((aim.point - from.point).norm(), 4) + " m";
+    if (!aim.what.empty())
+      head += ", " + aim.what;
+    else if (tool.tool != Tool::rod && aim.body != ground_name)
+      head += ", on " + aim.body;
+    draw_aim(app, input, aim, head);
   } else {
     draw_aim(app, input, aim);
   }

@@ -24,7 +24,7 @@ std::optional<Hit> part_under_cursor(App& app, const ViewInput& input) {
 void point_at_parts(App& app, const ViewInput& input) {
   const bool steering = input.active && (input.moved || !input.held);
   const bool handle = app.tool.hovered != Handle::none || app.tool.hovered_point || app.tool.grab;
-  if ((!input.hovered && !input.released) || steering || handle || app.tool.frame) {
+  if ((!input.hovered && !input.released) || steering || handle) {
     app.view.hovered = {};
     app.view.pointed_at = Vec2::Constant(-1);
     return;
