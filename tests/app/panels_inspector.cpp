@@ -52,8 +52,7 @@ struct Hand : Robot {
         layout_of(app, static_cast<float>(size.width), static_cast<float>(size.height)).inspector;
     const auto seen = [&] {
       const auto found = app.widgets.find(name);
-      return found != app.widgets.end() && found->second.from.y >= panel.y &&
-             found->second.to.y <= panel.y + panel.height;
+      return found != app.widgets.end() && found->second.to.y - found->second.from.y >= 16;
     };
     for (const float notches : {20.f, -1.f})
       for (int i = 0; i < 40 && !seen(); ++i) {
