@@ -37,7 +37,9 @@ void steer(App& app, const ViewInput& input) {
   const ImGuiIO& io = ImGui::GetIO();
   const double dx = static_cast<double>(io.MouseDelta.x), dy = static_cast<double>(io.MouseDelta.y);
   const bool middle = ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+  // Whoever has taken hold of the camera wants it where he puts it, also while the first answer is awaited.
   if (input.active && (dx != 0 || dy != 0)) {
+    app.view.fit = false;
     if (middle || ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
       if (middle && input.shift)
         app.view.camera.orbit(dx, dy, input.size);
@@ -51,10 +53,13 @@ void steer(App& app, const ViewInput& input) {
     }
   }
   if (!input.hovered) return;
-  if (io.MouseWheel != 0)
+  if (io.MouseWheel != 0) {
+    app.view.fit = false;
     app.view.camera.zoom(std::pow(zoom_step, static_cast<double>(io.MouseWheel)), input.cursor, input.size);
+  }
+  const bool on_handle = app.tool.hovered != Handle::none || app.tool.hovered_point;
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && app.view.hovered.kind == PartKind::none &&
-      !places(app.tool.tool) && !takes_left_drag(app, input))
+      !on_handle && !places(app.tool.tool) && !takes_left_drag(app, input))
     app.view.fit = app.view.keep_direction = true;
 }
 

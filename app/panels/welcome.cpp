@@ -41,8 +41,7 @@ void welcome(App& app, const PanelRect& view) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
   ImGui::Begin("welcome", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(3);
   heading(app, "Build a mechanism");
   for (const FirstStep& step : first_steps) {

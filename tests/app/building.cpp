@@ -16,6 +16,8 @@ class Builder {
   void begin(double height) {
     robot_.key('N', true);
     robot_.key('1');
+    step("empty");
+    robot_.key('R', false, true); // the first steps make room
     for (int i = 0; i < 60 && view_height() > height; ++i)
       robot_.wheel("view", 1);
     for (int i = 0; i < 60 && view_height() < 0.9 * height; ++i)
@@ -144,7 +146,6 @@ void build_pendulum(Robot& robot, const OnStep& on_step) {
 void build_governor(Robot& robot, const OnStep& on_step) {
   Builder b(robot, on_step);
   b.begin(0.5);
-  b.step("empty");
 
   b.rod({0, -0.06, 0}, {0, 0.22, 0}, "spindle");
   b.rod({0, 0.2, 0}, {-0.16, 0.2, 0}, "arm1");

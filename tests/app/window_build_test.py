@@ -82,6 +82,7 @@ def build(window):
     b.key("ctrl+n")
     window.wait("an empty document", lambda s: s["name"] == "Untitled")
     b.key("1")
+    b.key("shift+r")  # the first steps make room
     b.zoom_to_height(7)
     b.click("inspector/gravity/none")
 
