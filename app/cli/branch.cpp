@@ -2,7 +2,9 @@
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
+#include "app/panels/plot_picture.hpp"
 #include "app/plot/svg.hpp"
+#include "app/render/offscreen.hpp"
 #include "engine/equilibrium/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
@@ -95,16 +97,17 @@ Plot diagram_plot(const Mechanism& m, const std::string& address, const Response
   const std::string unit = parameter_unit(m, address);
   Plot plot;
   plot.title = m.name;
-  plot.x.label = unit.empty() ? address : fmt::format("{} [{}]", address, unit);
-  plot.y.label = fmt::format("{} [{}]", coordinate_label(shown), shown.angle ? "rad" : "m");
-  bool named[2] = {false, false};
+  plot.x.label = address;
+  plot.x.unit = unit;
+  plot.y.label = coordinate_label(shown);
+  plot.y.unit = shown.angle ? "rad" : "m";
   for (const ResponseBranch& b : d.branches) {
     for (std::size_t i = 0; i < b.points.size();) {
       const bool stable = b.points[i].stable == true;
       PlotCurve curve;
       curve.line = stable ? PlotLine::solid : PlotLine::dashed;
       curve.color = stable ? 0 : 1;
-      if (!std::exchange(named[stable], true)) curve.name = stable ? "stable" : "not stable";
+      curve.name = stable ? "stable" : "not stable";
       for (; i < b.points.size() && (b.points[i].stable == true) == stable; ++i)
         curve.points.push_back({b.points[i].parameter, b.points[i].coordinates[coordinate].value});
       // Up to the point where the next part begins, so that no gap is left.
@@ -147,7 +150,7 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
 void add_branch(CLI::App& app, int& exit_code) {
   struct Options {
     SceneArgument scene;
-    std::string vary, csv, svg, plot;
+    std::string vary, csv, svg, png, plot;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
@@ -158,8 +161,10 @@ void add_branch(CLI::App& app, int& exit_code) {
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "Write a table to a file (-: standard output)");
   command->add_option("--svg", options->svg, "Draw the curve into a file (-: standard output)");
+  command->add_option("--png", options->png,
+                      "Draw the curve into a picture, without a display (-: standard output)");
   command->add_option("--plot", options->plot,
-                      "The coordinate that --svg draws: joint, or joint.index (default: the first)");
+                      "The coordinate that --svg and --png draw: joint, or joint.index (default: the first)");
   command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
   command->footer("Example: flyball branch conical_pendulum.json --vary joints.spin.drive.speed=0:10 --json");
   command->callback([options, &exit_code] {
@@ -177,14 +182,20 @@ void add_branch(CLI::App& app, int& exit_code) {
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
-    if (!options->svg.empty() && diagram.status == Status::converged)
-      write_bytes(options->svg, to_svg(diagram_plot(mechanism, range.address, diagram,
-                                                    plotted_coordinate(diagram, options->plot))));
+    if ((!options->svg.empty() || !options->png.empty()) && diagram.status == Status::converged) {
+      const Plot plot =
+          diagram_plot(mechanism, range.address, diagram, plotted_coordinate(diagram, options->plot));
+      if (!options->svg.empty()) write_bytes(options->svg, to_svg(plot));
+      if (!options->png.empty()) {
+        const OffscreenContext context;
+        write_bytes(options->png, encode_png(draw_plot_picture(plot, {})));
+      }
+    }
     if (!options->csv.empty())
       write_bytes(options->csv, diagram_csv(range.address, diagram));
     else if (options->json)
       fmt::print("{}\n", diagram_json(diagram).dump(2));
-    else if (options->svg != "-") // then standard output is the drawing's
+    else if (options->svg != "-" && options->png != "-") // then standard output is the drawing's
       fmt::print("{}", diagram_text(mechanism, range.address, diagram));
     exit_code = diagram.status == Status::converged ? exit_done : exit_no_result;
   });

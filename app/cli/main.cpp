@@ -47,6 +47,8 @@ int run(int argc, char** argv) {
   add_solve(app, exit_code);
   add_sweep(app, exit_code);
   add_branch(app, exit_code);
+  add_simulate(app, exit_code);
+  add_compare(app, exit_code);
   add_render(app, exit_code);
   add_check(app, exit_code);
 

@@ -3,9 +3,25 @@
 #include "app/cli/assets.hpp"
 #include "app/panels/snapshot.hpp"
 #include "app/render/offscreen.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
 
+#include <fmt/format.h>
+
+#include <charconv>
+
 namespace flyball::cli {
+
+void read_size(const std::string& text, int largest, int& width, int& height) {
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, width);
+  const bool cross = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
+  const auto second = cross ? std::from_chars(first.ptr + 1, end, height) : first;
+  const bool read = cross && second.ec == std::errc() && second.ptr == end;
+  if (!read || width < 1 || height < 1 || width > largest || height > largest)
+    throw SceneError("--size",
+                     fmt::format("expected WIDTHxHEIGHT from 1x1 to {0}x{0}, such as 1280x720", largest));
+}
 
 Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& options) {
   App app({.mode = LiveSolver::Mode::immediate,

@@ -8,6 +8,9 @@
 
 namespace flyball::cli {
 
+// "1280x720" of an option --size, up to `largest` pixels a side. Throws SceneError.
+void read_size(const std::string& text, int largest, int& width, int& height);
+
 struct PictureOptions {
   int width = 1280, height = 720; // pixels
   bool interface = false;         // the window with its panels, else the 3-D view alone

@@ -6,14 +6,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <memory>
 
 namespace flyball::cli {
 
 namespace {
-
-constexpr int largest = 16384; // pixels a side
 
 struct RenderOptions {
   std::filesystem::path scene, out;
@@ -22,19 +19,6 @@ struct RenderOptions {
   bool interface = false, plain = false;
 };
 
-// "1280x720" into the options; what is wrong with it, or "".
-std::string read_size(const std::string& text, PictureOptions& options) {
-  const char* const end = text.data() + text.size();
-  const auto width = std::from_chars(text.data(), end, options.width);
-  const bool cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
-  const auto height = cross ? std::from_chars(width.ptr + 1, end, options.height) : width;
-  const bool read = cross && height.ec == std::errc() && height.ptr == end;
-  const bool fits =
-      options.width > 0 && options.height > 0 && options.width <= largest && options.height <= largest;
-  return read && fits ? ""
-                      : fmt::format("expected WIDTHxHEIGHT from 1x1 to {0}x{0}, such as 1280x720", largest);
-}
-
 int run_render(const RenderOptions& options) {
   PictureOptions wanted;
   wanted.interface = options.interface;
@@ -42,8 +26,8 @@ int run_render(const RenderOptions& options) {
   wanted.scale = options.scale;
   wanted.theme = options.theme == "dark" ? Theme::dark : Theme::light;
   wanted.antialiased = !options.plain;
-  if (const std::string wrong = read_size(options.size, wanted); !wrong.empty())
-    return report_error("--size: " + wrong);
+  constexpr int largest = 16384; // pixels a side
+  read_size(options.size, largest, wanted.width, wanted.height);
   std::string ending = options.out.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (!ending.empty() && ending != ".png")

@@ -1,5 +1,6 @@
 #include "app/cli/window_state.hpp"
 
+#include "app/panels/motion_control.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <nlohmann/json.hpp>
@@ -24,6 +25,11 @@ std::string window_state(const App& app) {
       {"playing", app.playback.playing},
       {"answer", app.answer.ticket},
       {"status", std::string(word(app.answer.solution.status))}};
+  if (const MotionRun* motion = app.motion.on ? shown_motion(app) : nullptr)
+    state["motion"] = {{"computed", motion->run->time.back()},
+                       {"finished", motion->finished},
+                       {"time", app.playback.time},
+                       {"settled", app.motion.settled ? app.motion.settled->message : ""}};
   for (const ParameterControl& control : app.parameters)
     state["parameters"][control.address] = get_parameter(app.mechanism(), control.address);
   for (const CoordinateSolution& c : app.answer.solution.coordinates)

@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kept = ".autosave";
-constexpr const char* aside = ".discarded";
+constexpr const char* kept = ".flyball-autosave";
+constexpr const char* aside = ".flyball-discarded";
 
 fs::path folder_in(const fs::path& state_folder) {
   return state_folder / "autosave";

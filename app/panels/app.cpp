@@ -1,5 +1,7 @@
 #include "app/panels/app.hpp"
 
+#include "app/panels/motion_control.hpp"
+#include "app/panels/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
 
@@ -30,6 +32,7 @@ void take_document(App& app, bool another, bool warm) {
   app.drawn = drawn_poses(app.mechanism());
   app.moved_time = true;
   ask(app, another, warm);
+  follow_motion(app, another);
 }
 
 int drive_count(const Mechanism& mechanism) {
@@ -46,18 +49,19 @@ void take_answer(App& app) {
     app.answer = std::move(*answer);
     app.poses = app.answer.poses;
     // The time may have gone on, or back, while this was solved.
-    app.moved_time = app.moved_time || app.answer.time != app.playback.time;
+    app.moved_time = app.moved_time || app.answer.time != steady_time(app);
   }
   if (!converged(app)) return;
-  if (app.moved_time && app.playback.time == 0) {
+  const double time = steady_time(app);
+  if (app.moved_time && time == 0) {
     app.poses = app.answer.solution.poses;
     app.moved_time = false;
   } else if (app.moved_time) {
-    app.live.ask_poses(app.playback.time);
+    app.live.ask_poses(time);
     app.moved_time = false;
   }
   if (std::optional<LivePoses> poses = app.live.take_poses())
-    if (poses->ticket == app.answer.ticket && app.playback.time != 0) app.poses = std::move(poses->poses);
+    if (poses->ticket == app.answer.ticket && time != 0) app.poses = std::move(poses->poses);
 }
 
 void fit_view(App& app, ViewSize size) {
@@ -149,7 +153,8 @@ void change_parameter(App& app, const std::string& address, double value) {
     const double before = get_parameter(next, address);
     set_parameter(next, address, value);
     // A lone drive keeps its phase, so that nothing jumps when its speed changes.
-    if (address.ends_with(".speed") && app.playback.time != 0 && drive_count(next) == 1 && value != 0)
+    if (address.ends_with(".speed") && !app.motion.on && app.playback.time != 0 && drive_count(next) == 1 &&
+        value != 0)
       app.playback.time *= before / value;
   } catch (const SceneError&) {
     return;
@@ -173,6 +178,7 @@ void solve_from_drawn_pose(App& app) {
 void set_mode(App& app, Mode mode) {
   app.mode = mode;
   if (mode == Mode::build) {
+    show_motion(app, false);
     play(app, false);
     rewind(app);
   } else {
@@ -193,20 +199,30 @@ void look_from(App& app, double azimuth, double elevation) {
 
 void play(App& app, bool playing) {
   app.playback.playing = playing && !app.mechanism().bodies.empty();
-  if (app.playback.playing) app.mode = Mode::explore;
+  if (!app.playback.playing) return;
+  app.mode = Mode::explore;
+  // From the end, play means again.
+  const MotionRun* motion = app.motion.on ? shown_motion(app) : nullptr;
+  if (motion && motion->finished && app.playback.time >= motion->run->time.back())
+    seek_motion(app, motion->run->time.front());
 }
 
 void rewind(App& app) {
   app.playback.time = 0;
   app.moved_time = true;
+  if (app.motion.on) seek_motion(app, 0);
 }
 
 void update(App& app, double seconds, ViewSize view) {
-  if (in_motion(app)) {
+  if (in_motion(app) && app.motion.on) {
+    advance_motion(app, seconds * app.playback.factor);
+  } else if (in_motion(app)) {
     app.playback.time += seconds * app.playback.factor;
     app.moved_time = true;
   }
   take_answer(app);
+  update_motion(app);
+  update_studies(app);
   app.waited = solving(app) ? app.waited + seconds : 0;
   fit_view(app, view);
 }
@@ -229,9 +245,13 @@ ViewFrame view_frame(const App& app) {
       frame.ghost = app.poses;
   } else {
     frame.mechanism = app.answer.ticket ? &app.answer.mechanism : &app.mechanism();
+    const bool moves = app.motion.poses.size() == frame.mechanism->bodies.size();
     if (solved) {
       frame.poses = app.poses;
       if (app.view.ghost && app.drawn.size() == app.poses.size()) frame.ghost = app.drawn;
+      if (moves && !app.motion.beside) frame.motion = app.motion.poses;
+    } else if (moves) { // what has no steady state moves all the same
+      frame.poses = app.motion.poses;
     }
   }
   frame.camera = app.view.camera;
@@ -245,8 +265,21 @@ ViewFrame view_frame(const App& app) {
   return frame;
 }
 
+ViewFrame motion_frame(const App& app) {
+  ViewFrame frame = view_frame(app);
+  frame.poses = app.motion.poses;
+  frame.ghost = {};
+  frame.motion = {};
+  frame.hovered = {};
+  return frame;
+}
+
+bool motion_beside(const App& app) {
+  return app.mode == Mode::explore && app.motion.on && app.motion.beside;
+}
+
 bool in_motion(const App& app) {
-  return app.playback.playing && converged(app);
+  return app.playback.playing && (app.motion.on || converged(app));
 }
 
 } // namespace flyball

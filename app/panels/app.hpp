@@ -7,8 +7,11 @@
 #include "app/panels/command_state.hpp"
 #include "app/panels/file_state.hpp"
 #include "app/panels/inspector_state.hpp"
+#include "app/panels/motion_state.hpp"
+#include "app/panels/movie_state.hpp"
 #include "app/panels/number_text.hpp"
 #include "app/panels/parameter_list.hpp"
+#include "app/panels/study_state.hpp"
 #include "app/panels/tool_state.hpp"
 #include "app/panels/widget_map.hpp"
 #include "app/render/fonts.hpp"
@@ -20,6 +23,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +54,7 @@ struct ViewState {
   PartId hovered;
   Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found
   unsigned texture = 0;                 // OpenGL's, with the picture of the view
+  unsigned texture_beside = 0;          // the same of the motion, where it has a view of its own
 };
 
 // Sizes in points, so that they mean the same on every display.
@@ -61,6 +66,8 @@ struct PanelState {
   float inspector_share =
       0.55f; // of the height, for the inspector above the results, or the outline above it
   bool pinned = true, springs = true, drives = true;
+  float study_share = 0.42f; // of the height, for the studies below the view
+  bool dampers = true;
   bool torques = true, reactions = false, eigenvalues = false, system = false;
 };
 
@@ -72,7 +79,9 @@ struct KeyPress {
   bool operator==(const KeyPress&) const = default;
 };
 
-enum class Dialog { none, open, save, gallery, unsaved, recover, export_picture, mirror, circular };
+enum class Dialog { none, open, save, gallery, unsaved, recover, export_picture, save_plot, export_run, mirror, circular };
+
+struct PlotSave; // see plot_save.hpp
 
 struct DialogState {
   Dialog wanted = Dialog::none; // to be opened by the next frame
@@ -80,12 +89,14 @@ struct DialogState {
   std::string path;                // typed
   int width = 1920, height = 1080; // pixels
   bool panels = false;
+  std::shared_ptr<PlotSave> plot; // while one is being saved
 };
 
 struct ExportRequest {
   std::filesystem::path file;
   int width = 1920, height = 1080; // pixels
   bool panels = false;
+  std::shared_ptr<const PlotSave> plot{}; // this instead of the window or the view
 };
 
 // Building shows the drawn pose, which is what is edited, with the equilibrium beside it as a ghost;
@@ -118,6 +129,9 @@ struct App {
   InspectorState inspector;
   CommandState commands;
   Playback playback;
+  StudyState study;
+  MotionState motion;
+  MovieState movie;
   ViewState view;
   PanelState panels;
   DialogState dialog;
@@ -173,6 +187,10 @@ bool converged(const App& app);
 bool solving(const App& app);
 // What the 3-D view shows. Refers to the app: use before it changes.
 ViewFrame view_frame(const App& app);
+// What the view beside it shows: the motion alone.
+ViewFrame motion_frame(const App& app);
+// Whether the motion has a view of its own.
+bool motion_beside(const App& app);
 // Whether anything moves by itself.
 bool in_motion(const App& app);
 

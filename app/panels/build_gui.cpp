@@ -1,6 +1,8 @@
 #include "app/panels/commands.hpp"
 #include "app/panels/edit_commands.hpp"
 #include "app/panels/panels.hpp"
+#include "app/panels/plot_save.hpp"
+#include "app/panels/study_panels.hpp"
 #include "app/panels/tools.hpp"
 #include "app/panels/typed_field.hpp"
 
@@ -35,11 +37,13 @@ void build_gui(App& app) {
   drag_splitters(app, layout);
   welcome(app, layout.view);
   viewport_panel(app, layout.view);
+  show(app, beside_panel, layout.beside);
   file_banner(app, layout.view);
   show(app, outline_panel, layout.outline);
   show(app, parameters_panel, layout.parameters);
   show(app, inspector_panel, layout.inspector);
   show(app, results_panel, layout.results);
+  show(app, study_panel, layout.study);
   toolbar_panel(app, layout.toolbar);
   if (app.inspector.history) history_panel(app);
   app.dialog.showing = false;
@@ -47,6 +51,8 @@ void build_gui(App& app) {
   save_dialog(app);
   gallery_dialog(app);
   export_dialog(app);
+  movie_dialog(app);
+  plot_dialog(app);
   mirror_dialog(app);
   circular_dialog(app);
   recovery_dialog(app);

@@ -2,7 +2,9 @@
 
 #include "app/panels/edit_commands.hpp"
 #include "app/panels/file_commands.hpp"
+#include "app/panels/motion_control.hpp"
 #include "app/panels/panels.hpp"
+#include "app/panels/study_panels.hpp"
 #include "app/panels/ui_style.hpp"
 
 #include <algorithm>
@@ -352,6 +354,26 @@ const std::array table{
                   apply_style(app.theme, app.scale);
                 },
             .checked = [](const App& app) { return app.theme == Theme::dark; },
+            .separated = true},
+
+    Command{.id = "study.motion",
+            .title = "Motion",
+            .help = "The damped motion beside the steady state, and plots of it.",
+            .key = plain('M'),
+            .run = [](App& app) { open_study(app, Study::motion); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::motion; }},
+    Command{.id = "study.compare",
+            .title = "Compare",
+            .help = "Error against run time: the direct solution and the damped motion.",
+            .run = [](App& app) { open_study(app, Study::compare); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::compare; }},
+    Command{.id = "study.export",
+            .title = "Export the run…",
+            .help = "Save the motion that is shown as a film: MP4, GIF or numbered pictures.",
+            .run = show_movie_dialog,
+            .enabled = [](const App& app) { return app.motion.on && shown_motion(app) != nullptr; },
             .separated = true},
 
     Command{.id = "help.palette",

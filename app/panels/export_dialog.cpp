@@ -2,6 +2,7 @@
 #include "app/panels/file_commands.hpp"
 #include "app/panels/file_list.hpp"
 #include "app/panels/panels.hpp"
+#include "app/panels/size_fields.hpp"
 #include "app/panels/widgets.hpp"
 
 #include <algorithm>
@@ -13,22 +14,9 @@ namespace {
 
 constexpr int smallest = 16, largest = 8192; // pixels
 
-struct Size {
-  const char* name;
-  const char* text;
-  int width, height;
-};
-constexpr std::array sizes{Size{"export/720p", "1280 × 720", 1280, 720},
-                           Size{"export/1080p", "1920 × 1080", 1920, 1080},
-                           Size{"export/4k", "3840 × 2160", 3840, 2160}};
-
-void number(App& app, const char* name, int& value) {
-  ImGui::SetNextItemWidth(84 * app.scale);
-  ImGui::PushID(name);
-  ImGui::InputInt("##number", &value, 0);
-  ImGui::PopID();
-  note_widget(app.widgets, name);
-}
+constexpr std::array sizes{PictureSize{"720p", "1280 × 720", 1280, 720},
+                           PictureSize{"1080p", "1920 × 1080", 1920, 1080},
+                           PictureSize{"4k", "3840 × 2160", 3840, 2160}};
 
 void save(App& app) {
   DialogState& dialog = app.dialog;
@@ -56,25 +44,7 @@ void export_dialog(App& app) {
   DialogState& dialog = app.dialog;
   bool accepted = path_field(app, "export", "Name");
 
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted("Size");
-  ImGui::SameLine(80 * app.scale);
-  number(app, "export/width", dialog.width);
-  ImGui::SameLine();
-  ImGui::TextUnformatted("×");
-  ImGui::SameLine();
-  number(app, "export/height", dialog.height);
-  ImGui::SameLine();
-  ImGui::TextDisabled("pixels");
-  ImGui::SetCursorPosX(80 * app.scale);
-  for (const Size& size : sizes) {
-    if (text_button(app, size.name, size.text)) {
-      dialog.width = size.width;
-      dialog.height = size.height;
-    }
-    ImGui::SameLine();
-  }
-  ImGui::NewLine();
+  size_fields(app, "export", sizes, 80, dialog.width, dialog.height);
   ImGui::SetCursorPosX(80 * app.scale);
   ImGui::Checkbox("With the panels", &dialog.panels);
   note_widget(app.widgets, "export/panels");

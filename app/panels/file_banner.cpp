@@ -42,14 +42,14 @@ void discarded(App& app) {
   ImGui::SameLine();
   if (text_button(app, "banner/bring_back", "Bring it back")) bring_back_discarded(app);
   ImGui::SameLine();
-  if (icon_button(app, "banner/close", icon::close, "Close")) app.files.aside.clear();
+  if (text_button(app, "banner/close", icon::close)) app.files.aside.clear();
 }
 
 } // namespace
 
 void file_banner(App& app, const PanelRect& view) {
   const bool both_changed = app.files.conflict && !app.document.file().empty();
-  if (!both_changed && app.files.aside.empty()) return;
+  if (app.dialog.showing || (!both_changed && app.files.aside.empty())) return;
   const float s = app.scale;
   ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
   if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, view.width - 24 * s), 0});

@@ -23,6 +23,7 @@ void show_save_dialog(App& app);
 void reload_document(App& app); // from its file, as it is there now: a step that can be undone
 void quit(App& app);            // asks first
 void show_export_dialog(App& app);
+void show_movie_dialog(App& app); // of the motion that is shown
 
 // Files opened lately, the newest first.
 const std::vector<std::filesystem::path>& recent_files(const App& app);

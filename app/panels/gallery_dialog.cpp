@@ -52,6 +52,21 @@ float card_height(const App& app) {
   return (scene_picture_height + 2 * pad) * app.scale + ImGui::GetTextLineHeight() + about_height(app);
 }
 
+// As many words as there is room for.
+std::string fitting(const App& app, const std::string& text, float size, float width) {
+  const ImFont* font = app.fonts.text;
+  const auto fits = [&](const std::string& part) {
+    return font->CalcTextSizeA(size, FLT_MAX, width, part.c_str()).y <= about_height(app) + 1;
+  };
+  std::string part = text;
+  while (!fits(part)) {
+    const std::size_t space = part.find_last_of(' ');
+    if (space == std::string::npos) break;
+    part = part.substr(0, space) + "…";
+  }
+  return part;
+}
+
 // Returns whether it was clicked.
 bool show_card(App& app, int i, float width) {
   GalleryState& gallery = app.files.gallery;
@@ -83,12 +98,10 @@ bool show_card(App& app, int i, float width) {
   list.AddText(app.fonts.strong, app.fonts.strong->FontSize, text, packed(colors.text),
                card.mechanism.name.c_str());
   const ImVec2 about(text.x, text.y + ImGui::GetTextLineHeight() + 2 * s);
-  list.PushClipRect(about, {to.x, about.y + about_height(app) + s}, true);
-  list.AddText(font, size, about, packed(colors.dim), card.about.c_str(), nullptr, room);
+  const std::string shown = fitting(app, card.about, size, room);
+  list.AddText(font, size, about, packed(colors.dim), shown.c_str(), nullptr, room);
   list.PopClipRect();
-  list.PopClipRect();
-  if (hovered && font->CalcTextSizeA(size, FLT_MAX, room, card.about.c_str()).y > about_height(app) + s)
-    help_on_hover(card.about.c_str());
+  if (hovered && shown != card.about) help_on_hover(card.about.c_str());
   return clicked;
 }
 

@@ -35,6 +35,15 @@ void divide(const PanelRect& whole, float share, PanelRect& upper, PanelRect& lo
   lower.height -= upper.height;
 }
 
+// With the second view to the right of the first.
+void share_view(const App& app, Layout& layout) {
+  if (!motion_beside(app)) return;
+  layout.beside = layout.view;
+  layout.view.width = std::max(std::floor(layout.view.width / 2), 1.f);
+  layout.beside.x += layout.view.width;
+  layout.beside.width = std::max(layout.beside.width - layout.view.width, 1.f);
+}
+
 // Returns how far the person has dragged the line this frame. Each has a small window of its own, above the
 // panels.
 float splitter(App& app, const char* name, const PanelRect& line, bool upright) {
@@ -69,12 +78,19 @@ Layout layout_of(const App& app, float width, float height) {
   const float s = app.scale;
   const bool building = app.mode == Mode::build;
   Layout layout;
-  const float top = std::round(toolbar_height * s), below = std::max(height - top, 1.f);
+  const float top = std::round(toolbar_height * s);
+  float below = std::max(height - top, 1.f);
   layout.toolbar = {0, 0, width, top};
+  if (!building && app.study.open != Study::none) {
+    const float study = std::round(below * app.panels.study_share);
+    below -= study;
+    layout.study = {0, top + below, width, study};
+  }
   layout.stacked = width < narrow * s;
   if (layout.stacked) {
     const float panel = std::round(s * panel_width(app.panels.stacked_width, width / s - least_view));
     layout.view = {0, top, std::max(width - panel, 1.f), below};
+    share_view(app, layout);
     layout.side = {layout.view.width, top, panel, below};
     const float share = upper_share(app, layout, below);
     if (building)
@@ -94,6 +110,7 @@ Layout layout_of(const App& app, float width, float height) {
   else
     layout.results = layout.side;
   layout.view = {left, top, std::max(width - left - right, 1.f), below};
+  share_view(app, layout);
   return layout;
 }
 
@@ -109,6 +126,12 @@ void drag_splitters(App& app, const Layout& layout) {
   }
   side_width =
       clamped(side_width - splitter(app, "splitter/right", {side.x, side.y, 1, side.height}, true) / s);
+  if (layout.study.height > 0) {
+    const PanelRect& study = layout.study;
+    const float moved = splitter(app, "splitter/study", {study.x, study.y, study.width, 1}, false);
+    const float whole = study.height + side.height;
+    panels.study_share = std::clamp(panels.study_share - moved / whole, 0.2f, 0.75f);
+  }
   const PanelRect& lower = layout.results.height > 0 ? layout.results : layout.inspector;
   if (lower.height == side.height) return;
   const float by = splitter(app, "splitter/lower", {side.x, lower.y, side.width, 1}, false);

@@ -1,6 +1,6 @@
 // Where the panels are. Fixed places with splitters between them. While building there are the outline and
 // the inspector, while exploring the sliders and the results; a wide window also has the results below the
-// inspector.
+// inspector. Below all of them there may be a study.
 #pragma once
 
 #include "app/panels/app.hpp"
@@ -12,7 +12,8 @@ struct PanelRect {
 };
 
 struct Layout {
-  PanelRect toolbar, view;
+  PanelRect toolbar, view, beside; // beside: a second view, of the motion
+  PanelRect study;
   PanelRect outline, parameters, inspector, results; // of width 0 where not shown
   PanelRect side;                                    // the right column, of one panel or two
   bool stacked = false;

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float list_height = 250; // points
+constexpr float list_height = 250, recent_width = 210; // points
 
 void choose(App& app, const fs::path& file) {
   std::error_code ignored;
@@ -29,7 +29,7 @@ void choose(App& app, const fs::path& file) {
 // Returns the one that was clicked.
 fs::path recent_list(App& app) {
   fs::path clicked;
-  ImGui::BeginChild("recent", {0, list_height * app.scale});
+  ImGui::BeginChild("recent", {recent_width * app.scale, list_height * app.scale});
   ImGui::TextDisabled("Recent");
   for (std::size_t i = 0; i < app.files.recent.size(); ++i) {
     const fs::path& file = app.files.recent[i];
@@ -58,17 +58,15 @@ void open_dialog(App& app) {
   if (!begin_dialog(app, Dialog::open, "Open a scene", with_recent ? 720 : 560)) return;
   const bool entered = path_field(app, "open", "Name, or part of it, or a path");
   std::optional<fs::path> file;
-  if (with_recent && ImGui::BeginTable("lists", 2, ImGuiTableFlags_BordersInnerV)) {
-    ImGui::TableSetupColumn("recent", ImGuiTableColumnFlags_WidthFixed, 210 * app.scale);
-    ImGui::TableSetupColumn("folder");
-    ImGui::TableNextColumn();
+  if (with_recent) {
     if (const fs::path recent = recent_list(app); !recent.empty()) file = recent;
-    ImGui::TableNextColumn();
+    ImGui::SameLine(0, 16 * app.scale);
+    ImGui::BeginGroup();
   }
   folder_line(app, "open");
   const float line = ImGui::GetFrameHeightWithSpacing() + 2 * app.scale;
   if (auto clicked = file_list(app, "open", ".json", true, list_height * app.scale - line)) file = clicked;
-  if (with_recent) ImGui::EndTable();
+  if (with_recent) ImGui::EndGroup();
   if (!app.files.message.empty()) paragraph(app.files.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
   const bool pressed = text_button(app, "open/open", "Open", true);

@@ -147,21 +147,28 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
       const bool angle = is_angle(joint.type, static_cast<int>(i));
       const std::string path = "joints." + joint.name + ".";
       const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
-      std::optional<double> stiffness, speed;
+      std::optional<double> stiffness, speed, damping;
       if (before && before->spring) stiffness = before->spring->stiffness;
       if (before && before->drive) speed = before->drive->speed;
+      if (before && before->damping != 0) damping = before->damping;
       if (coordinate.spring)
         controls.push_back(named_control(path + "spring" + index + ".stiffness", ParameterGroup::springs,
                                          angle ? "N m/rad" : "N/m", coordinate.spring->stiffness, stiffness));
       if (coordinate.drive)
         controls.push_back(named_control(path + "drive" + index + ".speed", ParameterGroup::drives,
                                          angle ? "rad/s" : "m/s", coordinate.drive->speed, speed));
+      if (coordinate.damping != 0 || damping)
+        controls.push_back(named_control(path + "damping" + index, ParameterGroup::dampers,
+                                         angle ? "N m s/rad" : "N s/m", coordinate.damping, damping));
     }
   for (const Force& force : mechanism.forces) {
-    // A damper is a spring without stiffness.
-    if (force.type != ForceType::spring || force.stiffness == 0) continue;
+    if (force.type != ForceType::spring) continue;
     const auto found = saved.forces.find(force.name);
     const bool was_spring = found != saved.forces.end() && found->second->type == ForceType::spring;
+    if (const double before = was_spring ? found->second->damping : 0; force.damping != 0 || before != 0)
+      controls.push_back(named_control("forces." + force.name + ".damping", ParameterGroup::dampers, "N s/m",
+                                       force.damping, before != 0 ? std::optional(before) : std::nullopt));
+    if (force.stiffness == 0) continue; // a damper alone
     controls.push_back(named_control("forces." + force.name + ".stiffness", ParameterGroup::springs, "N/m",
                                      force.stiffness,
                                      was_spring ? std::optional(found->second->stiffness) : std::nullopt));

@@ -1,5 +1,5 @@
 // Which numbers of a mechanism get a slider: those pinned in the scene, every drive's speed and every
-// spring's stiffness.
+// spring's stiffness; for the motion, every damper.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -10,7 +10,7 @@
 
 namespace flyball {
 
-enum class ParameterGroup { pinned, drives, springs };
+enum class ParameterGroup { pinned, drives, springs, dampers };
 
 struct ParameterControl {
   std::string address;

@@ -180,6 +180,8 @@ void parameters_panel(App& app, const PanelRect& rect) {
     group(app, ParameterGroup::pinned, "parameters/pinned", "Pinned", app.panels.pinned);
     group(app, ParameterGroup::drives, "parameters/drives", "Drive speeds", app.panels.drives);
     group(app, ParameterGroup::springs, "parameters/springs", "Spring constants", app.panels.springs);
+    if (app.motion.on) // dampers move no steady state
+      group(app, ParameterGroup::dampers, "parameters/dampers", "Dampers", app.panels.dampers);
     ImGui::PopStyleVar();
     if (text_button(app, "parameters/restart", "Restart from drawn pose")) solve_from_drawn_pose(app);
     help_on_hover("Sliders start from the last answer; this starts from the pose in the file, which may lead "

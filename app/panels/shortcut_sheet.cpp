@@ -69,6 +69,7 @@ void shortcut_sheet(App& app) {
     lines(app, "Help", "help.");
     ImGui::TableNextColumn();
     lines(app, "View", "view.");
+    lines(app, "Study", "study.");
     heading(app, "Mouse in the view");
     if (ImGui::BeginTable("mouse", 2, ImGuiTableFlags_SizingFixedFit)) {
       for (const Line& entry : mouse)

@@ -1,5 +1,7 @@
 #include "app/panels/snapshot.hpp"
 
+#include "app/panels/plot_picture.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -50,7 +52,9 @@ void export_picture(App& app, PixelSize window) {
     const float grown = std::min(static_cast<float>(size.width) / static_cast<float>(window.width),
                                  static_cast<float>(size.height) / static_cast<float>(window.height));
     const float scale = std::max(1.f, std::round(4 * app.scale * grown) / 4);
-    const Image image = request.panels ? interface_picture(app, size, scale) : view_picture(app, size);
+    const Image image = request.plot     ? plot_picture(*request.plot, size)
+                        : request.panels ? interface_picture(app, size, scale)
+                                         : view_picture(app, size);
     write_png(request.file, image);
     app.notice = "Saved " + request.file.string();
   } catch (const std::exception& error) {

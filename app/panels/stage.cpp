@@ -30,13 +30,18 @@ ViewKey key_of(const App& app, const ViewFrame& frame, PixelSize size) {
   key.camera = {c.target.x(), c.target.y(), c.target.z(), c.distance, c.azimuth,
                 c.elevation,  c.up.x(),     c.up.y(),     c.up.z()};
   key.ticket = app.answer.ticket;
-  key.poses.reserve(7 * frame.poses.size());
-  for (const Pose& pose : frame.poses) {
-    key.poses.insert(key.poses.end(), pose.position.begin(), pose.position.end());
-    const auto& q = pose.rotation.coeffs();
-    key.poses.insert(key.poses.end(), q.begin(), q.end());
-  }
+  key.poses.reserve(7 * (frame.poses.size() + frame.motion.size()));
+  for (const std::span<const Pose> poses : {frame.poses, frame.motion})
+    for (const Pose& pose : poses) {
+      key.poses.insert(key.poses.end(), pose.position.begin(), pose.position.end());
+      const auto& q = pose.rotation.coeffs();
+      key.poses.insert(key.poses.end(), q.begin(), q.end());
+    }
   return key;
+}
+
+PixelSize pixels_of(const PanelRect& rect) {
+  return {static_cast<int>(rect.width), static_cast<int>(rect.height)};
 }
 
 ImGuiContext* new_context() {
@@ -72,10 +77,16 @@ void Stage::set_scale(App& app, float scale) {
 void Stage::frame(App& app, PixelSize size, double seconds) {
   ImGui::SetCurrentContext(context_.get());
   const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
-  const PanelRect view = layout_of(app, width, height).view;
+  const Layout layout = layout_of(app, width, height);
+  const PanelRect& view = layout.view;
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
-  draw_view(app, {static_cast<int>(view.width), static_cast<int>(view.height)});
+  app.view.texture = draw_view(app, view_, view_frame(app), pixels_of(view));
+  if (layout.beside.width > 0)
+    app.view.texture_beside = draw_view(app, beside_, motion_frame(app), pixels_of(layout.beside));
+  else
+    beside_ = {};
   scene_pictures_.update(app, view_renderer_);
+  movie_.update(app, view_renderer_);
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {width, height};
   io.DisplayFramebufferScale = {1, 1};
@@ -94,19 +105,15 @@ void Stage::render(const App& app, PixelSize size) {
   renderer_.draw(*ImGui::GetDrawData());
 }
 
-void Stage::draw_view(App& app, PixelSize size) {
-  const ViewFrame frame = view_frame(app);
+unsigned Stage::draw_view(const App& app, View& view, const ViewFrame& frame, PixelSize size) {
   ViewKey key = key_of(app, frame, size);
-  if (view_ && key == drawn_) {
-    app.view.texture = view_->texture();
-    return;
-  }
-  if (!view_ || size != drawn_.size || key.samples != drawn_.samples)
-    view_.emplace(size.width, size.height, key.samples);
-  view_renderer_.draw(frame, *view_);
-  app.view.texture = view_->texture();
-  drawn_ = std::move(key);
+  if (view.target && key == view.drawn) return view.target->texture();
+  if (!view.target || size != view.drawn.size || key.samples != view.drawn.samples)
+    view.target.emplace(size.width, size.height, key.samples);
+  view_renderer_.draw(frame, *view.target);
+  view.drawn = std::move(key);
   ++views_drawn_;
+  return view.target->texture();
 }
 
 } // namespace flyball

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/panels/app.hpp"
+#include "app/panels/movie_export.hpp"
 #include "app/panels/scene_pictures.hpp"
 #include "app/render/imgui_renderer.hpp"
 
@@ -29,7 +30,7 @@ struct ViewKey {
   PartId hovered;
   std::array<double, 9> camera{};
   std::uint64_t ticket = 0;
-  std::vector<double> poses; // seven numbers a body
+  std::vector<double> poses; // seven numbers a body, of all that is shown
   bool operator==(const ViewKey&) const = default;
 };
 
@@ -51,15 +52,20 @@ class Stage {
   int views_drawn() const { return views_drawn_; }
 
  private:
-  void draw_view(App& app, PixelSize size);
+  // A view of the app, drawn again only where something in it changed; its texture.
+  struct View {
+    std::optional<Framebuffer> target;
+    ViewKey drawn;
+  };
+  unsigned draw_view(const App& app, View& view, const ViewFrame& frame, PixelSize size);
 
   ImGuiContext* former_; // that was current before
   std::unique_ptr<ImGuiContext, void (*)(ImGuiContext*)> context_;
   ImGuiRenderer renderer_;
   ViewRenderer view_renderer_;
   ScenePictures scene_pictures_;
-  std::optional<Framebuffer> view_;
-  ViewKey drawn_;
+  MovieExport movie_;
+  View view_, beside_;
   int views_drawn_ = 0;
 };
 

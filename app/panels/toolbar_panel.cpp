@@ -32,7 +32,8 @@ struct Factor {
   double value;
   const char* text;
 };
-constexpr std::array factors{Factor{1, "1×"},      Factor{0.5, "0.5×"},   Factor{0.2, "0.2×"},
+constexpr std::array factors{Factor{10, "10×"},    Factor{5, "5×"},       Factor{2, "2×"},
+                             Factor{1, "1×"},      Factor{0.5, "0.5×"},   Factor{0.2, "0.2×"},
                              Factor{0.1, "0.1×"},  Factor{0.05, "0.05×"}, Factor{0.02, "0.02×"},
                              Factor{0.01, "0.01×"}};
 
@@ -108,18 +109,7 @@ void play_buttons(App& app) {
   if (icon_button(app, "toolbar/rewind", icon::step_backward, "Back to the drawn phase of the drives"))
     rewind(app);
   next(app);
-  const auto current = std::ranges::find(factors, app.playback.factor, &Factor::value);
-  ImGui::SetNextItemWidth(62 * app.scale);
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
-  if (ImGui::BeginCombo("##factor", current == factors.end() ? "" : current->text,
-                        ImGuiComboFlags_NoArrowButton)) {
-    for (const Factor& factor : factors)
-      if (ImGui::Selectable(factor.text, factor.value == app.playback.factor))
-        app.playback.factor = factor.value;
-    ImGui::EndCombo();
-  }
-  note_widget(app.widgets, "toolbar/factor");
-  help_on_hover("Speed of the picture: below 1× is slow motion");
+  factor_combo(app, "toolbar/factor", 62 * app.scale);
 }
 
 void direction_buttons(App& app) {
@@ -152,6 +142,23 @@ void toggle(App& app, const char* name, const char* text, const char* help, bool
 }
 
 } // namespace
+
+void factor_combo(App& app, const char* name, float width) {
+  const auto current = std::ranges::find(factors, app.playback.factor, &Factor::value);
+  ImGui::SetNextItemWidth(width);
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
+  ImGui::PushID(name);
+  if (ImGui::BeginCombo("##factor", current == factors.end() ? "" : current->text,
+                        ImGuiComboFlags_NoArrowButton | ImGuiComboFlags_HeightLarge)) {
+    for (const Factor& factor : factors)
+      if (ImGui::Selectable(factor.text, factor.value == app.playback.factor))
+        app.playback.factor = factor.value;
+    ImGui::EndCombo();
+  }
+  ImGui::PopID();
+  note_widget(app.widgets, name);
+  help_on_hover("Speed of the picture: below 1× is slow motion");
+}
 
 void toolbar_panel(App& app, const PanelRect& rect) {
   const float s = app.scale;

@@ -122,7 +122,7 @@ void end_tool(App& app, const ViewInput& input) {
 std::string tool_hint(const App& app) {
   const ToolState& tool = app.tool;
   if (tool.grab)
-    return std::string(tool.snap ? "Ctrl moves freely." : "Ctrl snaps.") +
+    return std::string(tool.snap ? "Ctrl drags freely." : "Ctrl snaps.") +
            " A number can be typed. Esc takes it back.";
   switch (tool.tool) {
   case Tool::select: return "";

@@ -4,6 +4,7 @@
 
 #include "app/document/create.hpp"
 #include "app/panels/view_input.hpp"
+#include "app/viewport/picking.hpp"
 
 namespace flyball {
 
@@ -23,6 +24,7 @@ std::string tool_hint(const App& app);
 void use_gizmo(App& app, const ViewInput& input);
 void let_go(App& app, bool keep); // of what is held; otherwise everything is where it was
 // Clicking and framing parts.
+std::optional<Hit> part_under_cursor(App& app, const ViewInput& input);
 void use_selecting(App& app, const ViewInput& input);
 void use_placing(App& app, const ViewInput& input);    // ball, block, plate
 void use_connecting(App& app, const ViewInput& input); // rod, link, spring, damper

@@ -134,7 +134,8 @@ void hold(App& app, const ViewInput& input, const Gizmo& gizmo) {
     move(app, input, gizmo);
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     let_go(app, true);
-    app.tool.spent = true; // letting go is no click
+    // Letting go is no click; but a click on a handle means the part behind it, if there is any.
+    app.tool.spent = input.moved || !part_under_cursor(app, input);
   }
 }
 

@@ -11,13 +11,13 @@
 
 namespace flyball {
 
-namespace {
-
 std::optional<Hit> part_under_cursor(App& app, const ViewInput& input) {
   const double slack = 4 * input.point;
   if (app.mode == Mode::build) return pick(cached_scene(app).instances, input.ray(), slack);
   return pick(scene_of(view_frame(app)).instances, input.ray(), slack);
 }
+
+namespace {
 
 // Looking along a ray takes longest in a mechanism of thousands of bodies: only where the hand moves, or the
 // mechanism under it.

@@ -2,6 +2,7 @@
 #include "app/panels/view_overlays.hpp"
 
 #include "app/panels/file_commands.hpp"
+#include "app/panels/motion_control.hpp"
 #include "app/panels/tools.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
@@ -11,6 +12,20 @@
 namespace flyball {
 
 namespace {
+
+// Which is which of the two that are drawn at one place.
+void draw_legend(const App& app, ImVec2 at) {
+  const UiColors& colors = colors_of(app);
+  const float side = std::round(ImGui::GetFontSize() * 0.6f), line = ImGui::GetTextLineHeight();
+  const float top = at.y + std::round((line - side) / 2);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled({at.x, top}, {at.x + side, top + side}, packed(to_imgui(palette(app.theme).motion)),
+                     2 * app.scale);
+  const MotionRun* shown = shown_motion(app);
+  const bool damped = !shown || shown->run->damped;
+  list.AddText({at.x + side + 6 * app.scale, at.y}, packed(colors.dim),
+               damped ? "the damped motion" : "the motion without dampers");
+}
 
 // A line on a plate of its own, above the status, in the middle of the view's width.
 void draw_line(const App& app, const PanelRect& rect, const std::string& text, const ImVec4& color,
@@ -77,8 +92,24 @@ void caption(App& app, const PanelRect& rect) {
     state = "Drawn pose";
   if (app.playback.time != 0 && solved)
     state = "t = " + short_text(std::floor(app.playback.time * 100) / 100, 6) + " s after the drawn phase";
-  if (!state.empty()) list.AddText({x, y}, packed(colors.dim), state.c_str());
+  if (!state.empty()) {
+    list.AddText({x, y}, packed(colors.dim), state.c_str());
+    y += ImGui::GetTextLineHeightWithSpacing();
+  }
+  if (solved && !app.motion.poses.empty() && !motion_beside(app) && app.mode == Mode::explore)
+    draw_legend(app, {x, y});
   list.PopClipRect();
+}
+
+void motion_caption(App& app, const PanelRect& rect) {
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, big = app.fonts.strong->FontSize;
+  const ImVec2 at(rect.x + 14 * s, rect.y + 11 * s);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddText(app.fonts.strong, big, at, packed(colors.text), "Motion");
+  const MotionRun* shown = shown_motion(app);
+  const std::string what = !shown ? "Computing…" : shown->run->damped ? "damped" : "without dampers";
+  list.AddText({at.x, at.y + big + 4 * s}, packed(colors.dim), what.c_str());
 }
 
 void view_lines(App& app, const PanelRect& rect) {

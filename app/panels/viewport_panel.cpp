@@ -1,7 +1,10 @@
 #include "app/panels/panels.hpp"
 #include "app/panels/tools.hpp"
 #include "app/panels/view_overlays.hpp"
+#include "app/panels/widgets.hpp"
 #include "app/render/imgui_compat.hpp"
+
+#include <cmath>
 
 namespace flyball {
 
@@ -53,6 +56,22 @@ void viewport_panel(App& app, const PanelRect& rect) {
   tool_strip(app, rect);
   joint_card(app, input);
   problem_banner(app, rect);
+}
+
+void beside_panel(App& app, const PanelRect& rect) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  begin_panel("beside", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddImage(imgui_compat::texture_id(app.view.texture_beside), {rect.x, rect.y},
+                {rect.x + rect.width, rect.y + rect.height}, {0, 1}, {1, 0});
+  ImGui::InvisibleButton("beside", {rect.width, rect.height},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  note_widget(app.widgets, "beside");
+  steer(app, view_input(app, rect)); // one camera for both
+  motion_caption(app, rect);
+  ImGui::End();
 }
 
 } // namespace flyball

@@ -1,28 +1,76 @@
-// A two-dimensional plot as a value: what is drawn, not how.
+// A two-dimensional plot as a value: what is drawn, not how. See layout.hpp for where things come to lie,
+// svg.hpp and csv.hpp for files.
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace flyball {
 
+using PlotRange = std::array<double, 2>;
+
 struct PlotAxis {
-  std::string label; // with its unit: "spin speed [rad/s]"
+  std::string label; // "spin speed"
+  std::string unit;  // "rad/s"; may be empty
   bool logarithmic = false;
+  std::optional<PlotRange> range{}; // fixed; otherwise all that is there
+  double room = 0.04;               // of the range, left free at either end; time axes want 0
+  double noise = 1e-15;             // a narrower linear range is rounding and drawn flat
 };
 
-enum class PlotLine { solid, dashed, dotted };
+enum class PlotLine { none, solid, dashed, dotted };
+enum class PlotShape { none, circle, square, triangle, diamond, cross, plus };
+
+// Indices of the palette (Okabe and Ito, darkest first; see colors.hpp). Others wrap around.
+namespace plot_color {
+inline constexpr int blue = 0, vermillion = 1, green = 2, purple = 3, orange = 4, sky_blue = 5, neutral = 6;
+}
 
 struct PlotCurve {
-  std::string name; // in the legend; empty: not there
+  std::string name; // in the legend, once for all curves that share it; empty: not there
+  // In this order; a value that is not finite, or not positive on a logarithmic axis, breaks the line.
   std::vector<std::array<double, 2>> points;
   PlotLine line = PlotLine::solid;
-  int color = 0; // of the colour-blind-safe palette
+  int color = plot_color::blue;
+  double width = 1.8;                // points
+  PlotShape shape = PlotShape::none; // at every point
+  double shape_size = 6;             // points across
+  bool hidden = false;               // neither drawn nor in the legend
 };
 
+// A line from edge to edge, such as a steady value.
+struct PlotReference {
+  int axis = 1; // whose value it stands at; 1: a horizontal line
+  double at = 0;
+  std::string label;
+  int color = plot_color::neutral;
+  PlotLine line = PlotLine::dashed;
+};
+
+// A point with a label, which finds its place beside it.
 struct PlotMark {
   std::array<double, 2> at{};
+  std::string label;
+  PlotShape shape = PlotShape::circle;
+  int color = plot_color::neutral;
+};
+
+// Values over a grid, drawn as cells about the grid's points.
+struct PlotHeat {
+  std::vector<double> x, y;   // rising
+  std::vector<double> values; // x fastest; not finite: left free
+  std::string label, unit;    // of the colour bar
+  bool logarithmic = false;
+  std::optional<PlotRange> range{};
+};
+
+// Where the present state stands; a person can drag it along the curves.
+struct PlotMarker {
+  double x = 0, y = 0;
   std::string label;
 };
 
@@ -30,15 +78,27 @@ struct Plot {
   std::string title;
   PlotAxis x, y;
   std::vector<PlotCurve> curves;
+  std::vector<PlotReference> references;
   std::vector<PlotMark> marks;
+  std::optional<PlotHeat> heat{};
+  std::optional<PlotMarker> marker{};
+  // Another number whenever anything but the marker changes, so that what was laid out can be used again; 0:
+  // laid out anew every time.
+  std::uint64_t version = 0;
 };
 
-// Round values between the ends, about `wanted` of them: 1, 2 or 5 times a power of ten, or powers of ten on
-// a logarithmic axis.
-std::vector<double> axis_ticks(double lower, double upper, int wanted, bool logarithmic);
+// How a person looks at a plot: by axis (0: x, 1: y), and the names of curves he has switched off.
+struct PlotLook {
+  std::array<std::optional<PlotRange>, 2> range{};
+  std::array<std::optional<bool>, 2> logarithmic{};
+  std::set<std::string> hidden{};
+  bool operator==(const PlotLook&) const = default;
+};
 
-// The range of an axis that holds all finite points of the plot, with a little room. {0, 1} where there are
-// none.
-std::array<double, 2> axis_range(const Plot& plot, int axis);
+const PlotAxis& axis_of(const Plot& plot, int axis);
+// "spin speed [rad/s]"
+std::string axis_text(const std::string& label, const std::string& unit);
+bool is_logarithmic(const Plot& plot, const PlotLook& look, int axis);
+bool is_shown(const PlotCurve& curve, const PlotLook& look);
 
 } // namespace flyball

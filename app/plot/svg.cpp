@@ -1,112 +1,278 @@
 #include "app/plot/svg.hpp"
 
+#include "app/plot/colors.hpp"
+#include "app/plot/layout.hpp"
+#include "app/plot/shapes.hpp"
+#include "engine/mechanism/text.hpp"
+
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace flyball {
 namespace {
 
-// Okabe and Ito's palette, darkest first.
-constexpr std::array<const char*, 7> palette = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                "#E69F00", "#56B4E9", "#000000"};
+constexpr double line_height = 16, letter_size = 13; // pixels
 
+// For text and attributes; letters that XML does not have are left out.
 std::string escaped(const std::string& text) {
   std::string out;
-  for (char c : text)
+  const bool readable = find_invalid_utf8(text) == std::string::npos;
+  for (char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
     switch (c) {
     case '&': out += "&amp;"; break;
     case '<': out += "&lt;"; break;
     case '>': out += "&gt;"; break;
     case '"': out += "&quot;"; break;
-    default: out += c;
+    default:
+      if (byte >= 0x20 || c == '\t') out += byte < 0x80 || readable ? c : '?';
     }
+  }
   return out;
 }
 
-// From a value on an axis to pixels.
-struct Ruler {
-  double lower, upper, from, to;
-  bool logarithmic;
-  double operator()(double value) const {
-    const double part =
-        logarithmic ? std::log(value / lower) / std::log(upper / lower) : (value - lower) / (upper - lower);
-    return from + part * (to - from);
+std::string hex(std::uint32_t color) {
+  return fmt::format("#{:06X}", color);
+}
+
+// A coordinate with no more digits than can be seen.
+std::string px(double value) {
+  std::string text = fmt::format("{:.2f}", value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+std::string dash_of(PlotLine line) {
+  return line == PlotLine::dashed   ? " stroke-dasharray=\"7 5\""
+         : line == PlotLine::dotted ? " stroke-dasharray=\"2 4\""
+                                    : "";
+}
+
+struct Drawing {
+  const Plot& plot;
+  const PlotLayout& layout;
+  const PlotColors& colors;
+  bool dark;
+  std::string out{};
+
+  void text(const PlotText& t, std::uint32_t color) {
+    const char* anchor = t.anchor < -0.34 ? "start" : t.anchor > 0.34 ? "end" : "middle";
+    const double half = (t.box.left + t.box.right) / 2, drop = 0.36 * letter_size;
+    if (t.upright)
+      out += fmt::format("<text transform=\"translate({} {}) rotate(-90)\" text-anchor=\"middle\"",
+                         px(half + drop), px((t.box.top + t.box.bottom) / 2));
+    else
+      out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\"",
+                         px(t.anchor < -0.34  ? t.box.left
+                            : t.anchor > 0.34 ? t.box.right
+                                              : half),
+                         px((t.box.top + t.box.bottom) / 2 + drop), anchor);
+    if (color != colors.text) out += fmt::format(" fill=\"{}\"", hex(color));
+    if (t.font == PlotFont::strong) out += " font-weight=\"600\"";
+    out += fmt::format(">{}</text>\n", escaped(t.text));
+  }
+
+  void grid(const std::string& path, std::uint32_t color) {
+    if (!path.empty()) out += fmt::format("<path d=\"{}\" stroke=\"{}\" fill=\"none\"/>\n", path, hex(color));
+  }
+
+  // In the middle of a pixel, so that the line is one pixel wide.
+  static std::string crisp(double value) { return px(std::floor(value) + 0.5); }
+
+  void frame_lines() {
+    const PlotBox& a = layout.area;
+    const auto upright = [&](double x) {
+      return fmt::format("M{} {}V{}", crisp(x), px(a.top), px(a.bottom));
+    };
+    const auto level = [&](double y) { return fmt::format("M{} {}H{}", px(a.left), crisp(y), px(a.right)); };
+    std::string minor, major;
+    for (double x : layout.x_minor)
+      if (layout.x.logarithmic) minor += upright(x);
+    for (double y : layout.y_minor)
+      if (layout.y.logarithmic) minor += level(y);
+    for (const PlotTick& tick : layout.x_ticks)
+      major += upright(tick.at);
+    for (const PlotTick& tick : layout.y_ticks)
+      major += level(tick.at);
+    grid(minor, colors.minor_grid);
+    grid(major, colors.grid);
+  }
+
+  void frame() {
+    const PlotBox& a = layout.area;
+    out += fmt::format("<path d=\"M{} {}H{}V{}H{}Z\" fill=\"none\" stroke=\"{}\"/>\n", crisp(a.left),
+                       crisp(a.top), crisp(a.right), crisp(a.bottom), crisp(a.left), hex(colors.frame));
+    std::string ticks;
+    for (const PlotTick& tick : layout.x_ticks)
+      ticks += fmt::format("M{} {}v5", crisp(tick.at), crisp(a.bottom));
+    for (const PlotTick& tick : layout.y_ticks)
+      ticks += fmt::format("M{} {}h-5", crisp(a.left), crisp(tick.at));
+    for (double x : layout.x_minor)
+      ticks += fmt::format("M{} {}v3", crisp(x), crisp(a.bottom));
+    for (double y : layout.y_minor)
+      ticks += fmt::format("M{} {}h-3", crisp(a.left), crisp(y));
+    if (layout.bar)
+      for (const PlotTick& tick : layout.bar->ticks)
+        ticks += fmt::format("M{} {}h5", px(layout.bar->box.right), crisp(tick.at));
+    grid(ticks, colors.frame);
+  }
+
+  void shape(PlotShape shape, double x, double y, double size, std::uint32_t color, bool hollow) {
+    const std::string paint =
+        hollow ? fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"1.6\"", hex(colors.area), hex(color))
+               : fmt::format("fill=\"{}\"", hex(color));
+    if (shape == PlotShape::circle) {
+      out += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {}/>\n", px(x), px(y), px(size / 2), paint);
+      return;
+    }
+    std::string path;
+    for (const PixelPoint& p : shape_corners(shape, size))
+      path += fmt::format("{}{} {}", path.empty() ? 'M' : 'L', px(x + p[0]), px(y + p[1]));
+    if (!path.empty()) {
+      out += fmt::format("<path d=\"{}Z\" {}/>\n", path, paint);
+      return;
+    }
+    const PixelLine strokes = shape_strokes(shape, size);
+    if (strokes.empty()) return;
+    for (std::size_t i = 0; i + 1 < strokes.size(); i += 2)
+      path += fmt::format("M{} {}L{} {}", px(x + strokes[i][0]), px(y + strokes[i][1]),
+                          px(x + strokes[i + 1][0]), px(y + strokes[i + 1][1]));
+    out +=
+        fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"/>\n", path, hex(color));
+  }
+
+  void curve(const PlotCurveLines& lines) {
+    const PlotCurve& c = plot.curves[lines.curve];
+    const std::uint32_t color = curve_color(c.color, dark);
+    std::string path;
+    for (const PixelLine& line : lines.lines)
+      for (std::size_t i = 0; i < line.size(); ++i)
+        path += fmt::format("{}{} {}", i == 0 ? 'M' : 'L', px(line[i][0]), px(line[i][1]));
+    if (!path.empty())
+      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" "
+                         "stroke-linejoin=\"round\"{}/>\n",
+                         path, hex(color), px(c.width), dash_of(c.line));
+    for (const PixelPoint& p : lines.shapes)
+      shape(c.shape, p[0], p[1], c.shape_size, color, false);
+  }
+
+  void references() {
+    const PlotBox& a = layout.area;
+    for (const PlotPlaced& r : layout.references) {
+      const PlotReference& reference = plot.references[r.index];
+      const std::string path = reference.axis == 1
+                                   ? fmt::format("M{} {}H{}", px(a.left), px(r.y), px(a.right))
+                                   : fmt::format("M{} {}V{}", px(r.x), px(a.top), px(a.bottom));
+      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"{}/>\n", path,
+                         hex(curve_color(reference.color, dark)), dash_of(reference.line));
+    }
+  }
+
+  void legend() {
+    for (const PlotLegendEntry& entry : layout.legend) {
+      const PlotCurve& c = plot.curves[entry.curve];
+      const std::uint32_t color = curve_color(c.color, dark);
+      const double y = (entry.sample.top + entry.sample.bottom) / 2;
+      if (c.line != PlotLine::none)
+        out += fmt::format("<path d=\"M{} {}H{}\" stroke=\"{}\" stroke-width=\"{}\"{}/>\n",
+                           px(entry.sample.left), px(y), px(entry.sample.right), hex(color), px(c.width),
+                           dash_of(c.line));
+      if (c.shape != PlotShape::none)
+        shape(c.shape, (entry.sample.left + entry.sample.right) / 2, y, c.shape_size, color, false);
+      text(entry.text, colors.text);
+    }
+  }
+
+  void heat() {
+    if (layout.cells.empty()) return;
+    out += "<g shape-rendering=\"crispEdges\">\n";
+    for (const PlotCell& cell : layout.cells)
+      out += fmt::format("<path d=\"M{} {}H{}V{}H{}Z\" fill=\"{}\"/>\n", px(cell.box.left), px(cell.box.top),
+                         px(cell.box.right), px(cell.box.bottom), px(cell.box.left), hex(cell.color));
+    out += "</g>\n";
+  }
+
+  void bar() {
+    const PlotBox& box = layout.bar->box;
+    out += "<defs><linearGradient id=\"bar\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">";
+    for (int i = 0; i <= 32; ++i)
+      out += fmt::format("<stop offset=\"{}\" stop-color=\"{}\"/>", px(i / 32.), hex(heat_color(i / 32.)));
+    out += fmt::format("</linearGradient></defs>\n<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" "
+                       "fill=\"url(#bar)\"/>\n",
+                       px(box.left), px(box.top), px(box.width()), px(box.height()));
+    for (const PlotTick& tick : layout.bar->ticks)
+      if (tick.label) text(*tick.label, colors.dim);
+    if (layout.bar->label) text(*layout.bar->label, colors.text);
+  }
+
+  void words() {
+    for (const auto* ticks : {&layout.x_ticks, &layout.y_ticks})
+      for (const PlotTick& tick : *ticks)
+        if (tick.label) text(*tick.label, colors.dim);
+    for (const auto* t : {&layout.title, &layout.x_label, &layout.y_label})
+      if (*t) text(**t, colors.text);
+  }
+
+  // A label stands on the curves' colours: a rim of the ground keeps it readable.
+  void label(const PlotPlaced& placed) {
+    if (!placed.label) return;
+    out +=
+        fmt::format("<g paint-order=\"stroke\" stroke=\"{}\" stroke-width=\"3\" stroke-linejoin=\"round\">",
+                    hex(colors.area));
+    text(*placed.label, colors.text);
+    out += "</g>\n";
+  }
+
+  void marks(const PlotMetrics& metrics) {
+    for (const PlotPlaced& m : layout.marks)
+      shape(plot.marks[m.index].shape, m.x, m.y, 9, curve_color(plot.marks[m.index].color, dark), true);
+    for (const auto* placed : {&layout.references, &layout.marks})
+      for (const PlotPlaced& p : *placed)
+        label(p);
+    if (!plot.marker) return;
+    const double x = layout.x.pixel(plot.marker->x), y = layout.y.pixel(plot.marker->y);
+    if (!layout.area.grown(0.5).contains(x, y)) return;
+    shape(PlotShape::circle, x, y, 11, curve_color(plot_color::neutral, dark), false);
+    if (!plot.marker->label.empty())
+      label({0, x, y, label_beside(layout, x, y, plot.marker->label, metrics)});
   }
 };
 
-std::string tick_text(double value, bool logarithmic) {
-  return logarithmic ? fmt::format("1e{:.0f}", std::log10(value)) : fmt::format("{:.6g}", value);
-}
-
 } // namespace
 
-std::string to_svg(const Plot& plot, int width, int height) {
-  const double left = 78, right = width - 24., top = plot.title.empty() ? 24 : 48, bottom = height - 62.;
-  const auto rx = axis_range(plot, 0), ry = axis_range(plot, 1);
-  const Ruler x{rx[0], rx[1], left, right, plot.x.logarithmic},
-      y{ry[0], ry[1], bottom, top, plot.y.logarithmic};
-  std::string out = fmt::format(
+std::string to_svg(const Plot& plot, const SvgOptions& options, const PlotLook& look) {
+  PlotMetrics metrics;
+  metrics.height = {line_height, line_height, line_height + 2};
+  const PlotLayout layout = plot_layout(plot, look, options.width, options.height, metrics);
+  Drawing d{plot, layout, plot_colors(options.dark), options.dark};
+  d.out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"Inter, Helvetica, Arial, sans-serif\" font-size=\"13\" fill=\"#222\">\n"
-      "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-      width, height);
-  if (!plot.title.empty())
-    out += fmt::format("<text x=\"{:.1f}\" y=\"28\" font-size=\"16\" font-weight=\"600\">{}</text>\n", left,
-                       escaped(plot.title));
-  for (double tick : axis_ticks(rx[0], rx[1], 8, plot.x.logarithmic))
-    out += fmt::format("<path d=\"M{0:.2f} {1:.2f}V{2:.2f}\" stroke=\"#e3e6e8\"/>"
-                       "<text x=\"{0:.2f}\" y=\"{3:.2f}\" text-anchor=\"middle\">{4}</text>\n",
-                       x(tick), top, bottom, bottom + 20, tick_text(tick, plot.x.logarithmic));
-  for (double tick : axis_ticks(ry[0], ry[1], 7, plot.y.logarithmic))
-    out += fmt::format("<path d=\"M{0:.2f} {1:.2f}H{2:.2f}\" stroke=\"#e3e6e8\"/>"
-                       "<text x=\"{3:.2f}\" y=\"{4:.2f}\" text-anchor=\"end\">{5}</text>\n",
-                       left, y(tick), right, left - 8, y(tick) + 4.5, tick_text(tick, plot.y.logarithmic));
-  out += fmt::format("<path d=\"M{:.2f} {:.2f}V{:.2f}H{:.2f}\" fill=\"none\" stroke=\"#666\"/>\n", left, top,
-                     bottom, right);
-  out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", (left + right) / 2,
-                     height - 18., escaped(plot.x.label));
-  out +=
-      fmt::format("<text transform=\"translate(20 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-                  (top + bottom) / 2, escaped(plot.y.label));
-  double legend = top + 18;
-  for (const PlotCurve& c : plot.curves) {
-    const char* color = palette[static_cast<std::size_t>(c.color) % palette.size()];
-    const char* dash = c.line == PlotLine::solid    ? ""
-                       : c.line == PlotLine::dashed ? " stroke-dasharray=\"7 5\""
-                                                    : " stroke-dasharray=\"2 4\"";
-    std::string path;
-    bool pen = false;
-    for (const auto& p : c.points) {
-      const double px = x(p[0]), py = y(p[1]);
-      if (!std::isfinite(px) || !std::isfinite(py)) {
-        pen = false;
-        continue;
-      }
-      path += fmt::format("{}{:.2f} {:.2f}", pen ? "L" : "M", px, py);
-      pen = true;
-    }
-    if (!path.empty())
-      out += fmt::format(
-          "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}/>\n",
-          path, color, dash);
-    if (c.name.empty()) continue;
-    out += fmt::format("<path d=\"M{0:.1f} {1:.1f}h28\" stroke=\"{2}\" stroke-width=\"2\"{3}/><text "
-                       "x=\"{4:.1f}\" y=\"{5:.1f}\">{6}</text>\n",
-                       left + 14, legend - 4.5, color, dash, left + 50, legend, escaped(c.name));
-    legend += 20;
+      "font-family=\"{2}\" font-size=\"{3}\" style=\"font-variant-numeric: tabular-nums\" fill=\"{4}\">\n"
+      "<rect width=\"{0}\" height=\"{1}\" fill=\"{5}\"/>\n",
+      options.width, options.height, escaped(options.font), letter_size, hex(d.colors.text),
+      hex(d.colors.page));
+  if (layout.drawable()) {
+    const PlotBox& a = layout.area;
+    d.out += fmt::format(
+        "<clipPath id=\"area\"><rect x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\"/></clipPath>\n"
+        "<rect x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" fill=\"{4}\"/>\n",
+        px(a.left), px(a.top), px(a.width()), px(a.height()), hex(d.colors.area));
+    d.frame_lines();
+    d.heat();
+    d.out += "<g clip-path=\"url(#area)\">\n";
+    d.references();
+    for (const PlotCurveLines& lines : layout.curves)
+      d.curve(lines);
+    d.out += "</g>\n";
+    d.frame();
+    if (layout.bar) d.bar();
+    d.words();
+    d.legend();
+    d.marks(metrics);
   }
-  for (const PlotMark& m : plot.marks) {
-    const double px = x(m.at[0]), py = y(m.at[1]);
-    if (!std::isfinite(px) || !std::isfinite(py)) continue;
-    const bool near_right = px > right - 120;
-    out += fmt::format(
-        "<circle cx=\"{0:.2f}\" cy=\"{1:.2f}\" r=\"4.5\" fill=\"#fff\" stroke=\"#222\" stroke-width=\"1.6\"/>"
-        "<text x=\"{2:.2f}\" y=\"{3:.2f}\" text-anchor=\"{4}\">{5}</text>\n",
-        px, py, near_right ? px - 9 : px + 9, py - 8, near_right ? "end" : "start", escaped(m.label));
-  }
-  return out + "</svg>\n";
+  return d.out + "</svg>\n";
 }
 
 } // namespace flyball

@@ -5,6 +5,13 @@
 
 namespace flyball {
 
-std::string to_svg(const Plot& plot, int width = 800, int height = 520);
+struct SvgOptions {
+  int width = 800, height = 520;
+  std::string font = "Inter, Helvetica, Arial, sans-serif";
+  bool dark = false;
+};
+
+// Valid XML whatever the texts hold.
+std::string to_svg(const Plot& plot, const SvgOptions& options = {}, const PlotLook& look = {});
 
 } // namespace flyball

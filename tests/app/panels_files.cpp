@@ -311,10 +311,10 @@ TEST_CASE("unsaved work is kept beside the file while it lasts") {
   App& app = robot.app;
   robot.open(file);
   robot.pass(3);
-  CHECK(hidden(folder, ".autosave") == 0);
+  CHECK(hidden(folder, "-autosave") == 0);
   robot.set_speed(5);
   robot.pass(2);
-  REQUIRE(hidden(folder, ".autosave") == 1);
+  REQUIRE(hidden(folder, "-autosave") == 1);
   CHECK(get_parameter(parse_scene(parse_autosave(read_bytes(app.files.autosave.path())).scene), speed) == 5);
   SECTION("until it is saved") {
     robot.key('S', true);
@@ -333,7 +333,7 @@ TEST_CASE("unsaved work is kept beside the file while it lasts") {
     robot.click("unsaved/discard");
     CHECK(app.document.file().empty());
   }
-  CHECK(hidden(folder, ".autosave") == 0);
+  CHECK(hidden(folder, "-autosave") == 0);
 }
 
 TEST_CASE("an opening that fails keeps the work and its autosave") {
@@ -350,7 +350,7 @@ TEST_CASE("an opening that fails keeps the work and its autosave") {
   CHECK_THAT(robot.app.problem, ContainsSubstring("broken.json"));
   CHECK(robot.app.document.file() == file);
   CHECK(robot.speed_now() == 5);
-  CHECK(hidden(folder, ".autosave") == 1);
+  CHECK(hidden(folder, "-autosave") == 1);
   CHECK(recent_files(robot.app).front() == file);
 }
 
@@ -363,7 +363,7 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
     robot.set_speed(5);
     robot.pass(2);
   }
-  REQUIRE(hidden(folder, ".autosave") == 1);
+  REQUIRE(hidden(folder, "-autosave") == 1);
   // Also when the program starts, because the file was used lately.
   FileRobot robot(folder);
   App& app = robot.app;
@@ -382,7 +382,7 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
     CHECK(app.document.unsaved());
     CHECK(speed_in(file) == 11.0174);
     CHECK(app.answer.solution.status == Status::converged);
-    CHECK(hidden(folder, ".autosave") == 1); // safe from the next crash at once
+    CHECK(hidden(folder, "-autosave") == 1); // safe from the next crash at once
     robot.pass(2);
     CHECK(find_leftovers(file, app.options.state).empty()); // it is this program's now
     robot.key('Z', true);
@@ -390,14 +390,14 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
     robot.key('Z', true);
     robot.set_speed(6);
     robot.key('S', true);
-    CHECK(hidden(folder, ".autosave") == 0);
+    CHECK(hidden(folder, "-autosave") == 0);
   }
   SECTION("discarded, and brought back") {
     robot.click("recover/discard");
     CHECK_FALSE(app.dialog.showing);
-    CHECK(hidden(folder, ".autosave") == 0);
-    CHECK(hidden(folder, ".discarded") == 1);
-    robot.frames(1);
+    CHECK(hidden(folder, "-autosave") == 0);
+    CHECK(hidden(folder, "-discarded") == 1);
+    robot.frames(4);
     robot.click("banner/bring_back");
     robot.frames(2);
     REQUIRE(robot.shows("recover/recover"));
@@ -408,14 +408,14 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
     robot.click("recover/discard");
     robot.set_speed(6);
     robot.key('S', true);
-    CHECK(hidden(folder, ".discarded") == 0);
+    CHECK(hidden(folder, "-discarded") == 0);
     CHECK_FALSE(robot.shows("banner/bring_back"));
   }
   SECTION("put off") {
     robot.key(key_escape);
     robot.frames(2);
     CHECK_FALSE(app.dialog.showing);
-    CHECK(hidden(folder, ".autosave") == 1);
+    CHECK(hidden(folder, "-autosave") == 1);
   }
   SECTION("recovered in two windows: the second is told") {
     const Leftover leftover = app.files.leftovers.at(0);
@@ -497,9 +497,9 @@ TEST_CASE("another program's running work is not offered") {
   CHECK_FALSE(robot.app.dialog.showing);
   robot.set_speed(6);
   robot.pass(2);
-  CHECK(hidden(folder, ".autosave") == 2);
+  CHECK(hidden(folder, "-autosave") == 2);
   robot.key('S', true);
-  CHECK(hidden(folder, ".autosave") == 1);
+  CHECK(hidden(folder, "-autosave") == 1);
 }
 
 TEST_CASE("a file that changes on disk is read again where nothing is unsaved") {

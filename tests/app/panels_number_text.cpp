@@ -44,7 +44,9 @@ TEST_CASE("every drive speed and spring constant has a slider, the scene's own f
   Mechanism bare = mechanism;
   bare.sliders.clear();
   const auto own = parameter_controls(bare, bare);
-  REQUIRE(own.size() == 2);
+  REQUIRE(own.size() == 3);
+  CHECK(own[2].group == ParameterGroup::dampers);
+  CHECK(own[2].unit == "N s/m");
   CHECK(own[0].from == 0);
   CHECK(own[0].to == 50);
   CHECK(own[1].from == 10);

@@ -550,6 +550,37 @@ TEST_CASE("a frame selects what it holds") {
   CHECK(d.app.view.camera.azimuth == 0);
 }
 
+TEST_CASE("a click on a handle means the part behind it, and no move") {
+  Drawing d;
+  d.have_ball({0, 0, 0}, 0.1);
+  d.have_ball({0.1, 0.1, 0.3}, 0.01);
+  Selection both = d.app.selection();
+  both.add(body("ball1"));
+  select(d.app, both);
+  d.frames(2);
+  d.click("gizmo/centre");
+  CHECK(d.app.selection().parts == std::vector{body("ball1")});
+  // There is nothing behind the head of the arrow.
+  d.click("gizmo/x");
+  CHECK(d.app.selection().parts == std::vector{body("ball1")});
+  CHECK(d.steps() == 2);
+}
+
+TEST_CASE("a double click on nothing shows everything, on a handle it does not") {
+  Drawing d;
+  d.have_ball({0, 0, 0});
+  const double distance = d.app.view.camera.distance;
+  d.double_click("gizmo/x");
+  CHECK(d.app.view.camera.distance == distance);
+  d.point_at({0.2, -0.3, 0});
+  for (int i = 0; i < 4; ++i) {
+    ImGui::GetIO().MouseDown[0] = i % 2 == 0;
+    d.frames(1);
+  }
+  d.frames(1);
+  CHECK(d.app.view.camera.distance < 0.9 * distance);
+}
+
 TEST_CASE("several parts move together") {
   Drawing d;
   d.have_ball({-0.1, 0, 0});

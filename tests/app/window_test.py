@@ -117,10 +117,29 @@ def explore(window, folder):
     if header[:8] != b"\x89PNG\r\n\x1a\n" or size != (1280, 720):
         raise SystemExit(f"{picture} is no PNG of the wanted size: {size}")
 
+    watch_motion(window)
     window.do("key", "ctrl+q")
     window.wait("a question", lambda s: s["unsaved"] and "unsaved/discard" in s["widgets"])
     window.click("unsaved/discard")
     window.ends_well()
+
+
+def watch_motion(window):
+    """The motion is computed in the background while it plays, scrubbed, and goes with its panel."""
+    window.do("key", "m")
+    window.wait("the motion plays", lambda s: s.get("motion", {}).get("time", 0) > 0.2 and s["playing"])
+    done = window.wait("the whole motion", lambda s: s.get("motion", {}).get("finished"))
+    if "from the direct solution" not in done["motion"]["settled"]:
+        raise SystemExit(f"no word on whether it settled: {done['motion']}")
+    window.do("key", "space")
+    window.wait("it is paused", lambda s: not s["playing"])
+    window.do("mousemove", *window.place("motion/scrub", 0.5))
+    window.do("mousedown", 1)
+    window.do("mouseup", 1)
+    half = done["motion"]["computed"] / 2
+    window.wait("it is scrubbed to the middle", lambda s: abs(s["motion"]["time"] - half) < 0.1 * half)
+    window.click("study/close")
+    window.wait("the motion is gone", lambda s: "motion" not in s)
 
 
 def hidden_files(folder):

@@ -220,6 +220,33 @@ std::map<std::string, VectorR> mujoco_inverse(const Mechanism& mechanism, const 
   return forces;
 }
 
+std::vector<Pose> mujoco_motion(const Mechanism& mechanism,
+                                const std::vector<std::pair<std::string, double>>& rates, double duration,
+                                double step) {
+  if (!mujoco_can_hold(mechanism)) throw std::invalid_argument("MuJoCo cannot hold this mechanism");
+  const auto model = load(to_mjcf(mechanism));
+  const auto steps = std::lround(duration / step);
+  model->opt.integrator = mjINT_RK4;
+  model->opt.timestep = duration / static_cast<double>(steps);
+  const std::unique_ptr<mjData, Free> data(mj_makeData(model.get()));
+  for (const auto& [name, rate] : rates) {
+    const CoordinateReference c = find_coordinate(mechanism, name);
+    if (c.joint < 0) throw std::invalid_argument("no coordinate " + name);
+    const std::string part = mechanism.joints[at(c.joint)].name + "_" + std::to_string(c.coordinate);
+    data->qvel[model->jnt_dofadr[mj_name2id(model.get(), mjOBJ_JOINT, part.c_str())]] = rate;
+  }
+  for (long i = 0; i < steps; ++i)
+    mj_step(model.get(), data.get());
+  mj_kinematics(model.get(), data.get());
+  std::vector<Pose> poses;
+  for (const Body& body : mechanism.bodies) {
+    const int id = mj_name2id(model.get(), mjOBJ_BODY, body.name.c_str());
+    const double *x = data->xpos + 3 * id, *q = data->xquat + 4 * id;
+    poses.push_back({Vec3(x[0], x[1], x[2]), Quat(q[0], q[1], q[2], q[3])});
+  }
+  return poses;
+}
+
 #else
 
 bool mujoco_available() {
@@ -227,6 +254,11 @@ bool mujoco_available() {
 }
 
 std::map<std::string, VectorR> mujoco_inverse(const Mechanism&, const ReferenceState&) {
+  throw std::invalid_argument("built without MuJoCo");
+}
+
+std::vector<Pose> mujoco_motion(const Mechanism&, const std::vector<std::pair<std::string, double>>&, double,
+                                double) {
   throw std::invalid_argument("built without MuJoCo");
 }
 

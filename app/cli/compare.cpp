@@ -1,0 +1,180 @@
+#include "engine/study/compare.hpp"
+#include "app/cli/command.hpp"
+#include "app/cli/progress.hpp"
+#include "app/cli/scene_argument.hpp"
+#include "app/plot/comparison_plot.hpp"
+#include "app/plot/svg.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace flyball::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string to_csv(const Comparison& c) {
+  std::string out = "method,duration_s,tolerance,iterations,error,run_time_s,steps,evaluations,status\n";
+  for (const DirectMark& m : c.direct)
+    out += fmt::format("direct,,,{},{},{},,,{}\n", m.iterations, number_text(m.error),
+                       number_text(m.run_time_s), word(c.status));
+  out += fmt::format("direct_answer,,,{},{},{},,,{}\n", c.answer.iterations, number_text(c.answer.error),
+                     number_text(c.answer.run_time_s), word(c.status));
+  for (const MotionCurve& curve : c.motion)
+    for (const MotionPoint& p : curve.points)
+      out += fmt::format("{},{},{},,{},{},{},{},{}\n", word(curve.method), number_text(curve.duration),
+                         number_text(p.tolerance), std::isfinite(p.error) ? number_text(p.error) : "",
+                         number_text(p.run_time_s), p.steps, p.evaluations, word(p.status));
+  return out;
+}
+
+Json mark_json(const DirectMark& m) {
+  return {{"iterations", m.iterations}, {"error", m.error}, {"run_time_s", m.run_time_s}};
+}
+
+Json to_json(const Comparison& c) {
+  Json out = {{"status", word(c.status)}, {"message", c.message}};
+  Json reference = Json::array();
+  for (const CoordinateSolution& q : c.reference)
+    if (!q.driven)
+      reference.push_back({{"joint", q.joint}, {"index", q.index}, {"value", q.value}, {"error", q.error}});
+  out["reference"] = {{"coordinates", std::move(reference)},
+                      {"error", c.reference_error},
+                      {"residual", c.reference_residual}};
+  out["direct"] = Json::array();
+  for (const DirectMark& m : c.direct)
+    out["direct"].push_back(mark_json(m));
+  out["answer"] = mark_json(c.answer);
+  out["motion"] = Json::array();
+  for (const MotionCurve& curve : c.motion) {
+    Json points = Json::array();
+    for (const MotionPoint& p : curve.points)
+      points.push_back({{"tolerance", p.tolerance},
+                        {"error", std::isfinite(p.error) ? Json(p.error) : Json(nullptr)},
+                        {"run_time_s", p.run_time_s},
+                        {"steps", p.steps},
+                        {"evaluations", p.evaluations},
+                        {"status", word(p.status)}});
+    out["motion"].push_back(
+        {{"method", word(curve.method)}, {"duration", curve.duration}, {"points", std::move(points)}});
+  }
+  out["best"] = nullptr;
+  if (c.best)
+    out["best"] = {{"method", word(c.best->method)}, {"duration", c.best->duration},
+                   {"tolerance", c.best->tolerance}, {"error", c.best->error},
+                   {"motion_s", c.best->motion_s},   {"direct_s", c.best->direct_s},
+                   {"ratio", c.best->ratio()}};
+  return out;
+}
+
+std::string time_text(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.2f} µs", seconds * 1e6);
+  if (seconds < 1) return fmt::format("{:.3f} ms", seconds * 1e3);
+  return fmt::format("{:.3f} s", seconds);
+}
+
+// The runs of one integrator: tolerances down, simulated durations across.
+std::string table(const Comparison& c, Integrator method) {
+  std::vector<const MotionCurve*> curves;
+  for (const MotionCurve& curve : c.motion)
+    if (curve.method == method) curves.push_back(&curve);
+  std::string out = "  tolerance";
+  for (const MotionCurve* curve : curves)
+    out += fmt::format("  {:>19}", fmt::format("{:.3g} s simulated", curve->duration));
+  out += "\n";
+  for (std::size_t p = 0; p < curves.front()->points.size(); ++p) {
+    out += fmt::format("  {:9.0e}", curves.front()->points[p].tolerance);
+    for (const MotionCurve* curve : curves) {
+      if (p >= curve->points.size()) continue; // cancelled
+      const MotionPoint& point = curve->points[p];
+      const std::string error =
+          std::isfinite(point.error) ? fmt::format("{:.1e}", point.error) : std::string(word(point.status));
+      out += fmt::format("  {:>8} {:>10}", error, time_text(point.run_time_s));
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+std::string to_text(const Mechanism& mechanism, const Comparison& c) {
+  std::string out = fmt::format("{}: {}\n", mechanism.name, c.message);
+  out += fmt::format("reference verified in extended precision: last correction {:.1e}, residual {:.1e}\n",
+                     c.reference_error, c.reference_residual);
+  out += "\ndirect solution           error      run time\n";
+  for (const DirectMark& m : c.direct)
+    out += fmt::format("  {:2} iterations         {:8.1e}  {:>12}\n", m.iterations, m.error,
+                       time_text(m.run_time_s));
+  out += fmt::format("  with all checks       {:8.1e}  {:>12}\n", c.answer.error,
+                     time_text(c.answer.run_time_s));
+  if (c.motion.empty()) return out;
+  for (const Integrator method : {Integrator::bdf, Integrator::adams, Integrator::runge_kutta})
+    if (std::ranges::find(c.motion, method, &MotionCurve::method) != c.motion.end())
+      out += fmt::format("\ndamped motion with {}: error and run time\n", word(method)) + table(c, method);
+  if (c.best)
+    out += fmt::format(
+        "\nThe motion comes nearest with {} at tolerance {:.0e} over {:.4g} s: error {:.1e} after {}.\n"
+        "The direct solution is as near after {}: {:.0f} times sooner.\n",
+        word(c.best->method), c.best->tolerance, c.best->duration, c.best->error, time_text(c.best->motion_s),
+        time_text(c.best->direct_s), c.best->ratio());
+  return out;
+}
+
+struct Options {
+  SceneArgument scene;
+  std::string csv, svg;
+  int repeats = 5;
+  std::vector<double> durations;
+  bool json = false;
+};
+
+int run_compare(const Options& options) {
+  const Mechanism mechanism = options.scene.load();
+  Comparison comparison;
+  try {
+    Progress progress("measuring");
+    CompareOptions wanted;
+    wanted.repeats = options.repeats;
+    wanted.durations = options.durations;
+    wanted.progress = [&](std::size_t done, std::size_t all) { progress.show(done, all); };
+    comparison = compare(mechanism, wanted);
+  } catch (const SceneError& error) {
+    throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
+  }
+  if (!options.svg.empty()) write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison)));
+  if (!options.csv.empty()) write_bytes(options.csv, to_csv(comparison));
+  if (options.json)
+    fmt::print("{}\n", to_json(comparison).dump(2));
+  else if (options.csv != "-" && options.svg != "-") // else standard output is theirs
+    fmt::print("{}", to_text(mechanism, comparison));
+  return comparison.status == Status::converged ? exit_done : exit_no_result;
+}
+
+} // namespace
+
+void add_compare(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("compare", "Measure error against run time: direct solution and damped motion");
+  options->scene.add_to(*command);
+  command->add_option("--csv", options->csv, "Write all measurements to a file (-: standard output)");
+  command->add_option("--svg", options->svg, "Draw them, on logarithmic axes (-: standard output)");
+  command->add_option("--repeats", options->repeats, "Runs of which the median time is told")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option("--duration", options->durations,
+                   "Seconds to simulate; may be given several times (default: by the slowest motion)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--json", options->json, "Print a JSON object");
+  command->footer("Example: flyball compare governor.json --csv compare.csv --svg compare.svg");
+  command->callback([options, &exit_code] { exit_code = run_compare(*options); });
+}
+
+} // namespace flyball::cli

@@ -1,0 +1,343 @@
+#include "app/cli/command.hpp"
+#include "app/cli/movie.hpp"
+#include "app/cli/picture.hpp"
+#include "app/cli/progress.hpp"
+#include "app/cli/scene_argument.hpp"
+#include "app/render/movie.hpp"
+#include "engine/dynamics/settled.hpp"
+#include "engine/dynamics/simulator.hpp"
+#include "engine/equilibrium/analysis.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+
+namespace flyball::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string label(const std::string& joint, int index, int count) {
+  return count == 1 ? joint : fmt::format("{}.{}", joint, index);
+}
+std::string label(const CoordinateTrack& c) {
+  return label(c.joint, c.index, c.count);
+}
+
+struct Column {
+  std::string name;
+  const std::vector<double>* values;
+};
+
+// Time, coordinates (driven ones too), their rates, drive torques and energies.
+std::vector<Column> columns_of(const Run& run) {
+  std::vector<Column> columns{{"t", &run.time}};
+  for (const CoordinateTrack& c : run.coordinates)
+    columns.push_back({label(c), &c.value});
+  for (const CoordinateTrack& c : run.coordinates)
+    columns.push_back({label(c) + ".rate", &c.rate});
+  for (const DriveTrack& d : run.drives)
+    columns.push_back({label(d.joint, d.index, d.count) + ".torque", &d.torque});
+  const EnergyTracks& e = run.energy;
+  for (const auto& [name, values] : std::initializer_list<std::pair<const char*, const std::vector<double>*>>{
+           {"energy.kinetic", &e.kinetic},
+           {"energy.potential", &e.potential},
+           {"energy.jacobi", &e.jacobi},
+           {"energy.dissipated", &e.dissipated},
+           {"energy.delivered", &e.delivered},
+           {"energy.balance", &e.balance}})
+    if (values->size() == run.time.size()) columns.push_back({name, values});
+  return columns;
+}
+
+std::string to_csv(const Run& run) {
+  const std::vector<Column> columns = columns_of(run);
+  std::string out;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    out += (c ? "," : "") + csv_field(columns[c].name);
+  out += "\n";
+  for (std::size_t i = 0; i < run.time.size(); ++i) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (c) out += ",";
+      out += number_text((*columns[c].values)[i]);
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+double greatest(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.,
+                         [](double most, double v) { return std::max(most, std::abs(v)); });
+}
+
+// What the integrator's honesty is judged by.
+double energy_error(const Run& run) {
+  return greatest(run.energy.balance);
+}
+double energy_at_play(const Run& run) {
+  return std::max(
+      {greatest(run.energy.kinetic), greatest(run.energy.dissipated), greatest(run.energy.delivered)});
+}
+// Largest change of T_2 + V - T_0, J; nothing where it is not defined or the dampers take from it.
+std::optional<double> jacobi_drift(const Run& run) {
+  if (run.damped || run.energy.jacobi.empty()) return std::nullopt;
+  const auto [least, most] = std::ranges::minmax(run.energy.jacobi);
+  return most - least;
+}
+
+Json state_json(const SimulationState& state) {
+  Json coordinates = Json::array();
+  for (const StateCoordinate& c : state.coordinates)
+    coordinates.push_back({{"joint", c.joint}, {"index", c.index}, {"value", c.value}, {"rate", c.rate}});
+  return {{"time", state.time}, {"coordinates", std::move(coordinates)}};
+}
+
+// Throws SceneError naming the file.
+SimulationState read_state(const std::filesystem::path& file) {
+  try {
+    const Json json = Json::parse(read_bytes(file));
+    SimulationState state;
+    state.time = json.at("time").get<double>();
+    for (const Json& c : json.at("coordinates"))
+      state.coordinates.push_back({c.at("joint").get<std::string>(), c.at("index").get<int>(),
+                                   c.at("value").get<double>(), c.at("rate").get<double>()});
+    return state;
+  } catch (const nlohmann::json::exception& error) {
+    throw SceneError(file.string(),
+                     std::string("expected a state as --save-state writes it: ") + error.what());
+  }
+}
+
+Json run_json(const Run& run, const std::optional<Settled>& settled) {
+  Json out = {{"status", word(run.status)},         {"message", run.message}, {"method", word(run.method)},
+              {"method_reason", run.method_reason}, {"damped", run.damped},   {"time", run.time.back()}};
+  out["settled"] = nullptr;
+  if (settled)
+    out["settled"] = {
+        {"time", settled->time ? Json(*settled->time) : Json(nullptr)},
+        {"distance", std::isfinite(settled->distance) ? Json(settled->distance) : Json(nullptr)},
+        {"message", settled->message}};
+  out["coordinates"] = out["rates"] = Json::object();
+  for (const CoordinateTrack& c : run.coordinates) {
+    out["coordinates"][label(c)] = c.value.back();
+    out["rates"][label(c)] = c.rate.back();
+  }
+  const auto drift = jacobi_drift(run);
+  out["energy"] = {{"balance_error", energy_error(run)},
+                   {"at_play", energy_at_play(run)},
+                   {"jacobi_drift", drift ? Json(*drift) : Json(nullptr)}};
+  const RunStatistics& s = run.statistics;
+  out["statistics"] = {{"samples", run.time.size()},
+                       {"steps", s.steps},
+                       {"evaluations", s.evaluations},
+                       {"jacobians", s.jacobians},
+                       {"rejected", s.rejected},
+                       {"restarts", s.restarts},
+                       {"position_drift", s.position_drift},
+                       {"velocity_drift", s.velocity_drift}};
+  out["stops"] = Json::array();
+  for (const StopEvent& stop : run.stops)
+    out["stops"].push_back({{"time", stop.time},
+                            {"joint", stop.joint},
+                            {"index", stop.index},
+                            {"upper", stop.upper},
+                            {"touching", stop.touching}});
+  out["notes"] = run.notes;
+  out["run_time_s"] = s.run_time_s;
+  return out;
+}
+
+std::string run_text(const Mechanism& mechanism, const Run& run, const std::optional<Settled>& settled) {
+  std::string out = fmt::format("{}: {}\n", mechanism.name, run.message);
+  if (settled) out += "  " + settled->message + "\n";
+  out += "  " + run.method_reason + "\n";
+  for (const std::string& note : run.notes)
+    out += "  " + note + "\n";
+  out += fmt::format("\nat {:.6g} s\n", run.time.back());
+  std::size_t width = 10;
+  for (const CoordinateTrack& c : run.coordinates)
+    width = std::max(width, label(c).size());
+  for (const CoordinateTrack& c : run.coordinates)
+    out +=
+        fmt::format("  {:{}}  {:>18.12g} {:3}  {:>14.6g} {}/s{}\n", label(c), width, c.value.back(),
+                    c.angle ? "rad" : "m", c.rate.back(), c.angle ? "rad" : "m", c.driven ? "  driven" : "");
+  out += fmt::format("\nenergy balance within {:.1e} J of {:.3g} J at play", energy_error(run),
+                     energy_at_play(run));
+  if (const auto drift = jacobi_drift(run)) out += fmt::format("; Jacobi integral within {:.1e} J", *drift);
+  const RunStatistics& s = run.statistics;
+  if (s.position_drift > 0 || s.velocity_drift > 0)
+    out += fmt::format("\nloops open by at most {:.1e}, opening at most at {:.1e} 1/s (scaled)",
+                       s.position_drift, s.velocity_drift);
+  if (!run.stops.empty()) out += fmt::format("\n{} times at a stop or off it", run.stops.size());
+  return out +
+         fmt::format("\n{} steps, {} evaluations, {:.1f} ms\n", s.steps, s.evaluations, s.run_time_s * 1e3);
+}
+
+struct Options {
+  SceneArgument scene;
+  std::optional<double> duration;
+  double rate = 100, tolerance = 1e-10, step = 0;
+  std::string start = "rest", method = "automatic", csv, from_state, save_state;
+  std::vector<std::string> at, kick;
+  bool undamped = false, json = false;
+  MovieOptions movie; // without a file: none
+  std::string size = "1280x720";
+};
+
+const std::map<std::string, Start> starts{
+    {"rest", Start::rest}, {"drawn", Start::drawn}, {"equilibrium", Start::equilibrium}};
+const std::map<std::string, Integrator> methods{{"automatic", Integrator::automatic},
+                                                {"bdf", Integrator::bdf},
+                                                {"adams", Integrator::adams},
+                                                {"runge_kutta", Integrator::runge_kutta}};
+
+template <class T>
+std::vector<std::string> keys_of(const std::map<std::string, T>& map) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : map)
+    keys.push_back(key);
+  return keys;
+}
+
+SimulationOptions simulation_of(const Options& options, const Mechanism& mechanism) {
+  SimulationOptions wanted;
+  wanted.duration = options.duration.value_or(mechanism.simulation.duration);
+  wanted.rate = options.rate;
+  wanted.tolerance = options.tolerance;
+  wanted.fixed_step = options.step;
+  wanted.method = methods.at(options.method);
+  wanted.damped = mechanism.simulation.damped && !options.undamped;
+  wanted.start = starts.at(options.start);
+  for (const std::string& text : options.at)
+    wanted.at.push_back(parse_assignment("--at", text));
+  for (const std::string& text : options.kick)
+    wanted.kick.push_back(parse_assignment("--kick", text));
+  if (!options.from_state.empty()) {
+    wanted.start = Start::state;
+    wanted.state = read_state(options.from_state);
+  }
+  if (wanted.duration * wanted.rate > 2e7)
+    throw SceneError("--duration", "expected at most 20000000 samples; lower --rate");
+  return wanted;
+}
+
+// Bad film options are told before anything is computed.
+MovieOptions movie_of(const Options& options, double duration) {
+  MovieOptions movie = options.movie;
+  if (movie.file.empty()) return movie;
+  read_size(options.size, largest_movie, movie.width, movie.height);
+  check_movie(movie, duration);
+  return movie;
+}
+
+int run_simulate(const Options& options) {
+  if (options.csv == "-" && options.json) throw SceneError("--csv -", "expected no --json beside it");
+  const Mechanism mechanism = options.scene.load();
+  SimulationOptions wanted = simulation_of(options, mechanism);
+  const MovieOptions movie = movie_of(options, wanted.duration);
+  Run run;
+  std::optional<Solution> steady;
+  std::optional<Settled> settled;
+  try {
+    Progress progress("simulating");
+    const double begin = wanted.start == Start::state ? wanted.state.time : 0;
+    wanted.progress = [&](double t) {
+      progress.show(static_cast<std::size_t>(1000 * std::clamp((t - begin) / wanted.duration, 0., 1.)), 1000);
+    };
+    run = simulate(mechanism, wanted);
+    SolveOptions quick;
+    quick.details = false;
+    steady = Analysis(mechanism).solve(quick);
+    if (steady->status == Status::converged)
+      settled = find_settled(run, *steady);
+    else
+      steady.reset();
+  } catch (const SceneError& error) {
+    throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
+  }
+  if (!options.save_state.empty())
+    write_bytes(options.save_state, state_json(state_at(run, run.time.size() - 1)).dump(2) + "\n");
+  if (!options.csv.empty()) write_bytes(options.csv, to_csv(run));
+  if (!movie.file.empty()) draw_movie(mechanism, std::make_shared<const Run>(run), steady, movie);
+  if (options.json)
+    fmt::print("{}\n", run_json(run, settled).dump(2));
+  else if (options.csv != "-") // then standard output is the table's
+    fmt::print("{}", run_text(mechanism, run, settled));
+  if (run.status != RunStatus::completed && options.csv == "-")
+    fmt::print(stderr, "flyball: {}\n", run.message);
+  return run.status == RunStatus::completed ? exit_done : exit_no_result;
+}
+
+} // namespace
+
+void add_simulate(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("simulate", "Integrate the damped motion");
+  options->scene.add_to(*command);
+  command->add_option("--duration", options->duration, "Seconds (default: as the scene says)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--rate", options->rate, "Samples a second")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  CLI::Option* start =
+      command
+          ->add_option(
+              "--start", options->start,
+              "rest: the drawn pose carried along by the drives; drawn: standing still in the world; "
+              "equilibrium: the steady state")
+          ->check(CLI::IsMember(keys_of(starts)))
+          ->capture_default_str();
+  command->add_option("--at", options->at, "Start elsewhere than drawn: joint=value (rad, m)")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--kick", options->kick, "A rate over the start's: joint=rate (rad/s, m/s)")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--from-state", options->from_state, "Go on from a state that --save-state wrote")
+      ->excludes(start);
+  command->add_option("--save-state", options->save_state, "Write the last state to a JSON file");
+  command->add_flag("--undamped", options->undamped, "Without the dampers");
+  command
+      ->add_option("--method", options->method,
+                   "bdf: implicit, for stiff scenes; adams; runge_kutta: explicit, of order 8")
+      ->check(CLI::IsMember(keys_of(methods)))
+      ->capture_default_str();
+  CLI::Option* tolerance =
+      command->add_option("--tolerance", options->tolerance, "Of the error of a step, relative")
+          ->check(CLI::Range(1e-14, 0.1))
+          ->capture_default_str();
+  command->add_option("--step", options->step, "Runge-Kutta steps of this many seconds instead")
+      ->check(CLI::PositiveNumber)
+      ->excludes(tolerance);
+  command->add_option("--csv", options->csv, "Write all samples to a file (-: standard output)");
+  command->add_flag("--json", options->json, "Print a JSON object of the outcome");
+  CLI::Option* movie = command->add_option("--movie", options->movie.file,
+                                           "Draw a film of it, the steady state solid and the motion in "
+                                           "amber: .mp4 or .gif by ffmpeg, or .png for "
+                                           "numbered frames");
+  command->add_option("--size", options->size, "Pixels of the film")->needs(movie)->capture_default_str();
+  command->add_option("--fps", options->movie.rate, "Frames a second of the film")
+      ->check(CLI::PositiveNumber)
+      ->needs(movie)
+      ->capture_default_str();
+  command
+      ->add_option("--slow-motion", options->movie.factor, "Seconds of the motion that a second of it shows")
+      ->check(CLI::PositiveNumber)
+      ->needs(movie)
+      ->capture_default_str();
+  command->footer("Examples: flyball simulate governor.json --duration 5 --csv run.csv\n"
+                  "          flyball simulate governor.json --movie run.mp4 --slow-motion 0.2");
+  command->callback([options, &exit_code] { exit_code = run_simulate(*options); });
+}
+
+} // namespace flyball::cli

@@ -1,0 +1,164 @@
+// What plots over time can show, and how it becomes one.
+#include "app/panels/motion_control.hpp"
+#include "app/panels/study_panels.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi, millimetres = 1000;
+
+std::string label(const std::string& joint, int index, int count) {
+  return count == 1 ? joint : joint + "." + std::to_string(index);
+}
+
+struct Shown {
+  std::string title, unit;
+  double factor = 1;
+  // One curve for each of these, by name in the legend.
+  struct Line {
+    std::string name;
+    std::vector<double> values;
+  };
+  std::vector<Line> lines;
+};
+
+std::vector<double> norms(const std::vector<Vec3>& vectors) {
+  std::vector<double> out;
+  out.reserve(vectors.size());
+  for (const Vec3& v : vectors)
+    out.push_back(v.norm());
+  return out;
+}
+
+std::vector<double> changes(std::vector<double> values) {
+  for (std::size_t i = values.size(); i-- > 0;)
+    values[i] -= values.front();
+  return values;
+}
+
+// The quantity in one run; no lines where the run has none of that name.
+Shown shown_quantity(const Run& run, const std::string& key) {
+  Shown out;
+  for (const CoordinateTrack& c : run.coordinates) {
+    const std::string name = label(c.joint, c.index, c.count);
+    if (key == "value " + name)
+      return {name, c.angle ? "°" : "mm", c.angle ? degrees : millimetres, {{"", c.value}}};
+    if (key == "rate " + name)
+      return {"rate of " + name, c.angle ? "°/s" : "mm/s", c.angle ? degrees : millimetres, {{"", c.rate}}};
+  }
+  for (const DriveTrack& d : run.drives) {
+    const std::string name = label(d.joint, d.index, d.count);
+    if (key == "drive " + name)
+      return {(d.angle ? "drive torque of " : "drive force of ") + name,
+              d.angle ? "N m" : "N",
+              1,
+              {{"", d.torque}}};
+  }
+  for (const ReactionTrack& r : run.reactions) {
+    if (key == "force " + r.joint) return {"force through " + r.joint, "N", 1, {{"", norms(r.force)}}};
+    if (key == "torque " + r.joint) return {"torque through " + r.joint, "N m", 1, {{"", norms(r.torque)}}};
+  }
+  const EnergyTracks& e = run.energy;
+  if (key == "energies") { // less what there was at first, which may be much and says nothing
+    out = {"energy since the start",
+           "J",
+           1,
+           {{"kinetic", changes(e.kinetic)}, {"potential", changes(e.potential)}}};
+    if (!e.jacobi.empty()) out.lines.push_back({"T₂ + V - T₀", changes(e.jacobi)});
+    out.lines.push_back({"dissipated", e.dissipated});
+    if (!run.drives.empty()) out.lines.push_back({"delivered by the drives", e.delivered});
+  } else if (key == "jacobi" && !e.jacobi.empty()) {
+    out = {"T₂ + V - T₀", "J", 1, {{"", e.jacobi}}};
+  } else if (key == "balance") {
+    out = {"energy balance", "J", 1, {{"", e.balance}}};
+  }
+  return out;
+}
+
+// What the quantity is in the steady state, in SI units.
+std::optional<double> steady_value(const App& app, const std::string& key) {
+  if (!converged(app)) return std::nullopt;
+  const Solution& s = app.answer.solution;
+  if (key.starts_with("rate ")) return 0;
+  for (const CoordinateSolution& c : s.coordinates)
+    if (key == "value " + label(c.joint, c.index, c.count) && !c.driven) return c.value;
+  for (const DriveTorque& d : s.drive_torques)
+    if (key == "drive " + label(d.joint, d.index, d.count) && !d.varying) return d.value;
+  for (const Reaction& r : s.reactions) {
+    if (r.varying) continue;
+    if (key == "force " + r.joint) return r.force.norm();
+    if (key == "torque " + r.joint) return r.torque.norm();
+  }
+  return std::nullopt;
+}
+
+} // namespace
+
+std::vector<MotionQuantity> motion_quantities(const Run& run) {
+  std::vector<MotionQuantity> out;
+  const auto add = [&](const std::string& key, const char* group) {
+    out.push_back({key, shown_quantity(run, key).title, group});
+  };
+  for (const CoordinateTrack& c : run.coordinates)
+    if (!c.driven) add("value " + label(c.joint, c.index, c.count), "Coordinates");
+  for (const CoordinateTrack& c : run.coordinates)
+    if (!c.driven) add("rate " + label(c.joint, c.index, c.count), "Speeds");
+  for (const DriveTrack& d : run.drives)
+    add("drive " + label(d.joint, d.index, d.count), "Drives");
+  add("energies", "Energy");
+  if (!run.energy.jacobi.empty()) add("jacobi", "Energy");
+  add("balance", "Energy");
+  for (const ReactionTrack& r : run.reactions)
+    add("force " + r.joint, "Reactions");
+  for (const ReactionTrack& r : run.reactions)
+    add("torque " + r.joint, "Reactions");
+  return out;
+}
+
+Plot motion_plot(const App& app, const std::string& quantity) {
+  Plot plot;
+  plot.x = {.label = "time", .unit = "s", .room = 0};
+  plot.version = app.motion.version;
+  const bool both =
+      std::ranges::all_of(app.motion.runs, [](const MotionRun& r) { return r.wanted && r.run; });
+  for (const MotionRun& motion : app.motion.runs) {
+    if (!motion.wanted || !motion.run) continue;
+    const Run& run = *motion.run;
+    const Shown shown = shown_quantity(run, quantity);
+    if (!shown.title.empty()) {
+      plot.y.label = shown.title;
+      plot.y.unit = shown.unit;
+    }
+    // Several energies of two runs would be too much to look at.
+    if (both && !run.damped && shown.lines.size() > 1) continue;
+    const char* whose = run.damped ? "damped" : "undamped";
+    for (std::size_t l = 0; l < shown.lines.size(); ++l) {
+      PlotCurve curve;
+      const std::string& name = shown.lines[l].name;
+      curve.name = name.empty() ? whose : name;
+      if (shown.lines.size() == 1) {
+        curve.color = run.damped ? plot_color::orange : plot_color::sky_blue;
+      } else {
+        curve.color = static_cast<int>(l);
+      }
+      curve.width = run.damped || !both ? 1.8 : 1.2;
+      const std::vector<double>& values = shown.lines[l].values;
+      curve.points.reserve(values.size());
+      for (std::size_t i = 0; i < values.size() && i < run.time.size(); ++i)
+        curve.points.push_back({run.time[i], values[i] * shown.factor});
+      plot.curves.push_back(std::move(curve));
+    }
+    if (const auto steady = steady_value(app, quantity); steady && plot.references.empty())
+      plot.references.push_back(
+          {.axis = 1, .at = *steady * shown.factor, .label = "steady", .color = plot_color::blue});
+  }
+  // The undamped run lies below the damped one.
+  std::ranges::stable_sort(plot.curves, {}, [](const PlotCurve& c) { return c.width; });
+  return plot;
+}
+
+} // namespace flyball

@@ -1,0 +1,63 @@
+// A plot on the screen that can be looked around in: the wheel zooms about the pointer (over an axis: that
+// axis alone), a drag pans, right-drag or Shift-drag zooms to a box, a double click fits; entries of the
+// legend switch curves on and off, and a right click offers scales and files.
+#pragma once
+
+#include "app/plot/layout.hpp"
+
+#include <imgui.h>
+
+#include <memory>
+
+namespace flyball {
+
+struct App;
+
+enum class PlotFile { none, png, svg, csv };
+
+// A point of a plot's data.
+struct PlotHit {
+  std::size_t curve = 0; // of Plot::curves
+  double index = 0;      // of its points; with a fraction where it lies between two
+  double x = 0, y = 0;
+};
+
+// What the person did to the plot in this frame.
+struct PlotEvents {
+  std::optional<PlotHit> hovered;    // the point of the data under the pointer
+  std::optional<PlotHit> clicked;    // the same, pressed and released without a drag
+  std::optional<PlotHit> dragged_to; // where along the curves the marker is wanted; every frame of the drag
+  bool drag_ended = false;           // the marker was let go
+};
+
+// What was laid out, while it can be used again.
+struct PlotKept {
+  std::uint64_t version = 0;
+  PlotLook look;
+  float width = 0, height = 0, scale = 0;
+  std::shared_ptr<const PlotLayout> layout;
+};
+
+// How a person looks at one plot; a value that the panel keeps from frame to frame.
+struct PlotView {
+  PlotLook look;
+  std::optional<double> cursor; // x under the pointer
+  // What the hand does.
+  enum class Drag { none, pan, box, marker } drag = Drag::none;
+  std::array<bool, 2> drag_axis{true, true};
+  std::array<double, 2> drag_from{}; // pixels, from the plot's corner
+  std::array<PlotRange, 2> drag_range{};
+  bool dragged = false; // further than a click trembles
+  int button = 0;       // of the mouse
+  PlotKept kept;
+};
+
+// Draws the plot into `size` pixels at ImGui's cursor; names its parts "plot/NAME/area",
+// "plot/NAME/legend/CURVE", "plot/NAME/axis/x", "plot/NAME/menu/...". Curves can be long and are drawn
+// quickly where Plot::version is kept.
+PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Plot& plot, ImVec2 size);
+
+// All of it in view again.
+void fit_plot(PlotView& view);
+
+} // namespace flyball

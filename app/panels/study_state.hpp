@@ -1,0 +1,31 @@
+// Studies below the view: which one is open, and what they have found.
+#pragma once
+
+#include "app/live/background.hpp"
+#include "app/panels/plot_view.hpp"
+#include "engine/study/compare.hpp"
+
+#include <memory>
+
+namespace flyball {
+
+enum class Study { none, motion, compare };
+
+// Error against run time.
+struct CompareState {
+  std::unique_ptr<Background<Comparison>> task; // made when it is first asked for
+  std::optional<Comparison> result;
+  Mechanism of; // what was compared
+  std::string problem;
+  int repeats = 5;
+  PlotView view;
+  Plot plot; // of the result
+  std::uint64_t plots_made = 0;
+};
+
+struct StudyState {
+  Study open = Study::none;
+  CompareState compare;
+};
+
+} // namespace flyball

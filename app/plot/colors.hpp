@@ -1,0 +1,21 @@
+// The colours of plots, as 0xRRGGBB, on light and on dark ground.
+#pragma once
+
+#include <cstdint>
+
+namespace flyball {
+
+struct PlotColors {
+  std::uint32_t page, area;       // around the plot and inside the frame
+  std::uint32_t text, dim, faint; // faint: what is switched off
+  std::uint32_t grid, minor_grid, frame;
+};
+
+const PlotColors& plot_colors(bool dark);
+// Okabe and Ito's palette (2008), which every common colour vision can tell apart; see plot_color in
+// plot.hpp.
+std::uint32_t curve_color(int index, bool dark);
+// Viridis: perceptually uniform, from dark blue at 0 to yellow at 1.
+std::uint32_t heat_color(double part);
+
+} // namespace flyball

@@ -1,0 +1,86 @@
+#include "app/plot/comparison_plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// Below this an error is that of the last bit: a logarithm needs something.
+constexpr double least_error = 1e-17;
+
+const char* title_of(Integrator method) {
+  switch (method) {
+  case Integrator::automatic: return "automatic";
+  case Integrator::bdf: return "BDF";
+  case Integrator::adams: return "Adams";
+  case Integrator::runge_kutta: return "Runge-Kutta";
+  }
+  return "";
+}
+
+PlotShape shape_of(Integrator method) {
+  switch (method) {
+  case Integrator::automatic:
+  case Integrator::bdf: return PlotShape::square;
+  case Integrator::adams: return PlotShape::triangle;
+  case Integrator::runge_kutta: return PlotShape::diamond;
+  }
+  return PlotShape::none;
+}
+
+int color_of(Integrator method) {
+  switch (method) {
+  case Integrator::automatic:
+  case Integrator::bdf: return plot_color::vermillion;
+  case Integrator::adams: return plot_color::green;
+  case Integrator::runge_kutta: return plot_color::purple;
+  }
+  return plot_color::neutral;
+}
+
+} // namespace
+
+Plot comparison_plot(const std::string& title, const Comparison& comparison) {
+  Plot plot;
+  plot.title = title;
+  plot.x = {.label = "run time", .unit = "s", .logarithmic = true};
+  plot.y = {.label = "error |q - q*|", .unit = "", .logarithmic = true};
+  for (const MotionCurve& motion : comparison.motion) {
+    PlotCurve curve;
+    curve.name = title_of(motion.method);
+    curve.color = color_of(motion.method);
+    curve.shape = shape_of(motion.method);
+    curve.shape_size = 4;
+    curve.width = 1;
+    for (const MotionPoint& p : motion.points)
+      if (std::isfinite(p.error) && p.run_time_s > 0)
+        curve.points.push_back({p.run_time_s, std::max(p.error, least_error)});
+    if (curve.points.empty()) continue;
+    // Which curve is of which duration shows at its cheap end.
+    if (motion.method == Integrator::bdf)
+      plot.marks.push_back({.at = curve.points.front(),
+                            .label = fmt::format("{:.3g} s", motion.duration),
+                            .shape = PlotShape::none});
+    plot.curves.push_back(std::move(curve));
+  }
+  PlotCurve direct;
+  direct.name = "direct, by iteration";
+  direct.color = plot_color::blue;
+  direct.shape = PlotShape::circle;
+  direct.width = 2;
+  for (const DirectMark& m : comparison.direct)
+    if (m.run_time_s > 0) direct.points.push_back({m.run_time_s, std::max(m.error, least_error)});
+  plot.curves.push_back(std::move(direct));
+  if (comparison.answer.run_time_s > 0)
+    plot.marks.push_back(
+        {.at = {comparison.answer.run_time_s, std::max(comparison.answer.error, least_error)},
+         .label = "with all checks",
+         .color = plot_color::blue});
+  return plot;
+}
+
+} // namespace flyball

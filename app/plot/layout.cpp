@@ -1,0 +1,317 @@
+#include "app/plot/layout.hpp"
+
+#include "app/plot/label_places.hpp"
+#include "app/plot/layout_heat.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// What a picture that is too small leaves out, in this order.
+enum class Detail { all, without_words, bare };
+
+std::string cut_text(const PlotMetrics& metrics, PlotFont font, std::string text, double width) {
+  if (metrics.width_of(font, text) <= width) return text;
+  while (!text.empty() && metrics.width_of(font, text + "…") > width) {
+    // Whole characters: bytes of the form 10xxxxxx continue one.
+    while ((static_cast<unsigned char>(text.back()) & 0xC0) == 0x80 && text.size() > 1)
+      text.pop_back();
+    text.pop_back();
+  }
+  return text.empty() ? text : text + "…";
+}
+
+struct Builder {
+  const Plot& plot;
+  const PlotLook& look;
+  const PlotMetrics& metrics;
+  PlotLayout out;
+  Detail detail = Detail::all;
+  int rows = 0; // of the legend
+
+  double s() const { return metrics.scale; }
+  double line(PlotFont font) const { return metrics.height_of(font); }
+
+  PlotText text(PlotFont font, const std::string& words, double x, double top, double anchor) const {
+    const double width = metrics.width_of(font, words), left = x - width * (anchor + 1) / 2;
+    return {words, {left, top, left + width, top + line(font)}, anchor, font};
+  }
+
+  PlotText upright(const std::string& words, double center_x, double center_y, double room) const {
+    const std::string cut = cut_text(metrics, PlotFont::words, words, room);
+    const double half_width = line(PlotFont::words) / 2,
+                 half_length = metrics.width_of(PlotFont::words, cut) / 2;
+    return {cut,
+            {center_x - half_width, center_y - half_length, center_x + half_width, center_y + half_length},
+            0,
+            PlotFont::words,
+            true};
+  }
+
+  bool overlap(const std::vector<PlotTick>& ticks, double gap_x, double gap_y) const {
+    const PlotBox* before = nullptr;
+    for (const PlotTick& tick : ticks) {
+      if (!tick.label) continue;
+      const PlotBox& box = tick.label->box;
+      if (before && box.left < before->right + gap_x && before->left < box.right + gap_x &&
+          box.top < before->bottom + gap_y && before->top < box.bottom + gap_y)
+        return true;
+      before = &box;
+    }
+    return false;
+  }
+
+  // As many ticks as there is room for; `place` gives the label's box.
+  template <typename Place>
+  std::vector<PlotTick> ticks_of(const PlotRuler& ruler, double spacing, double gap_x, double gap_y,
+                                 const Place& place, std::vector<double>* minor) const {
+    const double length = std::abs(ruler.to - ruler.from);
+    std::vector<PlotTick> ticks;
+    for (int wanted = std::clamp(static_cast<int>(length / spacing), 1, 12); wanted >= 1; --wanted) {
+      const AxisTicks found = axis_ticks(ruler.lower, ruler.upper, wanted, ruler.logarithmic);
+      ticks.clear();
+      for (std::size_t i = 0; i < found.major.size(); ++i) {
+        const double at = ruler.pixel(found.major[i]);
+        ticks.push_back({found.major[i], at, place(found.labels[i], at)});
+      }
+      if (minor) {
+        minor->clear();
+        // Not so many that they run into one another.
+        const auto count = static_cast<double>(found.minor.size() + found.major.size());
+        if (count > 0 && length / count >= 5 * s())
+          for (double value : found.minor)
+            minor->push_back(ruler.pixel(value));
+      }
+      if (!overlap(ticks, gap_x, gap_y)) return ticks;
+    }
+    for (std::size_t i = 1; i < ticks.size(); ++i)
+      ticks[i].label.reset();
+    return ticks;
+  }
+
+  std::vector<PlotTick> vertical_ticks(const PlotRuler& ruler, double x, double anchor,
+                                       std::vector<double>* minor) const {
+    return ticks_of(
+        ruler, 42 * s(), 0, 0.25 * line(PlotFont::digits),
+        [&](const std::string& label, double at) {
+          return text(PlotFont::digits, label, x, at - line(PlotFont::digits) / 2, anchor);
+        },
+        minor);
+  }
+
+  double widest(const std::vector<PlotTick>& ticks) const {
+    double width = 0;
+    for (const PlotTick& tick : ticks)
+      if (tick.label) width = std::max(width, tick.label->box.width());
+    return width;
+  }
+
+  // The names in rows from area.left; returns how many rows they take.
+  int lay_legend(double top) {
+    const double height = line(PlotFont::words) + 4 * s(), sample = 24 * s(), gap = 6 * s();
+    double x = out.area.left;
+    int row = 0;
+    std::set<std::string> known;
+    for (std::size_t i = 0; i < plot.curves.size(); ++i) {
+      const PlotCurve& curve = plot.curves[i];
+      if (curve.hidden || curve.name.empty() || !known.insert(curve.name).second) continue;
+      const double room = out.area.width() - sample - gap;
+      const std::string name = cut_text(metrics, PlotFont::words, curve.name, room);
+      const double width = sample + gap + metrics.width_of(PlotFont::words, name);
+      if (x > out.area.left && x + width > out.area.right) {
+        x = out.area.left;
+        ++row;
+      }
+      const double y = top + row * height;
+      out.legend.push_back({curve.name,
+                            i,
+                            {x - 3 * s(), y, x + width + 3 * s(), y + height},
+                            {x, y, x + sample, y + height},
+                            text(PlotFont::words, name, x + sample + gap, y + 2 * s(), -1)});
+      x += width + 16 * s();
+    }
+    return out.legend.empty() ? 0 : row + 1;
+  }
+
+  void lay_frame() {
+    const bool words = detail == Detail::all;
+    const double pad = (words ? 10 : 6) * s(), words_height = line(PlotFont::words),
+                 digits = line(PlotFont::digits);
+    double top = pad;
+    const bool title = words && !plot.title.empty();
+    if (title) top += line(PlotFont::strong) + 6 * s();
+    const double legend_top = top;
+    if (rows > 0) top += rows * (words_height + 4 * s()) + 4 * s();
+    if (top == pad) top = std::max(top, digits / 2 + 2 * s());
+    const std::string x_words = words ? axis_text(plot.x.label, plot.x.unit) : "",
+                      y_words = words ? axis_text(plot.y.label, plot.y.unit) : "";
+    const double x_labels = std::max(8 * s(), digits / 2 + s()); // below the frame
+    const double bottom =
+        out.height - x_labels - digits - (x_words.empty() ? 0.6 * pad : 0.6 * pad + words_height + 3 * s());
+    const PlotRange rx = axis_range(plot, look, 0), ry = axis_range(plot, look, 1);
+    out.y = {ry[0], ry[1], bottom, top, is_logarithmic(plot, look, 1)};
+    // Their labels say how far left the frame can begin.
+    out.y_ticks.clear();
+    if (bottom - top > 1) out.y_ticks = vertical_ticks(out.y, 0, 1, &out.y_minor);
+    double left = 0.8 * pad + widest(out.y_ticks) + 8 * s();
+    if (!y_words.empty()) left += words_height + 5 * s();
+    for (PlotTick& tick : out.y_ticks)
+      if (tick.label) {
+        tick.label->box.left += left - 8 * s();
+        tick.label->box.right += left - 8 * s();
+      }
+    double right = out.width - 1.4 * pad;
+    out.bar.reset();
+    if (plot.heat && bottom - top > 1) {
+      out.bar = lay_bar(top, bottom, right);
+      right = out.bar->box.left - 12 * s();
+    }
+    out.area = {std::round(left), std::round(top), std::round(std::max(right, left)),
+                std::round(std::max(bottom, top))};
+    out.x = {rx[0], rx[1], out.area.left, out.area.right, is_logarithmic(plot, look, 0)};
+    out.y.from = out.area.bottom;
+    out.y.to = out.area.top;
+    out.x_ticks.clear();
+    if (out.area.width() > 1) lay_x_ticks(x_labels);
+    lay_words(title, pad, x_words, y_words);
+    out.legend.clear();
+    rows = detail == Detail::bare ? 0 : lay_legend(legend_top);
+  }
+
+  void lay_x_ticks(double below) {
+    out.x_ticks = ticks_of(
+        out.x, 70 * s(), line(PlotFont::digits) * 0.9, 0,
+        [&](const std::string& label, double at) {
+          return text(PlotFont::digits, label, at, out.area.bottom + below, 0);
+        },
+        &out.x_minor);
+    for (PlotTick& tick : out.x_ticks)
+      if (tick.label && (tick.label->box.left < 0 || tick.label->box.right > out.width)) tick.label.reset();
+  }
+
+  void lay_words(bool title, double pad, const std::string& x_words, const std::string& y_words) {
+    const PlotBox& area = out.area;
+    out.title.reset();
+    out.x_label.reset();
+    out.y_label.reset();
+    if (title)
+      out.title =
+          text(PlotFont::strong, cut_text(metrics, PlotFont::strong, plot.title, out.width - area.left - pad),
+               area.left, pad, -1);
+    if (!x_words.empty())
+      out.x_label = text(PlotFont::words, cut_text(metrics, PlotFont::words, x_words, area.width()),
+                         (area.left + area.right) / 2, out.height - 0.6 * pad - line(PlotFont::words), 0);
+    if (!y_words.empty())
+      out.y_label = upright(y_words, 0.8 * pad + line(PlotFont::words) / 2, (area.top + area.bottom) / 2,
+                            area.height());
+  }
+
+  PlotBar lay_bar(double top, double bottom, double right) const {
+    PlotBar bar;
+    const PlotHeat& heat = *plot.heat;
+    const PlotRange range = heat_range(heat);
+    bar.ruler = {range[0], range[1], std::round(bottom), std::round(top), heat.logarithmic};
+    bar.ticks = vertical_ticks(bar.ruler, 0, -1, nullptr);
+    const std::string words = detail == Detail::all ? axis_text(heat.label, heat.unit) : "";
+    const double words_width = words.empty() ? 0 : line(PlotFont::words) + 5 * s();
+    const double end = right + 6 * s() - words_width, start = end - widest(bar.ticks) - 8 * s() - 14 * s();
+    bar.box = {std::round(start), std::round(top), std::round(start + 14 * s()), std::round(bottom)};
+    for (PlotTick& tick : bar.ticks)
+      if (tick.label) {
+        tick.label->box.left += bar.box.right + 8 * s();
+        tick.label->box.right += bar.box.right + 8 * s();
+      }
+    if (!words.empty())
+      bar.label =
+          upright(words, right + 6 * s() - line(PlotFont::words) / 2, (top + bottom) / 2, bottom - top);
+    return bar;
+  }
+
+  // The number of rows changes the frame, and the frame the number of rows.
+  void lay_all() {
+    for (Detail level : {Detail::all, Detail::without_words, Detail::bare}) {
+      detail = level;
+      rows = 0;
+      bool settled = false;
+      for (int round = 0; round < 4 && !settled; ++round) {
+        const int assumed = rows;
+        lay_frame();
+        settled = rows <= assumed;
+      }
+      if (settled && out.area.width() >= 60 * s() && out.area.height() >= 60 * s()) return;
+    }
+    if (out.drawable()) return;
+    out.x_ticks.clear();
+    out.y_ticks.clear();
+    out.bar.reset();
+  }
+
+  void lay_contents() {
+    if (plot.heat) out.cells = heat_cells(*plot.heat, out);
+    for (std::size_t i = 0; i < plot.curves.size(); ++i) {
+      const PlotCurve& curve = plot.curves[i];
+      if (!is_shown(curve, look)) continue;
+      PlotCurveLines lines{i, {}, {}};
+      if (curve.line != PlotLine::none)
+        lines.lines = visible_lines(curve.points, out.x, out.y, out.area.grown((curve.width + 2) * s()));
+      if (curve.shape != PlotShape::none)
+        lines.shapes = visible_points(curve.points, out.x, out.y, out.area.grown(0.5));
+      out.curves.push_back(std::move(lines));
+    }
+    for (std::size_t i = 0; i < plot.references.size(); ++i) {
+      const PlotReference& reference = plot.references[i];
+      const double at = out.ruler(reference.axis).pixel(reference.at);
+      if (reference.axis == 1 ? at >= out.area.top && at <= out.area.bottom
+                              : at >= out.area.left && at <= out.area.right)
+        out.references.push_back({i, reference.axis == 1 ? out.area.left : at,
+                                  reference.axis == 1 ? at : out.area.top, std::nullopt});
+    }
+    for (std::size_t i = 0; i < plot.marks.size(); ++i) {
+      const double x = out.x.pixel(plot.marks[i].at[0]), y = out.y.pixel(plot.marks[i].at[1]);
+      if (out.area.grown(0.5).contains(x, y)) out.marks.push_back({i, x, y, std::nullopt});
+    }
+    place_labels(plot, out, metrics);
+  }
+};
+
+} // namespace
+
+PlotLayout plot_layout(const Plot& plot, const PlotLook& look, double width, double height,
+                       const PlotMetrics& metrics) {
+  Builder builder{plot, look, metrics, {}};
+  builder.out.width = width;
+  builder.out.height = height;
+  builder.out.scale = metrics.scale;
+  builder.lay_all();
+  if (builder.out.drawable()) builder.lay_contents();
+  return std::move(builder.out);
+}
+
+std::vector<const PlotText*> texts_of(const PlotLayout& layout) {
+  std::vector<const PlotText*> texts;
+  const auto add = [&](const std::optional<PlotText>& text) {
+    if (text && !text->text.empty()) texts.push_back(&*text);
+  };
+  add(layout.title);
+  add(layout.x_label);
+  add(layout.y_label);
+  for (const auto* ticks : {&layout.x_ticks, &layout.y_ticks})
+    for (const PlotTick& tick : *ticks)
+      add(tick.label);
+  for (const PlotLegendEntry& entry : layout.legend)
+    texts.push_back(&entry.text);
+  if (layout.bar) {
+    for (const PlotTick& tick : layout.bar->ticks)
+      add(tick.label);
+    add(layout.bar->label);
+  }
+  for (const auto* placed : {&layout.references, &layout.marks})
+    for (const PlotPlaced& p : *placed)
+      add(p.label);
+  return texts;
+}
+
+} // namespace flyball

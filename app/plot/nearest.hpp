@@ -1,0 +1,31 @@
+// What of a plot is near the pointer.
+#pragma once
+
+#include "app/plot/layout.hpp"
+
+namespace flyball {
+
+struct PlotNear {
+  std::size_t curve = 0;
+  double index = 0; // of the curve's points, with a fraction where it lies between two
+  double x = 0, y = 0;
+  double distance = 0; // pixels
+};
+
+// The nearest data point of the curves shown, no farther than `reach` pixels.
+std::optional<PlotNear> nearest_point(const Plot& plot, const PlotLook& look, const PlotLayout& layout,
+                                      double px, double py, double reach);
+// The nearest place along the lines through them.
+std::optional<PlotNear> nearest_along(const Plot& plot, const PlotLook& look, const PlotLayout& layout,
+                                      double px, double py);
+
+struct PlotReading {
+  std::size_t curve = 0; // the first of its name
+  double y = 0;
+};
+
+// What each name of the legend says at `x`; of several crossings the one nearest to pixel `py`.
+std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, const PlotLayout& layout,
+                                     double x, double py);
+
+} // namespace flyball

@@ -1,0 +1,233 @@
+// What a mechanism's equations of motion are made of, found at one state: independent constraints, directions
+// without mass, and what moves along those.
+#include "engine/dynamics/equations.hpp"
+
+#include "engine/equilibrium/constraint_space.hpp"
+#include "engine/mechanism/error.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+constexpr double no_mass = 1e-13;     // relative to what moves with a coordinate
+constexpr double dependent = 1e-9;    // pivots of the constraint rows
+constexpr double no_stiffness = 1e-9; // relative to the mechanism's stiffest
+constexpr double no_force = 1e-8;     // relative to the terms it is made of
+
+} // namespace
+
+// "the massless motion of a, b and c", of the coordinates that take part.
+std::string Equations::motion_of(const Eigen::MatrixXd& kinds) const {
+  const Eigen::MatrixXd directions = null_ * kinds;
+  std::vector<std::string> names;
+  const double largest = directions.size() > 0 ? directions.cwiseAbs().maxCoeff() : 0;
+  for (int v = 0; v < n_; ++v)
+    if (directions.row(v).cwiseAbs().maxCoeff() > 1e-3 * largest)
+      names.push_back(name_of_coordinate(model_, v));
+  std::string out = "the massless motion of ";
+  for (std::size_t i = 0; i < names.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return out;
+}
+
+void Equations::refuse(const std::string& what) const {
+  int first = 0;
+  if (!idle_.empty()) first = idle_.front();
+  throw SceneError("joints." + name_of_coordinate(model_, first), what);
+}
+
+void Equations::choose_rows() {
+  rows_.clear();
+  if (system_.rows == 0) return;
+  linearize_constraints(system_, parameters_, kinematics_, linearization_);
+  const Eigen::MatrixXd scaled = model_.scaling.row.asDiagonal() * linearization_.constraint.leftCols(n_) *
+                                 model_.scaling.column.asDiagonal();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled.transpose());
+  const auto pivots = qr.matrixQR().diagonal().cwiseAbs();
+  for (Eigen::Index i = 0; i < pivots.size() && pivots[i] > dependent * pivots[0] && pivots[i] > 0; ++i)
+    rows_.push_back(qr.colsPermutation().indices()[i]);
+  std::ranges::sort(rows_);
+}
+
+// Directions of the null space of Phi_q along which nothing that has mass moves, and coordinates that stand
+// for them.
+void Equations::choose_idle() {
+  idle_.clear();
+  evaluate_mass(system_, parameters_, kinematics_, mass_);
+  // In units in which every coordinate alone would have mass one or less.
+  double largest = 0;
+  for (int v = 0; v < n_; ++v)
+    largest = std::max(largest, mass_.size[v] * model_.scaling.column[v] * model_.scaling.column[v]);
+  Eigen::VectorXd unit(n_);
+  for (int v = 0; v < n_; ++v)
+    unit[v] = mass_.size[v] > 0 ? 1 / std::sqrt(mass_.size[v])
+                                : model_.scaling.column[v] / std::sqrt(largest > 0 ? largest : 1);
+  ConstraintSpace space;
+  Eigen::MatrixXd scaled(static_cast<Eigen::Index>(rows_.size()), n_);
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    scaled.row(static_cast<Eigen::Index>(r)) =
+        linearization_.constraint.row(rows_[r]).head(n_) * model_.scaling.row[rows_[r]];
+  scaled = scaled * unit.asDiagonal();
+  space.factor(scaled, 1e-14);
+  const Eigen::MatrixXd basis = unit.asDiagonal() * space.basis();
+  const Eigen::MatrixXd reduced = basis.transpose() * mass_.mass.topLeftCorner(n_, n_) * basis;
+  if (reduced.rows() > 0) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen((reduced + reduced.transpose()) / 2);
+    Eigen::Index count = 0;
+    while (count < reduced.rows() && eigen.eigenvalues()[count] < no_mass)
+      ++count;
+    if (count > 0) {
+      Eigen::MatrixXd directions =
+          model_.scaling.column.cwiseInverse().asDiagonal() * basis * eigen.eigenvectors().leftCols(count);
+      directions = Eigen::HouseholderQR<Eigen::MatrixXd>(directions).householderQ() *
+                   Eigen::MatrixXd::Identity(n_, count);
+      const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(directions.transpose());
+      for (Eigen::Index i = 0; i < count; ++i)
+        idle_.push_back(pivots.colsPermutation().indices()[i]);
+      std::ranges::sort(idle_);
+    }
+  }
+  regular_.clear();
+  for (int v = 0; v < n_; ++v)
+    if (std::ranges::find(idle_, v) == idle_.end()) regular_.push_back(v);
+}
+
+// Which null directions are damped, stand in balance, or feel nothing.
+void Equations::choose_kinds() {
+  damped_ = standing_ = 0;
+  const auto count = static_cast<Eigen::Index>(idle_.size());
+  if (count == 0) return;
+  // Drag that grows with the square of the speed alone holds nothing at rest.
+  std::vector<BodyForceParameters> drags = parameters_.body_forces;
+  for (BodyForceParameters& f : parameters_.body_forces)
+    f.quadratic = 0;
+  damping_matrix(system_, parameters_, q_, kinematics_, damping_);
+  for (std::size_t i = 0; i < drags.size(); ++i)
+    parameters_.body_forces[i].linear = drags[i].linear + drags[i].quadratic * (drags[i].linear == 0);
+  Eigen::MatrixXd any_drag;
+  damping_matrix(system_, parameters_, q_, kinematics_, any_drag);
+  parameters_.body_forces = std::move(drags);
+  const Eigen::MatrixXd motion = model_.scaling.column.asDiagonal() * null_;
+  sort_kinds(motion.transpose() * damping_.topLeftCorner(n_, n_) * motion);
+  while (damped_ < count && kind_sizes_[damped_] > 1e-12 * kind_sizes_[0] && kind_sizes_[damped_] > 0)
+    ++damped_;
+  least_damping_ = damped_ > 0 ? kind_sizes_[damped_ - 1] : 0;
+  if (damped_ == count) return;
+  const Eigen::MatrixXd rest = kinds_.rightCols(count - damped_);
+  if ((rest.transpose() * motion.transpose() * any_drag.topLeftCorner(n_, n_) * motion * rest)
+          .cwiseAbs()
+          .maxCoeff() > 1e-12 * any_drag.cwiseAbs().maxCoeff())
+    refuse(motion_of(rest) + " is held by nothing but a drag that grows with the square of the speed; give "
+                             "it mass or linear drag");
+}
+
+bool Equations::analyse(double t, Eigen::VectorXd& q, const Eigen::VectorXd& u) {
+  const std::vector<int> rows = rows_, idle = idle_;
+  choose_structure(t, q, u);
+  return rows_ != rows || idle_ != idle;
+}
+
+void Equations::choose_structure(double t, Eigen::VectorXd& q, const Eigen::VectorXd& u) {
+  load(t, q, u);
+  place();
+  choose_rows();
+  choose_idle();
+  fill_gradient();
+  chosen_independence_ = saddle_.factor_constraints(scaled_gradient_) ? saddle_.independence() : 0;
+  kinds_.resize(0, 0);
+  Eigen::VectorXd s;
+  reduce(t, q, u, s);
+  if (idle_.empty()) {
+    damped_ = standing_ = 0;
+    return;
+  }
+  choose_kinds();
+  const auto rest = static_cast<Eigen::Index>(idle_.size()) - damped_;
+  if (rest == 0) return;
+  // Balance of what is neither massive nor damped.
+  standing_ = static_cast<int>(rest);
+  load(t, q, s);
+  s_ = u_;
+  place();
+  if (!factor() || !find_null_directions() || !find_damped_velocity())
+    refuse(motion_of(kinds_) + " gets no velocity from the balance of forces");
+  find_standing_velocity(); // for the stiffness alone
+  const Eigen::MatrixXd column = model_.scaling.column.asDiagonal();
+  const Eigen::MatrixXd scaled = column * linearization_.stiffness.topLeftCorner(n_, n_) * column;
+  const double stiffest = scaled.cwiseAbs().maxCoeff();
+  const Eigen::MatrixXd local = (standing_stiffness_ + standing_stiffness_.transpose()) / 2;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(local);
+  standing_ = 0;
+  for (Eigen::Index i = 0; i < rest; ++i)
+    standing_ += std::abs(eigen.eigenvalues()[i]) > no_stiffness * stiffest;
+  if (!find_standing_balance(t, q, s, 200))
+    refuse(motion_of(kinds_.middleCols(damped_, standing_)) + " comes to no balance of forces");
+  if (const std::string what = trouble(); !what.empty()) refuse(what);
+}
+
+// Newton's step; where the balance would not be stable, one that goes downhill.
+Eigen::VectorXd Equations::balancing_step() const {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      (standing_stiffness_ + standing_stiffness_.transpose()) / 2);
+  if (eigen.eigenvalues()[0] > 0) return standing_stiffness_.partialPivLu().solve(-standing_force_);
+  const Eigen::VectorXd along = eigen.eigenvectors().transpose() * standing_force_;
+  return -eigen.eigenvectors() * along.cwiseQuotient(eigen.eigenvalues().cwiseAbs());
+}
+
+bool Equations::find_standing_balance(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, int limit) {
+  double previous = 0;
+  for (int i = 0; i < limit; ++i) {
+    if (!evaluate(t, q, s)) return false;
+    if (standing_ == 0) return true;
+    const Eigen::VectorXd step = kinds_.middleCols(damped_, standing_) * balancing_step();
+    const Eigen::VectorXd scaled = null_ * step;
+    const double size = scaled.lpNorm<Eigen::Infinity>();
+    if (!std::isfinite(size)) return false;
+    const Eigen::VectorXd motion = null_motion(step) * std::min(1., 0.3 / std::max(size, 1e-300));
+    retract<double>(model_.system, motion, q);
+    if (size < 1e-14 || (i > 2 && size < 1e-9 && size > 0.3 * previous)) return evaluate(t, q, s);
+    previous = size;
+  }
+  return previous < 1e-9;
+}
+
+bool Equations::structure_changed() const {
+  if (static_cast<int>(rows_.size()) < system_.rows) {
+    if (saddle_.independence() < 1e-3 * chosen_independence_) return true;
+    // Rows that followed from the others may do so no longer.
+    if (residual_.phi.cwiseProduct(model_.scaling.row).lpNorm<Eigen::Infinity>() > 1e-7) return true;
+  }
+  if (idle_.empty()) return false;
+  return null_mass_ > 1e-9 || null_.cwiseAbs().maxCoeff() > 1e3;
+}
+
+std::string Equations::trouble() const {
+  if (idle_.empty()) return "";
+  if (damped_ > 0 && !(kind_sizes_[damped_ - 1] > 1e-9 * least_damping_))
+    return motion_of(kinds_.middleCols(damped_ - 1, 1)) + " comes to a place where its dampers hold nothing";
+  if (standing_ > 0) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+        (standing_stiffness_ + standing_stiffness_.transpose()) / 2, Eigen::EigenvaluesOnly);
+    if (!(eigen.eigenvalues()[0] > 0))
+      return motion_of(kinds_.middleCols(damped_, standing_)) + " stands in no stable balance: it would jump";
+  }
+  const Eigen::Index loose = null_.cols() - damped_ - standing_;
+  if (loose == 0) return "";
+  const Eigen::MatrixXd directions = null_ * kinds_.rightCols(loose);
+  const Eigen::VectorXd force = force_.head(n_).cwiseProduct(model_.scaling.column);
+  Magnitudes sizes;
+  evaluate_magnitudes(system_, parameters_, q_, lambda_, kinematics_, sizes);
+  const Eigen::VectorXd size =
+      directions.cwiseAbs().transpose() * sizes.force.head(n_).cwiseProduct(model_.scaling.column);
+  const Eigen::VectorXd left = directions.transpose() * force;
+  for (Eigen::Index i = 0; i < loose; ++i)
+    if (std::abs(left[i]) > no_force * size[i])
+      return motion_of(kinds_.rightCols(loose)) + " is resisted by nothing, and a force acts along it";
+  return "";
+}
+
+} // namespace flyball

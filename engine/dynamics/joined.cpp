@@ -1,0 +1,98 @@
+#include "engine/dynamics/joined.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+// `to` with all but the first entry of `from` behind its first `count`, each raised by `by`.
+void append(std::vector<double>& to, std::size_t count, const std::vector<double>& from, double by = 0) {
+  to.resize(std::min(count, to.size()));
+  for (std::size_t i = 1; i < from.size(); ++i)
+    to.push_back(from[i] + by);
+}
+
+void append_energies(EnergyTracks& to, std::size_t last, const EnergyTracks& from) {
+  const std::size_t count = last + 1;
+  append(to.kinetic, count, from.kinetic);
+  append(to.potential, count, from.potential);
+  if (to.jacobi.empty() || from.jacobi.empty())
+    to.jacobi.clear();
+  else
+    append(to.jacobi, count, from.jacobi);
+  for (const auto track : {&EnergyTracks::dissipated, &EnergyTracks::delivered, &EnergyTracks::applied,
+                           &EnergyTracks::balance}) {
+    const double stood = (to.*track)[last];
+    append(to.*track, count, from.*track, stood);
+  }
+}
+
+bool same_coordinates(const Run& a, const Run& b) {
+  return std::ranges::equal(a.coordinates, b.coordinates,
+                            [](const CoordinateTrack& x, const CoordinateTrack& y) {
+                              return x.joint == y.joint && x.index == y.index;
+                            }) &&
+         a.drives.size() == b.drives.size() && a.reactions.size() == b.reactions.size();
+}
+
+void add(RunStatistics& sum, const RunStatistics& part) {
+  sum.steps += part.steps;
+  sum.evaluations += part.evaluations;
+  sum.jacobians += part.jacobians;
+  sum.rejected += part.rejected;
+  sum.restarts += part.restarts;
+  sum.singular_positions += part.singular_positions;
+  sum.run_time_s += part.run_time_s;
+  sum.position_drift = std::max(sum.position_drift, part.position_drift);
+  sum.velocity_drift = std::max(sum.velocity_drift, part.velocity_drift);
+  sum.correction = std::max(sum.correction, part.correction);
+}
+
+} // namespace
+
+std::size_t sample_before(const Run& run, double time) {
+  const auto later = std::ranges::upper_bound(run.time, time);
+  return later == run.time.begin() ? 0 : static_cast<std::size_t>(later - run.time.begin()) - 1;
+}
+
+Run joined(const Run& before, std::size_t last, const Run& after) {
+  if (before.time.empty() || after.time.empty() || !same_coordinates(before, after)) return after;
+  const std::size_t count = last + 1;
+  Run out = before;
+  out.status = after.status;
+  out.message = after.message;
+  out.damped = after.damped;
+  out.method = after.method;
+  out.method_reason = after.method_reason;
+  out.notes = after.notes;
+  for (std::size_t i = 0; i < out.coordinates.size(); ++i) {
+    append(out.coordinates[i].value, count, after.coordinates[i].value);
+    append(out.coordinates[i].rate, count, after.coordinates[i].rate);
+    out.coordinates[i].turns = after.coordinates[i].turns;
+  }
+  for (std::size_t i = 0; i < out.drives.size(); ++i)
+    append(out.drives[i].torque, count, after.drives[i].torque);
+  for (std::size_t i = 0; i < out.reactions.size(); ++i)
+    for (const auto track : {&ReactionTrack::force, &ReactionTrack::torque}) {
+      std::vector<Vec3>& to = out.reactions[i].*track;
+      const std::vector<Vec3>& from = after.reactions[i].*track;
+      to.resize(std::min(count, to.size()));
+      to.insert(to.end(), from.begin() + 1, from.end());
+    }
+  append_energies(out.energy, last, after.energy);
+  append(out.time, count, after.time);
+  std::erase_if(out.stops, [&](const StopEvent& stop) { return stop.time > before.time[last]; });
+  out.stops.insert(out.stops.end(), after.stops.begin(), after.stops.end());
+  add(out.statistics, after.statistics);
+
+  // A sample's state has the same length in both: the coordinates are the same.
+  const std::size_t length = before.states.size() / before.time.size();
+  std::erase_if(out.segments, [&](const Run::Segment& segment) { return segment.first > last; });
+  for (const Run::Segment& segment : after.segments)
+    out.segments.push_back({segment.first == 0 ? last : last + segment.first, segment.model});
+  out.states.resize(last * length);
+  out.states.insert(out.states.end(), after.states.begin(), after.states.end());
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,124 @@
+#include "engine/dynamics/motion_model.hpp"
+
+#include "engine/equilibrium/drive_cuts.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/system/motion.hpp"
+#include "engine/system/rotation_vector.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+const TreeJoint& joint_of(const System& system, const CoordinateInfo& c) {
+  return system.tree_joints[at(c.tree_joint)];
+}
+
+bool is_called(const System& system, const CoordinateInfo& c, std::string_view name) {
+  const TreeJoint& joint = joint_of(system, c);
+  return name == joint.name + "." + std::to_string(c.index) ||
+         (coordinate_count(joint.type) == 1 && name == joint.name);
+}
+
+} // namespace
+
+MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
+  MotionModel m;
+  m.mechanism = mechanism;
+  m.system = compile_for_drives(mechanism, m.notes);
+  m.released = released(m.system);
+  bind(m.system, mechanism, m.parameters);
+  set_scaling(m.system, m.parameters, m.scaling);
+  m.parameters.moving = true;
+  if (damped) return m;
+  for (LinkParameters& l : m.parameters.links)
+    for (CoordinateForce& f : l.force)
+      f.damping = 0;
+  for (PointSpringParameters& s : m.parameters.springs)
+    s.damping = 0;
+  for (CutDamperParameters& d : m.parameters.cut_dampers)
+    d.damping = 0;
+  return m;
+}
+
+int coordinate_called(const System& system, std::string_view name) {
+  const auto c = std::ranges::find_if(system.coordinates,
+                                      [&](const CoordinateInfo& x) { return is_called(system, x, name); });
+  return c == system.coordinates.end() ? -1 : static_cast<int>(c - system.coordinates.begin());
+}
+
+std::string name_of_coordinate(const MotionModel& model, int v) {
+  for (const CoordinateInfo& c : model.released.coordinates) {
+    const Link& link = model.released.links[at(c.link)];
+    const int own = link.type == LinkType::spherical ? link.v + c.index - link.coordinate : link.v;
+    if (own != v) continue;
+    const TreeJoint& joint = joint_of(model.released, c);
+    return coordinate_count(joint.type) == 1 ? joint.name : joint.name + "." + std::to_string(c.index);
+  }
+  return "";
+}
+
+SimulationState name_state(const MotionModel& model, double time, const Eigen::VectorXd& q,
+                           const Eigen::VectorXd& u) {
+  SimulationState out;
+  out.time = time;
+  for (const CoordinateInfo& c : model.system.coordinates) {
+    const Link& link = model.system.links[at(c.link)];
+    const LinkParameters& p = model.parameters.links[at(c.link)];
+    StateCoordinate x;
+    x.joint = joint_of(model.system, c).name;
+    x.index = c.index;
+    if (link.drive >= 0) {
+      x.value = p.drawn + (p.start + p.speed * time);
+      x.rate = p.speed;
+    } else if (link.type == LinkType::spherical) {
+      const int k = c.index - link.coordinate;
+      x.value = rotation_vector(link, p, q)[k];
+      x.rate = rotation_vector_rate(link, p, q).row(k) * u.segment<3>(link.v);
+    } else {
+      x.value = q[link.q];
+      x.rate = u[link.v];
+    }
+    out.coordinates.push_back(std::move(x));
+  }
+  return out;
+}
+
+void take_state(const SimulationState& state, MotionModel& model, Eigen::VectorXd& q, Eigen::VectorXd& u) {
+  drawn_configuration(model.system, model.parameters, q);
+  u.setZero(model.system.nv);
+  const auto value_of = [&](const std::string& joint, int index) -> const StateCoordinate& {
+    const auto x = std::ranges::find_if(
+        state.coordinates, [&](const StateCoordinate& s) { return s.joint == joint && s.index == index; });
+    if (x == state.coordinates.end())
+      throw SceneError("joints." + joint, "is not in the saved state; it belongs to another mechanism");
+    return *x;
+  };
+  for (const CoordinateInfo& c : model.system.coordinates) {
+    const Link& link = model.system.links[at(c.link)];
+    LinkParameters& p = model.parameters.links[at(c.link)];
+    const std::string& joint = joint_of(model.system, c).name;
+    const StateCoordinate& x = value_of(joint, c.index);
+    if (link.drive >= 0) { // the speed is the scene's; the drive goes on from where it stands
+      p.start = (x.value - p.drawn) - p.speed * state.time;
+    } else if (link.type == LinkType::spherical) {
+      if (c.index != link.coordinate) continue;
+      Vec3 r, rate;
+      for (int k = 0; k < 3; ++k) {
+        r[k] = value_of(joint, c.index + k).value;
+        rate[k] = value_of(joint, c.index + k).rate;
+      }
+      set_rotation_vector(link, p, r, q);
+      u.segment<3>(link.v) = rotation_vector_rate(link, p, q).partialPivLu().solve(rate);
+    } else {
+      q[link.q] = x.value;
+      u[link.v] = x.rate;
+    }
+  }
+}
+
+} // namespace flyball

@@ -1,0 +1,207 @@
+#include "engine/dynamics/recorder.hpp"
+
+#include "engine/system/potential.hpp"
+#include "engine/system/reactions.hpp"
+#include "engine/system/rotation_vector.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+} // namespace
+
+void Recorder::use(std::shared_ptr<const MotionModel> model, Equations& equations) {
+  model_ = std::move(model);
+  equations_ = &equations;
+  run_.segments.push_back({run_.time.size(), model_});
+  jacobi_ = has_jacobi() && (run_.time.empty() || !run_.energy.jacobi.empty());
+  if (!jacobi_) run_.energy.jacobi.clear();
+  if (run_.coordinates.empty() && run_.drives.empty()) lay_out();
+}
+
+void Recorder::lay_out() {
+  const System& system = model_->system;
+  for (const CoordinateInfo& c : system.coordinates) {
+    const TreeJoint& joint = system.tree_joints[at(c.tree_joint)];
+    const Link& link = system.links[at(c.link)];
+    CoordinateTrack track;
+    track.joint = joint.name;
+    track.index = c.index;
+    track.count = coordinate_count(joint.type);
+    track.angle = c.angle;
+    track.driven = link.drive >= 0;
+    track.rotation = link.type == LinkType::spherical;
+    const bool geared = std::ranges::any_of(system.cuts, [&](const CutJoint& cut) {
+      return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
+    });
+    track.turns = link.type == LinkType::revolute && !track.driven && !geared &&
+                  !model_->parameters.links[at(c.link)].elastic;
+    run_.coordinates.push_back(std::move(track));
+  }
+  for (std::size_t d = 0; d < system.drives.size(); ++d) {
+    if (system.drives[d].motor != static_cast<int>(d)) continue;
+    const Link& link = system.links[at(system.drives[d].link)];
+    const TreeJoint& joint = system.tree_joints[at(link.tree_joint)];
+    run_.drives.push_back(
+        {joint.name, link.coordinate, coordinate_count(joint.type), link.type == LinkType::revolute, {}});
+  }
+  if (reactions_)
+    for (const Joint& j : model_->mechanism.joints)
+      if (j.type != JointType::gear) run_.reactions.push_back({j.name, {}, {}});
+}
+
+void Recorder::name(const StopElement& stop, StopEvent& event) const {
+  const Link& link = model_->system.links[at(stop.link)];
+  event.joint = model_->system.tree_joints[at(link.tree_joint)].name;
+  event.index = link.coordinate + stop.component;
+}
+
+void Recorder::record_coordinates(double t) {
+  const System& system = model_->system;
+  const Eigen::VectorXd& q = equations_->configuration();
+  const Eigen::VectorXd& u = equations_->velocity();
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    const CoordinateInfo& c = system.coordinates[i];
+    const Link& link = system.links[at(c.link)];
+    const LinkParameters& p = model_->parameters.links[at(c.link)];
+    CoordinateTrack& track = run_.coordinates[i];
+    if (link.drive >= 0) {
+      track.value.push_back(p.drawn + (p.start + p.speed * t));
+      track.rate.push_back(p.speed);
+    } else if (link.type == LinkType::spherical) {
+      const int k = c.index - link.coordinate;
+      track.value.push_back(rotation_vector(link, p, q)[k]);
+      track.rate.push_back(rotation_vector_rate(link, p, q).row(k) * u.segment<3>(link.v));
+    } else {
+      track.value.push_back(q[link.q]);
+      track.rate.push_back(u[link.v]);
+    }
+  }
+}
+
+// T_2 + U, with U = V - T_0 the amended potential.
+double Recorder::jacobi(double t) {
+  const System& system = model_->system;
+  const Eigen::VectorXd q = equations_->configuration().head(system.nq);
+  const Eigen::VectorXd u = equations_->velocity().head(system.nv);
+  forward<double>(system, model_->parameters, q, t, standing_);
+  return u.dot(equations_->mass().topLeftCorner(system.nv, system.nv) * u) / 2 +
+         amended_potential(system, model_->parameters, q, standing_).value;
+}
+
+// Whether the Lagrangian is the same at every phase of the drives: by the shape of the mechanism, or as far
+// as a displaced state tells at a few phases.
+bool Recorder::has_jacobi() {
+  const System& system = model_->system;
+  const Parameters& p = model_->parameters;
+  for (const BodyForceElement& e : system.body_forces) {
+    const Force& f = model_->mechanism.forces[at(e.force)];
+    if (e.link >= 0 && (f.type != ForceType::force || f.frame != ForceFrame::world)) return false;
+  }
+  if (system.drives.empty() || p.phase_free) return true;
+  Eigen::VectorXd q, all_q(model_->released.nq), all_u(model_->released.nv), step(system.nv);
+  drawn_configuration(system, p, q);
+  for (int v = 0; v < system.nv; ++v) {
+    step[v] = 0.3 * std::sin(2.1 * v + 1) * model_->scaling.column[v];
+    all_u[v] = std::cos(1.3 * v + 2) * model_->scaling.column[v];
+  }
+  retract<double>(system, step, q);
+  const Eigen::VectorXd u = all_u.head(system.nv);
+  Kinematics<double> moving;
+  std::vector<LinkRates> none;
+  double first = 0, size = 0;
+  for (int phase = 0; phase < 5; ++phase) {
+    double slowest = 0;
+    for (const DrivenCoordinate& d : system.drives)
+      if (const double speed = std::abs(p.links[at(d.link)].speed); speed > 0)
+        slowest = slowest == 0 ? speed : std::min(slowest, speed);
+    const double t = slowest > 0 ? 1.3 * phase / slowest : 0;
+    all_q.head(system.nq) = q;
+    set_drives(system, p, t, all_q, all_u);
+    move(model_->released, p, {all_q, all_u}, moving, none);
+    const double kinetic = kinetic_energy(system, p, moving);
+    forward<double>(system, p, q, t, standing_);
+    // T_0 of bodies that only drives move differs from phase to phase with nothing that depends on q_R.
+    const double lagrangian =
+        kinetic - kinetic_energy(system, p, standing_) - amended_potential(system, p, q, standing_).value;
+    if (phase == 0) first = lagrangian;
+    size = std::max(size, kinetic + std::abs(first));
+    if (std::abs(lagrangian - first) > 1e-10 * size) return false;
+  }
+  return true;
+}
+
+void Recorder::record_energies(double t, const Eigen::Vector3d& energies) {
+  EnergyTracks& e = run_.energy;
+  const double stored = equations_->stored_energy();
+  const double kinetic = kinetic_energy(model_->released, model_->parameters, equations_->kinematics());
+  if (run_.time.size() == 1) base_ = stored;
+  e.kinetic.push_back(kinetic);
+  e.potential.push_back(stored - kinetic);
+  e.dissipated.push_back(energies[0]);
+  e.delivered.push_back(energies[1]);
+  e.applied.push_back(energies[2]);
+  e.balance.push_back((stored - base_) + energies[0] - energies[1] - energies[2]);
+  if (jacobi_) e.jacobi.push_back(jacobi(t));
+}
+
+void Recorder::go_on() {
+  base_ = equations_->stored_energy() + run_.energy.dissipated.back() - run_.energy.delivered.back() -
+          run_.energy.applied.back() - run_.energy.balance.back();
+}
+
+Eigen::Vector3d Recorder::energies() const {
+  return {run_.energy.dissipated.back(), run_.energy.delivered.back(), run_.energy.applied.back()};
+}
+
+void Recorder::record_reactions() {
+  const TransmittedForces forces = equations_->reactions();
+  const System& system = model_->system;
+  for (ReactionTrack& track : run_.reactions) {
+    const auto push = [&](const JointWrench& w) {
+      track.force.push_back(w.force);
+      track.torque.push_back(w.torque);
+    };
+    const auto tree = std::ranges::find(system.tree_joints, track.joint, &TreeJoint::name);
+    if (tree != system.tree_joints.end()) {
+      push(forces.tree[static_cast<std::size_t>(tree - system.tree_joints.begin())]);
+      continue;
+    }
+    for (std::size_t c = 0; c < system.cuts.size(); ++c)
+      if (model_->mechanism.joints[at(system.cuts[c].joint)].name == track.joint) push(forces.cuts[c]);
+  }
+}
+
+void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
+  const System& system = model_->system;
+  run_.time.push_back(t);
+  record_coordinates(t);
+  record_energies(t, energies);
+  const Eigen::VectorXd forces = equations_->drive_forces();
+  std::size_t motor = 0;
+  for (std::size_t d = 0; d < system.drives.size(); ++d) {
+    if (system.drives[d].motor != static_cast<int>(d)) continue;
+    double torque = 0;
+    for (std::size_t e = 0; e < system.drives.size(); ++e)
+      if (system.drives[e].motor == static_cast<int>(d))
+        torque += forces[static_cast<Eigen::Index>(e)] *
+                  model_->parameters.links[at(system.drives[e].link)].gear_ratio;
+    run_.drives[motor++].torque.push_back(torque);
+  }
+  RunStatistics& s = run_.statistics;
+  s.position_drift = std::max(s.position_drift, equations_->position_drift());
+  s.velocity_drift = std::max(s.velocity_drift, equations_->velocity_drift());
+  s.correction = std::max(s.correction, shift);
+  const Eigen::VectorXd& q = equations_->configuration();
+  const Eigen::VectorXd& u = equations_->velocity();
+  run_.states.insert(run_.states.end(), q.data(), q.data() + system.nq);
+  run_.states.insert(run_.states.end(), u.data(), u.data() + system.nv);
+  if (reactions_) record_reactions();
+}
+
+} // namespace flyball

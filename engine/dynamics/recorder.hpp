@@ -1,0 +1,46 @@
+// Writes samples of a motion into a run.
+#pragma once
+
+#include "engine/dynamics/equations.hpp"
+
+namespace flyball {
+
+class Recorder {
+ public:
+  Recorder(Run& run, bool reactions) : run_(run), reactions_(reactions) {}
+
+  // What the next samples are of; tracks are laid out at first.
+  void use(std::shared_ptr<const MotionModel> model, Equations& equations);
+
+  // The evaluated state at t, with the integrated energies. `shift`: how far it was put back on the manifold.
+  void record(double t, const Eigen::Vector3d& energies, double shift);
+
+  // After a change of numbers, at the evaluated last sample: what it added to the stored energy is no error.
+  void go_on();
+
+  // Energy (J) that a jump of the forces brought, which is no error either.
+  void absorb(double energy) { base_ += energy; }
+
+  // The last sample's integrated energies.
+  Eigen::Vector3d energies() const;
+
+  void name(const StopElement& stop, StopEvent& event) const;
+
+ private:
+  void lay_out();
+  void record_coordinates(double t);
+  void record_energies(double t, const Eigen::Vector3d& energies);
+  void record_reactions();
+  double jacobi(double t);
+  bool has_jacobi();
+
+  Run& run_;
+  bool reactions_;
+  std::shared_ptr<const MotionModel> model_;
+  Equations* equations_ = nullptr;
+  double base_ = 0; // J, stored energy that counts as none
+  bool jacobi_ = false;
+  Kinematics<double> standing_;
+};
+
+} // namespace flyball

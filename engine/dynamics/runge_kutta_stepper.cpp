@@ -1,0 +1,175 @@
+#include "engine/dynamics/stepper.hpp"
+#include "engine/dynamics/sundials.hpp"
+
+#include <arkode/arkode_erkstep.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flyball {
+namespace {
+
+Ode& ode_of(void* data) {
+  return *static_cast<Ode*>(data);
+}
+
+int rate(realtype t, N_Vector y, N_Vector out, void* data) {
+  return ode_of(data).rate(t, sundials::data(y), sundials::data(out)) ? 0 : 1;
+}
+
+int weights(N_Vector y, N_Vector out, void* data) {
+  ode_of(data).weights(sundials::data(y), sundials::data(out));
+  double* w = sundials::data(out);
+  for (sunindextype i = 0; i < N_VGetLength(out); ++i)
+    w[i] = 1 / w[i];
+  return 0;
+}
+
+int project(realtype t, N_Vector y, void* data) {
+  return ode_of(data).project(t, sundials::data(y)) ? 0 : 1;
+}
+
+int event_values(realtype t, N_Vector y, realtype* out, void* data) {
+  ode_of(data).event_values(t, sundials::data(y), out);
+  return 0;
+}
+
+void keep_silent(int, const char*, const char*, char*, void*) {}
+
+std::string clause(int flag) {
+  switch (flag) {
+  case ARK_ERR_FAILURE: return "no step is short enough for the tolerance";
+  case ARK_RHSFUNC_FAIL:
+  case ARK_FIRST_RHSFUNC_ERR:
+  case ARK_REPTD_RHSFUNC_ERR:
+  case ARK_UNREC_RHSFUNC_ERR: return "the equations of motion have no solution there";
+  case ARK_POSTPROCESS_STEP_FAIL: return "the loops cannot be kept closed";
+  default: return "the integrator stopped (" + std::string(ERKStepGetReturnFlagName(flag)) + ")";
+  }
+}
+
+// Fehlberg's method of order 8 with a stage more: the state at the end of the step, with which the next one
+// begins. ERKStep of SUNDIALS 6.4 takes every method whose last stage is at the end of the step for one where
+// that stage is the end, and loses an order with those for which it is not.
+void set_method(void* memory) {
+  using Table = std::unique_ptr<ARKodeButcherTableMem, decltype(&ARKodeButcherTable_Free)>;
+  const Table fehlberg(ARKodeButcherTable_LoadERK(ARKODE_FEHLBERG_13_7_8), &ARKodeButcherTable_Free);
+  const Table table(fehlberg ? ARKodeButcherTable_Alloc(fehlberg->stages + 1, SUNTRUE) : nullptr,
+                    &ARKodeButcherTable_Free);
+  if (!table) throw std::bad_alloc();
+  table->q = fehlberg->q;
+  table->p = fehlberg->p;
+  const int last = fehlberg->stages;
+  for (int i = 0; i < last; ++i) {
+    std::copy_n(fehlberg->A[i], last, table->A[i]);
+    table->A[last][i] = table->b[i] = fehlberg->b[i];
+    table->c[i] = fehlberg->c[i];
+    table->d[i] = fehlberg->d[i];
+  }
+  table->c[last] = 1;
+  ERKStepSetTable(memory, table.get());
+}
+
+class RungeKuttaStepper : public Stepper {
+ public:
+  RungeKuttaStepper(Ode& ode, double fixed_step)
+      : ode_(ode), fixed_(fixed_step), y_(ode.size(), context_), before_(ode.size(), context_) {}
+  ~RungeKuttaStepper() override { release(); }
+
+  void start(double t, const Eigen::VectorXd& y) override {
+    y_.view() = y;
+    if (memory_) {
+      ERKStepReset(memory_, t, y_);
+    } else {
+      memory_ = ERKStepCreate(rate, t, y_, context_);
+      if (!memory_) throw std::bad_alloc();
+      ERKStepSetUserData(memory_, &ode_);
+      ERKStepSetErrHandlerFn(memory_, keep_silent, nullptr);
+      ERKStepWFtolerances(memory_, weights);
+      set_method(memory_);
+      // The interpolant only finds events; that of degree 3 costs no evaluations.
+      if (ode_.events() == 0) ERKStepSetInterpolantDegree(memory_, 3);
+      ERKStepSetMaxNumSteps(memory_, -1);
+      ERKStepSetMaxHnilWarns(memory_, -1);
+      ERKStepSetMaxErrTestFails(memory_, 30);
+      if (fixed_ > 0) ERKStepSetFixedStep(memory_, fixed_);
+      if (ode_.has_manifold()) ERKStepSetPostprocessStepFn(memory_, project);
+      if (ode_.events() > 0) {
+        ERKStepRootInit(memory_, ode_.events(), event_values);
+        ERKStepSetNoInactiveRootWarn(memory_);
+      }
+    }
+    time_ = t;
+  }
+
+  StepOutcome step(double stop) override {
+    StepOutcome out;
+    // Its interpolant is of lower order than its steps, so an event is found with it and then stepped to.
+    double end = stop;
+    bool landing = false;
+    for (;;) {
+      const double from = time_;
+      if (!landing) before_.view() = y_.view();
+      ERKStepSetStopTime(memory_, end);
+      const int flag = ERKStepEvolve(memory_, end, y_, &time_, ARK_ONE_STEP);
+      out.time = time_;
+      if (flag < 0) {
+        out.kind = StepOutcome::failed;
+        out.message = clause(flag);
+        return out;
+      }
+      if (flag == ARK_ROOT_RETURN) {
+        std::vector<int> found(static_cast<std::size_t>(ode_.events()));
+        ERKStepGetRootInfo(memory_, found.data());
+        out.events.clear();
+        for (int i = 0; i < ode_.events(); ++i)
+          if (found[static_cast<std::size_t>(i)] != 0) out.events.push_back(i);
+        out.kind = StepOutcome::event;
+        const bool apart = time_ - from > 4 * std::numeric_limits<double>::epsilon() * std::abs(time_);
+        if (landing || !apart) return out;
+        landing = true;
+        end = time_;
+        time_ = from;
+        ERKStepReset(memory_, from, before_);
+        continue;
+      }
+      if (!landing || time_ >= end) return out;
+    }
+  }
+
+  void state_at(double, Eigen::VectorXd& y) override { y = y_.view(); }
+
+  void count(RunStatistics& s) override {
+    if (!memory_) return;
+    RunStatistics now;
+    ERKStepGetNumSteps(memory_, &now.steps);
+    ERKStepGetNumRhsEvals(memory_, &now.evaluations);
+    ERKStepGetNumErrTestFails(memory_, &now.rejected);
+    s.steps += now.steps - seen_.steps;
+    s.evaluations += now.evaluations - seen_.evaluations;
+    s.rejected += now.rejected - seen_.rejected;
+    seen_ = now;
+  }
+
+ private:
+  void release() {
+    if (memory_) ERKStepFree(&memory_);
+  }
+
+  Ode& ode_;
+  double fixed_;
+  sundials::Context context_;
+  sundials::Vector y_, before_;
+  void* memory_ = nullptr;
+  double time_ = 0;
+  RunStatistics seen_;
+};
+
+} // namespace
+
+std::unique_ptr<Stepper> make_runge_kutta_stepper(Ode& ode, double fixed_step) {
+  return std::make_unique<RungeKuttaStepper>(ode, fixed_step);
+}
+
+} // namespace flyball

@@ -1,0 +1,75 @@
+#include "engine/dynamics/settled.hpp"
+
+#include "engine/dynamics/motion_model.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/system/rotation_vector.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+std::string rounded(double value, int digits) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
+}
+
+} // namespace
+
+double distance_from(const Run& run, std::size_t sample, const Solution& steady) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (run.segments.empty() || steady.coordinates.size() != run.coordinates.size()) return infinity;
+  const double reach = run.segments.back().model->parameters.length;
+  double worst = 0;
+  for (std::size_t i = 0; i < run.coordinates.size(); ++i) {
+    const CoordinateTrack& track = run.coordinates[i];
+    const CoordinateSolution& there = steady.coordinates[i];
+    if (track.joint != there.joint || track.index != there.index) return infinity;
+    if (track.driven || std::ranges::find(steady.neutral, track.joint) != steady.neutral.end()) continue;
+    if (track.rotation) { // three components together, as the turn between the two
+      Vec3 a, b;
+      for (std::size_t k = 0; k < 3; ++k) {
+        a[static_cast<Eigen::Index>(k)] = run.coordinates[i + k].value[sample];
+        b[static_cast<Eigen::Index>(k)] = steady.coordinates[i + k].value;
+      }
+      const Quat turn = exp_rotation<double>(a) * exp_rotation<double>(b).conjugate();
+      worst = std::max(worst, log_rotation<double>(turn).norm());
+      i += 2;
+      continue;
+    }
+    double away = track.value[sample] - there.value;
+    if (track.turns) away = std::remainder(away, 2 * std::numbers::pi);
+    worst = std::max(worst, std::abs(away) / (track.angle ? 1 : reach));
+  }
+  return worst;
+}
+
+Settled find_settled(const Run& run, const Solution& steady, double within) {
+  Settled out;
+  out.within = within;
+  if (run.time.empty() || steady.status != Status::converged) {
+    out.message = "There is no steady state to settle in.";
+    return out;
+  }
+  std::size_t first = run.time.size();
+  while (first > 0) {
+    const double away = distance_from(run, first - 1, steady);
+    if (first == run.time.size()) out.distance = away;
+    if (!(away <= within)) break;
+    --first;
+  }
+  const std::string distance = rounded(out.distance, 2) + " from the direct solution";
+  if (first == run.time.size()) {
+    out.message =
+        "Not settled after " + rounded(run.time.back() - run.time.front(), 4) + " s: " + distance + ".";
+    return out;
+  }
+  out.time = run.time[first] - run.time.front();
+  out.message = "Settled after " + rounded(*out.time, 4) + " s, " + distance + ".";
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,163 @@
+// What a simulation of the damped motion (eq. 19) is asked, and what it found, in plain values.
+#pragma once
+
+#include "engine/mechanism/pose.hpp"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace flyball {
+
+struct MotionModel;
+
+enum class Integrator {
+  automatic,   // by the linearised motion at the start
+  bdf,         // CVODE's backward differentiation formulas, for stiff scenes
+  adams,       // CVODE's Adams-Moulton formulas
+  runge_kutta, // ARKODE's explicit Runge-Kutta method of order 8
+};
+
+enum class Start {
+  rest,        // the drawn pose, carried along by the drives: q_R' = 0, as in the paper
+  drawn,       // the drawn pose standing still in the world, when the drives set off with a jerk
+  equilibrium, // the steady state; a kick sets it going
+  state,       // a saved state
+};
+
+std::string_view word(Integrator integrator); // "bdf"
+std::string_view word(Start start);
+
+// A coordinate of a saved state; driven ones say where the drives stand.
+struct StateCoordinate {
+  std::string joint;
+  int index = 0;
+  double value = 0; // rad or m, as the joint labels it
+  double rate = 0;  // its rate of change
+  bool operator==(const StateCoordinate&) const = default;
+};
+
+struct SimulationState {
+  double time = 0; // s
+  std::vector<StateCoordinate> coordinates;
+  bool operator==(const SimulationState&) const = default;
+};
+
+struct SimulationOptions {
+  double duration = 10;     // s
+  double rate = 100;        // samples a second; 0: the start and the end alone
+  double tolerance = 1e-10; // of the error of a step, relative to a radian, the mechanism's reach and speeds
+  Integrator method = Integrator::automatic;
+  double fixed_step = 0; // s; Runge-Kutta only: steps of this size instead of a tolerance
+  bool damped = true;    // false: all dampers off; drag stays, it is a force like others
+  Start start = Start::rest;
+  std::vector<std::pair<std::string, double>> at;   // joint = value (rad, m) over the drawn pose
+  std::vector<std::pair<std::string, double>> kick; // joint = rate (rad/s, m/s) over the start's
+  SimulationState state;                            // for Start::state
+  bool reactions = false;                           // record what all joints transmit
+  long max_steps = 50'000'000;
+  const std::atomic<bool>* cancel = nullptr;   // polled at every step
+  std::function<void(double time)> progress{}; // called at every sample
+};
+
+// One coordinate over time, by sample. Angles go on beyond a turn; rotation vectors have length at most pi.
+struct CoordinateTrack {
+  std::string joint;
+  int index = 0, count = 1; // which of the joint's coordinates
+  bool angle = false;       // rad rather than m
+  bool driven = false;
+  bool rotation = false;           // a component of a rotation vector
+  bool turns = false;              // whole turns do not matter
+  std::vector<double> value, rate; // rad or m; a second
+};
+
+struct DriveTrack {
+  std::string joint;
+  int index = 0, count = 1;
+  bool angle = true;          // N m rather than N
+  std::vector<double> torque; // by the motor, positive along its coordinate, gears' loads included
+};
+
+// What the parent exerts on the child through a joint, as in Reaction: world axes of the moment.
+struct ReactionTrack {
+  std::string joint;
+  std::vector<Vec3> force, torque; // N, N m
+};
+
+// J, by sample.
+struct EnergyTracks {
+  std::vector<double> kinetic, potential;
+  std::vector<double> jacobi; // T_2 + V - T_0; empty where it is not defined
+  // Since the start: taken by dampers and drag, given by the drives, and by torques and forces fixed in
+  // bodies. Integrated along with the motion.
+  std::vector<double> dissipated, delivered, applied;
+  // Stored + dissipated - delivered - applied, less its value at the start: zero but for the integrator's
+  // errors.
+  std::vector<double> balance;
+};
+
+// A coordinate came to a stop or left it.
+struct StopEvent {
+  double time = 0; // s
+  std::string joint;
+  int index = 0;
+  bool upper = false;
+  bool touching = false;
+};
+
+struct RunStatistics {
+  long steps = 0, evaluations = 0, jacobians = 0, rejected = 0, restarts = 0;
+  long singular_positions = 0; // passed, where a linkage could part into branches
+  double run_time_s = 0;
+  // Worst of all samples: how far the loops are open (m, rad or 1), and how fast they open (a second).
+  double position_drift = 0, velocity_drift = 0;
+  // How far a sample was shifted to close its loops, at most: relative to radians and the mechanism's reach.
+  double correction = 0;
+};
+
+enum class RunStatus {
+  completed, // all that was asked for
+  cancelled,
+  diverged, // the message says when and why
+};
+
+std::string_view word(RunStatus status);
+
+struct Run {
+  RunStatus status = RunStatus::completed;
+  std::string message; // always a sentence
+  bool damped = true;
+  Integrator method = Integrator::automatic; // the one used
+  std::string method_reason;                 // a sentence
+  std::vector<std::string> notes;            // choices worth telling
+  std::vector<double> time;                  // s, by sample; what follows has as many entries
+  std::vector<CoordinateTrack> coordinates;  // in the scene's order, driven ones included
+  std::vector<DriveTrack> drives;
+  std::vector<ReactionTrack> reactions; // where asked for
+  EnergyTracks energy;
+  std::vector<StopEvent> stops;
+  RunStatistics statistics;
+
+  // What was compiled, from each of these samples on, and the configuration and velocity of every sample:
+  // for poses_at().
+  struct Segment {
+    std::size_t first = 0;
+    std::shared_ptr<const MotionModel> model;
+  };
+  std::vector<Segment> segments;
+  std::vector<double> states;
+};
+
+// Poses of all bodies at a time (s) within the run, between samples by the cubic that fits their velocities;
+// drives turn exactly. Empty for an empty run.
+std::vector<Pose> poses_at(const Run& run, double time);
+
+// The state at a sample, to start from again.
+SimulationState state_at(const Run& run, std::size_t sample);
+
+} // namespace flyball

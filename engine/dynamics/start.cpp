@@ -1,0 +1,159 @@
+#include "engine/dynamics/start.hpp"
+
+#include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/refine.hpp"
+#include "engine/equilibrium/report.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/system/motion.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+// The velocity of all coordinates nearest to `u` in kinetic energy (massless ones: in size) that keeps the
+// loops closed, with the coordinates in `held` as they are. Names what cannot be.
+void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q,
+                    const std::vector<int>& held, bool from_rest, Eigen::VectorXd& u) {
+  const int n = model.system.nv;
+  Eigen::VectorXd all_q(model.released.nq), all_u(model.released.nv);
+  all_q.head(model.system.nq) = q;
+  all_u.head(n) = u;
+  set_drives(model.system, model.parameters, t, all_q, all_u);
+  Kinematics<double> k;
+  std::vector<LinkRates> none;
+  move(model.released, model.parameters, {all_q, all_u}, k, none);
+  MassMatrix m;
+  evaluate_mass(model.released, model.parameters, k, m);
+  Linearization l;
+  linearize_constraints(model.released, model.parameters, k, l);
+
+  const Eigen::VectorXd& column = model.scaling.column;
+  const auto rows = static_cast<Eigen::Index>(model.system.rows),
+             fixed = static_cast<Eigen::Index>(held.size());
+  Eigen::MatrixXd c = Eigen::MatrixXd::Zero(rows + fixed, n);
+  Eigen::VectorXd open(rows + fixed);
+  c.topRows(rows) = model.scaling.row.asDiagonal() * l.constraint.leftCols(n) * column.asDiagonal();
+  constraint_rates(model.released, model.parameters, all_u, k, none, open);
+  open = open.cwiseProduct(model.scaling.row).eval();
+  open.conservativeResize(rows + fixed);
+  for (Eigen::Index i = 0; i < fixed; ++i) {
+    c(rows + i, held[static_cast<std::size_t>(i)]) = 1;
+    open[rows + i] = 0;
+  }
+  Eigen::VectorXd range = Eigen::VectorXd::Zero(n);
+  if (c.size() > 0) range = c.completeOrthogonalDecomposition().solve(-open);
+  const double left = (c * range + open).lpNorm<Eigen::Infinity>();
+  if (left > 1e-9 * (1 + open.lpNorm<Eigen::Infinity>())) {
+    if (fixed > 0)
+      throw SceneError("joints." + name_of_coordinate(model, held.front()),
+                       "the loops do not let it move at this rate");
+    Eigen::Index worst = 0;
+    (c * range + open).cwiseAbs().maxCoeff(&worst);
+    for (const CutJoint& cut : model.system.cuts)
+      if (worst >= cut.first_row && worst < cut.first_row + static_cast<int>(cut.rows.size()))
+        throw SceneError("joints." + model.mechanism.joints[static_cast<std::size_t>(cut.joint)].name,
+                         "cannot stay closed as the drives turn");
+  }
+  if (n == 0) return;
+  Eigen::VectorXd step = range;
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(c);
+  const Eigen::MatrixXd basis = rows + fixed > 0 && lu.rank() > 0
+                                    ? Eigen::MatrixXd(lu.kernel())
+                                    : Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n));
+  if (rows + fixed < n || lu.dimensionOfKernel() > 0) {
+    const Eigen::MatrixXd mass = column.asDiagonal() * m.mass.topLeftCorner(n, n) * column.asDiagonal();
+    // From rest: the momentum of everything, the drives' motion included, is to vanish.
+    Eigen::VectorXd momentum = mass * range;
+    if (from_rest) momentum += column.cwiseProduct(m.mass.topRows(n) * all_u);
+    const Eigen::MatrixXd reduced = basis.transpose() * mass * basis;
+    step -= basis * reduced.completeOrthogonalDecomposition().solve(basis.transpose() * momentum);
+  }
+  u += step.cwiseProduct(column);
+}
+
+void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q) {
+  const Problem problem{model.system, model.parameters, model.scaling, options.cancel};
+  Workspace w;
+  Found found;
+  std::vector<double> history;
+  find_equilibrium(problem, q, false, false, w, history, found);
+  if (found.status != Status::converged)
+    throw SceneError("", "there is no steady state to start from: " +
+                             (found.message.empty() ? std::string(word(found.status)) : found.message));
+  Eigen::VectorXd error;
+  refine(problem, found.z, found.newton, w, error);
+  if (!check_existence(problem, found.z.q, sample_phases(model.system, model.parameters), w).holds)
+    throw SceneError("", "there is no steady state to start from: the balance turns with the drives");
+  q = found.z.q;
+}
+
+std::vector<int> apply_kick(const SimulationOptions& options, const MotionModel& model,
+                            const Eigen::VectorXd& q, Eigen::VectorXd& u) {
+  std::vector<int> held;
+  for (const auto& [name, rate] : options.kick) {
+    const int found = coordinate_called(model.system, name);
+    if (found < 0)
+      throw SceneError(name,
+                       "is not a free coordinate; use the joint's name, or name.index where it has several");
+    const CoordinateInfo& c = model.system.coordinates[static_cast<std::size_t>(found)];
+    const Link& link = model.system.links[static_cast<std::size_t>(c.link)];
+    if (link.v < 0) throw SceneError(name, "is driven; a kick is for free coordinates");
+    if (link.type != LinkType::spherical) {
+      u[link.v] += rate;
+      held.push_back(link.v);
+      continue;
+    }
+    const Mat3 map = rotation_vector_rate(link, model.parameters.links[static_cast<std::size_t>(c.link)], q);
+    u.segment<3>(link.v) += map.partialPivLu().solve(rate * Vec3::Unit(c.index - link.coordinate));
+    for (int k = 0; k < 3; ++k)
+      if (std::ranges::find(held, link.v + k) == held.end()) held.push_back(link.v + k);
+  }
+  return held;
+}
+
+} // namespace
+
+void find_start(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q,
+                Eigen::VectorXd& u) {
+  double t = 0;
+  if (options.start == Start::state) {
+    t = options.state.time;
+    take_state(options.state, model, q, u);
+  } else {
+    drawn_configuration(model.system, model.parameters, q);
+    set_start(model.system, model.parameters, options.at, q);
+    u.setZero(model.system.nv);
+  }
+  if (options.start == Start::equilibrium) start_at_equilibrium(options, model, q);
+  Workspace w;
+  const Problem problem = model.problem();
+  if (model.system.rows > 0) {
+    if (!assemble(problem, q, t, w) || !closed_the_right_way(problem, w.kinematics)) {
+      double worst = 0;
+      std::string name;
+      for (std::size_t c = 0; c < model.system.cuts.size(); ++c)
+        for (std::size_t r = 0; r < model.system.cuts[c].rows.size(); ++r) {
+          const int row = model.system.cuts[c].first_row + static_cast<int>(r);
+          const double open = std::abs(w.residual.phi[row]) * model.scaling.row[row];
+          if (!name.empty() && open <= worst) continue;
+          worst = open;
+          name = model.mechanism.joints[static_cast<std::size_t>(model.system.cuts[c].joint)].name;
+        }
+      throw SceneError("joints." + name, "cannot be closed from the start");
+    }
+  }
+  const bool from_rest = options.start == Start::drawn;
+  const std::vector<int> held = apply_kick(options, model, q, u);
+  if (from_rest && !held.empty()) {
+    // At rest first, then the kick on top.
+    Eigen::VectorXd still = Eigen::VectorXd::Zero(model.system.nv);
+    close_velocity(model, t, q, {}, true, still);
+    u += still;
+  }
+  if (model.system.rows > 0 || (from_rest && held.empty()))
+    close_velocity(model, t, q, held, from_rest && held.empty(), u);
+}
+
+} // namespace flyball

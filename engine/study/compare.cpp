@@ -1,0 +1,290 @@
+#include "engine/study/compare.hpp"
+
+#include "engine/dynamics/simulator.hpp"
+#include "engine/equilibrium/analysis.hpp"
+#include "engine/equilibrium/drive_cuts.hpp"
+#include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/refine.hpp"
+#include "engine/equilibrium/stability.hpp"
+#include "engine/system/rotation_vector.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+using LongVector = Configuration<long double>;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// Median of the time that one call takes, over batches long enough for the clock.
+template <class Work>
+double time_of(int repeats, Work work) {
+  using Clock = std::chrono::steady_clock;
+  const auto seconds = [&](int count) {
+    const auto begin = Clock::now();
+    for (int i = 0; i < count; ++i)
+      work();
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  };
+  int count = 1;
+  for (double spent = seconds(1); spent < 1e-3 && count < 1 << 20; spent = seconds(count))
+    count *= 2;
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i)
+    times.push_back(seconds(count) / count);
+  return median(std::move(times));
+}
+
+class Direct {
+ public:
+  explicit Direct(const Mechanism& mechanism) {
+    std::vector<std::string> notes;
+    system_ = compile_for_drives(mechanism, notes);
+    bind(system_, mechanism, parameters_);
+    set_scaling(system_, parameters_, scaling_);
+    drawn_configuration(system_, parameters_, drawn_);
+  }
+
+  const System& system() const { return system_; }
+
+  // From the drawn pose to an answer that is known to exist and be stable, as Analysis::solve does.
+  Status answer(Unknowns& z) {
+    std::vector<double>& history = history_;
+    find_equilibrium(problem(), drawn_, false, false, w_, history, found_);
+    if (found_.status != Status::converged) return found_.status;
+    refine(problem(), found_.z, found_.newton, w_, error_);
+    const bool holds = check_existence(problem(), found_.z.q, sample_phases(system_, parameters_), w_).holds;
+    if (holds && !found_.minimum) stability_ = find_stability(problem(), found_.z, false, w_);
+    z = found_.z;
+    return holds ? Status::converged : Status::no_steady_state;
+  }
+  int iterations() const { return found_.iterations; }
+
+  // q* by Newton's steps on the balance in extended precision, from an answer, until nothing moves.
+  void settle_reference(const Unknowns& answer, Comparison& out) {
+    Unknowns z = answer;
+    factor_with_multipliers(problem(), z, w_);
+    reference_ = z.q.cast<long double>();
+    LongVector step, none = LongVector::Zero(system_.rows);
+    Eigen::VectorXd correction;
+    double previous = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 12; ++i) {
+      forward<long double>(system_, parameters_, reference_, 0, w_.kinematics_long);
+      evaluate_residual<long double>(system_, parameters_, reference_, none, w_.kinematics_long,
+                                     w_.residual_long);
+      w_.residual.f = w_.residual_long.f.cast<double>();
+      w_.residual.phi = w_.residual_long.phi.cast<double>();
+      newton_step(problem(), w_.residual.f, w_.residual.phi, w_, w_.scaled_step, z.lambda);
+      const double size = w_.scaled_step.size() > 0 ? w_.scaled_step.lpNorm<Eigen::Infinity>() : 0;
+      correction = w_.scaled_step.cwiseProduct(scaling_.column);
+      out.reference_error = size;
+      out.reference_residual = balance(w_);
+      if (!std::isfinite(size) || (i > 1 && size >= previous / 2)) break; // rounding is all that is left
+      step = correction.cast<long double>();
+      retract<long double>(system_, step, reference_);
+      previous = size;
+    }
+    const Eigen::VectorXd rounded = reference_.cast<double>();
+    for (const CoordinateInfo& c : system_.coordinates) {
+      const TreeJoint& joint = system_.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+      const Link& link = system_.links[static_cast<std::size_t>(c.link)];
+      CoordinateSolution x;
+      x.joint = joint.name;
+      x.index = c.index;
+      x.count = coordinate_count(joint.type);
+      x.angle = c.angle;
+      x.driven = link.drive >= 0;
+      x.value = coordinate_value(system_, parameters_, rounded, c);
+      if (!x.driven && correction.size() > 0)
+        x.error = link.type == LinkType::spherical ? correction.segment<3>(link.v).norm()
+                                                   : std::abs(correction[link.v]);
+      out.reference.push_back(std::move(x));
+    }
+  }
+
+  // The largest difference from q*, in radians or relative to the reach.
+  double error_of(const Eigen::VectorXd& q, const std::vector<std::string>& neutral) const {
+    long double worst = 0;
+    for (std::size_t l = 0; l < system_.links.size(); ++l) {
+      const Link& link = system_.links[l];
+      if (link.v < 0) continue;
+      const std::string& joint = system_.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
+      if (std::ranges::find(neutral, joint) != neutral.end()) continue;
+      if (link.type == LinkType::spherical) {
+        const auto rotation = [&](const auto& x) {
+          return Eigen::Quaternion<long double>(x[link.q], x[link.q + 1], x[link.q + 2], x[link.q + 3])
+              .normalized();
+        };
+        const auto turn = rotation(q) * rotation(reference_).conjugate();
+        worst = std::max(worst, log_rotation<long double>(turn).norm());
+        continue;
+      }
+      long double away = static_cast<long double>(q[link.q]) - reference_[link.q];
+      if (link.type == LinkType::revolute && !parameters_.links[l].elastic && !geared(link))
+        away = std::remainder(away, 2 * std::numbers::pi_v<long double>);
+      worst = std::max(worst, std::abs(away) / static_cast<long double>(scaling_.column[link.v]));
+    }
+    return static_cast<double>(worst);
+  }
+
+  // The state after so many plain iterations from the drawn pose, and whether more would change it.
+  bool iterate(int count, Unknowns& z) {
+    z.q = drawn_;
+    z.lambda.setZero(system_.rows);
+    return newton(problem(), z, w_, {count, false}, nullptr).converged;
+  }
+
+ private:
+  Problem problem() const { return {system_, parameters_, scaling_}; }
+
+  bool geared(const Link& link) const {
+    return std::ranges::any_of(system_.cuts, [&](const CutJoint& cut) {
+      return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
+    });
+  }
+
+  // What no multipliers balance, and how far the loops are open, relative to the terms they are made of.
+  double balance(Workspace& w) const {
+    const Eigen::VectorXd force =
+        w.constraints.basis().transpose() * w.residual.f.cwiseProduct(scaling_.column);
+    const Eigen::VectorXd size =
+        w.constraints.basis().cwiseAbs().transpose() * w.magnitudes.force.cwiseProduct(scaling_.column);
+    double worst = 0;
+    for (Eigen::Index i = 0; i < force.size(); ++i)
+      if (size[i] > 0) worst = std::max(worst, std::abs(force[i]) / size[i]);
+    for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
+      worst = std::max(worst, std::abs(w.residual.phi[i]) * scaling_.row[i]);
+    return worst;
+  }
+
+  System system_;
+  Parameters parameters_;
+  Scaling scaling_;
+  Eigen::VectorXd drawn_, error_;
+  Workspace w_;
+  Found found_;
+  Stability stability_;
+  std::vector<double> history_;
+  LongVector reference_;
+};
+
+// Long enough for the slowest motion about the steady state to shrink to 1e-2, 1e-4 ... 1e-10; s.
+std::vector<double> natural_durations(const Solution& steady, const Mechanism& mechanism) {
+  double slowest = std::numeric_limits<double>::infinity();
+  double fastest = 0;
+  if (steady.eigenvalues)
+    for (const std::complex<double>& rate : *steady.eigenvalues) {
+      fastest = std::max(fastest, std::abs(rate));
+      if (rate.real() < -1e-9 * std::abs(rate)) slowest = std::min(slowest, -rate.real());
+    }
+  std::vector<double> out;
+  if (std::isfinite(slowest) && slowest > 1e-9 * fastest) {
+    for (int digits : {2, 4, 6, 8, 10}) {
+      const double exact = digits * std::numbers::ln10 / slowest;
+      const double unit = std::pow(10., std::floor(std::log10(exact)) - 1);
+      out.push_back(std::ceil(exact / unit) * unit);
+    }
+  } else {
+    for (double part : {0.25, 0.5, 1., 2., 4.})
+      out.push_back(part * mechanism.simulation.duration);
+  }
+  return out;
+}
+
+void find_best(Comparison& c) {
+  for (const MotionCurve& curve : c.motion)
+    for (const MotionPoint& p : curve.points) {
+      if (p.status != RunStatus::completed || (c.best && p.error >= c.best->error)) continue;
+      c.best = {curve.method, curve.duration, p.tolerance, p.error, p.run_time_s, c.answer.run_time_s};
+    }
+  if (!c.best) return;
+  // The first iteration that comes as near; where a net was needed, the answer.
+  for (const DirectMark& mark : c.direct)
+    if (mark.error <= c.best->error) {
+      c.best->direct_s = mark.run_time_s;
+      return;
+    }
+}
+
+} // namespace
+
+Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
+  Comparison out;
+  const auto cancelled = [&] { return options.cancel && options.cancel->load(std::memory_order_relaxed); };
+  SolveOptions solve;
+  solve.cancel = options.cancel;
+  const Solution steady = Analysis(mechanism).solve(solve);
+  out.status = steady.status;
+  out.message = steady.message;
+  if (steady.status != Status::converged) return out;
+
+  Direct direct(mechanism);
+  Unknowns answer;
+  if (direct.answer(answer) != Status::converged) return out; // found above
+  direct.settle_reference(answer, out);
+  out.answer = {direct.iterations(), direct.error_of(answer.q, steady.neutral),
+                time_of(options.repeats, [&] { direct.answer(answer); })};
+  for (int i = 0; i <= 30; ++i) {
+    Unknowns z;
+    const bool converged = direct.iterate(i, z);
+    const double error = direct.error_of(z.q, steady.neutral);
+    out.direct.push_back({i, error, time_of(options.repeats, [&] { direct.iterate(i, z); })});
+    if (converged) break;
+  }
+  if (!(out.direct.back().error < 1e-6)) out.direct.clear();
+
+  const std::vector<double> durations =
+      options.durations.empty() ? natural_durations(steady, mechanism) : options.durations;
+  const std::size_t all = options.integrators.size() * durations.size() * options.tolerances.size();
+  std::size_t done = 0;
+  for (Integrator method : options.integrators)
+    for (double duration : durations) {
+      MotionCurve& curve = out.motion.emplace_back(MotionCurve{method, duration, {}});
+      for (double tolerance : options.tolerances) {
+        SimulationOptions simulation;
+        simulation.duration = duration;
+        simulation.rate = 0;
+        simulation.tolerance = tolerance;
+        simulation.method = method;
+        simulation.max_steps = options.max_steps;
+        simulation.cancel = options.cancel;
+        MotionPoint point;
+        point.tolerance = tolerance;
+        std::vector<double> times;
+        for (int i = 0; i < options.repeats; ++i) {
+          const Run run = simulate(mechanism, simulation);
+          if (cancelled()) {
+            out.message = "Cancelled.";
+            return out;
+          }
+          times.push_back(run.statistics.run_time_s);
+          if (i > 0) continue;
+          const auto nq = static_cast<std::ptrdiff_t>(direct.system().nq);
+          const auto sample = static_cast<std::ptrdiff_t>(run.states.size()) -
+                              (nq + static_cast<std::ptrdiff_t>(direct.system().nv));
+          point.error = direct.error_of(Eigen::Map<const Eigen::VectorXd>(run.states.data() + sample, nq),
+                                        steady.neutral);
+          point.steps = run.statistics.steps;
+          point.evaluations = run.statistics.evaluations;
+          point.status = run.status;
+          if (run.status == RunStatus::diverged) break; // once is enough
+        }
+        point.run_time_s = median(std::move(times));
+        curve.points.push_back(point);
+        if (options.progress) options.progress(++done, all);
+      }
+    }
+  find_best(out);
+  return out;
+}
+
+} // namespace flyball

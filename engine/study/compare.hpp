@@ -1,0 +1,67 @@
+// What the paper claims, measured: the error of the direct solution against its run time, one Newton iteration
+// after the other, beside the error of the damped motion against its run time, for every integrator over its
+// tolerances and over simulated durations.
+//
+// Everything runs in this process on one thread, from the same drawn pose; times are medians over repeats and
+// leave out what both do once: reading and compiling the scene.
+#pragma once
+
+#include "engine/dynamics/simulation.hpp"
+#include "engine/equilibrium/solution.hpp"
+
+namespace flyball {
+
+struct CompareOptions {
+  std::vector<double> tolerances{1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
+  std::vector<double> durations; // s; empty: by the slowest motion, until it has shrunk to 1e-2 ... 1e-10
+  std::vector<Integrator> integrators{Integrator::bdf, Integrator::adams, Integrator::runge_kutta};
+  int repeats = 5;
+  long max_steps = 2'000'000; // of one run; longer ones are given up
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(std::size_t done, std::size_t all)> progress{};
+};
+
+// Errors are the largest of all coordinates, in radians or relative to the mechanism's reach.
+struct DirectMark {
+  int iterations = 0;
+  double error = 0, run_time_s = 0;
+};
+
+struct MotionPoint {
+  double tolerance = 0, error = 0, run_time_s = 0;
+  long steps = 0, evaluations = 0;
+  RunStatus status = RunStatus::completed;
+};
+
+struct MotionCurve {
+  Integrator method = Integrator::bdf;
+  double duration = 0; // s, simulated
+  std::vector<MotionPoint> points;
+};
+
+// The motion that comes nearest, against the direct solution that comes as near.
+struct SpeedRatio {
+  Integrator method = Integrator::bdf;
+  double duration = 0, tolerance = 0, error = 0;
+  double motion_s = 0, direct_s = 0;
+  double ratio() const { return motion_s / direct_s; }
+};
+
+struct Comparison {
+  Status status = Status::not_converged; // of the direct solution
+  std::string message;                   // a sentence
+  // The reference q*, iterated in extended precision until it stood: values rounded to double, `error` how
+  // far the last correction moved it.
+  std::vector<CoordinateSolution> reference;
+  double reference_error = 0; // the largest of these, scaled
+  double reference_residual = 0; // of q* in extended precision, scaled
+  std::vector<DirectMark> direct; // by iteration; without the iterations where a safety net was needed
+  DirectMark answer;              // with refinement, existence and the sign of stability
+  std::vector<MotionCurve> motion;
+  std::optional<SpeedRatio> best;
+};
+
+// Throws SceneError for a mechanism that cannot be compiled or has no equations of motion.
+Comparison compare(const Mechanism& mechanism, const CompareOptions& options = {});
+
+} // namespace flyball

@@ -1,0 +1,179 @@
+#include "engine/system/motion.hpp"
+#include "engine/system/pair_stiffness.hpp"
+#include "engine/system/rotation_vector.hpp"
+
+namespace flyball {
+namespace {
+
+bool damped(const LinkParameters& p) {
+  return p.force[0].damping != 0 || p.force[1].damping != 0 || p.force[2].damping != 0;
+}
+
+Vec3 dampings(const LinkParameters& p) {
+  return {p.force[0].damping, p.force[1].damping, p.force[2].damping};
+}
+
+// Calls visit(v) for every coordinate between a link and ground.
+template <class Visit>
+void for_coordinates_of(const System& system, int link, Visit visit) {
+  for (int l = link; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
+    const Link& x = system.links[static_cast<std::size_t>(l)];
+    for (int k = 0; x.v >= 0 && k < (x.type == LinkType::spherical ? 3 : 1); ++k)
+      visit(x.v + k);
+  }
+}
+
+} // namespace
+
+Mat3 rotation_vector_rate(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
+  const Mat3 j = inverse_left_jacobian(rotation_vector(link, p, q));
+  return link.reversed ? Mat3(-j.transpose() * p.drawn_rotation.toRotationMatrix().transpose()) : j;
+}
+
+void add_coordinate_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                            const Eigen::VectorXd& u, Eigen::VectorXd& f) {
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const Link& link = system.links[i];
+    if (link.v < 0 || !damped(p.links[i])) continue;
+    if (link.type == LinkType::spherical) {
+      const Mat3 j = rotation_vector_rate(link, p.links[i], q);
+      const Vec3 rate = j * u.segment<3>(link.v);
+      f.segment<3>(link.v) += j.transpose() * dampings(p.links[i]).cwiseProduct(rate);
+    } else {
+      f[link.v] += p.links[i].force[0].damping * u[link.v];
+    }
+  }
+}
+
+void add_coordinate_damping_stiffness(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                                      const Eigen::VectorXd& u, Eigen::MatrixXd& stiffness) {
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const Link& link = system.links[i];
+    if (link.v < 0 || link.type != LinkType::spherical || !damped(p.links[i])) continue;
+    const Vec3 r = rotation_vector(link, p.links[i], q), rate = u.segment<3>(link.v);
+    const Mat3 drawn = p.links[i].drawn_rotation.toRotationMatrix();
+    const Mat3 j = rotation_vector_rate(link, p.links[i], q);
+    for (int k = 0; k < 3; ++k) {
+      const Mat3 turned = inverse_left_jacobian_derivative<double>(r, j.col(k));
+      const Mat3 dj = link.reversed ? Mat3(-turned.transpose() * drawn.transpose()) : turned;
+      stiffness.block<3, 1>(link.v, link.v + k) +=
+          dj.transpose() * dampings(p.links[i]).cwiseProduct(j * rate) +
+          j.transpose() * dampings(p.links[i]).cwiseProduct(dj * rate);
+    }
+  }
+}
+
+void damping_matrix(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                    const Kinematics<double>& k, Eigen::MatrixXd& out) {
+  out.setZero(system.nv, system.nv);
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const Link& link = system.links[i];
+    if (link.v < 0 || !damped(p.links[i])) continue;
+    if (link.type == LinkType::spherical) {
+      const Mat3 j = rotation_vector_rate(link, p.links[i], q);
+      out.block<3, 3>(link.v, link.v) += j.transpose() * dampings(p.links[i]).asDiagonal() * j;
+    } else {
+      out(link.v, link.v) += p.links[i].force[0].damping;
+    }
+  }
+  for (std::size_t n = 0; n < system.body_forces.size(); ++n) {
+    const BodyForceElement& e = system.body_forces[n];
+    const BodyForceParameters& f = p.body_forces[n];
+    if (e.link < 0 || f.type != ForceType::drag) continue;
+    const Vec3 point = k.point(e.link, f.at), v = k.velocity(e.link, point);
+    const double speed = v.norm();
+    for_coordinates_of(system, e.link, [&](int j) {
+      const Vec3 dv = k.columns[static_cast<std::size_t>(j)].at(point);
+      Vec3 force = (f.linear + f.quadratic * speed) * dv;
+      if (speed > 0) force += f.quadratic / speed * v * v.dot(dv);
+      for_coordinates_of(system, e.link, [&](int i) {
+        out(i, j) += k.columns[static_cast<std::size_t>(i)].at(point).dot(force);
+      });
+    });
+  }
+  add_pair_damping(system, p, k, out);
+}
+
+ForcePowers force_powers(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                         const Eigen::VectorXd& u, const Kinematics<double>& k) {
+  ForcePowers out;
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const Link& link = system.links[i];
+    if (link.v < 0 || !damped(p.links[i])) continue;
+    if (link.type == LinkType::spherical) {
+      const Vec3 rate = rotation_vector_rate(link, p.links[i], q) * u.segment<3>(link.v);
+      out.dissipated += dampings(p.links[i]).dot(rate.cwiseAbs2());
+    } else {
+      out.dissipated += p.links[i].force[0].damping * u[link.v] * u[link.v];
+    }
+  }
+  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+    if (p.springs[i].damping == 0) continue;
+    const PointSpringElement& e = system.springs[i];
+    const SpringState<double> s = spring_state(e, p.springs[i], k);
+    const double rate = s.direction.dot(k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a));
+    out.dissipated += p.springs[i].damping * rate * rate;
+  }
+  for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
+    const CutDamperElement& e = system.cut_dampers[i];
+    if (p.cut_dampers[i].damping == 0) continue;
+    const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[i].axis, b = k.point(e.ends.b, p.cut_dampers[i].b);
+    const double rate = axis.dot(e.angular ? Vec3(k.at(e.ends.b).w - k.at(e.ends.a).w)
+                                           : Vec3(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b)));
+    out.dissipated += p.cut_dampers[i].damping * rate * rate;
+  }
+  for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
+    const BodyForceElement& e = system.body_forces[i];
+    const BodyForceParameters& f = p.body_forces[i];
+    if (e.link < 0 || (f.type == ForceType::force && f.frame == ForceFrame::world)) continue;
+    const AppliedForce<double> a = applied_force(e, f, k);
+    const double power = a.force.dot(k.velocity(e.link, a.point)) + a.torque.dot(k.at(e.link).w);
+    if (f.type == ForceType::drag)
+      out.dissipated -= power;
+    else
+      out.applied += power;
+  }
+  return out;
+}
+
+double potential_energy(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                        const Kinematics<double>& k) {
+  double energy = 0;
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const Link& link = system.links[i];
+    const LinkParameters& lp = p.links[i];
+    if (lp.mass != 0) energy -= lp.mass * p.gravity.dot(k.links[i].o + k.links[i].R * lp.com);
+    if (link.v < 0 || !lp.elastic) continue;
+    if (link.type == LinkType::spherical) {
+      const Vec3 r = rotation_vector(link, lp, q);
+      for (int j = 0; j < 3; ++j)
+        energy += lp.force[static_cast<std::size_t>(j)].energy(r[j]);
+    } else {
+      energy += lp.force[0].energy(q[link.q]);
+    }
+  }
+  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+    const double stretch = spring_state(system.springs[i], p.springs[i], k).length - p.springs[i].free_length;
+    energy += p.springs[i].stiffness * stretch * stretch / 2;
+  }
+  for (std::size_t i = 0; i < system.body_forces.size(); ++i)
+    if (p.body_forces[i].type == ForceType::force && p.body_forces[i].frame == ForceFrame::world)
+      energy -= p.body_forces[i].vector.dot(k.point(system.body_forces[i].link, p.body_forces[i].at));
+  return energy;
+}
+
+double kinetic_energy(const System& system, const Parameters& p, const Kinematics<double>& k) {
+  double energy = 0;
+  for (std::size_t i = 0; i < system.links.size(); ++i) {
+    const LinkParameters& lp = p.links[i];
+    const LinkState<double>& x = k.links[i];
+    if (lp.mass != 0) energy += lp.mass * (x.v + x.w.cross(x.R * lp.com)).squaredNorm() / 2;
+    if (lp.has_inertia) {
+      const Vec3 w = x.R.transpose() * x.w;
+      energy += w.dot(lp.inertia * w) / 2;
+    }
+  }
+  return energy;
+}
+
+} // namespace flyball

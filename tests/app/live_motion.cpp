@@ -1,0 +1,138 @@
+#include "app/live/live_motion.hpp"
+
+#include "engine/dynamics/joined.hpp"
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+using namespace flyball;
+
+namespace {
+
+Mechanism shipped(const std::string& name) {
+  return load_scene(std::string(FLYBALL_ASSETS) + "/scenes/" + name + ".json");
+}
+
+SimulationOptions lasting(double duration) {
+  SimulationOptions options;
+  options.duration = duration;
+  options.tolerance = 1e-9;
+  return options;
+}
+
+const CoordinateTrack& track(const Run& run, const std::string& joint) {
+  return *std::ranges::find(run.coordinates, joint, &CoordinateTrack::joint);
+}
+
+// The last news of the ticket, waited for with a limit; all that came before in `seen`.
+MotionNews finished(LiveMotion& live, std::uint64_t ticket, std::vector<MotionNews>* seen = nullptr) {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (std::chrono::steady_clock::now() < limit) {
+    if (auto news = live.take()) {
+      CHECK(news->ticket == ticket);
+      if (news->finished) return *news;
+      if (seen) seen->push_back(*news);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  FAIL("no end within a minute");
+  return {};
+}
+
+} // namespace
+
+TEST_CASE("a motion in the background is the motion") {
+  const Mechanism governor = shipped("governor");
+  const Run whole = simulate(governor, lasting(3));
+  for (const auto mode : {LiveSolver::Mode::background, LiveSolver::Mode::immediate}) {
+    LiveMotion live(mode);
+    const MotionNews news = finished(live, live.start(governor, lasting(3)));
+    REQUIRE(news.run);
+    CHECK_FALSE(news.error);
+    CHECK(news.run->time == whole.time);
+    CHECK(track(*news.run, "slide").value == track(whole, "slide").value);
+    CHECK_FALSE(live.running());
+  }
+}
+
+TEST_CASE("a long motion is told of as it grows, and can be stopped") {
+  LiveMotion live(LiveSolver::Mode::background);
+  SimulationOptions options = lasting(1e6);
+  options.damped = false;
+  const std::uint64_t ticket = live.start(shipped("pendulum"), options);
+  std::vector<double> reached;
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (reached.size() < 3 && std::chrono::steady_clock::now() < limit)
+    if (const auto news = live.take()) reached.push_back(news->run->time.back());
+  REQUIRE(reached.size() == 3);
+  CHECK(reached[0] < reached[1]);
+  CHECK(reached[1] < reached[2]);
+  CHECK(live.running());
+  live.stop();
+  const MotionNews last = finished(live, ticket);
+  REQUIRE(last.run);
+  CHECK(last.run->status == RunStatus::cancelled);
+  CHECK(last.run->time.back() >= reached[2]);
+  CHECK(last.run->time.back() < 1e6);
+}
+
+TEST_CASE("a newer motion takes the place of the one that runs") {
+  LiveMotion live(LiveSolver::Mode::background);
+  SimulationOptions endless = lasting(1e6);
+  endless.damped = false;
+  live.start(shipped("pendulum"), endless);
+  const std::uint64_t second = live.start(shipped("governor"), lasting(0.5));
+  const MotionNews news = finished(live, second);
+  REQUIRE(news.run);
+  CHECK(news.run->time.back() == Approx(0.5));
+  CHECK(track(*news.run, "slide").value.size() == 51);
+}
+
+TEST_CASE("a motion goes on from any moment with other numbers") {
+  Mechanism governor = shipped("governor");
+  LiveMotion live(LiveSolver::Mode::immediate);
+  const MotionNews first = finished(live, live.start(governor, lasting(4)));
+  REQUIRE(first.run);
+  set_parameter(governor, "joints.spin.drive.speed", 14);
+  const MotionNews second = finished(live, live.go_on(governor, lasting(4), first.run, 1.507));
+  REQUIRE(second.run);
+  const Run &before = *first.run, &run = *second.run;
+  REQUIRE(run.time.size() == before.time.size());
+  CHECK(run.time.back() == Approx(4));
+  const std::size_t last = sample_before(before, 1.507);
+  CHECK(before.time[last] == Approx(1.5));
+  // Up to there it is what it was; from there it is the motion from that state.
+  SimulationOptions from = lasting(2.5);
+  from.start = Start::state;
+  from.state = state_at(before, last);
+  const Run tail = simulate(governor, from);
+  for (const char* joint : {"slide", "spin"})
+    for (std::size_t i = 0; i < run.time.size(); ++i) {
+      const double expected = i <= last ? track(before, joint).value[i] : track(tail, joint).value[i - last];
+      CHECK(track(run, joint).value[i] == Approx(expected).margin(1e-12));
+    }
+  CHECK(std::ranges::is_sorted(run.time));
+  CHECK(run.energy.delivered[last + 1] == Approx(before.energy.delivered[last] + tail.energy.delivered[1]));
+  for (const double b : run.energy.balance)
+    CHECK(std::abs(b) < 1e-4);
+  // Poses come from either part.
+  CHECK(poses_at(run, 1.2)[1].position.isApprox(poses_at(before, 1.2)[1].position, 1e-14));
+  CHECK(poses_at(run, 3.2)[1].position.isApprox(poses_at(tail, 3.2)[1].position, 1e-12));
+}
+
+TEST_CASE("a motion that cannot begin says why") {
+  Mechanism crank = shipped("governor");
+  SimulationOptions options = lasting(1);
+  options.start = Start::state;
+  options.state.coordinates = {{"nothing", 0, 1, 0}};
+  LiveMotion live(LiveSolver::Mode::background);
+  const MotionNews news = finished(live, live.start(crank, options));
+  REQUIRE(news.error);
+  CHECK(news.error->size() > 10);
+  CHECK_FALSE(news.run);
+}

@@ -1,0 +1,296 @@
+// The damped motion beside the steady state, as a person uses it.
+#include "robot.hpp"
+
+#include "app/panels/motion_control.hpp"
+#include "app/panels/study_panels.hpp"
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr PixelSize wide{1280, 900};
+
+const Run& run_of(const App& app) {
+  const MotionRun* shown = shown_motion(app);
+  REQUIRE(shown);
+  return *shown->run;
+}
+
+const CoordinateTrack& track(const Run& run, const std::string& joint) {
+  return *std::ranges::find(run.coordinates, joint, &CoordinateTrack::joint);
+}
+
+// The motion is asked for with the key M.
+struct MotionRobot : Robot {
+  MotionRobot() : Robot(wide) {
+    key('M');
+    frames(3);
+  }
+};
+
+} // namespace
+
+TEST_CASE("without being asked for there is no motion, no integrator and no panel of it") {
+  Robot robot(wide);
+  CHECK_FALSE(robot.app.motion.on);
+  for (const MotionRun& run : robot.app.motion.runs)
+    CHECK_FALSE(run.live);
+  CHECK_FALSE(robot.app.study.compare.task);
+  CHECK(robot.app.widgets.count("motion/play") == 0);
+  CHECK(robot.app.widgets.count("study/motion") == 0);
+  CHECK(robot.app.widgets.count("parameters/joints.slide.damping") == 0);
+}
+
+TEST_CASE("the motion begins when it is asked for, and ends in the steady state") {
+  MotionRobot robot;
+  App& app = robot.app;
+  REQUIRE(app.motion.on);
+  CHECK(app.playback.playing);
+  const Run& run = run_of(app);
+  CHECK(run.damped);
+  CHECK(run.time.back() == Approx(app.mechanism().simulation.duration));
+  REQUIRE(app.motion.runs[1].run);
+  CHECK_FALSE(app.motion.runs[1].run->damped);
+  REQUIRE(app.motion.settled);
+  CHECK(app.motion.settled->distance < 2e-3);
+  // Played to its end, the two pictures are one.
+  robot.frames(130, 0.1);
+  CHECK_FALSE(app.playback.playing);
+  CHECK(app.playback.time == run.time.back());
+  REQUIRE(app.motion.poses.size() == app.poses.size());
+  for (std::size_t i = 0; i < app.poses.size(); ++i)
+    CHECK((app.motion.poses[i].position - app.poses[i].position).norm() < 1e-3);
+  // And at the beginning they were not.
+  robot.click("motion/first");
+  CHECK(app.playback.time == 0);
+  double apart = 0;
+  for (std::size_t i = 0; i < app.poses.size(); ++i)
+    apart = std::max(apart, (app.motion.poses[i].position - app.poses[i].position).norm());
+  CHECK(apart > 0.02);
+}
+
+TEST_CASE("a closed panel takes everything of the motion with it") {
+  MotionRobot robot;
+  robot.click("study/close");
+  CHECK_FALSE(robot.app.motion.on);
+  for (const MotionRun& run : robot.app.motion.runs)
+    CHECK_FALSE(run.live);
+  CHECK(robot.app.motion.poses.empty());
+  CHECK(robot.app.playback.time == 0);
+  CHECK(robot.app.study.open == Study::none);
+}
+
+TEST_CASE("the motion is paused, stepped and scrubbed") {
+  MotionRobot robot;
+  App& app = robot.app;
+  robot.click("motion/play");
+  CHECK_FALSE(app.playback.playing);
+  const double step = run_of(app).time[1] - run_of(app).time[0];
+  robot.click("motion/first");
+  robot.click("motion/forward");
+  robot.click("motion/forward");
+  CHECK(app.playback.time == Approx(2 * step));
+  robot.click("motion/back");
+  CHECK(app.playback.time == Approx(step));
+  robot.drag("motion/scrub", {0.1f, 0.5f}, {0.5f, 0.5f});
+  CHECK(app.playback.time == Approx(6).margin(0.7));
+  // The picture follows.
+  const std::vector<Pose> expected = poses_at(run_of(app), app.playback.time);
+  CHECK(app.motion.poses[1].position.isApprox(expected[1].position, 1e-12));
+  // Space plays on from there.
+  const double before = app.playback.time;
+  robot.key(' ');
+  robot.frames(3, 0.05);
+  CHECK(app.playback.time > before);
+}
+
+TEST_CASE("a loop begins again, and slow motion is slow") {
+  MotionRobot robot;
+  App& app = robot.app;
+  robot.click("motion/loop");
+  seek_motion(app, run_of(app).time.back() - 0.05);
+  robot.frames(2, 0.1);
+  CHECK(app.playback.playing);
+  CHECK(app.playback.time < 1);
+  const double before = app.playback.time;
+  app.playback.factor = 0.1;
+  robot.frames(10, 0.01);
+  CHECK(app.playback.time - before == Approx(0.01).epsilon(1e-6));
+}
+
+TEST_CASE("a slider begins the motion anew, or goes on with it, as was chosen") {
+  MotionRobot robot;
+  App& app = robot.app;
+  robot.click("motion/play");
+  seek_motion(app, 2);
+  robot.frames(2);
+  const std::vector<double> before = track(run_of(app), "slide").value;
+  const std::string slider = "parameters/joints.slide.damping";
+  SECTION("anew, and a paused hand stays where it is") {
+    robot.drag(slider, {0.5f, 0.5f}, {0.9f, 0.5f});
+    CHECK(get_parameter(app.mechanism(), "joints.slide.damping") > 40);
+    const std::vector<double>& after = track(run_of(app), "slide").value;
+    CHECK(after.front() == before.front());
+    CHECK(after[20] != before[20]);
+    CHECK(app.playback.time == Approx(2));
+  }
+  SECTION("going on") {
+    app.motion.go_on = true;
+    robot.drag(slider, {0.5f, 0.5f}, {0.9f, 0.5f});
+    const Run& run = run_of(app);
+    const std::vector<double>& after = track(run, "slide").value;
+    REQUIRE(after.size() == before.size());
+    const auto at = static_cast<std::size_t>(std::ranges::upper_bound(run.time, 2.) - run.time.begin()) - 1;
+    for (std::size_t i = 0; i <= at; ++i)
+      CHECK(after[i] == before[i]);
+    CHECK(after[at + 60] != before[at + 60]);
+  }
+}
+
+TEST_CASE("a drive's speed changed on the way keeps the phases of both pictures together") {
+  MotionRobot robot;
+  App& app = robot.app;
+  robot.click("motion/play");
+  app.motion.go_on = true;
+  seek_motion(app, 1);
+  robot.frames(2);
+  change_parameter(app, "joints.spin.drive.speed", 14);
+  seek_motion(app, 9.9);
+  robot.frames(3);
+  // The spindle is driven: both show it at the same angle.
+  const int spindle = body_index(app.mechanism(), "spindle");
+  REQUIRE(spindle >= 0);
+  const auto i = static_cast<std::size_t>(spindle);
+  CHECK(app.motion.poses[i].rotation.angularDistance(app.poses[i].rotation) < 1e-9);
+}
+
+TEST_CASE("plots show the motion, the motion without dampers, and the steady value") {
+  MotionRobot robot;
+  App& app = robot.app;
+  const Run& run = run_of(app);
+  const Plot plot = motion_plot(app, "value slide");
+  REQUIRE(plot.curves.size() == 2);
+  CHECK(plot.y.unit == "mm");
+  REQUIRE(plot.references.size() == 1);
+  double steady = NAN;
+  for (const CoordinateSolution& c : app.answer.solution.coordinates)
+    if (c.joint == "slide") steady = c.value;
+  CHECK(plot.references[0].at == Approx(1000 * steady));
+  for (const PlotCurve& curve : plot.curves) {
+    if (curve.name != "damped") continue;
+    REQUIRE(curve.points.size() == run.time.size());
+    CHECK(curve.points[7][0] == run.time[7]);
+    CHECK(curve.points[7][1] == Approx(1000 * track(run, "slide").value[7]));
+  }
+  // Everything that is offered can be drawn.
+  for (const MotionQuantity& each : motion_quantities(run)) {
+    CAPTURE(each.key);
+    const Plot offered = motion_plot(app, each.key);
+    CHECK_FALSE(offered.curves.empty());
+    CHECK_FALSE(offered.y.unit.empty());
+  }
+  // Dragging the play head scrubs.
+  CHECK(app.widgets.count("plot/motion/plot1/area") == 1);
+}
+
+TEST_CASE("the state that is shown can be kept and started from") {
+  MotionRobot robot;
+  App& app = robot.app;
+  robot.click("motion/play");
+  seek_motion(app, 1.2345);
+  robot.frames(2);
+  robot.click("motion/keep");
+  REQUIRE_FALSE(app.motion.saved.coordinates.empty());
+  app.motion.start = Start::state;
+  const double slide = track(run_of(app), "slide").value[static_cast<std::size_t>(1.2345 / 0.005)];
+  restart_motion(app);
+  robot.frames(2);
+  CHECK(track(run_of(app), "slide").value.front() == Approx(slide));
+  CHECK(run_of(app).time.front() == Approx(app.motion.saved.time));
+  CHECK(app.playback.time >= app.motion.saved.time);
+}
+
+TEST_CASE("a kick sets the steady state going") {
+  MotionRobot robot;
+  App& app = robot.app;
+  app.motion.start = Start::equilibrium;
+  app.motion.kicked = "slide";
+  app.motion.kick = 0.3;
+  restart_motion(app);
+  robot.frames(2);
+  const CoordinateTrack& slide = track(run_of(app), "slide");
+  CHECK(slide.rate.front() == Approx(0.3).epsilon(1e-9));
+  CHECK(slide.value.front() == Approx(0.15001745812530).epsilon(1e-9));
+}
+
+TEST_CASE("the motion can have a view of its own") {
+  MotionRobot robot;
+  App& app = robot.app;
+  app.playback.playing = false;
+  app.motion.beside = true;
+  robot.frames(2);
+  const WidgetRect left = robot.widget("view"), right = robot.widget("beside");
+  CHECK(right.from.x == Approx(left.to.x));
+  CHECK(view_frame(app).motion.empty());
+  // One camera for both.
+  const double azimuth = app.view.camera.azimuth;
+  robot.drag("beside", {0.4f, 0.5f}, {0.6f, 0.5f});
+  CHECK(app.view.camera.azimuth != azimuth);
+}
+
+TEST_CASE("while nothing changes nothing is drawn, also with a motion") {
+  MotionRobot robot;
+  robot.app.playback.playing = false;
+  robot.frames(3);
+  const int drawn = robot.stage.views_drawn();
+  robot.frames(5);
+  CHECK(robot.stage.views_drawn() == drawn);
+  CHECK_FALSE(in_motion(robot.app));
+  robot.click("motion/forward");
+  CHECK(robot.stage.views_drawn() > drawn);
+}
+
+TEST_CASE("an edit while the motion is shown is followed, and undone") {
+  MotionRobot robot;
+  App& app = robot.app;
+  const double before = track(run_of(app), "slide").value[100];
+  change_parameter(app, "bodies.ball1.mass", 3);
+  robot.frames(2);
+  CHECK(track(run_of(app), "slide").value[100] != before);
+  undo(app);
+  robot.frames(2);
+  CHECK(track(run_of(app), "slide").value[100] == before);
+}
+
+TEST_CASE("building ends the motion") {
+  MotionRobot robot;
+  set_mode(robot.app, Mode::build);
+  robot.frames(2);
+  CHECK_FALSE(robot.app.motion.on);
+  CHECK(robot.app.widgets.count("motion/play") == 0);
+}
+
+TEST_CASE("the comparison is measured and drawn") {
+  Robot robot(wide);
+  App& app = robot.app;
+  open_study(app, Study::compare);
+  robot.frames(2);
+  app.study.compare.repeats = 1;
+  robot.click("compare/run");
+  robot.frames(2);
+  REQUIRE(app.study.compare.result);
+  const Comparison& c = *app.study.compare.result;
+  CHECK(c.status == Status::converged);
+  REQUIRE(c.best);
+  CHECK(c.best->ratio() > 1);
+  CHECK(app.study.compare.plot.curves.size() > 3);
+  CHECK(app.widgets.count("compare/ratio") == 1);
+  CHECK(app.widgets.count("plot/compare/area") == 1);
+}

@@ -1,0 +1,129 @@
+// Error against run time: what the comparison is made of. How the times compare is the benchmark's to say.
+#include "tests/engine/equilibrium_mechanisms.hpp"
+
+#include "engine/mechanism/error.hpp"
+#include "engine/study/compare.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+CompareOptions quick() {
+  CompareOptions o;
+  o.tolerances = {1e-3, 1e-5, 1e-7, 1e-9};
+  o.repeats = 1;
+  return o;
+}
+
+} // namespace
+
+TEST_CASE(
+    "the paper's scenes compared: a verified reference, quadratic iterations, and motions that come near") {
+  for (const std::string name : {"pendulum", "governor"}) {
+    CAPTURE(name);
+    const Mechanism m = shipped(name);
+    std::size_t seen = 0;
+    CompareOptions options = quick();
+    options.progress = [&](std::size_t done, std::size_t all) {
+      CHECK(done == seen + 1);
+      CHECK(all == 3 * 5 * 4);
+      seen = done;
+    };
+    const Comparison c = compare(m, options);
+    CHECK(c.status == Status::converged);
+    CHECK(seen == 60);
+
+    // The reference is the published steady state, known to more digits than a double has.
+    CHECK(c.reference_error < 1e-18);
+    CHECK(c.reference_residual < 1e-17);
+    for (const auto& [joint, wanted] :
+         name == "pendulum" ? std::vector<std::pair<std::string, double>>{{"theta", 0.45377171949723577},
+                                                                          {"d", 1.0153129043019644}}
+                            : std::vector<std::pair<std::string, double>>{{"slide", 0.1500174581252971}}) {
+      const auto x = std::ranges::find(c.reference, joint, &CoordinateSolution::joint);
+      REQUIRE(x != c.reference.end());
+      CHECK(std::abs(x->value - wanted) < 3e-16);
+      CHECK(x->error < 1e-17);
+    }
+
+    // One mark an iteration, from the drawn pose on; the last ones square the error.
+    REQUIRE(c.direct.size() >= 5);
+    CHECK(c.direct.front().iterations == 0);
+    CHECK(c.direct.front().error > 0.05);
+    CHECK(c.direct.back().error < 1e-14);
+    CHECK(c.answer.error < 1e-15);
+    int squared = 0;
+    for (std::size_t i = 0; i + 1 < c.direct.size(); ++i) {
+      CHECK(c.direct[i + 1].iterations == c.direct[i].iterations + 1);
+      const double before = c.direct[i].error, after = c.direct[i + 1].error;
+      if (before > 1e-2 || before < 1e-12) continue;
+      ++squared;
+      CHECK(after < std::max(10 * before * before, 1e-15));
+    }
+    CHECK(squared >= 2);
+    for (const DirectMark& mark : c.direct)
+      CHECK(mark.run_time_s > 0);
+
+    // One curve an integrator and duration.
+    REQUIRE(c.motion.size() == 15);
+    for (const MotionCurve& curve : c.motion) {
+      CAPTURE(word(curve.method), curve.duration);
+      REQUIRE(curve.points.size() == 4);
+      for (const MotionPoint& p : curve.points) {
+        CHECK(std::isfinite(p.error));
+        CHECK(p.error > 0);
+        CHECK(p.run_time_s > 0);
+        CHECK(p.steps > 0);
+        CHECK(p.status == RunStatus::completed);
+      }
+      CHECK(curve.points.back().steps > curve.points.front().steps);
+    }
+    // A longer motion with a tight tolerance comes nearer, down to what was asked for.
+    for (std::size_t method = 0; method < 3; ++method) {
+      const MotionPoint &shorter = c.motion[5 * method].points.back(),
+                        &longer = c.motion[5 * method + 4].points.back();
+      CHECK(longer.error < 1e-3 * shorter.error);
+      CHECK(longer.error < 1e-7);
+    }
+    REQUIRE(c.best);
+    CHECK(c.best->error < 1e-8);
+    CHECK(c.best->direct_s > 0);
+    CHECK(c.best->ratio() == c.best->motion_s / c.best->direct_s);
+    for (const MotionCurve& curve : c.motion)
+      for (const MotionPoint& p : curve.points)
+        CHECK(p.error >= c.best->error);
+  }
+}
+
+TEST_CASE("what is asked for is what is measured") {
+  CompareOptions o = quick();
+  o.tolerances = {1e-4, 1e-6};
+  o.durations = {0.1, 0.2};
+  o.integrators = {Integrator::runge_kutta};
+  const Comparison c = compare(shipped("conical_pendulum"), o);
+  REQUIRE(c.motion.size() == 2);
+  CHECK(c.motion[1].duration == 0.2);
+  CHECK(c.motion[1].points[1].tolerance == 1e-6);
+}
+
+TEST_CASE("a comparison may be cancelled, and says where there is nothing to compare") {
+  std::atomic<bool> cancel = false;
+  CompareOptions o = quick();
+  o.cancel = &cancel;
+  o.progress = [&](std::size_t done, std::size_t) {
+    if (done == 2) cancel = true;
+  };
+  const Comparison c = compare(shipped("governor"), o);
+  CHECK_THAT(c.message, ContainsSubstring("Cancelled"));
+  REQUIRE(c.motion.size() == 1);
+  CHECK(c.motion[0].points.size() == 2);
+
+  Mechanism slanted = shipped("conical_pendulum");
+  slanted.gravity = {3, -9, 0};
+  const Comparison none = compare(slanted, quick());
+  CHECK(none.status == Status::no_steady_state);
+  CHECK(none.motion.empty());
+  CHECK_FALSE(none.best);
+  CHECK_FALSE(none.message.empty());
+}
