@@ -35,8 +35,8 @@ std::string percent(double fraction) {
 
 } // namespace
 
-Comparison compare(const Image& a, const Image& b, const CompareTolerance& tolerance) {
-  Comparison result;
+ImageComparison compare(const Image& a, const Image& b, const CompareTolerance& tolerance) {
+  ImageComparison result;
   if (a.width != b.width || a.height != b.height) {
     result.differing = result.densest = 1;
     result.message = "sizes differ: " + std::to_string(a.width) + " x " + std::to_string(a.height) + " and " +

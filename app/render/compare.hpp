@@ -21,7 +21,7 @@ struct CompareTolerance {
   double dense = 0.2;    // of a tile's pixels
 };
 
-struct Comparison {
+struct ImageComparison {
   bool same = false;
   double differing = 0;       // of all pixels
   double densest = 0;         // of its pixels, the worst tile
@@ -31,6 +31,6 @@ struct Comparison {
   std::string message;        // one line
 };
 
-Comparison compare(const Image& a, const Image& b, const CompareTolerance& tolerance = {});
+ImageComparison compare(const Image& a, const Image& b, const CompareTolerance& tolerance = {});
 
 } // namespace flyball

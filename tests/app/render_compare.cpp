@@ -27,7 +27,7 @@ Image disc(double x, double y, double radius, int noise = 0) {
 
 TEST_CASE("a picture is the same as itself") {
   const Image a = disc(80, 60, 30);
-  const Comparison c = compare(a, a);
+  const ImageComparison c = compare(a, a);
   CHECK(c.same);
   CHECK(c.worst == 0);
 }
@@ -61,7 +61,7 @@ TEST_CASE("a thin line that vanished is rejected") {
 }
 
 TEST_CASE("other sizes are rejected, with the reason") {
-  const Comparison c = compare(Image(3, 4), Image(4, 3));
+  const ImageComparison c = compare(Image(3, 4), Image(4, 3));
   CHECK_FALSE(c.same);
   CHECK_THAT(c.message, ContainsSubstring("3 x 4"));
 }

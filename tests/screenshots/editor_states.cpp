@@ -4,6 +4,8 @@
 
 #include "app/panels/commands.hpp"
 #include "app/panels/file_commands.hpp"
+#include "app/panels/motion_control.hpp"
+#include "app/panels/study_panels.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>
@@ -35,7 +37,7 @@ class Hand : public Robot {
   void check(const std::string& name) {
     point({-1000, -1000}); // away from whatever would light up
     frames(11);            // shades behind dialogs fade in
-    const Comparison comparison = compare_with_stored(name, picture());
+    const ImageComparison comparison = compare_with_stored(name, picture());
     INFO(name << ": " << comparison.message);
     CHECK(comparison.same);
   }
@@ -129,6 +131,20 @@ TEST_CASE("parts are turned with rings") {
   hand.check("editor-rotating");
 }
 
+TEST_CASE("the motion stands beside the steady state, with its plots") {
+  Hand hand("governor.json");
+  set_mode(hand.app, Mode::explore);
+  open_study(hand.app, Study::motion);
+  hand.frames(2);
+  hand.app.playback.playing = false;
+  seek_motion(hand.app, 0.55);
+  SECTION("in amber") { hand.check("study-motion"); }
+  SECTION("in a view of its own") {
+    hand.app.motion.beside = true;
+    hand.check("study-motion-beside");
+  }
+}
+
 TEST_CASE("the tutorial's pictures are what its steps lead to") {
   Robot robot(building_size, steady_options().numbers);
   robot.app.view.samples = 4;
@@ -140,7 +156,7 @@ TEST_CASE("the tutorial's pictures are what its steps lead to") {
       robot.frames(11);
       std::string name = "tutorial-" + step;
       std::ranges::replace(name, ' ', '-');
-      const Comparison comparison = compare_with_stored(name, robot.picture());
+      const ImageComparison comparison = compare_with_stored(name, robot.picture());
       INFO(name << ": " << comparison.message);
       CHECK(comparison.same);
       robot.point(hand);

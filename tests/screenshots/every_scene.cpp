@@ -12,7 +12,7 @@ using namespace flyball::test;
 namespace {
 
 void check_stored(const std::string& name, const Image& image) {
-  const Comparison comparison = compare_with_stored(name, image);
+  const ImageComparison comparison = compare_with_stored(name, image);
   INFO(name << ": " << comparison.message);
   CHECK(comparison.same);
 }
