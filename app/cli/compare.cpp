@@ -171,7 +171,7 @@ void add_compare(CLI::App& app, int& exit_code) {
   command
       ->add_option("--duration", options->durations,
                    "Seconds to simulate; may be given several times (default: by the slowest motion)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer("Example: flyball compare governor.json --csv compare.csv --svg compare.svg");
   command->callback([options, &exit_code] { exit_code = run_compare(*options); });

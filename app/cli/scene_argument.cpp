@@ -19,6 +19,17 @@ double parse_number(std::string_view option, std::string_view text) {
   return value;
 }
 
+CLI::Validator above_zero() {
+  return {[](std::string& text) -> std::string {
+            double value = 0;
+            const char* end = text.data() + text.size();
+            const auto [rest, error] = std::from_chars(text.data(), end, value);
+            if (error == std::errc() && rest == end && std::isfinite(value) && value > 0) return {};
+            return "expected a number above zero, not " + text;
+          },
+          "above zero"};
+}
+
 std::pair<std::string, double> parse_assignment(std::string_view option, std::string_view text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string_view::npos || equals == 0)

@@ -22,6 +22,9 @@ struct SceneArgument {
   Mechanism load() const;
 };
 
+// A check for options: a finite number above zero.
+CLI::Validator above_zero();
+
 // "name=1.5" as a pair. Throws SceneError naming the option.
 std::pair<std::string, double> parse_assignment(std::string_view option, std::string_view text);
 // A finite number, all of the text. Throws SceneError naming the option.

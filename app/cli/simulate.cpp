@@ -285,9 +285,9 @@ void add_simulate(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("simulate", "Integrate the damped motion");
   options->scene.add_to(*command);
   command->add_option("--duration", options->duration, "Seconds (default: as the scene says)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_option("--rate", options->rate, "Samples a second")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   CLI::Option* start =
       command
@@ -317,7 +317,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
           ->check(CLI::Range(1e-14, 0.1))
           ->capture_default_str();
   command->add_option("--step", options->step, "Runge-Kutta steps of this many seconds instead")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->excludes(tolerance);
   command->add_option("--csv", options->csv, "Write all samples to a file (-: standard output)");
   command->add_flag("--json", options->json, "Print a JSON object of the outcome");
@@ -327,12 +327,12 @@ void add_simulate(CLI::App& app, int& exit_code) {
                                            "numbered frames");
   command->add_option("--size", options->size, "Pixels of the film")->needs(movie)->capture_default_str();
   command->add_option("--fps", options->movie.rate, "Frames a second of the film")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->needs(movie)
       ->capture_default_str();
   command
       ->add_option("--slow-motion", options->movie.factor, "Seconds of the motion that a second of it shows")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->needs(movie)
       ->capture_default_str();
   command->footer("Examples: flyball simulate governor.json --duration 5 --csv run.csv\n"

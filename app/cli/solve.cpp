@@ -35,7 +35,7 @@ void add_solve(CLI::App& app, int& exit_code) {
   command
       ->add_option("--modes", options->modes,
                    "Eigenvalues to print where there are more than 200 coordinates")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer("Example: flyball solve governor.json --set joints.spin.drive.speed=12 --json");
   command->callback([options, &exit_code] {

@@ -113,6 +113,61 @@ std::vector<int> apply_kick(const SimulationOptions& options, const MotionModel&
   return held;
 }
 
+// The entries of a tangent vector that belong to the coordinates a start is given for.
+std::vector<int> placed_entries(const SimulationOptions& options, const MotionModel& model) {
+  std::vector<int> placed;
+  for (const auto& [name, value] : options.at) {
+    const int found = coordinate_called(model.system, name); // set_start() has found it, too
+    const CoordinateInfo& c = model.system.coordinates[static_cast<std::size_t>(found)];
+    const Link& link = model.system.links[static_cast<std::size_t>(c.link)];
+    for (int k = 0; k < (link.type == LinkType::spherical ? 3 : 1); ++k)
+      placed.push_back(link.v + k);
+  }
+  return placed;
+}
+
+// Closes the loops by the coordinates that no start was given for (Gauss-Newton). Without this the others
+// would be moved, too, and the motion begin elsewhere than asked for.
+void close_around(const SimulationOptions& options, const MotionModel& model, Eigen::VectorXd& q) {
+  const std::vector<int> placed = placed_entries(options, model);
+  const System& system = model.system;
+  const Eigen::VectorXd no_lambda = Eigen::VectorXd::Zero(system.rows);
+  Kinematics<double> k;
+  Residual<double> residual;
+  Linearization l;
+  const auto open_at = [&](const Eigen::VectorXd& at) {
+    forward<double>(system, model.parameters, at, 0, k);
+    evaluate_residual<double>(system, model.parameters, at, no_lambda, k, residual);
+    return residual.phi.cwiseProduct(model.scaling.row).lpNorm<Eigen::Infinity>();
+  };
+  double open = open_at(q);
+  for (int i = 0; i < 60 && open > 1e-14; ++i) {
+    linearize_constraints(system, model.parameters, k, l);
+    Eigen::MatrixXd c = model.scaling.row.asDiagonal() * l.constraint * model.scaling.column.asDiagonal();
+    for (const int v : placed)
+      c.col(v).setZero();
+    const Eigen::VectorXd phi = residual.phi.cwiseProduct(model.scaling.row);
+    Eigen::VectorXd step = c.completeOrthogonalDecomposition().solve(-phi);
+    const double size = step.lpNorm<Eigen::Infinity>();
+    if (!(size > 1e-16)) break;
+    Eigen::VectorXd moved;
+    double next = open;
+    for (double part = std::min(1., 0.5 / size); part > 1e-8; part /= 2) {
+      moved = q;
+      retract<double>(system, (part * step).cwiseProduct(model.scaling.column), moved);
+      next = open_at(moved);
+      if (next < open) break;
+    }
+    if (!(next < open)) break;
+    q = moved;
+    open = next;
+  }
+  if (open > 1e-10)
+    throw SceneError("joints." + options.at.front().first,
+                     options.at.size() == 1 ? "the loops do not let it start there"
+                                            : "the loops do not let it and the others start there");
+}
+
 } // namespace
 
 void find_start(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q,
@@ -124,6 +179,7 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
   } else {
     drawn_configuration(model.system, model.parameters, q);
     set_start(model.system, model.parameters, options.at, q);
+    if (!options.at.empty() && model.system.rows > 0) close_around(options, model, q);
     u.setZero(model.system.nv);
   }
   if (options.start == Start::equilibrium) start_at_equilibrium(options, model, q);

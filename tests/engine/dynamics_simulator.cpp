@@ -107,6 +107,21 @@ TEST_CASE("a run split at a saved state goes on as if it had not been") {
   CHECK_THROWS_WITH(simulate(shipped("governor"), o), ContainsSubstring("another mechanism"));
 }
 
+TEST_CASE("a start that loops share is met exactly, or refused") {
+  const Mechanism m = shipped("governor");
+  const Run run = simulate(m, starting_at(lasting(0.1), "arm1", 0.5));
+  check_sound(run);
+  CHECK(track(run, "arm1").value[0] == Approx(0.5).epsilon(1e-12));
+  CHECK(track(run, "slide").value[0] > 0.08); // has come along
+  try {
+    simulate(m, starting_at(lasting(0.1), "slide", 3));
+    FAIL("three metres along a spindle of a third of one");
+  } catch (const SceneError& error) {
+    CHECK_THAT(error.what(), ContainsSubstring("joints.slide"));
+    CHECK_THAT(error.what(), ContainsSubstring("loops"));
+  }
+}
+
 TEST_CASE("the starts") {
   const Mechanism m = shipped("pendulum");
   SimulationOptions o = lasting(0.1);
