@@ -40,13 +40,16 @@ Json diagram_json(const ResponseDiagram& d) {
     Json points = Json::array();
     for (const ResponsePoint& p : b.points)
       points.push_back(point_json(p));
-    out["branches"].push_back({{"points", std::move(points)}, {"end", b.end}});
+    out["branches"].push_back(
+        {{"points", std::move(points)}, {"connected", b.connected}, {"begin", b.begin}, {"end", b.end}});
   }
   for (const SpecialPoint& s : d.special) {
     Json entry = {{"type", word(s.type)}, {"branch", s.branch}};
     entry.update(point_json(s.at));
     out["special"].push_back(std::move(entry));
   }
+  out["search"] = d.searched.empty() ? Json(nullptr)
+                                     : Json({{"at", d.searched}, {"starts", d.starts}, {"complete", false}});
   out["run_time_s"] = d.run_time_s;
   return out;
 }
@@ -130,8 +133,9 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
   const std::string unit = parameter_unit(m, address);
   for (std::size_t b = 0; b < d.branches.size(); ++b) {
     const auto& points = d.branches[b].points;
-    out += fmt::format("  branch {}: {} points from {:.6g} to {:.6g} {}, ends at {}\n", b, points.size(),
-                       points.front().parameter, points.back().parameter, unit, d.branches[b].end);
+    out += fmt::format("  branch {}: {} points from {:.6g} to {:.6g} {}, ends at {}{}\n", b, points.size(),
+                       points.front().parameter, points.back().parameter, unit, d.branches[b].end,
+                       d.branches[b].connected ? "" : ", not connected");
   }
   for (const SpecialPoint& s : d.special) {
     out += fmt::format("  {} on branch {} at {:.12g} {}:", word(s.type), s.branch, s.at.parameter, unit);
@@ -151,13 +155,16 @@ void add_branch(CLI::App& app, int& exit_code) {
   struct Options {
     SceneArgument scene;
     std::string vary, csv, svg, png, plot;
-    bool json = false;
+    bool all = false, json = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("branch", "Follow the equilibria through folds and crossings as a parameter moves");
   options->scene.add_to(*command);
   command->add_option("--vary", options->vary, "The parameter: address=from:to")->required();
+  command->add_flag("--all", options->all,
+                    "Also the branches that nothing connects with the drawn pose's, from a bounded search "
+                    "for all equilibria at both ends and at the present value");
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "Write a table to a file (-: standard output)");
   command->add_option("--svg", options->svg, "Draw the curve into a file (-: standard output)");
@@ -175,6 +182,7 @@ void add_branch(CLI::App& app, int& exit_code) {
     try {
       Progress progress("following");
       BranchOptions follow;
+      follow.all = options->all;
       follow.progress = [&](double part) {
         progress.show(static_cast<std::size_t>(100 * std::max(0., part)), 100);
       };

@@ -17,6 +17,7 @@ inline constexpr int exit_bad_input = 2; // usage, scene file or address
 void add_solve(CLI::App& app, int& exit_code);
 void add_sweep(CLI::App& app, int& exit_code);
 void add_branch(CLI::App& app, int& exit_code);
+void add_design(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);

@@ -47,6 +47,7 @@ int run(int argc, char** argv) {
   add_solve(app, exit_code);
   add_sweep(app, exit_code);
   add_branch(app, exit_code);
+  add_design(app, exit_code);
   add_simulate(app, exit_code);
   add_compare(app, exit_code);
   add_render(app, exit_code);

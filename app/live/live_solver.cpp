@@ -1,9 +1,35 @@
 #include "app/live/live_solver.hpp"
 
+#include <cmath>
 #include <exception>
+#include <numbers>
 #include <utility>
 
 namespace flyball {
+
+namespace {
+
+std::vector<std::pair<std::string, double>> free_coordinates(const Solution& solution) {
+  std::vector<std::pair<std::string, double>> values;
+  for (const CoordinateSolution& c : solution.coordinates)
+    if (!c.driven)
+      values.emplace_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index), c.value);
+  return values;
+}
+
+// Whether Newton-Raphson has thrown an angle so far that it is another branch's.
+bool moved_far(const std::vector<std::pair<std::string, double>>& start, const Solution& found) {
+  constexpr double far = 0.8; // rad
+  for (const CoordinateSolution& c : found.coordinates) {
+    if (c.driven || !c.angle) continue;
+    const std::string name = c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index);
+    for (const auto& [joint, value] : start)
+      if (joint == name && std::abs(std::remainder(c.value - value, 2 * std::numbers::pi)) > far) return true;
+  }
+  return false;
+}
+
+} // namespace
 
 LiveSolver::LiveSolver(Mode mode, std::function<void()> on_news) : mode_(mode), on_news_(std::move(on_news)) {
   if (mode_ == Mode::background) thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
@@ -25,6 +51,14 @@ std::uint64_t LiveSolver::ask(LiveRequest request) {
   }
   if (next_ && next_->request.another) job.request.another = true;
   if (next_ && !next_->request.warm) job.request.warm = false;
+  // Where a hand has put it, it starts also when a slider moves before that was solved.
+  LiveRequest& wanted = job.request;
+  if (wanted.nearest && wanted.warm && wanted.start.empty()) {
+    if (next_ && next_->request.nearest)
+      wanted.start = next_->request.start;
+    else if (!next_ && running_ && !spare_) // it is cancelled below
+      wanted.start = running_start_;
+  }
   if (job.request.another) {
     answer_.reset();
     poses_.reset();
@@ -72,6 +106,7 @@ void LiveSolver::work(const std::stop_token& stop) {
       const Job job = *std::exchange(next_, std::nullopt);
       cancel_ = stop.stop_requested();
       running_ = true;
+      running_start_ = job.request.start;
       lock.unlock();
       LiveAnswer answer = solve(job);
       lock.lock();
@@ -105,16 +140,14 @@ LiveAnswer LiveSolver::solve(const Job& job) {
     if (job.request.another) {
       analysis_.reset();
       analysed_ = 0;
+      last_.clear();
     }
     if (analysis_)
       analysis_->update(job.request.mechanism);
     else
       analysis_.emplace(job.request.mechanism);
-    SolveOptions options;
-    options.warm = job.request.warm;
-    options.nearest = job.request.nearest;
-    options.cancel = &cancel_;
-    answer.solution = analysis_->solve(options);
+    answer.solution = solve_nearest(job.request, answer.left_branch);
+    if (answer.solution.status == Status::converged) last_ = free_coordinates(answer.solution);
     answer.summary = analysis_->summary();
     analysed_ = answer.solution.status == Status::converged ? job.ticket : 0;
     if (analysed_) answer.poses = answer.time == 0 ? answer.solution.poses : analysis_->poses_at(answer.time);
@@ -125,6 +158,23 @@ LiveAnswer LiveSolver::solve(const Job& job) {
     analysed_ = 0;
   }
   return answer;
+}
+
+Solution LiveSolver::solve_nearest(const LiveRequest& request, bool& left_branch) {
+  SolveOptions options;
+  options.cancel = &cancel_;
+  options.warm = request.warm;
+  options.nearest = request.nearest;
+  options.start = request.start;
+  // Analysis goes back to the drawn pose from a state that is no minimum; a branch is followed through those.
+  if (request.nearest && request.warm && request.start.empty()) options.start = last_;
+  Solution found = analysis_->solve(options);
+  left_branch = request.nearest && !options.start.empty() && !cancel_ &&
+                (found.status != Status::converged || found.net || moved_far(options.start, found));
+  if (!left_branch) return found;
+  options.nearest = options.warm = false;
+  options.start.clear();
+  return analysis_->solve(options);
 }
 
 LivePoses LiveSolver::poses_at(double time) const {

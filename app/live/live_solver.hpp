@@ -18,6 +18,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace flyball {
@@ -27,7 +28,11 @@ struct LiveRequest {
   double time = 0;      // s after the drawn drive phase, at which the answer's poses are wanted
   bool another = false; // another mechanism than before: nothing that runs is worth finishing
   bool warm = true;     // start from the last answer rather than from the drawn pose
-  bool nearest = false; // see SolveOptions
+  // See SolveOptions. With `warm`, the last answer's branch is followed, stable or not; where it does not go
+  // on, an ordinary solve answers and LiveAnswer::left_branch says so.
+  bool nearest = false;
+  // "joint" or "joint.index" and rad or m: starts there, rather than from the last answer.
+  std::vector<std::pair<std::string, double>> start{};
 };
 
 struct LiveAnswer {
@@ -38,6 +43,7 @@ struct LiveAnswer {
   std::vector<Pose> poses;          // at the time asked for; empty where there is no solution
   double time = 0;                  // s
   std::optional<std::string> error; // why the mechanism cannot be compiled; then there is no solution
+  bool left_branch = false;         // asked for the nearest, but nothing was near
 };
 
 // Where the last answer's mechanism is at another time.
@@ -77,10 +83,12 @@ class LiveSolver {
   void work(const std::stop_token& stop);
   LiveAnswer solve(const Job& job);
   LivePoses poses_at(double time) const;
+  Solution solve_nearest(const LiveRequest& request, bool& left_branch);
 
   // Used by whoever solves: the background thread, or the caller in immediate mode.
   std::optional<Analysis> analysis_;
   std::uint64_t analysed_ = 0; // ticket of the last answer with a solution; 0: no poses to be had
+  std::vector<std::pair<std::string, double>> last_; // free coordinates of the last steady state
   std::atomic<bool> cancel_{false};
 
   const Mode mode_;
@@ -91,6 +99,7 @@ class LiveSolver {
   std::uint64_t tickets_ = 0, answered_ = 0;
   bool running_ = false, spare_ = false; // spare_: what runs follows a cancelled solve
   std::optional<Job> next_;
+  std::vector<std::pair<std::string, double>> running_start_; // of what runs
   std::optional<double> next_time_;
   std::optional<LiveAnswer> answer_;
   std::optional<LivePoses> poses_;

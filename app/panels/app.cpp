@@ -1,5 +1,6 @@
 #include "app/panels/app.hpp"
 
+#include "app/panels/modes_control.hpp"
 #include "app/panels/motion_control.hpp"
 #include "app/panels/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
@@ -12,8 +13,11 @@ namespace flyball {
 
 namespace {
 
+using StartValues = std::vector<std::pair<std::string, double>>;
+
 // Asks for the document's steady state, or knows better.
-void ask(App& app, bool another, bool warm) {
+void ask(App& app, bool another, bool warm, StartValues start = {}) {
+  if (!warm) app.on_branch = false;
   app.mistakes = find_mistakes(app.mechanism());
   if (app.mechanism().bodies.empty() || !app.mistakes.empty()) {
     app.answer = {};
@@ -22,16 +26,20 @@ void ask(App& app, bool another, bool warm) {
     app.waited = 0;
     return;
   }
-  app.awaited = app.asked = app.live.ask(
-      {.mechanism = app.mechanism(), .time = app.playback.time, .another = another, .warm = warm});
+  app.awaited = app.asked = app.live.ask({.mechanism = app.mechanism(),
+                                          .time = app.playback.time,
+                                          .another = another,
+                                          .warm = warm,
+                                          .nearest = app.on_branch,
+                                          .start = std::move(start)});
 }
 
 // After the document's mechanism has changed.
-void take_document(App& app, bool another, bool warm) {
+void take_document(App& app, bool another, bool warm, StartValues start = {}) {
   app.parameters = parameter_controls(app.mechanism(), app.document.saved());
   app.drawn = drawn_poses(app.mechanism());
   app.moved_time = true;
-  ask(app, another, warm);
+  ask(app, another, warm, std::move(start));
   follow_motion(app, another);
 }
 
@@ -48,6 +56,10 @@ void take_answer(App& app) {
       answer && app.awaited != std::numeric_limits<std::uint64_t>::max() && answer->ticket >= app.opened) {
     app.answer = std::move(*answer);
     app.poses = app.answer.poses;
+    if (app.answer.left_branch && app.on_branch && app.answer.ticket == app.awaited) {
+      app.on_branch = false;
+      app.notice = "The branch ends here; this is the state that the drawn pose settles in.";
+    }
     // The time may have gone on, or back, while this was solved.
     app.moved_time = app.moved_time || app.answer.time != steady_time(app);
   }
@@ -146,7 +158,10 @@ void select(App& app, Selection selection) {
   app.document.select(std::move(selection));
 }
 
-void change_parameter(App& app, const std::string& address, double value) {
+namespace {
+
+// Sets the number as a step of the history; what was solved last, or `start`, is where solving begins.
+void set_parameter_from(App& app, const std::string& address, double value, StartValues start) {
   if (!std::isfinite(value)) return;
   Mechanism next = app.mechanism();
   try {
@@ -161,7 +176,25 @@ void change_parameter(App& app, const std::string& address, double value) {
   }
   const std::uint64_t before = app.document.revision();
   app.document.edit("Set " + parameter_phrase(address), std::move(next), app.selection(), app.gesture);
-  if (app.document.revision() != before) take_document(app, false, true);
+  if (app.document.revision() != before)
+    take_document(app, false, true, std::move(start));
+  else if (!start.empty())
+    ask(app, false, true, std::move(start));
+}
+
+} // namespace
+
+void change_parameter(App& app, const std::string& address, double value) {
+  set_parameter_from(app, address, value, {});
+}
+
+void go_to_state(App& app, const std::string& address, double value, StartValues start) {
+  if (start.empty()) return change_parameter(app, address, value);
+  app.on_branch = true;
+  if (address.empty())
+    ask(app, false, true, std::move(start));
+  else
+    set_parameter_from(app, address, value, std::move(start));
 }
 
 void reset_parameters(App& app) {
@@ -214,12 +247,13 @@ void rewind(App& app) {
 }
 
 void update(App& app, double seconds, ViewSize view) {
-  if (in_motion(app) && app.motion.on) {
+  if (app.playback.playing && app.motion.on) {
     advance_motion(app, seconds * app.playback.factor);
-  } else if (in_motion(app)) {
+  } else if (app.playback.playing && converged(app)) {
     app.playback.time += seconds * app.playback.factor;
     app.moved_time = true;
   }
+  advance_mode(app, seconds);
   take_answer(app);
   update_motion(app);
   update_studies(app);
@@ -250,6 +284,11 @@ ViewFrame view_frame(const App& app) {
       frame.poses = app.poses;
       if (app.view.ghost && app.drawn.size() == app.poses.size()) frame.ghost = app.drawn;
       if (moves && !app.motion.beside) frame.motion = app.motion.poses;
+      if (const std::vector<Pose>& mode = app.study.modes.poses;
+          moving_mode(app) && mode.size() == frame.mechanism->bodies.size()) {
+        frame.motion = mode;
+        frame.ghost = {}; // three of them would be too much to look at
+      }
     } else if (moves) { // what has no steady state moves all the same
       frame.poses = app.motion.poses;
     }
@@ -279,7 +318,8 @@ bool motion_beside(const App& app) {
 }
 
 bool in_motion(const App& app) {
-  return app.playback.playing && (app.motion.on || converged(app));
+  return (app.playback.playing && (app.motion.on || converged(app))) ||
+         (app.study.modes.playing && moving_mode(app));
 }
 
 } // namespace flyball

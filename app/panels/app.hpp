@@ -121,6 +121,7 @@ struct App {
   // last that was asked, and of the first since the document was opened.
   std::uint64_t awaited = std::numeric_limits<std::uint64_t>::max(), asked = 0, opened = 0;
   double waited = 0;         // s for an answer to it; 0 where there is one
+  bool on_branch = false;    // a hand has chosen the equilibrium: sliders follow its branch, stable or not
   std::uint64_t gesture = 1; // of the hand: rises with every press of a button or key
 
   Mode mode = Mode::explore;
@@ -167,6 +168,11 @@ void select(App& app, Selection selection);
 // The same address as in a scene file; solves at once from the last answer. Not finite values and unknown
 // addresses are ignored.
 void change_parameter(App& app, const std::string& address, double value);
+// The same with the mechanism in the equilibrium nearest to these coordinates ("joint" or "joint.index" and
+// rad or m), on whatever branch, stable or not. Sliders then follow that branch, until it ends, the drawn pose
+// is started from again or something else is edited. Without an address no number is changed.
+void go_to_state(App& app, const std::string& address, double value,
+                 std::vector<std::pair<std::string, double>> start);
 void reset_parameters(App& app); // sliders back to what the file says
 void solve_from_drawn_pose(App& app);
 

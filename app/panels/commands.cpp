@@ -2,6 +2,7 @@
 
 #include "app/panels/edit_commands.hpp"
 #include "app/panels/file_commands.hpp"
+#include "app/panels/modes_control.hpp"
 #include "app/panels/motion_control.hpp"
 #include "app/panels/panels.hpp"
 #include "app/panels/study_panels.hpp"
@@ -274,7 +275,14 @@ const std::array table{
             .title = "Turn",
             .help = "Turn the mechanism at its drives' speeds.",
             .key = plain(' '),
-            .run = [](App& app) { play(app, !app.playback.playing); },
+            .run =
+                [](App& app) {
+                  // A mode in the view is what moves.
+                  if (moving_mode(app))
+                    app.study.modes.playing = !app.study.modes.playing;
+                  else
+                    play(app, !app.playback.playing);
+                },
             .enabled = holds_parts,
             .checked = [](const App& app) { return app.playback.playing; }},
     Command{.id = "view.select",
@@ -363,6 +371,34 @@ const std::array table{
             .run = [](App& app) { open_study(app, Study::motion); },
             .enabled = holds_parts,
             .checked = [](const App& app) { return app.study.open == Study::motion; }},
+    Command{.id = "study.response",
+            .title = "Response",
+            .help = "The steady states over one parameter: branches, folds and crossings, live.",
+            .key = plain('C'),
+            .run = [](App& app) { open_study(app, Study::response); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::response; }},
+    Command{.id = "study.states",
+            .title = "All equilibria",
+            .help = "Every equilibrium that a bounded search finds, stable or not.",
+            .key = plain('E'),
+            .run = [](App& app) { open_study(app, Study::states); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::states; }},
+    Command{.id = "study.modes",
+            .title = "Modes",
+            .help = "How the steady state swings, moving in the view, and at which speeds (Campbell diagram).",
+            .key = plain('O'),
+            .run = [](App& app) { open_study(app, Study::modes); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::modes; }},
+    Command{.id = "study.map",
+            .title = "Map of two parameters",
+            .help = "A coordinate in colours over the plane of two parameters, with the curves of folds.",
+            .key = plain('P'),
+            .run = [](App& app) { open_study(app, Study::map); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::map; }},
     Command{.id = "study.compare",
             .title = "Compare",
             .help = "Error against run time: the direct solution and the damped motion.",

@@ -1,4 +1,8 @@
 // Error against run time: the direct solution and the motion, measured on the scene as it is now.
+#include "app/panels/response_control.hpp"
+#include "app/panels/map_control.hpp"
+#include "app/panels/modes_control.hpp"
+#include "app/panels/states_control.hpp"
 #include "app/panels/study_panels.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/plot/comparison_plot.hpp"
@@ -80,6 +84,10 @@ void words(App& app) {
 } // namespace
 
 void update_studies(App& app) {
+  update_states(app);
+  update_modes(app);
+  update_map(app);
+  update_response(app);
   CompareState& state = app.study.compare;
   if (!state.task) return;
   if (auto news = state.task->take()) {

@@ -1,6 +1,7 @@
 // The sliders: what a person explores with.
 #include "app/panels/panels.hpp"
 #include "app/panels/quantity_field.hpp"
+#include "app/panels/sensitivity_line.hpp"
 #include "app/panels/typed_field.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
@@ -101,8 +102,11 @@ void control_label(App& app, const ParameterControl& control, float width) {
   ImGui::SetCursorPosX(start + width);
 }
 
-float row_height(const App& app) {
-  return ImGui::GetFrameHeight() + 18 * app.scale + 2 * ImGui::GetStyle().ItemSpacing.y;
+// A pinned slider has a line of what it moves below it.
+float row_height(const App& app, ParameterGroup group) {
+  const float gap = ImGui::GetStyle().ItemSpacing.y;
+  return ImGui::GetFrameHeight() + 18 * app.scale + 2 * gap +
+         (group == ParameterGroup::pinned ? sensitivity_height(app) + gap : 0);
 }
 
 void parameter(App& app, const ParameterControl& control) {
@@ -112,7 +116,8 @@ void parameter(App& app, const ParameterControl& control) {
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float start = ImGui::GetCursorPosX(), room = ImGui::GetContentRegionAvail().x;
   const bool pointed =
-      ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(from, {from.x + room, from.y + row_height(app)});
+      ImGui::IsWindowHovered() &&
+      ImGui::IsMouseHoveringRect(from, {from.x + room, from.y + row_height(app, control.group)});
   const float value_width = std::min((room - icon_width) * 0.5f, 150 * s);
   const float value_at = room - value_width - icon_width;
   const bool changed = control.value != control.file_value;
@@ -151,6 +156,7 @@ void parameter(App& app, const ParameterControl& control) {
     later(app, [field = name + "/value", text = short_text(control.value, 12) + " " + control.unit](
                    App& app_then) { start_typing(app_then, field, text); });
   range_menu(app, control);
+  if (control.group == ParameterGroup::pinned) sensitivity_line(app, control);
   ImGui::PopID();
 }
 
@@ -163,7 +169,7 @@ void group(App& app, ParameterGroup which, const char* name, const char* title, 
   const auto [first, last] = std::ranges::equal_range(app.parameters, which, {}, &ParameterControl::group);
   if (first == last || !section(app, name, title, open)) return;
   ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(last - first), row_height(app));
+  clipper.Begin(static_cast<int>(last - first), row_height(app, which));
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
       parameter(app, first[i]);

@@ -57,6 +57,24 @@ PlotHit hit_of(const PlotNear& near) {
   return {near.curve, near.index, near.x, near.y};
 }
 
+// What a pixel of the area stands for, in round numbers.
+std::array<double, 2> place_of(const PlotFrame& frame, const PixelPoint& at) {
+  const PlotBox& a = frame.layout.area;
+  const PixelPoint inside{std::clamp(at[0], a.left, a.right), std::clamp(at[1], a.top, a.bottom)};
+  std::array<double, 2> place{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const PlotRuler& ruler = frame.layout.ruler(static_cast<int>(k));
+    const double worth = std::abs(ruler.value(inside[k] + 0.5) - ruler.value(inside[k] - 0.5));
+    const double grain = worth > 0 ? std::pow(10, std::floor(std::log10(worth))) : 0;
+    const double value = ruler.value(inside[k]);
+    // Dividing by a whole number leaves the nearest decimal.
+    place[k] = grain == 0 ? value
+               : grain < 1 ? std::round(value / grain) / std::round(1 / grain)
+                          : std::round(value / grain) * grain;
+  }
+  return place;
+}
+
 void begin_drag(const PlotFrame& frame, PlotView::Drag drag, std::array<bool, 2> axes) {
   PlotView& view = frame.view;
   const PixelPoint at = pointer_in(frame.pen);
@@ -103,6 +121,7 @@ void follow_drag(const PlotFrame& frame) {
     view.dragged = true;
   if (!view.dragged) return;
   if (view.drag == PlotView::Drag::pan) pan(frame);
+  if (view.drag == PlotView::Drag::marker) frame.events.dragged_at = place_of(frame, at);
   if (view.drag == PlotView::Drag::marker)
     if (const auto near = nearest_along(frame.plot, view.look, frame.layout, at[0], at[1]))
       frame.events.dragged_to = hit_of(*near);
@@ -115,8 +134,13 @@ void end_drag(const PlotFrame& frame) {
   if (!view.dragged && view.button == 1) ImGui::OpenPopup("menu");
   if (!view.dragged && view.button == 0) {
     const auto [x, y] = view.drag_from;
-    if (const auto near =
-            nearest_point(frame.plot, view.look, frame.layout, x, y, reach * frame.layout.scale))
+    frame.events.clicked_at = place_of(frame, view.drag_from);
+    const double within = reach * frame.layout.scale;
+    auto near = nearest_point(frame.plot, view.look, frame.layout, x, y, within);
+    // Between the points of a line it is the line that is meant.
+    if (!near) near = nearest_along(frame.plot, view.look, frame.layout, x, y);
+    const bool line = near && frame.plot.curves[near->curve].line != PlotLine::none;
+    if (near && near->distance <= within && (line || near->index == std::floor(near->index)))
       frame.events.clicked = hit_of(*near);
   }
   view.drag = PlotView::Drag::none;

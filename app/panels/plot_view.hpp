@@ -28,6 +28,8 @@ struct PlotEvents {
   std::optional<PlotHit> clicked;    // the same, pressed and released without a drag
   std::optional<PlotHit> dragged_to; // where along the curves the marker is wanted; every frame of the drag
   bool drag_ended = false;           // the marker was let go
+  // The same places whatever lies there, without digits that a pixel cannot tell.
+  std::optional<std::array<double, 2>> clicked_at{}, dragged_at{};
 };
 
 // What was laid out, while it can be used again.

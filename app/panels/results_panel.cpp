@@ -1,5 +1,6 @@
 #include "app/panels/mistake_list.hpp"
 #include "app/panels/panels.hpp"
+#include "app/panels/state_words.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
 
@@ -29,19 +30,6 @@ Verdict verdict_of(const Solution& solution, const UiColors& colors) {
   if (solution.stability_reason == StabilityReason::gyroscopic_only)
     return {icon::warning, "Steady state, held by spin alone", colors.warn};
   return {icon::question, "Steady state, stability undecided", colors.warn};
-}
-
-const char* reason_text(StabilityReason reason) {
-  switch (reason) {
-  case StabilityReason::minimum: return "A minimum of the amended potential.";
-  case StabilityReason::asymptotic: return "Every disturbance dies out.";
-  case StabilityReason::gyroscopic_only:
-    return "Held by gyroscopic effects alone; any damping destabilises it.";
-  case StabilityReason::neutral: return "Stable but for directions that nothing resists.";
-  case StabilityReason::marginal: return "Too close to the limit of stability to tell.";
-  case StabilityReason::unstable: return "Disturbances grow.";
-  }
-  return "";
 }
 
 // "No steady state: the weight turns" below a "No steady state".

@@ -66,10 +66,10 @@ void shortcut_sheet(App& app) {
     lines(app, "Insert", "insert.");
     ImGui::TableNextColumn();
     lines(app, "Edit", "edit.");
+    lines(app, "Study", "study.");
     lines(app, "Help", "help.");
     ImGui::TableNextColumn();
     lines(app, "View", "view.");
-    lines(app, "Study", "study.");
     heading(app, "Mouse in the view");
     if (ImGui::BeginTable("mouse", 2, ImGuiTableFlags_SizingFixedFit)) {
       for (const Line& entry : mouse)

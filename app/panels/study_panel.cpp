@@ -1,8 +1,12 @@
+#include "app/panels/map_control.hpp"
+#include "app/panels/modes_control.hpp"
 #include "app/panels/motion_control.hpp"
+#include "app/panels/response_control.hpp"
 #include "app/panels/study_panels.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -18,6 +22,10 @@ struct Tab {
 };
 constexpr std::array tabs{
     Tab{Study::motion, "study/motion", "Motion", "The damped motion beside the steady state"},
+    Tab{Study::response, "study/response", "Response", "The steady states over one parameter: branches, folds and crossings"},
+    Tab{Study::states, "study/states", "States", "Every equilibrium that a bounded search finds"},
+    Tab{Study::modes, "study/modes", "Modes", "How the steady state swings, and at which speeds"},
+    Tab{Study::map, "study/map", "Map", "A coordinate over the plane of two parameters, with its folds"},
     Tab{Study::compare, "study/compare", "Compare", "Error against run time: direct solution and motion"},
 };
 
@@ -51,6 +59,10 @@ void open_study(App& app, Study study) {
   if (study != Study::none) set_mode(app, Mode::explore);
   // The motion goes with its panel.
   if (app.study.open == Study::motion && study != Study::motion) show_motion(app, false);
+  if (study != Study::states) app.study.states = {};
+  if (study != Study::modes) close_modes(app);
+  if (study != Study::map) close_map(app);
+  if (study != Study::response) close_response(app);
   app.study.open = study;
   if (study == Study::motion) show_motion(app, true);
 }
@@ -67,8 +79,9 @@ void study_panel(App& app, const PanelRect& rect) {
     if (tab(app, each) && each.study != app.study.open) wanted = each.study;
   const float side = ImGui::GetFrameHeight() + 2 * s;
   if (app.study.open == Study::motion && app.motion.on) {
-    ImGui::SetCursorPosX(314 * s);
-    motion_transport(app, rect.width - side - 24 * s - 314 * s);
+    const float from = std::max(314 * s, ImGui::GetCursorPosX() + 12 * s);
+    ImGui::SetCursorPosX(from);
+    motion_transport(app, rect.width - side - 24 * s - from);
     ImGui::SameLine();
   }
   ImGui::SetCursorPosX(rect.width - side - 8 * s);
@@ -77,6 +90,10 @@ void study_panel(App& app, const PanelRect& rect) {
   case Study::none: break;
   case Study::motion: motion_panel(app); break;
   case Study::compare: compare_panel(app); break;
+  case Study::response: response_panel(app); break;
+  case Study::states: states_panel(app); break;
+  case Study::modes: modes_panel(app); break;
+  case Study::map: map_panel(app); break;
   }
   ImGui::End();
   if (closed) open_study(app, Study::none);
@@ -84,7 +101,8 @@ void study_panel(App& app, const PanelRect& rect) {
 }
 
 bool studying(const App& app) {
-  return computing_motion(app) || (app.study.compare.task && app.study.compare.task->running());
+  return computing_motion(app) || computing_response(app) || (app.study.compare.task && app.study.compare.task->running()) ||
+         (app.study.states.task && app.study.states.task->running()) || finding_modes(app) || computing_map(app);
 }
 
 } // namespace flyball

@@ -17,6 +17,10 @@ bool studying(const App& app);
 void motion_panel(App& app);
 void motion_transport(App& app, float width); // play, scrub; in the present line, pixels
 void compare_panel(App& app);
+void response_panel(App& app);
+void states_panel(App& app);
+void modes_panel(App& app);
+void map_panel(App& app);
 
 // The name and the unit of what a plot over time can show.
 struct MotionQuantity {

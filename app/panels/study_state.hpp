@@ -2,14 +2,18 @@
 #pragma once
 
 #include "app/live/background.hpp"
+#include "app/panels/map_state.hpp"
+#include "app/panels/modes_state.hpp"
 #include "app/panels/plot_view.hpp"
+#include "app/panels/response_state.hpp"
+#include "app/panels/states_state.hpp"
 #include "engine/study/compare.hpp"
 
 #include <memory>
 
 namespace flyball {
 
-enum class Study { none, motion, compare };
+enum class Study { none, motion, compare, response, states, modes, map };
 
 // Error against run time.
 struct CompareState {
@@ -26,6 +30,10 @@ struct CompareState {
 struct StudyState {
   Study open = Study::none;
   CompareState compare;
+  ResponseState response;
+  StatesState states;
+  ModesState modes;
+  MapState map;
 };
 
 } // namespace flyball

@@ -47,7 +47,7 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
   };
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const PlotCurve& curve = plot.curves[i];
-    if (!is_shown(curve, look)) continue;
+    if (!is_shown(curve, look) || curve.hatching) continue;
     const std::string name = field(curve.name.empty() ? fmt::format("curve {}", i + 1) : curve.name);
     for (const auto& point : curve.points) {
       row(name, point[0], point[1]);

@@ -23,7 +23,7 @@ std::optional<PlotNear> nearest_point(const Plot& plot, const PlotLook& look, co
                                       double px, double py, double reach) {
   std::optional<PlotNear> best;
   for (std::size_t c = 0; c < plot.curves.size(); ++c) {
-    if (!is_shown(plot.curves[c], look)) continue;
+    if (!is_shown(plot.curves[c], look) || plot.curves[c].hatching) continue;
     const auto& points = plot.curves[c].points;
     // Values outside these are too far: no logarithm needed.
     const double x0 = layout.x.value(px - reach), x1 = layout.x.value(px + reach);
@@ -42,7 +42,7 @@ std::optional<PlotNear> nearest_along(const Plot& plot, const PlotLook& look, co
                                       double px, double py) {
   std::optional<PlotNear> best;
   for (std::size_t c = 0; c < plot.curves.size(); ++c) {
-    if (!is_shown(plot.curves[c], look)) continue;
+    if (!is_shown(plot.curves[c], look) || plot.curves[c].hatching) continue;
     const auto& points = plot.curves[c].points;
     PixelPoint before{NAN, NAN};
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -78,7 +78,8 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
     std::optional<double> best;
     double least = 0;
     for (const PlotCurve& curve : plot.curves) {
-      if (curve.name != entry.name || !is_shown(curve, look) || curve.line == PlotLine::none) continue;
+      if (curve.name != entry.name || !is_shown(curve, look) || curve.line == PlotLine::none || curve.hatching)
+        continue;
       for (std::size_t i = 1; i < curve.points.size(); ++i) {
         const auto &a = curve.points[i - 1], &b = curve.points[i];
         if (!((a[0] <= x && x <= b[0]) || (b[0] <= x && x <= a[0]))) continue;

@@ -40,6 +40,7 @@ struct PlotCurve {
   PlotShape shape = PlotShape::none; // at every point
   double shape_size = 6;             // points across
   bool hidden = false;               // neither drawn nor in the legend
+  bool hatching = false;             // marks an area: nothing is read off it, nor is it data for a CSV file
 };
 
 // A line from edge to edge, such as a steady value.

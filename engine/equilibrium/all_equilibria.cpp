@@ -1,6 +1,7 @@
 #include "engine/equilibrium/all_equilibria.hpp"
 
 #include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -81,6 +82,27 @@ bool same_pose(const Problem& problem, const Eigen::VectorXd& a, const Eigen::Ve
     if (std::abs(d) > tolerance) same = false;
   });
   return same;
+}
+
+Eigen::VectorXd scaled_difference(const Problem& problem, const Eigen::VectorXd& from,
+                                  const Eigen::VectorXd& to) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(problem.system.nv);
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const Link& link = problem.system.links[l];
+    if (link.v < 0) continue;
+    if (link.type == LinkType::spherical) {
+      const auto rotation = [&](const Eigen::VectorXd& q) {
+        return Quat(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
+      };
+      out.segment<3>(link.v) = log_rotation<double>(rotation(to) * rotation(from).conjugate());
+      continue;
+    }
+    double d = to[link.q] - from[link.q];
+    if (link.type == LinkType::revolute && !problem.parameters.links[l].elastic)
+      d = std::remainder(d, 2 * std::numbers::pi);
+    out[link.v] = d / problem.scaling.column[link.v];
+  }
+  return out;
 }
 
 std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::VectorXd& drawn) {

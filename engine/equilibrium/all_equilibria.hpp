@@ -39,4 +39,8 @@ EquilibriumList find_all_equilibria(const Problem& problem, const Eigen::VectorX
 bool same_pose(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b, double tolerance,
                const std::vector<int>& ignore = {});
 
+// The scaled step of q_R from one configuration to another, angles of unsprung joints the short way round.
+Eigen::VectorXd scaled_difference(const Problem& problem, const Eigen::VectorXd& from,
+                                  const Eigen::VectorXd& to);
+
 } // namespace flyball

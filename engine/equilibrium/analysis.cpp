@@ -58,6 +58,7 @@ struct Analysis::State {
   Eigen::VectorXd error;
   Eigen::VectorXd drawn, answer, start;
   bool answered = false;
+  bool settled = false; // the last solve converged, and no number has changed since
 
   void bind_numbers() {
     bind(system, mechanism, parameters);
@@ -82,6 +83,7 @@ void Analysis::update(const Mechanism& mechanism) {
     return;
   }
   s.mechanism = mechanism;
+  s.settled = false;
   s.bind_numbers();
 }
 
@@ -91,6 +93,8 @@ Solution Analysis::solve(const SolveOptions& options) {
   const bool warm = options.warm && s.answered && options.start.empty();
   s.start = warm ? s.answer : s.drawn;
   set_start(s.system, s.parameters, options.start, s.start);
+
+  s.settled = false;
 
   const auto begin = std::chrono::steady_clock::now();
   find_equilibrium(problem, s.start, options.nearest, warm, s.workspace, s.history, s.found);
@@ -128,7 +132,7 @@ Solution Analysis::solve(const SolveOptions& options) {
     return out;
   }
   s.answer = s.found.z.q;
-  s.answered = true;
+  s.answered = s.settled = true;
   if (options.details) {
     const bool many = s.system.nv > 200 && options.modes == 0;
     stability = find_stability(problem, s.found.z, !many, s.workspace);
@@ -225,6 +229,32 @@ std::vector<Pose> Analysis::poses_at(double t) const {
   forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, s.workspace.kinematics);
   body_poses(s.system, s.mechanism, s.parameters, s.workspace.kinematics, poses);
   return poses;
+}
+
+std::vector<VibrationMode> Analysis::modes() const {
+  State& s = *state_;
+  if (!s.settled) return {};
+  return find_modes({s.system, s.parameters, s.scaling}, s.found.z, s.workspace);
+}
+
+std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitude, double phase,
+                                       double t) const {
+  State& s = *state_;
+  const Problem problem{s.system, s.parameters, s.scaling};
+  const Eigen::VectorXd& steady = s.answered ? s.answer : s.drawn;
+  std::vector<Pose> poses;
+  const Eigen::VectorXd q = mode.shape.size() == static_cast<std::size_t>(s.system.nv)
+                                ? along_mode(problem, steady, mode, amplitude, phase, t, s.workspace)
+                                : steady;
+  forward<double>(s.system, s.parameters, q, t, s.workspace.kinematics);
+  body_poses(s.system, s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  return poses;
+}
+
+std::optional<StabilityEvidence> Analysis::stability_evidence() const {
+  State& s = *state_;
+  if (!s.settled) return {};
+  return flyball::stability_evidence({s.system, s.parameters, s.scaling}, s.found.z, s.workspace);
 }
 
 } // namespace flyball

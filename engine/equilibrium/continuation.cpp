@@ -9,11 +9,13 @@ namespace flyball {
 
 Family::Family(const System& system, const Mechanism& mechanism, std::string address, double scale)
     : system_(system), mechanism_(mechanism), address_(std::move(address)), scale_(scale) {
-  set(get_parameter(mechanism_, address_));
+  value_ = get_parameter(mechanism_, address_);
+  bind(system_, mechanism_, parameters_);
   set_scaling(system_, parameters_, scaling_);
 }
 
 void Family::set(double value) {
+  if (value == value_) return; // bound already
   set_parameter(mechanism_, address_, value);
   bind(system_, mechanism_, parameters_);
   value_ = value;
@@ -76,9 +78,13 @@ void Continuation::assemble(const Unknowns& z, double parameter, Bordered& out) 
     w_.constraints.solve(-w_.residual.phi.cwiseProduct(problem.scaling.row), out.r0);
     w_.constraints.solve(-phi_rate.cwiseProduct(problem.scaling.row), out.r1);
   }
-  const double size = std::max(1e-300, w_.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff());
   out.h.resize(k, k + 1);
-  out.h.leftCols(k) = out.basis.transpose() * w_.scaled_stiffness * out.basis / size;
+  out.h.leftCols(k) = out.basis.transpose() * w_.scaled_stiffness * out.basis;
+  // A state without loads has stiffness only, one without stiffness loads only.
+  double size = n > 0 ? w_.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff() : 0;
+  if (k > 0) size = std::max(size, out.h.leftCols(k).cwiseAbs().maxCoeff());
+  if (!(size > 0)) size = 1;
+  out.h.leftCols(k) /= size;
   out.h.col(k) = out.basis.transpose() * (w_.scaled_stiffness * out.r1 + out.force_rate) / size;
   out.g = out.basis.transpose() * (out.force + w_.scaled_stiffness * out.r0) / size;
 }

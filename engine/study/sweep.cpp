@@ -17,7 +17,8 @@ double Variation::value(int i) const {
 }
 
 std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variation> variations, int threads,
-                              const std::function<void(std::size_t, std::size_t)>& progress) {
+                              const std::function<void(std::size_t, std::size_t)>& progress,
+                              const std::atomic<bool>* cancel) {
   std::size_t total = 1;
   for (const Variation& v : variations)
     total *= static_cast<std::size_t>(std::max(1, v.count));
@@ -33,14 +34,15 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
   }
 
   std::atomic<std::size_t> next = 0, done = 0;
-  std::atomic<bool> stop = false;
+  std::atomic<bool> stop = false; // a failure
+  const auto cancelled = [&] { return stop || (cancel && cancel->load(std::memory_order_relaxed)); };
   std::mutex mutex;
   std::exception_ptr failure;
   const auto work = [&] {
     try {
       Mechanism varied = mechanism;
       std::optional<Analysis> analysis;
-      for (std::size_t i; !stop && (i = next++) < total; ++done) {
+      for (std::size_t i; !cancelled() && (i = next++) < total; ++done) {
         for (std::size_t v = 0; v < variations.size(); ++v)
           set_parameter(varied, variations[v].address, points[i].parameters[v]);
         validate(varied);
@@ -50,7 +52,7 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
           analysis.emplace(varied);
         SolveOptions options;
         options.details = false;
-        options.cancel = &stop;
+        options.cancel = cancel ? cancel : &stop;
         points[i].solution = analysis->solve(options);
       }
     } catch (...) {
@@ -67,7 +69,7 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
       workers.emplace_back(work);
     if (progress) {
       workers.emplace_back(work);
-      while (!stop && done < total) {
+      while (!cancelled() && done < total) {
         progress(done, total);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
       }

@@ -22,10 +22,12 @@ struct SweepPoint {
 };
 
 // All combinations, the last variation moving fastest. Uses up to `threads` threads (0: all cores);
-// `progress` is called from the calling thread with the number of points done. Throws SceneError for an
+// `progress` is called from the calling thread with the number of points done. `cancel` is polled between
+// points and iterations; points that were not reached are then not_converged. Throws SceneError for an
 // address or a value that the mechanism does not take.
 std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variation> variations,
                               int threads = 0,
-                              const std::function<void(std::size_t done, std::size_t all)>& progress = {});
+                              const std::function<void(std::size_t done, std::size_t all)>& progress = {},
+                              const std::atomic<bool>* cancel = nullptr);
 
 } // namespace flyball

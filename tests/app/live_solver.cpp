@@ -130,3 +130,71 @@ TEST_CASE("a solver can be left in the middle of its work") {
     }
   }
 }
+
+namespace {
+
+// Above the speed at which the straight state gets unstable (3.74 rad/s).
+Mechanism conical_pendulum(double speed) {
+  Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  set_parameter(mechanism, "joints.spin.drive.speed", speed);
+  return mechanism;
+}
+
+double swing(const Solution& solution) {
+  for (const CoordinateSolution& c : solution.coordinates)
+    if (c.joint == "swing") return c.value;
+  return NAN;
+}
+
+} // namespace
+
+TEST_CASE("a start leads to another branch, which is followed while the nearest is asked for") {
+  LiveSolver live(LiveSolver::Mode::immediate);
+  live.ask({.mechanism = conical_pendulum(6), .another = true});
+  auto answer = live.take_answer();
+  REQUIRE(answer);
+  const double bent = swing(answer->solution);
+  CHECK(std::abs(bent) > 1);
+  CHECK(answer->solution.stable == true);
+  // The straight state, from near it.
+  live.ask({.mechanism = conical_pendulum(6), .nearest = true, .start = {{"swing", 0.02}}});
+  answer = live.take_answer();
+  CHECK(std::abs(swing(answer->solution)) < 1e-9);
+  CHECK(answer->solution.stable == false);
+  CHECK_FALSE(answer->left_branch);
+  for (const double speed : {7., 9., 5.}) {
+    live.ask({.mechanism = conical_pendulum(speed), .nearest = true});
+    answer = live.take_answer();
+    CHECK(std::abs(swing(answer->solution)) < 1e-9);
+    CHECK(answer->solution.stable == false);
+  }
+  // And the other bent one.
+  live.ask({.mechanism = conical_pendulum(6), .nearest = true, .start = {{"swing", -bent}}});
+  answer = live.take_answer();
+  CHECK(swing(answer->solution) == Approx(-bent));
+  // Without the wish for the nearest it is left where it is unstable.
+  live.ask({.mechanism = conical_pendulum(6), .nearest = true, .start = {{"swing", 0.02}}});
+  live.ask({.mechanism = conical_pendulum(6.1), .warm = false});
+  answer = live.take_answer();
+  CHECK(std::abs(swing(answer->solution)) > 1);
+}
+
+TEST_CASE("a start survives the requests that come before it was solved") {
+  LiveSolver live(LiveSolver::Mode::background);
+  for (int round = 0; round < 20; ++round) {
+    live.ask({.mechanism = conical_pendulum(6), .another = true});
+    live.ask({.mechanism = conical_pendulum(6), .nearest = true, .start = {{"swing", 0.02}}});
+    std::uint64_t last = 0;
+    for (int i = 1; i <= 5; ++i)
+      last = live.ask({.mechanism = conical_pendulum(6 + 0.1 * i), .nearest = true});
+    std::optional<LiveAnswer> answer;
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while ((!answer || answer->ticket < last) && std::chrono::steady_clock::now() < limit) {
+      if (auto news = live.take_answer()) answer = std::move(news);
+      std::this_thread::yield();
+    }
+    REQUIRE(answer);
+    REQUIRE(answer->ticket == last);
+    CHECK(std::abs(swing(answer->solution)) < 1e-9);
+  }
+}

@@ -2,6 +2,7 @@
 // it, a Newton step, a solve from a neighbouring state and one from the drawn pose; and what it saves to
 // leave out what a scene does not need. Ratios of one run are printed at the end, since only those carry over
 // to another machine.
+#include "engine/equilibrium/branches.hpp"
 #include "engine/equilibrium/find_equilibrium.hpp"
 #include "engine/equilibrium/refine.hpp"
 #include "engine/mechanism/address.hpp"
@@ -136,6 +137,35 @@ void add_parts(const std::string& name, Mechanism mechanism) {
   })->Apply(repeated);
 }
 
+// The response curve over a drive's speed from `to` down to 0 in at least 400 points, each with its
+// stability; with and without eigenvalues.
+void add_curve(const std::string& name, const Mechanism& mechanism, double to) {
+  for (const bool eigenvalues : {false, true})
+    benchmark::RegisterBenchmark(
+        (name + (eigenvalues ? "/curve with eigenvalues" : "/curve")).c_str(),
+        [mechanism, to, eigenvalues](benchmark::State& state) {
+          BranchOptions options;
+          options.eigenvalues = eigenvalues;
+          options.switch_branches = false;
+          const auto points = [&](double step) {
+            options.largest_step = step;
+            const ResponseDiagram d = follow_branches(mechanism, "joints.spin.drive.speed", to, 0, options);
+            return d.branches.empty() ? 0 : static_cast<int>(d.branches[0].points.size());
+          };
+          double step = 0.02;
+          while (step > 1e-4 && points(step) < 400)
+            step *= 0.9;
+          int count = 0;
+          for ([[maybe_unused]] auto _ : state)
+            count = points(step);
+          state.counters["points"] = count;
+          const ResponseDiagram d = follow_branches(mechanism, "joints.spin.drive.speed", to, 0, options);
+          if (d.branches.size() != 1 || d.branches[0].points.front().stable != true)
+            state.SkipWithError("not the one stable curve");
+        })
+        ->Apply(repeated);
+}
+
 // Prints the fastest of the repetitions of a benchmark, the one least disturbed, and remembers its time.
 class Fastest : public benchmark::ConsoleReporter {
  public:
@@ -175,6 +205,7 @@ int main(int argc, char** argv) {
   add_parts("governor without gravity", without_gravity(scene("governor")));
   add_parts("governor standing", standing(scene("governor")));
   add_parts("governor without loops", without_loops(scene("governor")));
+  add_curve("governor", scene("governor"), 30);
   Fastest reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();
@@ -186,6 +217,8 @@ int main(int argc, char** argv) {
     print_ratio(reporter, name + "/warm", name + "/iteration");
     print_ratio(reporter, name + "/cold", name + "/warm");
   }
+  for (const char* curve : {"governor/curve", "governor/curve with eigenvalues"})
+    print_ratio(reporter, curve, "governor/cold");
   for (const char* part : {"residual", "iteration", "warm"})
     for (const char* variant : {"without gravity", "standing", "without loops"})
       print_ratio(reporter, "governor " + std::string(variant) + "/" + part, std::string("governor/") + part);

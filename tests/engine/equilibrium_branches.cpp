@@ -135,6 +135,141 @@ TEST_CASE("a branch agrees with a sweep that knows nothing of it", "[branches]")
   }
 }
 
+TEST_CASE("the governor's curve is the one it works on, from rest to full speed", "[branches]") {
+  // At rest plain Newton-Raphson stops where the links are stretched: an unstable state.
+  const ResponseDiagram d = follow_branches(shipped("governor"), speed, 0, 30);
+  INFO(d.message);
+  const auto works = std::ranges::find_if(d.branches, [](const ResponseBranch& b) {
+    return b.connected && b.points.front().stable == true && b.points.back().stable == true;
+  });
+  REQUIRE(works != d.branches.end());
+  CHECK(std::abs(works->points.front().coordinates[3].value - 0.1826698079360885) < 1e-9);
+  CHECK(std::abs(works->points.back().parameter - 30) < 1e-12);
+}
+
+TEST_CASE("branches that nothing connects are found from the lists of equilibria", "[branches]") {
+  BranchOptions options;
+  const ResponseDiagram drawn = follow_branches(conical(0.1), speed, 0, 10, options);
+  REQUIRE(drawn.branches.size() == 1); // leaning out: no fold, no crossing
+  CHECK(drawn.special.empty());
+  options.all = true;
+  const ResponseDiagram d = follow_branches(conical(0.1), speed, 0, 10, options);
+  INFO(d.message);
+  // Leaning in, with its fold, and standing on its head.
+  REQUIRE(d.branches.size() == 3);
+  CHECK(d.branches[0].connected);
+  CHECK_FALSE(d.branches[1].connected);
+  CHECK_FALSE(d.branches[2].connected);
+  CHECK(d.searched == std::vector<double>{0, 10});
+  CHECK(d.starts > 50);
+  CHECK(d.message.find("there may be more") != std::string::npos);
+  const auto folds = of_type(d, SpecialPointType::fold);
+  REQUIRE(folds.size() == 1);
+  CHECK(std::abs(folds[0]->at.parameter - 4.75536807929276) < 1e-8);
+  const ResponseBranch& folded = d.branches[static_cast<std::size_t>(folds[0]->branch)];
+  CHECK(std::abs(folded.points.front().parameter - 10) < 1e-12);
+  CHECK(std::abs(folded.points.back().parameter - 10) < 1e-12);
+  CHECK(folded.points.front().stable != folded.points.back().stable);
+  for (const ResponseBranch& b : d.branches)
+    for (const ResponsePoint& p : b.points) { // w^2 (o + L sin a) = g tan a
+      const double a = first_coordinate(p), w = p.parameter;
+      CHECK(w * w * (0.1 + 0.7 * std::sin(a)) * std::cos(a) ==
+            Approx(standard_gravity * std::sin(a)).margin(1e-8));
+    }
+}
+
+TEST_CASE("what is connected is not followed twice", "[branches]") {
+  BranchOptions options;
+  options.all = true;
+  const ResponseDiagram d = follow_branches(conical(0), speed, 0, 10, options);
+  REQUIRE(d.branches.size() == 4); // straight, bent either way, and on its head
+  CHECK(std::ranges::count(d.branches, false, &ResponseBranch::connected) == 1);
+  CHECK(of_type(d, SpecialPointType::branch_point).size() == 1);
+  // From one value in the middle only, followed both ways to both ends.
+  options.all_at = {5};
+  const ResponseDiagram middle = follow_branches(conical(0), speed, 0, 10, options);
+  REQUIRE(middle.branches.size() == 4);
+  const ResponseBranch& head = middle.branches.back();
+  CHECK(std::abs(head.points.front().parameter) < 1e-12);
+  CHECK(std::abs(head.points.back().parameter - 10) < 1e-12);
+  CHECK(head.begin == "the beginning of the range");
+  CHECK(head.end == "the end of the range");
+}
+
+TEST_CASE("points carry reactions and drive torques where asked", "[branches]") {
+  BranchOptions options;
+  options.switch_branches = false;
+  CHECK(follow_branches(conical(0.1), speed, 0, 10, options).branches[0].points[3].reactions.empty());
+  options.reactions = true;
+  const ResponseDiagram d = follow_branches(conical(0.1), speed, 0, 10, options);
+  for (const ResponsePoint& p : d.branches[0].points) {
+    REQUIRE(p.reactions.size() == 2);
+    const Reaction& hinge = p.reactions[1];
+    CHECK(hinge.joint == "swing");
+    const double r = 0.1 + 0.7 * std::sin(first_coordinate(p)), w = p.parameter;
+    CHECK(hinge.force.x() == Approx(-w * w * r).margin(1e-9));
+    CHECK(hinge.force.y() == Approx(standard_gravity).margin(1e-9));
+    REQUIRE(p.drive_torques.size() == 1);
+    CHECK(std::abs(p.drive_torques[0].value) < 1e-9);
+  }
+}
+
+TEST_CASE("lines of eigenvalues go on where they cross", "[branches]") {
+  // A mass on equal springs across a turntable, natural +- speed, and another along its axis, constant.
+  const double natural = 10, along = 14;
+  Mechanism m;
+  m.bodies = {spindle(), body("x", 0, Vec3::Zero()), body("puck", 0.5, Vec3::Zero()),
+              body("bell", 0.5, Vec3::Zero())};
+  m.joints = {spin(0, {0, 0, 1}),
+              sprung(prismatic("x", "spindle", "x", Vec3::Zero(), {1, 0, 0}), 0.5 * natural * natural),
+              sprung(prismatic("y", "x", "puck", Vec3::Zero(), {0, 1, 0}), 0.5 * natural * natural),
+              sprung(prismatic("z", "spindle", "bell", Vec3::Zero(), {0, 0, 1}), 0.5 * along * along)};
+  const ResponseDiagram d = follow_branches(m, speed, 0.5, 9);
+  REQUIRE(d.branches.size() == 1);
+  const auto& points = d.branches[0].points;
+  const auto lines = track_eigenvalues(points);
+  REQUIRE(lines.size() == points.size());
+  bool sorted_jumps = false;
+  for (std::size_t line = 0; line < 6; ++line) {
+    const double first = lines[0][line].imag();
+    const double sign = first < 0 ? -1 : 1;
+    const double slope = std::abs(std::abs(first) - along) < 0.1 ? 0 : std::abs(first) > natural ? 1 : -1;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double wanted = sign * ((slope == 0 ? along : natural) + slope * points[i].parameter);
+      CHECK(std::abs(lines[i][line] - std::complex<double>(0, wanted)) < 1e-9);
+      sorted_jumps = sorted_jumps || std::abs(points[i].eigenvalues[line].imag() - wanted) > 1e-3;
+    }
+  }
+  CHECK(sorted_jumps);
+}
+
+TEST_CASE("a rotor with inner and outer damping flutters at its closed form", "[branches]") {
+  // m u'' + (c_i + c_e) u' + (k - i w c_i) u = 0, u in a frame that does not turn: Hopf at w = n (1 + c_e /
+  // c_i).
+  const double mass = 0.5, natural = 10, inner = 0.6, outer = 0.15;
+  Mechanism m;
+  m.bodies = {spindle(), body("x", 0, Vec3::Zero()), body("puck", mass, Vec3::Zero())};
+  m.joints = {
+      spin(0, {0, 0, 1}),
+      dampened(sprung(prismatic("x", "spindle", "x", Vec3::Zero(), {1, 0, 0}), mass * natural * natural),
+               inner),
+      dampened(sprung(prismatic("y", "x", "puck", Vec3::Zero(), {0, 1, 0}), mass * natural * natural),
+               inner)};
+  Force air;
+  air.name = "air";
+  air.type = ForceType::drag;
+  air.body = "puck";
+  air.linear = outer;
+  m.forces = {air};
+  const ResponseDiagram d = follow_branches(m, speed, 1, 20);
+  INFO(d.message);
+  const auto hopf = of_type(d, SpecialPointType::hopf);
+  REQUIRE(hopf.size() == 1);
+  CHECK(std::abs(hopf[0]->at.parameter - natural * (1 + outer / inner)) < 1e-8);
+  for (const ResponsePoint& p : d.branches[0].points)
+    CHECK(p.stable == (p.parameter < hopf[0]->at.parameter));
+}
+
 TEST_CASE("all equilibria of the conical pendulum, in the order of their potential", "[all]") {
   Mechanism m = conical(0);
   set_parameter(m, speed, 5);

@@ -1,0 +1,110 @@
+#include "engine/study/design.hpp"
+#include "app/cli/command.hpp"
+#include "app/cli/progress.hpp"
+#include "app/cli/scene_argument.hpp"
+#include "app/cli/solution_json.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace flyball::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json answer_json(const std::string& address, const std::string& coordinate, const DesignAnswer& a) {
+  Json out = {{"status", word(a.status)}, {"message", a.message},        {"parameter", address},
+              {"coordinate", coordinate}, {"value", a.coordinate.value}, {"solutions", Json::array()}};
+  for (const DesignSolution& s : a.solutions) {
+    Json entry = {
+        {"parameter", s.parameter},
+        {"error_estimate", s.parameter_error},
+        {"coordinates", coordinates_json(s.at.coordinates)},
+        {"residual", s.residual},
+        {"iterations", s.iterations},
+        {"rate", s.rate ? Json(*s.rate) : Json(nullptr)},
+        {"connected", s.connected},
+        {"stable", s.at.stable ? Json(*s.at.stable) : Json(nullptr)},
+        {"stability_reason", s.at.stability_reason ? Json(word(*s.at.stability_reason)) : Json(nullptr)},
+        {"eigenvalues", Json::array()}};
+    for (const auto& e : s.at.eigenvalues)
+      entry["eigenvalues"].push_back({e.real(), e.imag()});
+    out["solutions"].push_back(std::move(entry));
+  }
+  const bool covered = a.lowest < a.highest;
+  out["covered"] = covered ? Json({a.lowest, a.highest}) : Json(nullptr);
+  out["run_time_s"] = a.run_time_s;
+  return out;
+}
+
+std::string answer_text(const Mechanism& m, const std::string& address, const DesignAnswer& a) {
+  const std::string unit = parameter_unit(m, address);
+  std::string out = fmt::format("{}: {}\n", m.name, a.message);
+  for (const DesignSolution& s : a.solutions) {
+    out += fmt::format("  {} = {} {} (± {:.1e}), {}{}\n", address, number_text(s.parameter), unit,
+                       s.parameter_error,
+                       s.at.stable ? (*s.at.stable ? "stable" : "unstable") : "stability open",
+                       s.connected ? "" : ", on a branch that nothing connects with the drawn pose's");
+    out += "   ";
+    for (const CoordinateSolution& c : s.at.coordinates)
+      if (!c.driven)
+        out +=
+            fmt::format(" {} = {:.12g} {} ", c.count == 1 ? c.joint : fmt::format("{}.{}", c.joint, c.index),
+                        c.value, c.angle ? "rad" : "m");
+    out += fmt::format("\n    {} iterations, scaled residual {:.1e}\n", s.iterations, s.residual);
+  }
+  return out + fmt::format("  {:.1f} ms\n", a.run_time_s * 1e3);
+}
+
+} // namespace
+
+void add_design(CLI::App& app, int& exit_code) {
+  struct Options {
+    SceneArgument scene;
+    std::string vary, want;
+    bool connected = false, json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("design", "Find the value of a parameter at which a coordinate is as wanted");
+  options->scene.add_to(*command);
+  command->add_option("--vary", options->vary, "The parameter to solve for: address=from:to")->required();
+  command
+      ->add_option("--want", options->want,
+                   "The coordinate wanted: joint=value, or joint.index=value (rad, m)")
+      ->required();
+  command->add_flag("--connected", options->connected,
+                    "Only on branches connected with the drawn pose's (quicker)");
+  command->add_flag("--json", options->json, "Print a JSON object");
+  command->footer(
+      "Example: flyball design governor.json --vary joints.spin.drive.speed=0:30 --want slide=0.12");
+  command->callback([options, &exit_code] {
+    const Mechanism mechanism = options->scene.load();
+    const Range range = parse_range("--vary", options->vary);
+    if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
+    const auto [coordinate, value] = parse_assignment("--want", options->want);
+    DesignAnswer answer;
+    try {
+      Progress progress("following");
+      DesignOptions ask;
+      ask.all = !options->connected;
+      ask.progress = [&](double part) {
+        progress.show(static_cast<std::size_t>(100 * std::max(0., part)), 100);
+      };
+      answer = design(mechanism, range.address, range.from, range.to, coordinate, value, ask);
+    } catch (const SceneError& error) {
+      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+    }
+    if (options->json)
+      fmt::print("{}\n", answer_json(range.address, coordinate, answer).dump(2));
+    else
+      fmt::print("{}", answer_text(mechanism, range.address, answer));
+    exit_code = answer.status == Status::converged ? exit_done : exit_no_result;
+  });
+}
+
+} // namespace flyball::cli

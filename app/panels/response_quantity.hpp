@@ -1,0 +1,35 @@
+// What the response curve can show over the parameter.
+#pragma once
+
+#include "engine/equilibrium/branches.hpp"
+
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+struct ResponseQuantity {
+  std::string key;   // "value theta"
+  std::string title; // "theta"
+  std::string group; // "Coordinates"
+  std::string unit;  // on the screen: "°", "mm", "N m"
+  double factor = 1; // from SI units to these
+};
+
+// A steady state as a point of a curve.
+ResponsePoint response_point(const Solution& solution, double parameter);
+
+// "joint", or "joint.index" where the joint has several coordinates.
+std::string coordinate_name(const CoordinateSolution& c);
+
+// All that the point, with everything in it, can tell.
+std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point);
+// Whether its points need reactions and drive torques.
+bool needs_reactions(const std::string& key);
+
+// In SI units; several for a quantity of several lines ("frequencies"), none where the point does not tell.
+std::vector<double> quantity_values(const ResponsePoint& point, const std::string& key);
+// One of them: where a mark of the point stands.
+std::optional<double> quantity_mark(const ResponsePoint& point, const std::string& key);
+
+} // namespace flyball

@@ -1,0 +1,67 @@
+#include "app/panels/state_words.hpp"
+
+#include "app/render/icons.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flyball {
+
+StabilityWords stability_words(std::optional<bool> stable, std::optional<StabilityReason> reason,
+                               const UiColors& colors) {
+  const char* why = reason ? reason_text(*reason) : "";
+  if (stable == true) return {icon::check, "stable", why, colors.good};
+  if (stable == false) return {icon::warning, "unstable", why, colors.bad};
+  if (reason == StabilityReason::neutral) return {icon::check, "neutral", why, colors.good};
+  if (reason == StabilityReason::gyroscopic_only) return {icon::warning, "held by spin", why, colors.warn};
+  return {icon::question, "undecided", why, colors.warn};
+}
+
+const char* reason_text(StabilityReason reason) {
+  switch (reason) {
+  case StabilityReason::minimum: return "A minimum of the amended potential.";
+  case StabilityReason::asymptotic: return "Every disturbance dies out.";
+  case StabilityReason::gyroscopic_only:
+    return "Held by gyroscopic effects alone; any damping destabilises it.";
+  case StabilityReason::neutral: return "Stable but for directions that nothing resists.";
+  case StabilityReason::marginal: return "Too close to the limit of stability to tell.";
+  case StabilityReason::unstable: return "Disturbances grow.";
+  }
+  return "";
+}
+
+std::string coordinate_label(const CoordinateSolution& c) {
+  return c.count > 1 ? c.joint + "." + std::to_string(c.index) : c.joint;
+}
+
+const char* screen_unit(bool angle) {
+  return angle ? "°" : "mm";
+}
+
+double screen_factor(bool angle) {
+  return angle ? 180 / std::numbers::pi : 1000;
+}
+
+std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates) {
+  std::vector<std::pair<std::string, double>> values;
+  for (const CoordinateSolution& c : coordinates)
+    if (!c.driven) values.emplace_back(coordinate_label(c), c.value);
+  return values;
+}
+
+bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b,
+                const std::vector<std::string>& neutral) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].joint != b[i].joint || a[i].index != b[i].index) return false;
+    if (a[i].driven || std::ranges::find(neutral, a[i].joint) != neutral.end()) continue;
+    double apart = a[i].value - b[i].value;
+    if (a[i].angle) apart = std::remainder(apart, 2 * std::numbers::pi);
+    const double rounding = 1e-6 * (a[i].angle ? 1 : std::max(1e-3, std::abs(a[i].value)));
+    if (!(std::abs(apart) <= rounding + 10 * (a[i].error + b[i].error))) return false;
+  }
+  return true;
+}
+
+} // namespace flyball

@@ -1,0 +1,303 @@
+#include "engine/equilibrium/branch_follower.hpp"
+
+#include "engine/equilibrium/all_equilibria.hpp"
+#include "engine/equilibrium/drive_cuts.hpp"
+#include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/report.hpp"
+#include "engine/equilibrium/stability.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/validate.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+constexpr double special_accuracy = 1e-11; // of the scaled arclength
+
+} // namespace
+
+Mechanism with_parameter(const Mechanism& mechanism, const std::string& address, double value) {
+  Mechanism m = mechanism;
+  set_parameter(m, address, value);
+  validate(m);
+  return m;
+}
+
+Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates) {
+  std::vector<std::pair<std::string, double>> values;
+  for (const CoordinateSolution& c : coordinates)
+    if (!c.driven)
+      values.emplace_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index), c.value);
+  Eigen::VectorXd q;
+  drawn_configuration(problem.system, problem.parameters, q);
+  set_start(problem.system, problem.parameters, values, q);
+  return q;
+}
+
+ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
+                             const Eigen::VectorXd& error, PointDetails details, Workspace& w) {
+  ResponsePoint point;
+  const Stability stability = find_stability(problem, z, details.eigenvalues, w);
+  point.stable = stability.stable;
+  point.stability_reason = stability.reason;
+  if (stability.eigenvalues) point.eigenvalues = *stability.eigenvalues;
+  Found found;
+  found.z = z;
+  Solution s;
+  const Existence existence;
+  report({mechanism, problem, found, existence, stability},
+         error.size() > 0 ? error : Eigen::VectorXd::Zero(problem.system.nv).eval(), details.reactions, w, s);
+  point.coordinates = std::move(s.coordinates);
+  point.reactions = std::move(s.reactions);
+  point.drive_torques = std::move(s.drive_torques);
+  return point;
+}
+
+BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
+                               const BranchOptions& options)
+    : options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from), notes_)),
+      family_(system_, with_parameter(mechanism, address, from), address, std::abs(to - from)),
+      continuation_(family_), from_(from), to_(to) {}
+
+Problem BranchFollower::problem_at(double parameter) {
+  family_.set(parameter);
+  const Problem p = family_.problem();
+  return {p.system, p.parameters, p.scaling, options_.cancel};
+}
+
+std::optional<BranchState> BranchFollower::begin(Unknowns z, double parameter, bool forth) {
+  BranchState state{std::move(z), parameter, {}, 0, 0};
+  if (!continuation_.start(state, (to_ > from_) == forth ? 1 : -1)) return {};
+  return state;
+}
+
+BranchFollower::Described BranchFollower::describe(const BranchState& state) {
+  const Problem problem = problem_at(state.parameter);
+  Described d;
+  d.point = response_point(family_.mechanism(), problem, state.z, {},
+                           {options_.eigenvalues, options_.reactions}, w_);
+  d.point.parameter = state.parameter;
+  double largest = 0;
+  for (const auto& e : d.point.eigenvalues)
+    largest = std::max(largest, std::abs(e));
+  for (const auto& e : d.point.eigenvalues) {
+    if (e.real() > 1e-7 * std::abs(e) + 1e-9 * largest) ++d.right;
+    if (e.real() < -1e-7 * std::abs(e) - 1e-9 * largest && e.imag() != 0) d.damped = true;
+  }
+  return d;
+}
+
+ResponsePoint BranchFollower::point(const BranchState& state) {
+  return describe(state).point;
+}
+
+// Where `value` changes its sign along the branch, by the Illinois method (Dowell and Jarratt 1971), and how
+// far along that is. `value` may be a step function: then this halves.
+template <class Value>
+std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, double low, double at_low,
+                                                      double high, double at_high, const BranchState& beyond,
+                                                      Value value) {
+  BranchState at = beyond, probe;
+  double found = high, previous = low;
+  int side = 0;
+  for (int i = 0; i < 80 && high - low > special_accuracy; ++i) {
+    double middle = low - at_low * (high - low) / (at_high - at_low);
+    if (!(middle > low && middle < high)) middle = (low + high) / 2;
+    int iterations = 0;
+    if (!continuation_.step(from, middle, probe, iterations)) break;
+    const double now = value(probe);
+    at = probe;
+    found = middle;
+    if (now == 0 || (std::abs(middle - previous) < 0.1 * special_accuracy && i > 3)) break;
+    previous = middle;
+    if ((now < 0) == (at_high < 0)) {
+      high = middle;
+      at_high = now;
+      if (side == 1) at_low /= 2;
+      side = 1;
+    } else {
+      low = middle;
+      at_low = now;
+      if (side == -1) at_high /= 2;
+      side = -1;
+    }
+  }
+  return {std::move(at), found};
+}
+
+Eigen::VectorXd BranchFollower::difference(const BranchState& a, const BranchState& b) const {
+  Eigen::VectorXd out(system_.nv + 1);
+  out.head(system_.nv) = scaled_difference(family_.problem(), a.z.q, b.z.q);
+  out[system_.nv] = (b.parameter - a.parameter) / family_.scale();
+  return out;
+}
+
+bool BranchFollower::same(const BranchState& a, const BranchState& b) const {
+  return std::abs(a.parameter - b.parameter) < 1e-6 * family_.scale() &&
+         same_pose(family_.problem(), a.z.q, b.z.q, 1e-5);
+}
+
+bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& branch) {
+  const double near = 2 * options_.largest_step;
+  const BranchState* nearest = nullptr;
+  Eigen::VectorXd way;
+  double least = near;
+  for (const BranchState& s : branch.states) {
+    if (std::abs(s.parameter - state.parameter) > near * family_.scale()) continue;
+    const Eigen::VectorXd d = difference(s, state);
+    if (d.norm() < least) {
+      least = d.norm();
+      way = d;
+      nearest = &s;
+    }
+  }
+  if (!nearest) return false;
+  if (same(*nearest, state)) return true;
+  // Beyond its ends it may go on as another branch: the two halves of a pitchfork are one curve.
+  const double along = nearest->tangent.dot(way);
+  if (nearest == &branch.states.front() && along < -branch.lead) return false;
+  if (nearest == &branch.states.back() && along > 0 && !branch.closed) return false;
+  BranchState there;
+  int iterations = 0;
+  return continuation_.step(*nearest, along, there, iterations) &&
+         difference(there, state).norm() < 1e-2 * least;
+}
+
+bool BranchFollower::out_of_reach(const BranchState& s) const {
+  return std::ranges::any_of(system_.links, [&](const Link& link) {
+    return link.type == LinkType::prismatic && link.q >= 0 &&
+           std::abs(s.z.q[link.q]) > 100 * family_.problem().parameters.length;
+  });
+}
+
+void BranchFollower::land_on_border(const BranchState& state, double border, FollowedBranch& out) {
+  if (std::abs(state.parameter - border) < 1e-12 * family_.scale()) return;
+  BranchState last = state;
+  last.parameter = border;
+  if (!continuation_.land(last) || !same_pose(family_.problem(), last.z.q, state.z.q, 0.2)) return;
+  out.points.push_back(point(last));
+  out.states.push_back(std::move(last));
+}
+
+FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
+  FollowedBranch out;
+  const BranchState origin = state;
+  Described now = describe(state);
+  out.points.push_back(now.point);
+  out.states.push_back(state);
+  double length = options_.largest_step / 4;
+  out.end = "the largest number of points";
+  for (int i = 1; i < options_.max_points; ++i) {
+    if (cancelled()) {
+      out.end = "cancelled";
+      break;
+    }
+    BranchState next;
+    int iterations = 0;
+    const bool stepped = continuation_.step(state, length, next, iterations);
+    if (!stepped || next.tangent.dot(state.tangent) < 0.97) {
+      length /= 2;
+      if (length > 1e-9) continue;
+      out.end = "the corrector fails: the loops lock or a part of the mechanism becomes singular";
+      break;
+    }
+    const double p = position(next.parameter);
+    if (p > 1 || p < 0) {
+      land_on_border(state, p > 1 ? to_ : from_, out);
+      out.end = p > 1 ? "the end of the range" : "the beginning of the range";
+      break;
+    }
+    Described then = describe(next);
+    find_specials(state, next, length, now, then, out);
+    out.points.push_back(then.point);
+    out.states.push_back(next);
+    if (tell_progress && options_.progress) options_.progress(p);
+    if (i > 5 && std::abs(next.parameter - origin.parameter) < length * family_.scale() &&
+        same_pose(family_.problem(), next.z.q, origin.z.q, length) &&
+        next.tangent.dot(origin.tangent) > 0.9) {
+      out.end = "closed";
+      out.closed = true;
+      break;
+    }
+    if (out_of_reach(next)) {
+      out.end = "a coordinate leaves all bounds";
+      break;
+    }
+    state = std::move(next);
+    now = std::move(then);
+    length = std::min(options_.largest_step, length * (iterations <= 3 ? 1.5 : iterations > 5 ? 0.6 : 1.));
+  }
+  return out;
+}
+
+void BranchFollower::find_specials(const BranchState& state, const BranchState& next, double length,
+                                   const Described& now, const Described& then, FollowedBranch& out) {
+  bool explained = false;
+  if (state.turning * next.turning < 0) {
+    // At a crossing the tangent can jump; a fold's own balance stays regular.
+    const BranchState at =
+        locate(state, 0, state.turning, length, next.turning, next, [](const BranchState& s) {
+          return s.turning;
+        }).first;
+    out.special.emplace_back(SpecialPointType::fold, point(at));
+    explained = true;
+  }
+  if (state.determinant * next.determinant < 0) {
+    BranchState at =
+        locate(state, 0, state.determinant, length, next.determinant, next, [](const BranchState& s) {
+          return s.determinant;
+        }).first;
+    // At the crossing itself the balance has two tangents; this is the branch's own.
+    at.tangent = state.tangent;
+    out.special.emplace_back(SpecialPointType::branch_point, point(at));
+    out.crossings.push_back(std::move(at));
+    explained = true;
+  }
+  if (explained || now.right == then.right || !options_.eigenvalues) return;
+  const bool damped = now.damped || then.damped;
+  const BranchState at = locate_crossing_pair(state, next, length, now.right, damped);
+  out.special.emplace_back(damped ? SpecialPointType::hopf : SpecialPointType::flutter, point(at));
+}
+
+// Where eigenvalues cross the imaginary axis: first by their number, which a tolerance blurs, then, where
+// there is damping, by the real part of the pair that crosses.
+BranchState BranchFollower::locate_crossing_pair(const BranchState& state, const BranchState& next,
+                                                 double length, int right_before, bool damped) {
+  const auto [coarse, at] = locate(state, 0, -1, length, 1, next, [&](const BranchState& s) {
+    return describe(s).right != right_before ? 1. : -1.;
+  });
+  if (!damped) return coarse;
+  std::complex<double> reference = 0;
+  double closest = std::numeric_limits<double>::infinity();
+  for (const auto& e : describe(coarse).point.eigenvalues)
+    if (e.imag() > 0 && std::abs(e.real()) < closest * std::abs(e)) {
+      closest = std::abs(e.real()) / std::abs(e);
+      reference = e;
+    }
+  const auto real_part = [&](const BranchState& s) {
+    const auto eigenvalues = describe(s).point.eigenvalues;
+    return std::ranges::min_element(eigenvalues, {},
+                                    [&](std::complex<double> e) { return std::abs(e - reference); })
+        ->real();
+  };
+  if (reference == 0.) return coarse;
+  double low = std::max(0., at - 0.01 * length), high = std::min(length, at + 0.01 * length);
+  BranchState a, b;
+  int iterations = 0;
+  if (!continuation_.step(state, low, a, iterations) || !continuation_.step(state, high, b, iterations))
+    return coarse;
+  const double at_low = real_part(a), at_high = real_part(b);
+  if (!(at_low * at_high < 0)) return coarse;
+  return locate(state, low, at_low, high, at_high, coarse, real_part).first;
+}
+
+std::optional<BranchState> BranchFollower::off(const BranchState& crossing, double length) {
+  BranchState first;
+  if (!continuation_.switch_branch(crossing, length, first)) return {};
+  if (position(first.parameter) < 0 || position(first.parameter) > 1) return {};
+  return first;
+}
+
+} // namespace flyball

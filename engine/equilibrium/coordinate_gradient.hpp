@@ -1,0 +1,22 @@
+// How the value that a joint labels a coordinate with changes along steps of q_R.
+#pragma once
+
+#include "engine/system/kinematics.hpp"
+
+namespace flyball {
+
+// Gradient of coordinate_value by the entries of a step of q_R, unscaled: 1 at its own entry, and of a
+// component of a rotation vector its row of the inverse Jacobian. Zero where it is driven.
+Eigen::VectorXd coordinate_gradient(const System& system, const Parameters& parameters,
+                                    const Eigen::VectorXd& q, const CoordinateInfo& coordinate);
+
+// `coordinate`'s value less a wanted one, rad or m; of an angle that is the same after a whole turn (no
+// spring or stop) the short way round.
+double away_from(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate,
+                 double value, double wanted);
+
+// The free coordinate named "joint" or "joint.index". Throws SceneError where there is none, or where it is
+// driven.
+const CoordinateInfo& free_coordinate(const System& system, const std::string& name);
+
+} // namespace flyball

@@ -1,0 +1,220 @@
+#include "engine/study/design.hpp"
+
+#include "engine/equilibrium/all_equilibria.hpp"
+#include "engine/equilibrium/branch_follower.hpp"
+#include "engine/equilibrium/coordinate_gradient.hpp"
+#include "engine/equilibrium/drive_cuts.hpp"
+#include "engine/equilibrium/extended_balance.hpp"
+#include "engine/equilibrium/report.hpp"
+#include "engine/equilibrium/sensitivity.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/mechanism/validate.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace flyball {
+namespace {
+
+class Designer {
+ public:
+  Designer(const Mechanism& mechanism, const std::string& address, double from, double to,
+           const std::string& coordinate, double value, const DesignOptions& options)
+      : mechanism_(mechanism), address_(address), from_(from), to_(to), name_(coordinate), value_(value),
+        options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from), notes_)),
+        wanted_(free_coordinate(system_, coordinate)),
+        balance_(system_, with_parameter(mechanism, address, from), {address},
+                 Eigen::VectorXd::Constant(1, std::abs(to - from)), {coordinate_is(wanted_, value)}) {}
+
+  DesignAnswer run() {
+    const auto begin = std::chrono::steady_clock::now();
+    const TreeJoint& joint = system_.tree_joints[static_cast<std::size_t>(wanted_.tree_joint)];
+    out_.coordinate = {joint.name, wanted_.index, coordinate_count(joint.type), wanted_.angle, false, value_,
+                       0};
+    BranchOptions follow;
+    follow.largest_step = options_.largest_step;
+    follow.eigenvalues = false;
+    follow.all = options_.all;
+    follow.cancel = options_.cancel;
+    follow.progress = options_.progress;
+    diagram_ = follow_branches(mechanism_, address_, from_, to_, follow);
+    out_.status = diagram_.status;
+    out_.message = diagram_.message;
+    if (!diagram_.branches.empty()) {
+      find_range();
+      for (std::size_t b = 0; b < diagram_.branches.size() && !cancelled(); ++b)
+        along(b);
+      conclude();
+    }
+    out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::move(out_);
+  }
+
+ private:
+  bool cancelled() const { return options_.cancel && options_.cancel->load(std::memory_order_relaxed); }
+  double unit() const { return wanted_.angle ? 1 : balance_.problem().parameters.length; }
+  double away(double value) const {
+    return away_from(system_, balance_.problem().parameters, wanted_, value, value_);
+  }
+  double value_of(const ResponsePoint& p) const {
+    const auto& joint = out_.coordinate.joint;
+    return std::ranges::find_if(
+               p.coordinates,
+               [&](const CoordinateSolution& c) { return c.joint == joint && c.index == wanted_.index; })
+        ->value;
+  }
+
+  void find_range() {
+    out_.lowest = std::numeric_limits<double>::infinity();
+    out_.highest = -out_.lowest;
+    for (const ResponseBranch& b : diagram_.branches)
+      for (const ResponsePoint& p : b.points) {
+        out_.lowest = std::min(out_.lowest, value_of(p));
+        out_.highest = std::max(out_.highest, value_of(p));
+      }
+  }
+
+  // Brackets every crossing of the wanted value on a branch, and where it turns close by.
+  void along(std::size_t branch) {
+    const std::vector<ResponsePoint>& points = diagram_.branches[branch].points;
+    std::vector<double> d;
+    for (const ResponsePoint& p : points)
+      d.push_back(away(value_of(p)) / unit());
+    for (std::size_t i = 0; i < d.size() && !cancelled(); ++i) {
+      const bool last = i + 1 == d.size();
+      if (!last && std::abs(d[i]) < 1e-9 && std::abs(d[i + 1]) < 1e-9) {
+        constant_ = true; // nothing singles out one of these parameters
+        continue;
+      }
+      if (last && i > 0 && std::abs(d[i]) < 1e-9 && std::abs(d[i - 1]) < 1e-9) continue;
+      if (d[i] == 0) {
+        solve(branch, points[i], points[i], 0);
+      } else if (!last && d[i] * d[i + 1] < 0 && std::abs(d[i] - d[i + 1]) < 1) {
+        solve(branch, points[i], points[i + 1], d[i] / (d[i] - d[i + 1]));
+      } else if (i > 0 && !last && std::abs(d[i]) <= std::abs(d[i - 1]) &&
+                 std::abs(d[i]) <= std::abs(d[i + 1]) && d[i] * d[i - 1] > 0) {
+        // A turn of the coordinate here may reach the value between the points: where the parabola does.
+        const double slope = (d[i + 1] - d[i - 1]) / 2, bend = d[i + 1] - 2 * d[i] + d[i - 1];
+        const double discriminant = slope * slope - 2 * bend * d[i];
+        if (bend == 0 || discriminant < -0.1 * bend * bend) continue;
+        for (double sign : {-1., 1.}) {
+          const double at = (-slope + sign * std::sqrt(std::max(0., discriminant))) / bend;
+          if (std::abs(at) <= 1) solve(branch, points[i], points[at < 0 ? i - 1 : i + 1], std::abs(at));
+        }
+      }
+    }
+  }
+
+  // From a part of the way between two points of a branch, else from either.
+  void solve(std::size_t branch, const ResponsePoint& a, const ResponsePoint& b, double part) {
+    const double near =
+        std::abs(b.parameter - a.parameter) + 2 * options_.largest_step * std::abs(to_ - from_);
+    for (double t : {part, 0., 1., 0.5}) {
+      ExtendedState state;
+      state.parameters = Eigen::VectorXd::Constant(1, a.parameter + t * (b.parameter - a.parameter));
+      balance_.set(state.parameters);
+      const Problem problem = balance_.problem();
+      state.z.q = configuration_of(problem, a.coordinates);
+      const Eigen::VectorXd other = configuration_of(problem, b.coordinates);
+      const Eigen::VectorXd way =
+          t * scaled_difference(problem, state.z.q, other).cwiseProduct(problem.scaling.column);
+      retract<double>(system_, way, state.z.q);
+      const ExtendedOutcome outcome = balance_.correct(state, {});
+      const double p = state.parameters[0];
+      if (!outcome.converged || std::abs(p - a.parameter) > near) continue;
+      const double edge = 1e-12 * std::abs(to_ - from_);
+      if (p < std::min(from_, to_) - edge || p > std::max(from_, to_) + edge) return;
+      keep(branch, state, outcome);
+      return;
+    }
+  }
+
+  void keep(std::size_t branch, const ExtendedState& state, const ExtendedOutcome& outcome) {
+    const Problem problem = balance_.problem();
+    for (std::size_t i = 0; i < states_.size(); ++i)
+      if (std::abs(states_[i].parameters[0] - state.parameters[0]) < 1e-8 * std::abs(to_ - from_) &&
+          same_pose(problem, states_[i].z.q, state.z.q, 1e-6))
+        return;
+    states_.push_back(state);
+    DesignSolution s;
+    s.parameter = state.parameters[0];
+    const double epsilon = std::numeric_limits<double>::epsilon();
+    const Eigen::VectorXd last = outcome.step.cwiseAbs();
+    s.parameter_error = last[last.size() - 1] * balance_.scales()[0] + 2 * epsilon * std::abs(s.parameter);
+    const Eigen::VectorXd error =
+        last.head(system_.nv).cwiseProduct(problem.scaling.column) + 4 * epsilon * problem.scaling.column;
+    s.residual = outcome.residual;
+    s.iterations = outcome.iterations;
+    s.branch = static_cast<int>(branch);
+    s.connected = diagram_.branches[branch].connected;
+    Workspace& w = balance_.workspace();
+    s.at = response_point(balance_.mechanism(), problem, state.z, error, {true, true}, w);
+    s.at.parameter = s.parameter;
+    const Eigen::VectorXd rate = sensitivity(problem, balance_.mechanism(), state.z, address_, w);
+    if (rate.size() > 0)
+      s.rate = coordinate_gradient(system_, problem.parameters, state.z.q, wanted_).dot(rate);
+    out_.solutions.push_back(std::move(s));
+  }
+
+  void conclude() {
+    std::ranges::stable_sort(out_.solutions, [](const DesignSolution& a, const DesignSolution& b) {
+      const bool x = a.at.stable == true, y = b.at.stable == true;
+      if (x != y) return x;
+      return a.connected != b.connected ? a.connected : a.parameter < b.parameter;
+    });
+    const std::string unit = wanted_.angle ? " rad" : " m";
+    const auto text = [&](double v) { return number_text(v) + unit; };
+    const std::string limits = address_ + " from " + number_text(from_) + " to " + number_text(to_);
+    const char* open = options_.all
+                           ? " The search for branches is bounded; there may be more."
+                           : " Branches that nothing connects with the drawn pose's were not followed.";
+    if (!out_.solutions.empty()) {
+      const auto n = out_.solutions.size();
+      out_.status = Status::converged;
+      out_.message =
+          std::to_string(n) + (n == 1 ? " solution" : " solutions") + " with " + limits + "." + open;
+    } else if (cancelled()) {
+      out_.status = Status::not_converged;
+      out_.message = "Cancelled.";
+    } else if (constant_) {
+      out_.status = Status::not_converged;
+      out_.message =
+          name_ + " is " + text(value_) + " all along a branch: no value of " + address_ + " is singled out.";
+    } else {
+      out_.status = Status::not_converged;
+      out_.message = name_ + " never is " + text(value_) + " with " + limits + ": it covers " +
+                     text(rounded(out_.lowest)) + " to " + text(rounded(out_.highest)) + "." + open;
+    }
+  }
+  // For a sentence: six digits.
+  static double rounded(double v) {
+    if (v == 0 || !std::isfinite(v)) return v;
+    const double step = std::pow(10., std::floor(std::log10(std::abs(v))) - 5);
+    return step < 1 ? std::round(v / step) / std::round(1 / step) : std::round(v / step) * step;
+  }
+
+  const Mechanism& mechanism_;
+  const std::string& address_;
+  double from_, to_;
+  const std::string& name_;
+  double value_;
+  const DesignOptions& options_;
+  std::vector<std::string> notes_;
+  System system_;
+  const CoordinateInfo& wanted_;
+  ExtendedBalance balance_;
+  ResponseDiagram diagram_;
+  std::vector<ExtendedState> states_;
+  bool constant_ = false;
+  DesignAnswer out_;
+};
+
+} // namespace
+
+DesignAnswer design(const Mechanism& mechanism, const std::string& address, double from, double to,
+                    const std::string& coordinate, double value, const DesignOptions& options) {
+  return Designer(mechanism, address, from, to, coordinate, value, options).run();
+}
+
+} // namespace flyball

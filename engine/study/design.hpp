@@ -1,0 +1,45 @@
+// Design mode: the value of a parameter at which a coordinate stands where it is wanted. "At which speed is
+// the collar at 0.12 m?"
+//
+// The branches over the parameter's range are followed, every crossing of the wanted value is bracketed on
+// them, and each is solved by Newton-Raphson on the balance together with q = v, the parameter among the
+// unknowns, with residuals in extended precision.
+#pragma once
+
+#include "engine/equilibrium/branches.hpp"
+
+namespace flyball {
+
+struct DesignOptions {
+  bool all = true;            // on disconnected branches, too
+  double largest_step = 0.02; // of the branches, scaled
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(double part)> progress; // along the first branch
+};
+
+struct DesignSolution {
+  double parameter = 0;       // in its unit
+  double parameter_error = 0; // estimated, absolute
+  double residual = 0;        // scaled, of the balance and of q = v, in extended precision
+  int iterations = 0;         // of the Newton-Raphson run that ends here
+  std::optional<double> rate; // d coordinate / d parameter (rad or m per its unit); none at a fold
+  int branch = 0;             // in the diagram
+  bool connected = true;      // ResponseBranch::connected
+  ResponsePoint at;           // coordinates with errors, stability, eigenvalues, reactions, drive torques
+};
+
+struct DesignAnswer {
+  Status status = Status::not_converged; // converged: at least one solution; else `message` says why not
+  std::string message;                   // a sentence or two; the range covered where v is never reached
+  std::vector<DesignSolution> solutions; // stable ones first, then connected ones, then by parameter
+  CoordinateSolution coordinate;         // name and kind of the coordinate; `value` as wanted
+  double lowest = 0, highest = 0;        // rad or m: what the coordinate covers on the branches followed
+  double run_time_s = 0;
+};
+
+// `coordinate` is "joint" or "joint.index", `value` in rad or m (angles without spring or stop modulo
+// turns). Throws SceneError for an address or a coordinate that does not exist or is driven.
+DesignAnswer design(const Mechanism& mechanism, const std::string& address, double from, double to,
+                    const std::string& coordinate, double value, const DesignOptions& options = {});
+
+} // namespace flyball

@@ -1,0 +1,219 @@
+// The map of two parameters, as a person uses it.
+#include "robot.hpp"
+
+#include "app/panels/map_control.hpp"
+#include "app/panels/study_panels.hpp"
+#include "app/plot/csv.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr PixelSize wide{1280, 900};
+
+struct MapRobot : Robot {
+  explicit MapRobot(const std::string& scene = "governor") : Robot(wide) {
+    open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    frames(3);
+    key('P');
+    frames(3);
+  }
+  MapState& map() { return app.study.map; }
+};
+
+double solved(Mechanism m, const MapChoice& choice, double x, double y) {
+  set_parameter(m, choice.axes[0].address, x);
+  set_parameter(m, choice.axes[1].address, y);
+  const Solution solution = Analysis(m).solve();
+  for (const CoordinateSolution& c : solution.coordinates)
+    if (solution.status == Status::converged && c.joint == choice.coordinate) return c.value;
+  return NAN;
+}
+
+} // namespace
+
+TEST_CASE("no map before it is asked for, and a closed one is gone but for what was chosen") {
+  Robot robot(wide);
+  CHECK_FALSE(robot.app.study.map.cells_task);
+  robot.key('P');
+  robot.frames(2);
+  REQUIRE(robot.app.study.map.cells);
+  robot.app.study.map.choice.axes[0].count = 21;
+  robot.click("study/close");
+  CHECK_FALSE(robot.app.study.map.cells_task);
+  CHECK_FALSE(robot.app.study.map.curves_task);
+  CHECK_FALSE(robot.app.study.map.cells);
+  CHECK_FALSE(robot.app.study.map.curves);
+  CHECK(robot.app.study.map.choice.axes[0].count == 21);
+}
+
+TEST_CASE("every place of the map is what a solve of its own gives") {
+  MapRobot robot;
+  const FoundCells& found = *robot.map().cells;
+  const MapChoice& choice = found.choice;
+  CHECK(choice.axes[0].address == "joints.spin.drive.speed");
+  const auto columns = static_cast<std::size_t>(choice.axes[0].count);
+  REQUIRE(found.cells.size() == columns * static_cast<std::size_t>(choice.axes[1].count));
+  const Plot& plot = robot.map().plot;
+  REQUIRE(plot.heat);
+  for (std::size_t i = 7; i < found.cells.size(); i += 173) {
+    CAPTURE(i);
+    const double x = plot.heat->x[i % columns], y = plot.heat->y[i / columns];
+    const double expected = solved(robot.app.mechanism(), choice, x, y);
+    if (std::isnan(expected)) {
+      CHECK(std::isnan(found.cells[i].value));
+    } else {
+      CHECK(found.cells[i].value == Approx(expected).epsilon(1e-12));
+      CHECK(plot.heat->values[i] == Approx(expected * (plot.heat->unit == "mm" ? 1000 : 57.29577951308232)));
+    }
+  }
+  CHECK_FALSE(plot.heat->unit.empty());
+  CHECK(plot.x.unit == "rad/s");
+}
+
+TEST_CASE("unstable places are hatched, which is neither read off nor written to a file") {
+  MapRobot robot;
+  const FoundCells& found = *robot.map().cells;
+  const auto unstable = std::ranges::count(found.cells, std::optional(false), &MapCell::stable);
+  REQUIRE(unstable > 0);
+  const Plot& plot = robot.map().plot;
+  const auto hatch = std::ranges::find(plot.curves, std::string("unstable"), &PlotCurve::name);
+  REQUIRE(hatch != plot.curves.end());
+  CHECK(static_cast<std::ptrdiff_t>(hatch->points.size()) == 3 * unstable);
+  CHECK(to_csv(plot, {}).find("unstable") == std::string::npos);
+  CHECK(to_csv(plot, {}).find("map,") != std::string::npos);
+}
+
+TEST_CASE("a click in the map sets both numbers as one step, and the answer is the map's") {
+  MapRobot robot;
+  App& app = robot.app;
+  const MapChoice choice = robot.map().choice;
+  const WidgetRect area = robot.widget("plot/map/area");
+  const std::size_t steps = app.document.position();
+  robot.click(
+      ImVec2{area.from.x + 0.7f * (area.to.x - area.from.x), area.from.y + 0.4f * (area.to.y - area.from.y)});
+  robot.frames(2);
+  CHECK(app.document.position() == steps + 1);
+  std::array<double, 2> place{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const MapAxis& axis = choice.axes[k];
+    place[k] = get_parameter(app.mechanism(), axis.address);
+    const double share = k == 0 ? 0.7 : 0.6;
+    CHECK(place[k] == Approx(axis.from + share * (axis.to - axis.from)).margin(0.01 * (axis.to - axis.from)));
+  }
+  REQUIRE(robot.map().plot.marker);
+  CHECK(robot.map().plot.marker->x == place[0]);
+  CHECK(robot.map().plot.marker->y == place[1]);
+  const CoordinateSolution* shown = map_coordinate(app);
+  REQUIRE(shown);
+  CHECK(shown->value == Approx(solved(app.mechanism(), choice, place[0], place[1])).epsilon(1e-9));
+  // Moving in its own plane does not compute the map anew.
+  CHECK_FALSE(robot.map().stale);
+  undo(app);
+  CHECK(get_parameter(app.mechanism(), choice.axes[0].address) != place[0]);
+}
+
+TEST_CASE("what is chosen is computed; a value that a number cannot have is refused in words") {
+  MapRobot robot;
+  App& app = robot.app;
+  robot.map().choice.axes[0].count = 5;
+  robot.map().choice.axes[1].count = 4;
+  robot.frames(2);
+  CHECK(robot.map().cells->cells.size() == 20);
+  change_parameter(app, "joints.slide.spring.stiffness", 1234);
+  robot.frames(3); // an axis of the map: the same map
+  const std::vector<MapCell> before = robot.map().cells->cells;
+  edit(app, "Heavier", [](Mechanism& m, Selection&) { set_parameter(m, "bodies.collar.mass", 3); });
+  robot.frames(3);
+  CHECK(robot.map().cells->cells[10].value != before[10].value);
+  robot.map().choice.axes[1] = {"joints.slide.spring.stiffness", -100, 100, 3};
+  robot.frames(2);
+  const bool refused = !robot.map().problem.empty();
+  const bool solved_all = robot.map().cells->choice.axes[1].from == -100;
+  CHECK(refused != solved_all);
+}
+
+TEST_CASE("the curve on which the conical pendulum lifts is where speed^2 length = gravity") {
+  MapRobot robot("conical_pendulum");
+  App& app = robot.app;
+  // One slider alone: gravity is the other axis.
+  const MapChoice& choice = robot.map().choice;
+  CHECK(choice.axes[0].address == "joints.spin.drive.speed");
+  CHECK(choice.axes[1].address == "gravity.1");
+  REQUIRE(robot.map().curves);
+  REQUIRE(robot.map().curves->folds);
+  const Body& ball = app.mechanism().bodies[1];
+  const double length = std::hypot(ball.position.x(), 1 - ball.position.y());
+  std::size_t points = 0;
+  for (const PlaneCurve& curve : robot.map().curves->folds->curves)
+    for (const PlanePoint& p : curve.points) {
+      if (std::abs(p.y) < 0.5 || std::abs(p.x) < 0.5) continue;
+      CHECK(p.x * p.x * length == Approx(std::abs(p.y)).epsilon(1e-6));
+      ++points;
+    }
+  CHECK(points > 10);
+  CHECK(
+      std::ranges::any_of(robot.map().plot.curves, [](const PlotCurve& c) { return c.name == "crossings"; }));
+}
+
+TEST_CASE("on the curve of a constant value the coordinate has it") {
+  MapRobot robot;
+  App& app = robot.app;
+  robot.click("map/level");
+  robot.frames(3);
+  REQUIRE(robot.map().choice.level);
+  REQUIRE(robot.map().curves);
+  REQUIRE(robot.map().curves->level);
+  const double level = *robot.map().choice.level;
+  std::size_t points = 0;
+  for (const PlaneCurve& curve : robot.map().curves->level->curves)
+    for (const PlanePoint& p : curve.points)
+      for (const CoordinateSolution& c : p.coordinates)
+        if (c.joint == robot.map().choice.coordinate) {
+          CHECK(c.value == Approx(level).epsilon(1e-9));
+          ++points;
+        }
+  CHECK(points > 5);
+  // It is drawn, with its value and unit in the legend.
+  CHECK(std::ranges::any_of(robot.map().plot.curves,
+                            [&](const PlotCurve& c) { return c.name.starts_with("arm1 = 45.012"); }));
+  CHECK(app.widgets.count("map/level/value") == 1);
+}
+
+TEST_CASE("a map in the background tells its progress, can be stopped, and goes with its tab") {
+  App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
+  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  const auto wait = [&](const auto& until) {
+    for (int i = 0; i < 3000 && !until(); ++i) {
+      update(app, 0.01, {400, 300});
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    REQUIRE(until());
+  };
+  wait([&] { return app.answer.ticket != 0; });
+  app.study.map.choice.folds = false;
+  open_study(app, Study::map);
+  wait([&] { return app.study.map.cells.has_value(); });
+  CHECK(map_progress(app) == 1);
+  for (MapAxis& axis : app.study.map.choice.axes)
+    axis.count = 401; // 160 801 solves: some seconds
+  update(app, 0.01, {400, 300});
+  CHECK(computing_map(app));
+  CHECK(studying(app));
+  wait([&] { return map_progress(app) < 1; });
+  cancel_map(app);
+  wait([&] { return !computing_map(app) && !app.study.map.problem.empty(); });
+  CHECK(app.study.map.problem == "Computing the map was stopped.");
+  CHECK(app.study.map.cells->cells.size() == 41 * 41); // what there was stays
+  compute_map(app);
+  open_study(app, Study::none); // does not wait for the end
+  CHECK_FALSE(app.study.map.cells_task);
+}

@@ -1,0 +1,233 @@
+// The modes of the state that is shown, moving in the view, and the Campbell diagram.
+#include "robot.hpp"
+
+#include "app/panels/campbell.hpp"
+#include "app/panels/modes_control.hpp"
+#include "app/panels/study_panels.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr PixelSize wide{1280, 900};
+
+struct ModesRobot : Robot {
+  explicit ModesRobot(const std::string& scene) : Robot(wide) {
+    open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    frames(3);
+    key('O');
+    frames(3);
+  }
+  const std::vector<VibrationMode>& modes() { return app.study.modes.result->modes; }
+  // The first that swings.
+  std::size_t swinging() {
+    const auto found = std::ranges::find_if(modes(), &VibrationMode::oscillates);
+    REQUIRE(found != modes().end());
+    return static_cast<std::size_t>(found - modes().begin());
+  }
+};
+
+// How far the ends of a distance joint are from where they belong, in these poses (m).
+double opened(const Mechanism& m, const std::vector<Pose>& drawn, const std::vector<Pose>& poses) {
+  double worst = 0;
+  for (const Joint& joint : m.joints) {
+    if (joint.type != JointType::distance) continue;
+    REQUIRE(joint.length);
+    std::array<Vec3, 2> at;
+    for (std::size_t end = 0; end < 2; ++end) {
+      const int b = body_index(m, joint.bodies[end]);
+      const auto i = static_cast<std::size_t>(b);
+      at[end] = b < 0
+                    ? joint.points[end]
+                    : Vec3(poses[i].position + poses[i].rotation * (drawn[i].rotation.inverse() *
+                                                                    (joint.points[end] - drawn[i].position)));
+    }
+    worst = std::max(worst, std::abs((at[1] - at[0]).norm() - *joint.length));
+  }
+  return worst;
+}
+
+} // namespace
+
+TEST_CASE("no modes before they are asked for, and a closed study leaves nothing that moves") {
+  Robot robot(wide);
+  CHECK_FALSE(robot.app.study.modes.task);
+  CHECK_FALSE(robot.app.study.modes.campbell.task);
+  robot.key('O');
+  robot.frames(2);
+  REQUIRE(robot.app.study.modes.result);
+  robot.click("modes/row/1");
+  CHECK_FALSE(robot.app.study.modes.poses.empty());
+  CHECK(in_motion(robot.app));
+  robot.click("study/close");
+  const ModesState& modes = robot.app.study.modes;
+  CHECK_FALSE(modes.task);
+  CHECK_FALSE(modes.result);
+  CHECK_FALSE(modes.campbell.task);
+  CHECK(modes.poses.empty());
+  CHECK_FALSE(in_motion(robot.app));
+  CHECK(view_frame(robot.app).motion.empty());
+}
+
+TEST_CASE("the governor's modes are its eigenvalues, and agree with its potential") {
+  ModesRobot robot("governor");
+  const App& app = robot.app;
+  REQUIRE(app.answer.solution.eigenvalues);
+  for (const VibrationMode& mode : robot.modes()) {
+    double nearest = 1e300;
+    for (const std::complex<double>& s : *app.answer.solution.eigenvalues)
+      nearest = std::min(nearest, std::abs(s - mode.eigenvalue));
+    CHECK(nearest < 1e-6 * (1 + mode.natural_frequency));
+    CHECK_FALSE(grows(mode));
+  }
+  REQUIRE(app.study.modes.result->evidence);
+  CHECK(app.study.modes.result->evidence->agree);
+  robot.widget("modes/verdict");
+  robot.widget("modes/row/1");
+}
+
+TEST_CASE("a chosen mode moves about the steady state, and the governor's links keep their lengths") {
+  ModesRobot robot("governor");
+  App& app = robot.app;
+  robot.click("modes/row/1");
+  REQUIRE(moving_mode(app));
+  const std::vector<Pose> drawn = drawn_poses(app.mechanism());
+  double furthest = 0;
+  std::vector<Vec3> seen;
+  for (int i = 0; i < 40; ++i) {
+    robot.frames(1, 0.05);
+    const std::vector<Pose>& poses = app.study.modes.poses;
+    REQUIRE(poses.size() == app.poses.size());
+    CHECK(opened(app.mechanism(), drawn, poses) < 1e-9);
+    for (std::size_t b = 0; b < poses.size(); ++b)
+      furthest = std::max(furthest, (poses[b].position - app.poses[b].position).norm());
+    seen.push_back(poses[1].position);
+  }
+  CHECK(furthest > 0.005);
+  CHECK(furthest < 0.2);
+  CHECK((seen.front() - seen[10]).norm() > 1e-4);
+  // Amber beside the solid one.
+  const ViewFrame frame = view_frame(app);
+  CHECK(frame.motion.size() == app.poses.size());
+  CHECK(frame.poses.size() == app.poses.size());
+  CHECK(frame.ghost.empty());
+  // A larger amplitude is more.
+  app.study.modes.playing = false;
+  app.study.modes.phase = 0;
+  robot.frames(2);
+  const double before = (app.study.modes.poses[1].position - app.poses[1].position).norm();
+  robot.drag("modes/amplitude", {0.3f, 0.5f}, {0.6f, 0.5f});
+  robot.frames(2);
+  CHECK((app.study.modes.poses[1].position - app.poses[1].position).norm() > 1.5 * before);
+  // The same row again: nothing moves.
+  robot.click("modes/row/1");
+  CHECK_FALSE(moving_mode(app));
+  CHECK(app.study.modes.poses.empty());
+}
+
+TEST_CASE("Space pauses a mode and plays it on, at a pace that can be watched") {
+  ModesRobot robot("governor");
+  App& app = robot.app;
+  const std::size_t swinging = robot.swinging();
+  robot.click("modes/row/" + std::to_string(swinging + 1));
+  const double period = shown_period(robot.modes()[swinging]);
+  CHECK(period >= 0.8);
+  CHECK(period <= 4);
+  const double begin = app.study.modes.phase;
+  robot.frames(5, period / 20);
+  CHECK(std::remainder(app.study.modes.phase - begin - std::numbers::pi / 2, 2 * std::numbers::pi) ==
+        Approx(0).margin(1e-9));
+  robot.key(' ');
+  CHECK_FALSE(app.study.modes.playing);
+  CHECK_FALSE(app.playback.playing); // the drives did not start instead
+  const double phase = app.study.modes.phase;
+  robot.frames(3, 0.1);
+  CHECK(app.study.modes.phase == phase);
+  robot.key(' ');
+  robot.frames(1, 0.1);
+  CHECK(app.study.modes.phase != phase);
+}
+
+TEST_CASE("an unstable state's growing mode is marked") {
+  ModesRobot robot("conical_pendulum");
+  App& app = robot.app;
+  CHECK(std::ranges::none_of(robot.modes(), grows));
+  go_to_state(app, "", 0, {{"swing", 0}});
+  robot.frames(3);
+  REQUIRE(app.answer.solution.stable == false);
+  CHECK(modes_are_current(app));
+  CHECK(std::ranges::any_of(robot.modes(), grows));
+}
+
+TEST_CASE("Campbell lines are continuous, and agree with the modes where the mechanism is") {
+  ModesRobot robot("rate_gyro");
+  App& app = robot.app;
+  const CampbellState& campbell = app.study.modes.campbell;
+  REQUIRE(campbell.result);
+  REQUIRE_FALSE(campbell.plot.curves.empty());
+  double highest = 0;
+  for (const PlotCurve& curve : campbell.plot.curves)
+    for (const auto& p : curve.points)
+      if (std::isfinite(p[1])) highest = std::max(highest, p[1]);
+  int lines = 0;
+  for (const PlotCurve& curve : campbell.plot.curves) {
+    if (!curve.name.starts_with("mode")) continue;
+    ++lines;
+    for (std::size_t i = 1; i < curve.points.size(); ++i)
+      if (std::isfinite(curve.points[i][1]) && std::isfinite(curve.points[i - 1][1]))
+        CHECK(std::abs(curve.points[i][1] - curve.points[i - 1][1]) < 0.1 * highest);
+  }
+  CHECK(lines > 0);
+  // Each mode that swings lies on a line at the present speed.
+  const double speed = get_parameter(app.mechanism(), campbell.result->drive);
+  for (const VibrationMode& mode : robot.modes()) {
+    if (!mode.oscillates()) continue;
+    double nearest = 1e300;
+    for (const PlotCurve& curve : campbell.plot.curves)
+      for (std::size_t i = 1; i < curve.points.size(); ++i) {
+        const auto &a = curve.points[i - 1], &b = curve.points[i];
+        if (!(std::min(a[0], b[0]) <= speed && speed <= std::max(a[0], b[0])) || a[0] == b[0]) continue;
+        const double y = a[1] + (b[1] - a[1]) * (speed - a[0]) / (b[0] - a[0]);
+        if (curve.name.starts_with("mode")) nearest = std::min(nearest, std::abs(y - hertz(mode.frequency)));
+      }
+    CHECK(nearest < 0.01 * highest);
+  }
+  // In rad/s the same lines are 2 pi times as high.
+  robot.click("campbell/radians");
+  robot.frames(2);
+  CHECK(campbell.plot.y.unit == "rad/s");
+  double angular = 0;
+  for (const PlotCurve& curve : campbell.plot.curves)
+    for (const auto& p : curve.points)
+      if (std::isfinite(p[1])) angular = std::max(angular, p[1]);
+  CHECK(angular == Approx(2 * std::numbers::pi * highest));
+}
+
+TEST_CASE("a click in the Campbell diagram sets the speed") {
+  ModesRobot robot("governor");
+  App& app = robot.app;
+  const std::string speed = "joints.spin.drive.speed";
+  const PlotRange range = campbell_range(app);
+  const WidgetRect area = robot.widget("plot/campbell/area");
+  robot.click(
+      ImVec2{area.from.x + 0.6f * (area.to.x - area.from.x), area.from.y + 0.2f * (area.to.y - area.from.y)});
+  robot.frames(2);
+  const double wanted = range[0] + 0.6 * (range[1] - range[0]);
+  CHECK(get_parameter(app.mechanism(), speed) == Approx(wanted).margin(0.01 * (range[1] - range[0])));
+  // The diagram still holds: only the speed has changed.
+  CHECK(app.study.modes.campbell.current);
+  CHECK(app.study.modes.campbell.results == 1);
+  REQUIRE_FALSE(app.study.modes.campbell.plot.references.empty());
+  CHECK(app.study.modes.campbell.plot.references[0].at == get_parameter(app.mechanism(), speed));
+  // Another number changes it.
+  change_parameter(app, "joints.slide.spring.stiffness", 1500);
+  robot.frames(3);
+  CHECK(app.study.modes.campbell.results == 2);
+}

@@ -1,0 +1,393 @@
+// The response curve as a person uses it: it follows sliders, its marker can be dragged, design mode solves
+// for a parameter, and sensitivities stand below pinned sliders.
+#include "robot.hpp"
+
+#include "app/panels/response_control.hpp"
+#include "app/panels/sensitivity_line.hpp"
+#include "app/panels/study_panels.hpp"
+#include "engine/equilibrium/analysis.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr PixelSize wide{1280, 900};
+const std::string speed = "joints.spin.drive.speed", stiffness = "joints.slide.spring.stiffness";
+
+double coordinate(const std::vector<CoordinateSolution>& all, const std::string& name) {
+  const auto found = std::ranges::find(all, name, &CoordinateSolution::joint);
+  REQUIRE(found != all.end());
+  return found->value;
+}
+
+double present(const App& app, const std::string& name) {
+  REQUIRE(converged(app));
+  return coordinate(app.answer.solution.coordinates, name);
+}
+
+// The response is asked for with the key C.
+struct ResponseRobot : Robot {
+  explicit ResponseRobot(const std::string& scene = "") : Robot(wide) {
+    if (!scene.empty()) open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    frames(2);
+    key('C');
+    frames(3);
+  }
+
+  ResponseState& state() { return app.study.response; }
+  const PlotLayout& layout() {
+    REQUIRE(state().view.kept.layout);
+    return *state().view.kept.layout;
+  }
+  // A place of the plot, in pixels of the window.
+  ImVec2 place(double x, double y) {
+    const WidgetRect area = widget("plot/response/area");
+    const PlotLayout& l = layout();
+    return {area.from.x + static_cast<float>(l.x.pixel(x) - l.area.left),
+            area.from.y + static_cast<float>(l.y.pixel(y) - l.area.top)};
+  }
+  ImVec2 marker() {
+    REQUIRE(state().plot.marker);
+    return place(state().plot.marker->x, state().plot.marker->y);
+  }
+};
+
+// Where the curves of this name go through `x`.
+std::vector<double> crossings(const Plot& plot, const std::string& name, double x) {
+  std::vector<double> out;
+  for (const PlotCurve& curve : plot.curves)
+    for (std::size_t i = 1; curve.name == name && i < curve.points.size(); ++i) {
+      const auto &a = curve.points[i - 1], &b = curve.points[i];
+      if ((a[0] - x) * (b[0] - x) <= 0 && a[0] != b[0])
+        out.push_back(a[1] + (x - a[0]) / (b[0] - a[0]) * (b[1] - a[1]));
+    }
+  // Where x is that of a point, two pieces go through it.
+  std::ranges::sort(out);
+  const auto again = std::ranges::unique(out, [](double a, double b) { return std::abs(a - b) < 1e-9; });
+  out.erase(again.begin(), again.end());
+  return out;
+}
+
+} // namespace
+
+TEST_CASE("without being asked for there is no response curve") {
+  Robot robot(wide);
+  CHECK_FALSE(robot.app.study.response.task);
+  CHECK_FALSE(robot.app.study.response.result);
+  CHECK(robot.app.widgets.count("plot/response/area") == 0);
+}
+
+TEST_CASE("the curve of the governor goes through what solves find at several speeds") {
+  ResponseRobot robot;
+  ResponseState& state = robot.state();
+  REQUIRE(state.result);
+  CHECK(state.address == speed);
+  CHECK(state.quantity == "value slide");
+  CHECK(state.plot.y.unit == "mm");
+  Analysis analysis(robot.app.mechanism());
+  for (const double at : {2.0, 9.0, 11.0174, 16.0, 25.0}) {
+    Mechanism mechanism = robot.app.mechanism();
+    set_parameter(mechanism, speed, at);
+    analysis.update(mechanism);
+    const Solution solution = analysis.solve({});
+    REQUIRE(solution.status == Status::converged);
+    const std::vector<double> found =
+        crossings(state.plot, solution.stable == true ? "stable" : "unstable", at);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0] == Approx(1000 * coordinate(solution.coordinates, "slide")).margin(0.5));
+  }
+  // At its points the curve is exact.
+  for (std::size_t i = 0; i < state.result->lines[0].points.size(); i += 7) {
+    const ResponsePoint& point = state.result->lines[0].points[i];
+    Mechanism mechanism = robot.app.mechanism();
+    set_parameter(mechanism, speed, point.parameter);
+    analysis.update(mechanism);
+    CHECK(coordinate(analysis.solve({}).coordinates, "slide") ==
+          Approx(coordinate(point.coordinates, "slide")).margin(1e-9));
+  }
+}
+
+TEST_CASE("everything that is offered is drawn, and the marker lies on it") {
+  ResponseRobot robot;
+  ResponseState& state = robot.state();
+  const std::vector<ResponseQuantity> offered = offered_quantities(robot.app);
+  CHECK(offered.size() > 10);
+  for (const ResponseQuantity& quantity : offered) {
+    CAPTURE(quantity.key);
+    choose_quantity(robot.app, quantity);
+    robot.frames(2);
+    CHECK(state.plot.y.label == quantity.title);
+    CHECK(state.plot.y.unit == quantity.unit);
+    CHECK_FALSE(quantity.unit.empty());
+    REQUIRE(state.plot.marker);
+    const double x = state.plot.marker->x, y = state.plot.marker->y;
+    CHECK(x == 11.0174);
+    double nearest = 1e300, lowest = 1e300, highest = -1e300;
+    for (const PlotCurve& curve : state.plot.curves) {
+      for (const double value : crossings(state.plot, curve.name, x))
+        nearest = std::min(nearest, std::abs(value - y));
+      for (const auto& point : curve.points) {
+        lowest = std::min(lowest, point[1]);
+        highest = std::max(highest, point[1]);
+      }
+    }
+    CHECK(nearest <= 0.01 * (highest - lowest) + 1e-9);
+  }
+}
+
+TEST_CASE("the varied slider moves the marker alone, another one the curve") {
+  ResponseRobot robot;
+  App& app = robot.app;
+  ResponseState& state = robot.state();
+  const double x = state.plot.marker->x;
+  const std::uint64_t version = state.version, made = state.plots_made;
+  robot.drag("parameters/" + speed, {0.37f, 0.5f}, {0.6f, 0.5f});
+  CHECK(state.version == version);
+  CHECK(state.plots_made == made);
+  CHECK(state.plot.marker->x > x + 2);
+  CHECK(state.plot.marker->y == Approx(1000 * present(app, "slide")));
+
+  const double before = crossings(state.plot, "stable", 20).at(0);
+  robot.drag("parameters/" + stiffness, {0.5f, 0.5f}, {0.7f, 0.5f});
+  CHECK(state.version > version);
+  CHECK(std::abs(crossings(state.plot, "stable", 20).at(0) - before) > 1);
+  CHECK(crossings(state.plot, "stable", state.plot.marker->x).at(0) ==
+        Approx(state.plot.marker->y).margin(0.5));
+  // Back with undo.
+  undo(app);
+  robot.frames(2);
+  CHECK(crossings(state.plot, "stable", 20).at(0) == Approx(before).margin(0.1));
+}
+
+TEST_CASE("the marker dragged along the curve moves parameter and mechanism as one step") {
+  ResponseRobot robot;
+  App& app = robot.app;
+  ResponseState& state = robot.state();
+  const std::size_t steps = app.document.position();
+  const double before = present(app, "slide");
+  const double y = crossings(state.plot, "stable", 18).at(0);
+  robot.drag(robot.marker(), robot.place(18, y));
+  CHECK(app.document.position() == steps + 1);
+  const double now = get_parameter(app.mechanism(), speed);
+  CHECK(now == Approx(18).margin(0.3));
+  CHECK(std::abs(present(app, "slide") - before) > 0.002);
+  CHECK(1000 * present(app, "slide") == Approx(crossings(state.plot, "stable", now).at(0)).margin(0.5));
+  // What the hand sets has digits that a hand can mean.
+  CHECK(now * 1000 == Approx(std::round(now * 1000)).margin(1e-9));
+  undo(app);
+  robot.frames(2);
+  CHECK(get_parameter(app.mechanism(), speed) == 11.0174);
+  CHECK(present(app, "slide") == Approx(before));
+}
+
+TEST_CASE("the conical pendulum: drawn as a fork, and dragged onto the unstable branch") {
+  ResponseRobot robot("conical_pendulum");
+  App& app = robot.app;
+  ResponseState& state = robot.state();
+  REQUIRE(state.result);
+  REQUIRE(state.plot.marks.size() == 1);
+  CHECK_THAT(state.plot.marks[0].label, ContainsSubstring("branch point 3.742"));
+  CHECK_THAT(state.plot.marks[0].label, ContainsSubstring("rad/s"));
+  CHECK(crossings(state.plot, "stable", 2).size() == 1);
+  CHECK(crossings(state.plot, "stable", 6).size() == 2);
+  REQUIRE(crossings(state.plot, "unstable", 6).size() == 1);
+  CHECK(crossings(state.plot, "undecided", 6).empty());
+  // Stable as solved at first; dragged along to the straight state above the branch point.
+  CHECK(app.answer.solution.stable == true);
+  robot.drag(robot.marker(), robot.place(6, 0));
+  CHECK(get_parameter(app.mechanism(), speed) == Approx(6).margin(0.1));
+  CHECK(present(app, "swing") == Approx(0).margin(1e-9));
+  CHECK(app.answer.solution.stable == false);
+  CHECK(app.on_branch);
+
+  SECTION("sliders follow the branch, until the drawn pose is started from again") {
+    change_parameter(app, speed, 8);
+    robot.frames(2);
+    CHECK(present(app, "swing") == Approx(0).margin(1e-9));
+    CHECK(app.answer.solution.stable == false);
+    change_parameter(app, "bodies.bob.mass", 2);
+    robot.frames(2);
+    CHECK(present(app, "swing") == Approx(0).margin(1e-9));
+    robot.click("parameters/restart");
+    CHECK_FALSE(app.on_branch);
+    CHECK(std::abs(present(app, "swing")) > 0.5);
+    CHECK(app.answer.solution.stable == true);
+  }
+  SECTION("a click jumps to another branch") {
+    const std::vector<double> bent = crossings(state.plot, "stable", 8);
+    REQUIRE(bent.size() == 2);
+    for (const double y : bent) {
+      robot.click(robot.place(8, y));
+      CHECK(present(app, "swing") * 180 / std::numbers::pi == Approx(y).margin(1));
+      CHECK(app.answer.solution.stable == true);
+      CHECK(get_parameter(app.mechanism(), speed) == Approx(8).margin(0.1));
+    }
+  }
+  SECTION("undo leaves the branch") {
+    undo(app);
+    robot.frames(2);
+    CHECK_FALSE(app.on_branch);
+    CHECK(app.answer.solution.stable == true);
+  }
+}
+
+TEST_CASE("where a branch ends an ordinary state is shown, and told") {
+  ResponseRobot robot("conical_pendulum");
+  App& app = robot.app;
+  const double y = crossings(robot.state().plot, "stable", 8).at(0);
+  robot.click(robot.place(8, y));
+  REQUIRE(app.on_branch);
+  // Below the branch point there is no bent state.
+  change_parameter(app, speed, 1);
+  robot.frames(2);
+  CHECK(present(app, "swing") == Approx(0).margin(1e-6));
+  CHECK(app.answer.solution.stable == true);
+}
+
+TEST_CASE("another parameter, its own range, and a logarithmic axis") {
+  ResponseRobot robot;
+  App& app = robot.app;
+  ResponseState& state = robot.state();
+  robot.click("response/parameter");
+  robot.click("response/parameter/stiffness of slide");
+  CHECK(state.address == stiffness);
+  CHECK(state.plot.x.logarithmic);
+  CHECK(state.plot.x.unit == "N/m");
+  CHECK(state.from == 50);
+  CHECK(state.to == 20000);
+  CHECK(state.plot.marker->x == 1000);
+  // A click between two points of the curve is one on the curve.
+  const double y = crossings(state.plot, "stable", 3000).at(0);
+  robot.click(robot.place(3000, y));
+  CHECK(get_parameter(app.mechanism(), stiffness) == Approx(3000).epsilon(0.05));
+  // A narrower range is typed.
+  robot.click("response/to");
+  ImGui::GetIO().KeyCtrl = false;
+  robot.key('A', true);
+  robot.type("5 kN/m");
+  robot.key(key_enter);
+  robot.frames(2);
+  CHECK(state.to == 5000);
+  for (const PlotCurve& curve : state.plot.curves)
+    for (const auto& point : curve.points)
+      CHECK(point[0] <= 5000 * (1 + 1e-12));
+}
+
+TEST_CASE("a mechanism without a steady state says why there is no curve") {
+  ResponseRobot robot("conical_pendulum");
+  App& app = robot.app;
+  edit(app, "Tilt", [](Mechanism& mechanism, Selection&) { mechanism.gravity = {3, -9, 0}; });
+  robot.frames(3);
+  CHECK_THAT(response_refusal(app), ContainsSubstring("No steady state: the weight"));
+  CHECK(app.widgets.count("response/problem") == 1);
+  CHECK(app.widgets.count("plot/response/area") == 0);
+  undo(app);
+  robot.frames(3);
+  CHECK(response_refusal(app).empty());
+  CHECK(app.widgets.count("plot/response/area") == 1);
+}
+
+TEST_CASE("a closed response takes everything with it but what was chosen") {
+  ResponseRobot robot;
+  ResponseState& state = robot.state();
+  robot.click("response/quantity");
+  robot.click("response/quantity/value arm1");
+  robot.click("study/close");
+  CHECK(robot.app.study.open == Study::none);
+  CHECK_FALSE(state.task);
+  CHECK_FALSE(state.result);
+  CHECK_FALSE(state.asked);
+  CHECK(state.plot.curves.empty());
+  CHECK(state.pieces.empty());
+  change_parameter(robot.app, stiffness, 900);
+  robot.frames(2);
+  CHECK_FALSE(state.task);
+  robot.key('C');
+  robot.frames(2);
+  CHECK(state.quantity == "value arm1");
+  CHECK_FALSE(state.plot.curves.empty());
+}
+
+TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
+  ResponseRobot robot;
+  App& app = robot.app;
+  ResponseState& state = robot.state();
+  CHECK(state.design.coordinate == "slide");
+  robot.click("response/value");
+  robot.key('A', true);
+  robot.type("0.12 m");
+  robot.key(key_enter);
+  robot.frames(2);
+  REQUIRE(state.design.answer);
+  const DesignAnswer& answer = state.design.answer->found;
+  // Arms that point up have such speeds of their own; first comes what is stable and like the present state.
+  REQUIRE_FALSE(answer.solutions.empty());
+  CHECK(answer.solutions[0].at.stable == true);
+  for (const char* arm : {"arm1", "arm2"})
+    CHECK(coordinate(answer.solutions[0].at.coordinates, arm) == Approx(present(app, arm)).margin(0.5));
+  const double found = answer.solutions[0].parameter;
+  // Solved at that speed, the collar is there.
+  Mechanism mechanism = app.mechanism();
+  set_parameter(mechanism, speed, found);
+  Analysis analysis(mechanism);
+  CHECK(coordinate(analysis.solve({}).coordinates, "slide") == Approx(0.12).margin(1e-12));
+  robot.click("response/solution/1");
+  CHECK(get_parameter(app.mechanism(), speed) == found);
+  CHECK(present(app, "slide") == Approx(0.12).margin(1e-12));
+  // With another spring there is another answer, without asking again.
+  change_parameter(app, stiffness, 800);
+  robot.frames(3);
+  REQUIRE_FALSE(state.design.answer->found.solutions.empty());
+  CHECK(std::abs(state.design.answer->found.solutions[0].parameter - found) > 0.1);
+  // What is never reached is told.
+  state.design.value = 5;
+  robot.click("response/find");
+  CHECK(state.design.answer->found.solutions.empty());
+  CHECK(app.widgets.count("response/never") == 1);
+}
+
+TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
+  Robot robot(wide);
+  App& app = robot.app;
+  for (const std::string& address : {speed, stiffness}) {
+    CAPTURE(address);
+    CHECK(app.widgets.count("parameters/" + address + "/rate") == 1);
+    const std::vector<ShownRate> rates = shown_rates(app, address);
+    REQUIRE(rates.size() == 3);
+    CHECK(rates[0].share >= rates[1].share);
+    const double at = get_parameter(app.mechanism(), address), step = 1e-4 * at;
+    const auto solved = [&](double value) {
+      Mechanism mechanism = app.mechanism();
+      set_parameter(mechanism, address, value);
+      Analysis analysis(mechanism);
+      return analysis.solve({}).coordinates;
+    };
+    const auto above = solved(at + step), below = solved(at - step);
+    for (const ShownRate& rate : rates) {
+      const bool angle = rate.name != "slide";
+      const double expected = (coordinate(above, rate.name) - coordinate(below, rate.name)) / (2 * step) *
+                              (angle ? 180 / std::numbers::pi : 1000);
+      CHECK(rate.value == Approx(expected).epsilon(1e-6));
+      CHECK(rate.unit == std::string(angle ? "°" : "mm") + (address == speed ? "/(rad/s)" : "/(N/m)"));
+    }
+  }
+  // Where there is no steady state there is nothing to tell.
+  open_scene(app, FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  robot.frames(2);
+  CHECK_FALSE(shown_rates(app, speed).empty());
+  CHECK(app.widgets.count("parameters/" + speed + "/rate") == 1);
+  edit(app, "Tilt", [](Mechanism& mechanism, Selection&) { mechanism.gravity = {3, -9, 0}; });
+  robot.frames(2);
+  REQUIRE_FALSE(converged(app));
+  CHECK(shown_rates(app, speed).empty());
+  CHECK(app.widgets.count("parameters/" + speed + "/rate") == 0);
+}

@@ -1,0 +1,162 @@
+// All equilibria of a mechanism in the window, as a person uses the list.
+#include "robot.hpp"
+
+#include "app/panels/states_control.hpp"
+#include "app/panels/study_panels.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr PixelSize wide{1280, 900};
+
+struct StatesRobot : Robot {
+  explicit StatesRobot(const std::string& scene = "conical_pendulum") : Robot(wide) {
+    open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    frames(3);
+    key('E');
+    frames(3);
+  }
+  const std::vector<Solution>& all() { return app.study.states.result->all.equilibria; }
+};
+
+double value(const Solution& solution, const std::string& joint) {
+  for (const CoordinateSolution& c : solution.coordinates)
+    if (c.joint == joint) return c.value;
+  return NAN;
+}
+
+} // namespace
+
+TEST_CASE("nothing is searched before it is asked for, and a closed list is gone") {
+  Robot robot(wide);
+  CHECK_FALSE(robot.app.study.states.task);
+  CHECK(robot.app.widgets.count("study/states") == 0);
+  robot.key('E');
+  robot.frames(2);
+  REQUIRE(robot.app.study.states.result);
+  CHECK_FALSE(robot.app.study.states.result->all.equilibria.empty());
+  robot.click("study/close");
+  CHECK_FALSE(robot.app.study.states.task);
+  CHECK_FALSE(robot.app.study.states.result);
+  CHECK(robot.app.widgets.count("states/row/1") == 0);
+}
+
+TEST_CASE("the conical pendulum's four states are listed: two stable ones aside, two unstable ones upright") {
+  StatesRobot robot;
+  const std::vector<Solution>& all = robot.all();
+  REQUIRE(all.size() == 4);
+  // Its speed of 5 rad/s is above the critical one.
+  const Mechanism& m = robot.app.mechanism();
+  const double length = std::hypot(m.bodies[1].position.x(), 1 - m.bodies[1].position.y());
+  const double angle = std::acos(9.80665 / (25 * length));
+  int aside = 0, upright = 0;
+  for (const Solution& s : all) {
+    const double theta = value(s, "swing");
+    if (s.stable == true) {
+      CHECK(std::abs(theta) == Approx(angle).epsilon(1e-3));
+      ++aside;
+    } else {
+      CHECK(s.stable == false);
+      CHECK(std::min(std::abs(theta), std::abs(std::abs(theta) - std::numbers::pi)) < 1e-9);
+      ++upright;
+    }
+  }
+  CHECK(aside == 2);
+  CHECK(upright == 2);
+  // Lowest potential first, and all of them have a row.
+  CHECK(std::ranges::is_sorted(all, {}, [](const Solution& s) { return s.potential.value(); }));
+  robot.widget("states/row/4");
+  robot.widget("states/search");
+  // The one that is shown is one of the stable ones.
+  const std::optional<std::size_t> shown = shown_state(robot.app);
+  REQUIRE(shown);
+  CHECK(all[*shown].stable == true);
+  robot.widget("states/shown");
+}
+
+TEST_CASE("a click on a row puts the mechanism into that state, stable or not") {
+  StatesRobot robot;
+  App& app = robot.app;
+  const std::uint64_t revision = app.document.revision();
+  for (std::size_t i = 0; i < robot.all().size(); ++i) {
+    CAPTURE(i);
+    robot.click("states/row/" + std::to_string(i + 1));
+    CHECK(shown_state(app) == i);
+    const Solution& wanted = robot.all()[i];
+    CHECK(app.answer.solution.stable == wanted.stable);
+    CHECK(std::remainder(value(app.answer.solution, "swing") - value(wanted, "swing"),
+                         2 * std::numbers::pi) == Approx(0).margin(1e-9));
+    REQUIRE(app.poses.size() == wanted.poses.size());
+    CHECK(app.poses[1].position.isApprox(wanted.poses[1].position, 1e-9));
+  }
+  CHECK(app.document.revision() == revision); // looking is no edit
+}
+
+TEST_CASE("after a change the list is that of the mechanism as it is") {
+  StatesRobot robot;
+  App& app = robot.app;
+  change_parameter(app, "joints.spin.drive.speed", 1); // below the critical speed
+  robot.frames(3);
+  CHECK(states_are_current(app));
+  CHECK(robot.all().size() == 2);
+  // A search that took long is not begun again unasked.
+  app.study.states.result->run_time_s = 10;
+  change_parameter(app, "joints.spin.drive.speed", 5);
+  robot.frames(3);
+  CHECK_FALSE(states_are_current(app));
+  CHECK_FALSE(shown_state(app));
+  CHECK(robot.all().size() == 2);
+  robot.click("states/row/1"); // of another mechanism: not to be chosen
+  CHECK(app.document.revision() == app.study.states.of + 1);
+  robot.click("states/search_again");
+  robot.frames(2);
+  CHECK(states_are_current(app));
+  CHECK(robot.all().size() == 4);
+}
+
+TEST_CASE("a search in the background can be stopped, and what was found before stays") {
+  App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
+  open_scene(app, FLYBALL_ASSETS "/scenes/chain20.json");
+  const auto wait = [&](const auto& until) {
+    for (int i = 0; i < 3000 && !until(); ++i) {
+      update(app, 0.01, {400, 300});
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    REQUIRE(until());
+  };
+  wait([&] { return app.answer.ticket != 0; });
+  open_study(app, Study::states);
+  update(app, 0.01, {400, 300});
+  REQUIRE(app.study.states.task);
+  app.study.states.task->cancel();
+  wait([&] { return !app.study.states.problem.empty(); });
+  CHECK_FALSE(studying(app));
+  CHECK_FALSE(app.study.states.result);
+  CHECK(app.study.states.problem == "The search was stopped.");
+}
+
+TEST_CASE("every shipped scene's list can be shown, in both themes and in a narrow window") {
+  for (const char* scene : {"ball_on_string", "fourbar_turntable", "rate_gyro", "watt_governor"}) {
+    CAPTURE(scene);
+    StatesRobot robot(scene);
+    REQUIRE(robot.app.study.states.result);
+    CHECK(robot.app.study.states.problem.empty());
+    robot.size = {820, 560};
+    robot.frames(3);
+    robot.app.theme = Theme::dark;
+    robot.frames(2);
+    for (const CoordinateSolution& c : robot.app.answer.solution.coordinates)
+      if (!c.driven && !robot.all().empty()) {
+        robot.widget("states/row/1");
+        break;
+      }
+  }
+}

@@ -1,0 +1,135 @@
+// Parameters solved for a wanted coordinate, against closed forms.
+#include "tests/engine/equilibrium_mechanisms.hpp"
+
+#include "engine/mechanism/error.hpp"
+#include "engine/study/design.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+const std::string speed = "joints.spin.drive.speed";
+
+double value_at(const DesignSolution& s, const std::string& joint) {
+  for (const CoordinateSolution& c : s.at.coordinates)
+    if (c.joint == joint) return c.value;
+  FAIL(joint);
+  return 0;
+}
+
+} // namespace
+
+TEST_CASE("the speed at which a conical pendulum leans as wanted", "[design]") {
+  const double length = 0.7;
+  for (const double angle : {0.05, 0.8, 1.3}) {
+    const DesignAnswer answer = design(conical(length, 0, 1), speed, 0, 10, "swing", angle);
+    INFO(answer.message);
+    REQUIRE(answer.status == Status::converged);
+    REQUIRE(answer.solutions.size() == 1);
+    const DesignSolution& s = answer.solutions[0];
+    const double wanted = std::sqrt(standard_gravity / (length * std::cos(angle)));
+    CHECK(std::abs(s.parameter - wanted) <= s.parameter_error);
+    CHECK(s.parameter_error < 1e-13);
+    CHECK(value_at(s, "swing") == Approx(angle).epsilon(1e-14));
+    CHECK(s.at.stable == true);
+    CHECK(s.residual < 1e-13);
+    // cos(a) = g / (w^2 L): da/dw = 2 cos(a) / (w sin(a))
+    REQUIRE(s.rate.has_value());
+    CHECK(*s.rate == Approx(2 * std::cos(angle) / (wanted * std::sin(angle))).epsilon(1e-7));
+    CHECK_FALSE(s.at.reactions.empty());
+  }
+}
+
+TEST_CASE("both branches of a pendulum hinged off the axis answer", "[design]") {
+  // w^2 (o + L sin a) = g tan a. Leaning in by 0.9 and by 0.3 are on the branch that folds, apart from the
+  // drawn pose's; the first is stable.
+  for (const double angle : {-0.9, -0.3, 0.4}) {
+    const DesignAnswer answer = design(conical(0.7, 0.1, 1), speed, 0, 10, "swing", angle);
+    INFO(answer.message);
+    REQUIRE(answer.status == Status::converged);
+    REQUIRE(answer.solutions.size() == 1);
+    const DesignSolution& s = answer.solutions[0];
+    CHECK(
+        s.parameter ==
+        Approx(std::sqrt(standard_gravity * std::tan(angle) / (0.1 + 0.7 * std::sin(angle)))).epsilon(1e-13));
+    CHECK(s.at.stable == (angle != -0.3));
+    CHECK(s.connected == (angle > 0));
+  }
+  DesignOptions connected;
+  connected.all = false;
+  CHECK(design(conical(0.7, 0.1, 1), speed, 0, 10, "swing", -0.9, connected).solutions.empty());
+}
+
+TEST_CASE("the speed at which the governor's collar is at 0.12 m", "[design]") {
+  const Mechanism m = shipped("governor");
+  const DesignAnswer answer = design(m, speed, 0, 30, "slide", 0.12);
+  INFO(answer.message);
+  REQUIRE(answer.status == Status::converged);
+  const auto slide = [](long double a) {
+    return 0.08L * std::sin(a) + std::sqrt(0.10922L * 0.10922L - 0.0064L * std::cos(a) * std::cos(a));
+  };
+  const long double angle = root([&](long double a) { return slide(a) - 0.12L; }, 0.1L, 1.2L);
+  // dV/da + w^2 0.0512 sin(a) cos(a) = 0
+  const long double sine = std::sin(angle), cosine = std::cos(angle);
+  const long double slope =
+      0.08L * cosine + 0.0064L * sine * cosine / std::sqrt(0.10922L * 0.10922L - 0.0064L * cosine * cosine);
+  const long double force =
+      -2 * standard_gravity * 0.16L * cosine + (1000 * (0.12L - 0.15L) - standard_gravity) * slope;
+  const auto wanted = static_cast<double>(std::sqrt(-force / (0.0512L * sine * cosine)));
+  const auto near = std::ranges::find_if(
+      answer.solutions, [&](const DesignSolution& s) { return std::abs(s.parameter - wanted) < 1e-6; });
+  REQUIRE(near != answer.solutions.end());
+  CHECK(std::abs(near->parameter - wanted) < 1e-12);
+  CHECK(near->parameter_error < 1e-12);
+  CHECK(near->at.stable == true);
+  // Solving there finds it.
+  Mechanism there = m;
+  set_parameter(there, speed, near->parameter);
+  CHECK(std::abs(value(Analysis(there).solve(), "slide") - 0.12) < 1e-14);
+}
+
+TEST_CASE("a value that is never reached is told with what is covered", "[design]") {
+  const DesignAnswer answer = design(shipped("governor"), speed, 5, 15, "slide", 0.5);
+  CHECK(answer.status == Status::not_converged);
+  CHECK(answer.solutions.empty());
+  CHECK(answer.lowest < answer.highest);
+  CHECK(answer.highest < 0.2);
+  CHECK(answer.message.find("never is 0.5 m") != std::string::npos);
+  CHECK(answer.message.find("covers") != std::string::npos);
+}
+
+TEST_CASE("a value that holds all along a branch singles out no parameter", "[design]") {
+  DesignOptions connected;
+  connected.all = false;
+  const DesignAnswer answer = design(conical(0.7, 0, 1), speed, 0, 3, "swing", 0, connected);
+  CHECK(answer.status == Status::not_converged);
+  CHECK(answer.message.find("all along") != std::string::npos);
+}
+
+TEST_CASE("stiffness, mass and length can be asked for, too", "[design]") {
+  const Mechanism m = shipped("governor");
+  const Solution drawn = Analysis(m).solve();
+  for (const auto& [address, from, to] :
+       {std::tuple{"joints.slide.spring.stiffness", 500., 3000.}, {"bodies.ball1.mass", 0.3, 3.}}) {
+    CAPTURE(address);
+    const double now = get_parameter(m, address);
+    const DesignAnswer answer = design(m, address, from, to, "slide", value(drawn, "slide"));
+    INFO(answer.message);
+    CHECK(std::ranges::any_of(
+        answer.solutions, [&](const DesignSolution& s) { return std::abs(s.parameter - now) < 1e-9 * now; }));
+  }
+}
+
+TEST_CASE("what cannot be asked is refused, and cancelling ends", "[design]") {
+  const Mechanism m = shipped("governor");
+  CHECK_THROWS_AS(design(m, speed, 0, 10, "nothing", 1), SceneError);
+  CHECK_THROWS_AS(design(m, speed, 0, 10, "spin", 1), SceneError);
+  CHECK_THROWS_AS(design(m, "joints.spin.drive.sped", 0, 10, "slide", 1), SceneError);
+  const std::atomic<bool> cancel = true;
+  DesignOptions options;
+  options.cancel = &cancel;
+  const DesignAnswer answer = design(m, speed, 0, 10, "slide", 0.12, options);
+  CHECK(answer.solutions.empty());
+  CHECK(answer.status != Status::converged);
+}
