@@ -154,7 +154,10 @@ void update_motion(App& app) {
     run.run = std::move(taken->run);
     if (run.run && run.run->status == RunStatus::diverged) run.problem = run.run->message;
   }
-  if (news) ++motion.version;
+  if (news) {
+    ++motion.version;
+    app.moved_time = true; // the drives may stand elsewhere in the new run, see steady_time()
+  }
   const MotionRun* shown = shown_motion(app);
   if (!shown) {
     motion.poses.clear();

@@ -145,6 +145,27 @@ TEST_CASE("the motion stands beside the steady state, with its plots") {
   }
 }
 
+TEST_CASE("the landscape is drawn below the view") {
+  Hand hand("conical_pendulum.json");
+  set_mode(hand.app, Mode::explore);
+  SECTION("response") {
+    open_study(hand.app, Study::response);
+    hand.check("study-response");
+  }
+  SECTION("states") {
+    open_study(hand.app, Study::states);
+    hand.check("study-states");
+  }
+  SECTION("modes") {
+    open_study(hand.app, Study::modes);
+    hand.check("study-modes");
+  }
+  SECTION("map") {
+    open_study(hand.app, Study::map);
+    hand.check("study-map");
+  }
+}
+
 TEST_CASE("the tutorial's pictures are what its steps lead to") {
   Robot robot(building_size, steady_options().numbers);
   robot.app.view.samples = 4;

@@ -41,12 +41,12 @@ Image stored_picture(const std::string& name) {
   return read_png(fs::path(FLYBALL_EXPECTED) / (name + ".png"));
 }
 
-PictureComparison compare_with_stored(const std::string& name, const Image& image) {
+ImageComparison compare_with_stored(const std::string& name, const Image& image) {
   if (const char* update = std::getenv("FLYBALL_UPDATE_SCREENSHOTS"); update && *update == '1') {
     fs::create_directories(FLYBALL_EXPECTED);
     write_png(fs::path(FLYBALL_EXPECTED) / (name + ".png"), coarse(image));
   }
-  PictureComparison comparison = compare(stored_picture(name), image);
+  ImageComparison comparison = compare(stored_picture(name), image);
   if (!comparison.same) {
     fs::create_directories(FLYBALL_DIFFERENT);
     write_png(fs::path(FLYBALL_DIFFERENT) / (name + ".png"), image);

@@ -21,7 +21,7 @@ inline constexpr PixelSize view_size{480, 300}, interface_size{960, 600};
 
 // Compares with expected/<name>.png, or writes it where FLYBALL_UPDATE_SCREENSHOTS is set. What differs is
 // kept in the build tree.
-PictureComparison compare_with_stored(const std::string& name, const Image& image);
+ImageComparison compare_with_stored(const std::string& name, const Image& image);
 Image stored_picture(const std::string& name);
 
 } // namespace flyball::test
