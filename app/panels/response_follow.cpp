@@ -2,6 +2,7 @@
 
 #include "engine/equilibrium/branch_follower.hpp"
 #include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/stability.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -28,6 +29,7 @@ class Gathering {
     if (!newton(problem, z, w, {}, nullptr).converged) return false;
     if (!check_existence(problem, z.q, sample_phases(problem.system, problem.parameters), w).holds)
       return false;
+    if (!find_stability(problem, z, false, w).neutral.empty()) follower_.expect_families();
     const auto forth = follower_.begin(z, state.parameter, true),
                back = follower_.begin(z, state.parameter, false);
     if (!forth || !back) return false;

@@ -82,9 +82,11 @@ BranchFollower::Described BranchFollower::describe(const BranchState& state) {
   double largest = 0;
   for (const auto& e : d.point.eigenvalues)
     largest = std::max(largest, std::abs(e));
+  // The double zeros of families come out as the root of rounding.
+  const double noise = (families_ ? 1e-5 : 1e-9) * largest;
   for (const auto& e : d.point.eigenvalues) {
-    if (e.real() > 1e-7 * std::abs(e) + 1e-9 * largest) ++d.right;
-    if (e.real() < -1e-7 * std::abs(e) - 1e-9 * largest && e.imag() != 0) d.damped = true;
+    if (e.real() > 1e-7 * std::abs(e) + noise) ++d.right;
+    if (e.real() < -1e-7 * std::abs(e) - noise && e.imag() != 0) d.damped = true;
   }
   return d;
 }
@@ -172,6 +174,11 @@ bool BranchFollower::out_of_reach(const BranchState& s) const {
   });
 }
 
+bool BranchFollower::holds_at_every_phase(const BranchState& s) {
+  const Problem problem = problem_at(s.parameter);
+  return check_existence(problem, s.z.q, sample_phases(problem.system, problem.parameters), w_).holds;
+}
+
 void BranchFollower::land_on_border(const BranchState& state, double border, FollowedBranch& out) {
   if (std::abs(state.parameter - border) < 1e-12 * family_.scale()) return;
   BranchState last = state;
@@ -209,6 +216,10 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
       out.end = p > 1 ? "the end of the range" : "the beginning of the range";
       break;
     }
+    if (!holds_at_every_phase(next)) {
+      out.end = "beyond it the balance turns with the drives: there is no steady state";
+      break;
+    }
     Described then = describe(next);
     find_specials(state, next, length, now, then, out);
     out.points.push_back(then.point);
@@ -235,7 +246,7 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
 void BranchFollower::find_specials(const BranchState& state, const BranchState& next, double length,
                                    const Described& now, const Described& then, FollowedBranch& out) {
   bool explained = false;
-  if (state.turning * next.turning < 0) {
+  if (!families_ && state.turning * next.turning < 0) {
     // At a crossing the tangent can jump; a fold's own balance stays regular.
     const BranchState at =
         locate(state, 0, state.turning, length, next.turning, next, [](const BranchState& s) {
@@ -244,7 +255,7 @@ void BranchFollower::find_specials(const BranchState& state, const BranchState& 
     out.special.emplace_back(SpecialPointType::fold, point(at));
     explained = true;
   }
-  if (state.determinant * next.determinant < 0) {
+  if (!families_ && state.determinant * next.determinant < 0) {
     BranchState at =
         locate(state, 0, state.determinant, length, next.determinant, next, [](const BranchState& s) {
           return s.determinant;

@@ -49,6 +49,11 @@ class BranchFollower {
   // `forth` false). Nothing at a singular state that has no single direction.
   std::optional<BranchState> begin(Unknowns z, double parameter, bool forth);
 
+  // Nothing resists some direction: then states form families, along which the determinant is rounding, and
+  // folds and crossings are not looked for.
+  void expect_families() { families_ = true; }
+  bool expects_families() const { return families_; }
+
   FollowedBranch follow(BranchState state, bool tell_progress);
 
   // A state off a crossing on the other branch, `length` (scaled, either sign) away. Nothing where none is
@@ -77,6 +82,7 @@ class BranchFollower {
                                    int right_before, bool damped);
   void land_on_border(const BranchState& state, double border, FollowedBranch& out);
   bool out_of_reach(const BranchState& state) const;
+  bool holds_at_every_phase(const BranchState& state);
   double position(double parameter) const { return (parameter - from_) / (to_ - from_); }
   // Scaled step of q_R from a to b and of the parameter.
   Eigen::VectorXd difference(const BranchState& a, const BranchState& b) const;
@@ -87,6 +93,7 @@ class BranchFollower {
   Family family_;
   Continuation continuation_;
   double from_, to_;
+  bool families_ = false;
   Workspace w_;
 };
 

@@ -58,6 +58,7 @@ class Diagram {
       return;
     }
     out_.status = Status::converged;
+    if (!find_stability(problem, found.z, false, w).neutral.empty()) follower_.expect_families();
     if (const auto first = follower_.begin(found.z, from_, true))
       add(follower_.follow(*first, true), true);
     else
@@ -195,7 +196,10 @@ class Diagram {
               " of the parameter; there may be more";
     }
     if (follower_.cancelled()) text += "; cancelled";
-    return text + ".";
+    text += ".";
+    if (follower_.expects_families())
+      text += " Nothing resists some direction: folds and crossings were not looked for.";
+    return text;
   }
 
   const Mechanism& mechanism_;

@@ -309,3 +309,39 @@ TEST_CASE("the list of all equilibria holds the answer, is repeatable and never 
     CHECK(all.message.find("may be more") != std::string::npos);
   }
 }
+
+TEST_CASE("a branch ends where the balance would turn with the drive", "[branches]") {
+  // With the weight across the spin axis there is a steady state at rest alone.
+  Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  m.gravity = {standard_gravity, -standard_gravity, 0};
+  const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 0, 10);
+  for (const ResponseBranch& branch : d.branches) {
+    CHECK(branch.points.size() == 1);
+    CHECK(branch.points.front().parameter == 0);
+    CHECK_THAT(branch.end, ContainsSubstring("no steady state"));
+  }
+}
+
+TEST_CASE("where nothing resists a direction no crossings are made up", "[branches]") {
+  const Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/ball_on_string.json");
+  const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 0, 10);
+  CHECK(d.status == Status::converged);
+  CHECK(d.branches.size() <= 2);
+  CHECK_THAT(d.message, ContainsSubstring("Nothing resists"));
+  CHECK(d.special.empty());
+  // Each point is a steady state: solved from there, nothing moves.
+  for (std::size_t i = 0; i < d.branches.back().points.size(); i += 20) {
+    const ResponsePoint& p = d.branches.back().points[i];
+    Mechanism there = m;
+    set_parameter(there, "joints.spin.drive.speed", p.parameter);
+    SolveOptions options;
+    options.nearest = true;
+    for (const CoordinateSolution& c : p.coordinates)
+      if (!c.driven) options.start.push_back({c.joint + "." + std::to_string(c.index), c.value});
+    const Solution s = Analysis(there).solve(options);
+    REQUIRE(s.status == Status::converged);
+    for (std::size_t c = 0; c < s.coordinates.size(); ++c)
+      if (!s.coordinates[c].angle)
+        CHECK(s.coordinates[c].value == Approx(p.coordinates[c].value).margin(1e-7));
+  }
+}
