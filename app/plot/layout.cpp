@@ -70,7 +70,9 @@ struct Builder {
                                  const Place& place, std::vector<double>* minor) const {
     const double length = std::abs(ruler.to - ruler.from);
     std::vector<PlotTick> ticks;
-    for (int wanted = std::clamp(static_cast<int>(length / spacing), 1, 12); wanted >= 1; --wanted) {
+    // One number says little: a short axis gets its numbers closer.
+    const int least = std::clamp(static_cast<int>(length / (0.6 * spacing)), 1, 4);
+    for (int wanted = std::clamp(static_cast<int>(length / spacing), least, 12); wanted >= 1; --wanted) {
       const AxisTicks found = axis_ticks(ruler.lower, ruler.upper, wanted, ruler.logarithmic);
       ticks.clear();
       for (std::size_t i = 0; i < found.major.size(); ++i) {
