@@ -188,6 +188,9 @@ void BranchFollower::land_on_border(const BranchState& state, double border, Fol
   out.states.push_back(std::move(last));
 }
 
+// Scaled: where a stop is reached or left, a branch has a corner, which no shorter step makes straight.
+constexpr double longest_corner = 1e-6;
+
 FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
   FollowedBranch out;
   const BranchState origin = state;
@@ -204,7 +207,9 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
     BranchState next;
     int iterations = 0;
     const bool stepped = continuation_.step(state, length, next, iterations);
-    if (!stepped || next.tangent.dot(state.tangent) < 0.97) {
+    const bool straight = stepped && next.tangent.dot(state.tangent) >= 0.97;
+    const bool corner = stepped && !straight && length < longest_corner;
+    if (!straight && !corner) {
       length /= 2;
       if (length > 1e-9) continue;
       out.end = "the corrector fails: the loops lock or a part of the mechanism becomes singular";
@@ -238,7 +243,10 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
     }
     state = std::move(next);
     now = std::move(then);
-    length = std::min(options_.largest_step, length * (iterations <= 3 ? 1.5 : iterations > 5 ? 0.6 : 1.));
+    if (corner)
+      length = options_.largest_step / 4;
+    else
+      length = std::min(options_.largest_step, length * (iterations <= 3 ? 1.5 : iterations > 5 ? 0.6 : 1.));
   }
   return out;
 }

@@ -345,3 +345,31 @@ TEST_CASE("where nothing resists a direction no crossings are made up", "[branch
         CHECK(s.coordinates[c].value == Approx(p.coordinates[c].value).margin(1e-7));
   }
 }
+
+TEST_CASE("a branch goes on where a stop is reached, and bends there", "[branches]") {
+  // Conical pendulum whose swing has soft stops at 0.8 rad: beyond, the stop shares the load.
+  constexpr double stiffness = 500, limit = 0.8, length = 0.7;
+  Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  m.joints[1].coordinates[0].stop = Stop{-limit, limit, stiffness, {}};
+  const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 0, 12);
+  REQUIRE(d.branches.size() == 3);
+  for (const ResponseBranch& branch : d.branches)
+    CHECK(branch.end == "the end of the range");
+  std::size_t beyond = 0;
+  for (const ResponsePoint& p : d.branches[1].points) {
+    const double angle = std::abs(p.coordinates[1].value);
+    if (angle > limit + 1e-9) {
+      ++beyond;
+      // The same without the stop, with the stop's torque on top.
+      const double speed_squared = p.parameter * p.parameter;
+      double mass = 0;
+      for (const Body& b : m.bodies)
+        if (b.name == m.joints[1].bodies[1]) mass = b.mass;
+      const double balance = mass * length * length * speed_squared * std::sin(angle) * std::cos(angle) -
+                             mass * standard_gravity * length * std::sin(angle) - stiffness * (angle - limit);
+      CHECK(std::abs(balance) < 1e-8);
+      CHECK(p.stable == true);
+    }
+  }
+  CHECK(beyond > 10);
+}
