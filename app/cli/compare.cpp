@@ -20,21 +20,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string to_csv(const Comparison& c) {
-  std::string out = "method,duration_s,tolerance,iterations,error,run_time_s,steps,evaluations,status\n";
-  for (const DirectMark& m : c.direct)
-    out += fmt::format("direct,,,{},{},{},,,{}\n", m.iterations, number_text(m.error),
-                       number_text(m.run_time_s), word(c.status));
-  out += fmt::format("direct_answer,,,{},{},{},,,{}\n", c.answer.iterations, number_text(c.answer.error),
-                     number_text(c.answer.run_time_s), word(c.status));
-  for (const MotionCurve& curve : c.motion)
-    for (const MotionPoint& p : curve.points)
-      out += fmt::format("{},{},{},,{},{},{},{},{}\n", word(curve.method), number_text(curve.duration),
-                         number_text(p.tolerance), std::isfinite(p.error) ? number_text(p.error) : "",
-                         number_text(p.run_time_s), p.steps, p.evaluations, word(p.status));
-  return out;
-}
-
 Json mark_json(const DirectMark& m) {
   return {{"iterations", m.iterations}, {"error", m.error}, {"run_time_s", m.run_time_s}};
 }
@@ -148,7 +133,7 @@ int run_compare(const Options& options) {
     throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
   }
   if (!options.svg.empty()) write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison)));
-  if (!options.csv.empty()) write_bytes(options.csv, to_csv(comparison));
+  if (!options.csv.empty()) write_bytes(options.csv, comparison_csv(comparison));
   if (options.json)
     fmt::print("{}\n", to_json(comparison).dump(2));
   else if (options.csv != "-" && options.svg != "-") // else standard output is theirs

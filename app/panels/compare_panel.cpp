@@ -1,7 +1,7 @@
 // Error against run time: the direct solution and the motion, measured on the scene as it is now.
-#include "app/panels/response_control.hpp"
 #include "app/panels/map_control.hpp"
 #include "app/panels/modes_control.hpp"
+#include "app/panels/response_control.hpp"
 #include "app/panels/states_control.hpp"
 #include "app/panels/study_panels.hpp"
 #include "app/panels/widgets.hpp"
@@ -76,6 +76,11 @@ void words(App& app) {
         "integrator over tolerances and durations: what error is left after which time.",
         colors.dim);
     return;
+  }
+  ImGui::SameLine();
+  if (text_button(app, "compare/copy", "Copy the table")) {
+    ImGui::SetClipboardText(comparison_csv(*state.result).c_str());
+    app.notice = "The measurements are on the clipboard, as CSV.";
   }
   if (!(state.of == app.mechanism())) paragraph("Measured before the last changes.", colors.warn);
   found(app, *state.result);

@@ -1,5 +1,5 @@
 // Error against run time as a plot: a mark for each iteration of the direct solution, a curve for each
-// integrator and simulated duration over its tolerances.
+// integrator and simulated duration over its tolerances; and the same as a table.
 #pragma once
 
 #include "app/plot/plot.hpp"
@@ -8,5 +8,8 @@
 namespace flyball {
 
 Plot comparison_plot(const std::string& title, const Comparison& comparison);
+
+// Everything that was measured, a line a mark: times in s, errors in radians or relative to the reach.
+std::string comparison_csv(const Comparison& comparison);
 
 } // namespace flyball

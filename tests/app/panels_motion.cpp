@@ -293,5 +293,13 @@ TEST_CASE("the comparison is measured and drawn") {
   CHECK(c.best->ratio() > 1);
   CHECK(app.study.compare.plot.curves.size() > 3);
   CHECK(app.widgets.count("compare/ratio") == 1);
+  // Its table has a line for each mark and run, below the heading.
+  std::ptrdiff_t lines = 2 + std::ssize(c.direct);
+  for (const MotionCurve& curve : c.motion)
+    lines += std::ssize(curve.points);
+  robot.click("compare/copy");
+  const std::string table = ImGui::GetClipboardText();
+  CHECK(std::ranges::count(table, '\n') == lines);
+  CHECK(table.starts_with("method,duration_s,tolerance,"));
   CHECK(app.widgets.count("plot/compare/area") == 1);
 }
