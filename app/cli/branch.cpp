@@ -190,7 +190,8 @@ void add_branch(CLI::App& app, int& exit_code) {
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
-    if ((!options->svg.empty() || !options->png.empty()) && diagram.status == Status::converged) {
+    const bool any = diagram.status == Status::converged && !diagram.branches.empty();
+    if ((!options->svg.empty() || !options->png.empty()) && any) {
       const Plot plot =
           diagram_plot(mechanism, range.address, diagram, plotted_coordinate(diagram, options->plot));
       if (!options->svg.empty()) write_bytes(options->svg, to_svg(plot));
@@ -205,7 +206,7 @@ void add_branch(CLI::App& app, int& exit_code) {
       fmt::print("{}\n", diagram_json(diagram).dump(2));
     else if (options->svg != "-" && options->png != "-") // then standard output is the drawing's
       fmt::print("{}", diagram_text(mechanism, range.address, diagram));
-    exit_code = diagram.status == Status::converged ? exit_done : exit_no_result;
+    exit_code = any ? exit_done : exit_no_result;
   });
 }
 

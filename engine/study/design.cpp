@@ -183,9 +183,40 @@ class Designer {
           name_ + " is " + text(value_) + " all along a branch: no value of " + address_ + " is singled out.";
     } else {
       out_.status = Status::not_converged;
-      out_.message = name_ + " never is " + text(value_) + " with " + limits + ": it covers " +
-                     text(rounded(out_.lowest)) + " to " + text(rounded(out_.highest)) + "." + open;
+      out_.message =
+          name_ + " never is " + text(value_) + " with " + limits + ": it covers " + covered() + "." + open;
     }
+  }
+
+  // "-1.4 rad to 1.4 rad and 3.14159 rad": what the branches cover, together where they overlap.
+  std::string covered() const {
+    std::vector<std::pair<double, double>> parts;
+    for (const ResponseBranch& b : diagram_.branches) {
+      double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+      for (const ResponsePoint& p : b.points) {
+        lowest = std::min(lowest, value_of(p));
+        highest = std::max(highest, value_of(p));
+      }
+      if (lowest <= highest) parts.emplace_back(lowest, highest);
+    }
+    std::ranges::sort(parts);
+    std::vector<std::pair<double, double>> merged;
+    const double slack = 1e-9 * unit();
+    for (const auto& part : parts) {
+      if (!merged.empty() && part.first <= merged.back().second + slack)
+        merged.back().second = std::max(merged.back().second, part.second);
+      else
+        merged.push_back(part);
+    }
+    const std::string unit_name = wanted_.angle ? " rad" : " m";
+    std::string out;
+    for (std::size_t i = 0; i < merged.size(); ++i) {
+      const auto& [lowest, highest] = merged[i];
+      if (i > 0) out += i + 1 == merged.size() ? " and " : ", ";
+      out += number_text(rounded(lowest)) + unit_name;
+      if (highest > lowest + slack) out += " to " + number_text(rounded(highest)) + unit_name;
+    }
+    return out;
   }
   // For a sentence: six digits.
   static double rounded(double v) {

@@ -133,3 +133,11 @@ TEST_CASE("what cannot be asked is refused, and cancelling ends", "[design]") {
   CHECK(answer.solutions.empty());
   CHECK(answer.status != Status::converged);
 }
+
+TEST_CASE("what a coordinate covers is told branch by branch") {
+  // The conical pendulum below, and on its head: nothing between.
+  const Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  const DesignAnswer answer = design(m, "joints.spin.drive.speed", 0, 12, "swing", 2.5);
+  CHECK(answer.solutions.empty());
+  CHECK(answer.message.find("-1.47335 rad to 1.47335 rad and 3.14159 rad") != std::string::npos);
+}
