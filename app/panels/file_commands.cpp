@@ -102,9 +102,16 @@ std::string save_to(App& app, const fs::path& file) {
   return {};
 }
 
+bool is_example(const App& app) {
+  std::error_code ignored;
+  const fs::path& file = app.document.file();
+  return !file.empty() && !app.options.scenes.empty() &&
+         fs::equivalent(file.parent_path(), app.options.scenes, ignored);
+}
+
 void save_document(App& app) {
   const fs::path file = app.document.file();
-  if (file.empty()) return show_save_dialog(app);
+  if (file.empty() || is_example(app)) return show_save_dialog(app);
   FileState& files = app.files;
   if (files.conflict || (files.watch.file() == file && files.watch.differs())) {
     files.conflict = files.save_wanted = true;

@@ -18,7 +18,9 @@ void new_document(App& app);                                 // asks first
 void open_file(App& app, const std::filesystem::path& file); // asks first
 void show_open_dialog(App& app);
 void show_gallery(App& app);  // the shipped scenes with pictures
-void save_document(App& app); // where it has no file yet, asks for one
+void save_document(App& app); // where it has no file of its own yet, asks for one
+// Whether the open file is a shipped scene, which saving leaves as it is unless it is chosen by name.
+bool is_example(const App& app);
 void show_save_dialog(App& app);
 void reload_document(App& app); // from its file, as it is there now: a step that can be undone
 void quit(App& app);            // asks first

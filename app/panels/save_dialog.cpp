@@ -35,7 +35,8 @@ void save(App& app) {
 
 void ask_where_to_save(App& app, std::string why) {
   const fs::path& file = app.document.file();
-  show_folder(app, usual_folder(app));
+  std::error_code ignored;
+  show_folder(app, is_example(app) ? fs::current_path(ignored) : usual_folder(app));
   app.files.message = std::move(why);
   app.files.replacing.clear();
   app.dialog.wanted = Dialog::save;
@@ -54,6 +55,8 @@ void save_dialog(App& app) {
     paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
   else if (!app.files.message.empty())
     paragraph(app.files.message, colors_of(app).bad);
+  else if (is_example(app))
+    paragraph("Examples stay as they are; this will be a file of your own.", colors_of(app).dim);
   ImGui::Dummy({0, 2 * app.scale});
   const bool usable = !app.dialog.path.empty();
   ImGui::BeginDisabled(!usable);

@@ -19,7 +19,7 @@ std::string question(const App& app) {
 }
 
 void save(App& app) {
-  if (app.document.file().empty()) return ask_where_to_save(app, {});
+  if (app.document.file().empty() || is_example(app)) return ask_where_to_save(app, {});
   if (std::string why = save_to(app, app.document.file()); !why.empty())
     return ask_where_to_save(app, std::move(why));
   leave_now(app);

@@ -785,3 +785,22 @@ TEST_CASE("without a state folder the program writes nothing that was not asked 
   robot.app.files.autosave.wait();
   CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
 }
+
+TEST_CASE("an example is never overwritten by saving") {
+  const TemporaryFolder folder;
+  FileRobot robot(folder);
+  App& app = robot.app;
+  const fs::path copy = folder / "scenes";
+  fs::create_directory(copy);
+  fs::copy_file(FLYBALL_ASSETS "/scenes/governor.json", copy / "governor.json");
+  app.options.scenes = copy;
+  robot.open(copy / "governor.json");
+  robot.set_speed(5);
+  const std::string before = read_bytes(copy / "governor.json");
+  robot.key('S', true);
+  robot.frames(2);
+  CHECK(app.dialog.showing);
+  CHECK(robot.shows("save/save"));
+  CHECK(read_bytes(copy / "governor.json") == before);
+  CHECK(app.document.unsaved());
+}
