@@ -58,7 +58,7 @@ std::string diagram_csv(const std::string& address, const ResponseDiagram& d) {
   std::string out = "branch," + csv_field(address);
   if (!d.branches.empty() && !d.branches.front().points.empty())
     for (const CoordinateSolution& c : d.branches.front().points.front().coordinates)
-      if (!c.driven) out += "," + csv_field(c.count == 1 ? c.joint : fmt::format("{}.{}", c.joint, c.index));
+      if (!c.driven) out += "," + csv_field(coordinate_label(c));
   out += ",stable,special\n";
   const auto row = [&](int branch, const ResponsePoint& p, std::string_view special) {
     out += fmt::format("{},{}", branch, number_text(p.parameter));
@@ -72,10 +72,6 @@ std::string diagram_csv(const std::string& address, const ResponseDiagram& d) {
   for (const SpecialPoint& s : d.special)
     row(s.branch, s.at, word(s.type));
   return out;
-}
-
-std::string coordinate_label(const CoordinateSolution& c) {
-  return c.count == 1 ? c.joint : fmt::format("{}.{}", c.joint, c.index);
 }
 
 // Index of the coordinate to draw: the one named, else the first free one. Throws SceneError naming those
@@ -141,9 +137,7 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
     out += fmt::format("  {} on branch {} at {:.12g} {}:", word(s.type), s.branch, s.at.parameter, unit);
     for (const CoordinateSolution& c : s.at.coordinates)
       if (!c.driven)
-        out +=
-            fmt::format("  {} = {:.9g} {}", c.count == 1 ? c.joint : fmt::format("{}.{}", c.joint, c.index),
-                        c.value, c.angle ? "rad" : "m");
+        out += fmt::format("  {} = {:.9g} {}", coordinate_label(c), c.value, c.angle ? "rad" : "m");
     out += "\n";
   }
   return out + fmt::format("  {:.1f} ms\n", d.run_time_s * 1e3);

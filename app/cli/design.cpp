@@ -52,9 +52,7 @@ std::string answer_text(const Mechanism& m, const std::string& address, const De
     out += "   ";
     for (const CoordinateSolution& c : s.at.coordinates)
       if (!c.driven)
-        out +=
-            fmt::format(" {} = {:.12g} {} ", c.count == 1 ? c.joint : fmt::format("{}.{}", c.joint, c.index),
-                        c.value, c.angle ? "rad" : "m");
+        out += fmt::format(" {} = {:.12g} {} ", coordinate_label(c), c.value, c.angle ? "rad" : "m");
     out += fmt::format("\n    {} iterations, scaled residual {:.1e}\n", s.iterations, s.residual);
   }
   return out + fmt::format("  {:.1f} ms\n", a.run_time_s * 1e3);

@@ -90,14 +90,4 @@ Range parse_range(std::string_view option, std::string_view text, bool count) {
   return range;
 }
 
-std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\n") == std::string_view::npos) return std::string(text);
-  std::string out = "\"";
-  for (char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + "\"";
-}
-
 } // namespace flyball::cli

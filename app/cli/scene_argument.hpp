@@ -1,4 +1,4 @@
-// What subcommands have in common: a scene file, --set address=value, --vary ranges, and fields of CSV.
+// What subcommands have in common: a scene file, --set address=value, --vary ranges.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -38,8 +38,5 @@ struct Range {
   int count = 1;
 };
 Range parse_range(std::string_view option, std::string_view text, bool count = false);
-
-// Quoted where a comma, a quote or a line end asks for it (RFC 4180).
-std::string csv_field(std::string_view text);
 
 } // namespace flyball::cli

@@ -26,13 +26,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string label(const std::string& joint, int index, int count) {
-  return count == 1 ? joint : fmt::format("{}.{}", joint, index);
-}
-std::string label(const CoordinateTrack& c) {
-  return label(c.joint, c.index, c.count);
-}
-
 struct Column {
   std::string name;
   const std::vector<double>* values;
@@ -42,11 +35,11 @@ struct Column {
 std::vector<Column> columns_of(const Run& run) {
   std::vector<Column> columns{{"t", &run.time}};
   for (const CoordinateTrack& c : run.coordinates)
-    columns.push_back({label(c), &c.value});
+    columns.push_back({coordinate_label(c), &c.value});
   for (const CoordinateTrack& c : run.coordinates)
-    columns.push_back({label(c) + ".rate", &c.rate});
+    columns.push_back({coordinate_label(c) + ".rate", &c.rate});
   for (const DriveTrack& d : run.drives)
-    columns.push_back({label(d.joint, d.index, d.count) + ".torque", &d.torque});
+    columns.push_back({coordinate_label(d) + ".torque", &d.torque});
   const EnergyTracks& e = run.energy;
   for (const auto& [name, values] : std::initializer_list<std::pair<const char*, const std::vector<double>*>>{
            {"energy.kinetic", &e.kinetic},
@@ -129,8 +122,8 @@ Json run_json(const Run& run, const std::optional<Settled>& settled) {
         {"message", settled->message}};
   out["coordinates"] = out["rates"] = Json::object();
   for (const CoordinateTrack& c : run.coordinates) {
-    out["coordinates"][label(c)] = c.value.back();
-    out["rates"][label(c)] = c.rate.back();
+    out["coordinates"][coordinate_label(c)] = c.value.back();
+    out["rates"][coordinate_label(c)] = c.rate.back();
   }
   const auto drift = jacobi_drift(run);
   out["energy"] = {{"balance_error", energy_error(run)},
@@ -166,11 +159,11 @@ std::string run_text(const Mechanism& mechanism, const Run& run, const std::opti
   out += fmt::format("\nat {:.6g} s\n", run.time.back());
   std::size_t width = 10;
   for (const CoordinateTrack& c : run.coordinates)
-    width = std::max(width, label(c).size());
+    width = std::max(width, coordinate_label(c).size());
   for (const CoordinateTrack& c : run.coordinates)
-    out +=
-        fmt::format("  {:{}}  {:>18.12g} {:3}  {:>14.6g} {}/s{}\n", label(c), width, c.value.back(),
-                    c.angle ? "rad" : "m", c.rate.back(), c.angle ? "rad" : "m", c.driven ? "  driven" : "");
+    out += fmt::format("  {:{}}  {:>18.12g} {:3}  {:>14.6g} {}/s{}\n", coordinate_label(c), width,
+                       c.value.back(), c.angle ? "rad" : "m", c.rate.back(), c.angle ? "rad" : "m",
+                       c.driven ? "  driven" : "");
   out += fmt::format("\nenergy balance within {:.1e} J of {:.3g} J at play", energy_error(run),
                      energy_at_play(run));
   if (const auto drift = jacobi_drift(run)) out += fmt::format("; Jacobi integral within {:.1e} J", *drift);

@@ -1,5 +1,7 @@
 #include "app/cli/solution_text.hpp"
 
+#include "engine/mechanism/text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,10 +15,6 @@ namespace {
 std::string rounded(double value, double error, int most) {
   const int decimals = error > 0 ? static_cast<int>(std::floor(-std::log10(error))) : most;
   return fmt::format("{:.{}f}", value, std::clamp(decimals, 0, most));
-}
-
-std::string label(const std::string& joint, int index, int count) {
-  return count == 1 ? joint : fmt::format("{}.{}", joint, index);
 }
 
 std::string stability(const Solution& s) {
@@ -44,13 +42,13 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   if (const std::string words = stability(s); !words.empty()) out += "  " + words + "\n";
   std::size_t width = 10;
   for (const auto& c : s.coordinates)
-    width = std::max(width, label(c.joint, c.index, c.count).size());
+    width = std::max(width, coordinate_label(c).size());
   for (const auto& r : s.reactions)
     width = std::max(width, r.joint.size());
   const auto heading = [&](const char* text) { out += fmt::format("\n{}\n", text); };
   if (!s.coordinates.empty()) heading("coordinates");
   for (const CoordinateSolution& c : s.coordinates) {
-    const std::string name = label(c.joint, c.index, c.count);
+    const std::string name = coordinate_label(c);
     if (c.driven) {
       out += fmt::format("  {:{}}  driven\n", name, width);
       continue;
@@ -63,7 +61,7 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   }
   if (!s.drive_torques.empty()) heading("drives");
   for (const DriveTorque& d : s.drive_torques)
-    out += fmt::format("  {:{}}  {:>22.9g} {}{}\n", label(d.joint, d.index, d.count), width, d.value,
+    out += fmt::format("  {:{}}  {:>22.9g} {}{}\n", coordinate_label(d), width, d.value,
                        d.angle ? "N m" : "N", d.varying ? "  (changes with the phase)" : "");
   if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
   // What is rounding beside the largest reaction is shown as zero.
@@ -104,16 +102,16 @@ std::string to_text(const Mechanism& mechanism, const AllSolutions& all) {
                                 all.equilibria.size(), all.starts, all.message);
   out += "searched";
   for (const AllSolutions::Bound& b : all.bounds)
-    out += fmt::format("  {} {:.4g} to {:.4g} {}", label(b.joint, b.index, b.count), b.lower, b.upper,
-                       b.angle ? "rad" : "m");
+    out +=
+        fmt::format("  {} {:.4g} to {:.4g} {}", coordinate_label(b), b.lower, b.upper, b.angle ? "rad" : "m");
   for (std::size_t i = 0; i < all.equilibria.size(); ++i) {
     const Solution& s = all.equilibria[i];
     out += fmt::format("\n\n{}  {}", i + 1, stability(s));
     if (s.potential) out += fmt::format(", potential {:.9g} J", *s.potential);
     for (const CoordinateSolution& c : s.coordinates)
       if (!c.driven)
-        out += fmt::format("\n   {} = {} {}  ± {:.1g}", label(c.joint, c.index, c.count),
-                           rounded(c.value, c.error, 17), c.angle ? "rad" : "m", c.error);
+        out += fmt::format("\n   {} = {} {}  ± {:.1g}", coordinate_label(c), rounded(c.value, c.error, 17),
+                           c.angle ? "rad" : "m", c.error);
   }
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include "app/panels/motion_control.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -33,7 +34,7 @@ std::string window_state(const App& app) {
   for (const ParameterControl& control : app.parameters)
     state["parameters"][control.address] = get_parameter(app.mechanism(), control.address);
   for (const CoordinateSolution& c : app.answer.solution.coordinates)
-    state["coordinates"][c.count > 1 ? c.joint + "." + std::to_string(c.index) : c.joint] = c.value;
+    state["coordinates"][coordinate_label(c)] = c.value;
   // Where points of the plane z = 0 are, while looked at from the front.
   if (const auto view = app.widgets.find("view"); view != app.widgets.end()) {
     const WidgetRect& rect = view->second;

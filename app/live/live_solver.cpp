@@ -1,4 +1,5 @@
 #include "app/live/live_solver.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <cmath>
 #include <exception>
@@ -9,20 +10,12 @@ namespace flyball {
 
 namespace {
 
-std::vector<std::pair<std::string, double>> free_coordinates(const Solution& solution) {
-  std::vector<std::pair<std::string, double>> values;
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (!c.driven)
-      values.emplace_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index), c.value);
-  return values;
-}
-
 // Whether Newton-Raphson has thrown an angle so far that it is another branch's.
 bool moved_far(const std::vector<std::pair<std::string, double>>& start, const Solution& found) {
   constexpr double far = 0.8; // rad
   for (const CoordinateSolution& c : found.coordinates) {
     if (c.driven || !c.angle) continue;
-    const std::string name = c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index);
+    const std::string name = coordinate_label(c);
     for (const auto& [joint, value] : start)
       if (joint == name && std::abs(std::remainder(c.value - value, 2 * std::numbers::pi)) > far) return true;
   }
@@ -147,7 +140,7 @@ LiveAnswer LiveSolver::solve(const Job& job) {
     else
       analysis_.emplace(job.request.mechanism);
     answer.solution = solve_nearest(job.request, answer.left_branch);
-    if (answer.solution.status == Status::converged) last_ = free_coordinates(answer.solution);
+    if (answer.solution.status == Status::converged) last_ = start_values(answer.solution.coordinates);
     answer.summary = analysis_->summary();
     analysed_ = answer.solution.status == Status::converged ? job.ticket : 0;
     if (analysed_) answer.poses = answer.time == 0 ? answer.solution.poses : analysis_->poses_at(answer.time);

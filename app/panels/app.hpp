@@ -79,7 +79,19 @@ struct KeyPress {
   bool operator==(const KeyPress&) const = default;
 };
 
-enum class Dialog { none, open, save, gallery, unsaved, recover, export_picture, save_plot, export_run, mirror, circular };
+enum class Dialog {
+  none,
+  open,
+  save,
+  gallery,
+  unsaved,
+  recover,
+  export_picture,
+  save_plot,
+  export_run,
+  mirror,
+  circular
+};
 
 struct PlotSave; // see plot_save.hpp
 
@@ -116,7 +128,7 @@ struct App {
   LiveAnswer answer;
   std::vector<Pose> drawn, poses; // drawn: of the document; poses: of the answer at playback.time; empty
                                   // where there is none
-  bool moved_time = false; // playback.time changed: poses are to be asked for
+  bool moved_time = false;        // playback.time changed: poses are to be asked for
   // Tickets: of the newest request (the largest number where the document is not fit to be solved), of the
   // last that was asked, and of the first since the document was opened.
   std::uint64_t awaited = std::numeric_limits<std::uint64_t>::max(), asked = 0, opened = 0;
@@ -169,8 +181,8 @@ void select(App& app, Selection selection);
 // addresses are ignored.
 void change_parameter(App& app, const std::string& address, double value);
 // The same with the mechanism in the equilibrium nearest to these coordinates ("joint" or "joint.index" and
-// rad or m), on whatever branch, stable or not. Sliders then follow that branch, until it ends, the drawn pose
-// is started from again or something else is edited. Without an address no number is changed.
+// rad or m), on whatever branch, stable or not. Sliders then follow that branch, until it ends, the drawn
+// pose is started from again or something else is edited. Without an address no number is changed.
 void go_to_state(App& app, const std::string& address, double value,
                  std::vector<std::pair<std::string, double>> start);
 void reset_parameters(App& app); // sliders back to what the file says

@@ -387,7 +387,8 @@ const std::array table{
             .checked = [](const App& app) { return app.study.open == Study::states; }},
     Command{.id = "study.modes",
             .title = "Modes",
-            .help = "How the steady state swings, moving in the view, and at which speeds (Campbell diagram).",
+            .help =
+                "How the steady state swings, moving in the view, and at which speeds (Campbell diagram).",
             .key = plain('O'),
             .run = [](App& app) { open_study(app, Study::modes); },
             .enabled = holds_parts,

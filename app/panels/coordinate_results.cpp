@@ -1,30 +1,26 @@
 // Where everything settles: each coordinate in the units of the screen and in SI.
 #include "app/panels/panels.hpp"
+#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 namespace flyball {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi, millimetres = 1000;
-
 // With more coordinates than this each takes one line, and the rest appears over it.
 constexpr int spacious = 8;
-
-std::string name_of(const CoordinateSolution& c) {
-  return c.count > 1 ? c.joint + "." + std::to_string(c.index) : c.joint;
-}
 
 void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
   const NumberStyle& numbers = app.options.numbers;
   const UiColors& colors = colors_of(app);
-  const double factor = c.angle ? degrees : millimetres;
+  const double factor = screen_factor(c.angle);
   const char* si = c.angle ? "rad" : "m";
-  row(app, name_of(c), value_text(c.value * factor, c.error * factor, numbers), c.angle ? "°" : "mm");
-  note_widget(app.widgets, "results/" + name_of(c));
+  row(app, coordinate_label(c), value_text(c.value * factor, c.error * factor, numbers),
+      screen_unit(c.angle));
+  note_widget(app.widgets, "results/" + coordinate_label(c));
   std::string second = value_text(c.value, c.error, numbers) + " " + si;
   if (c.error > 0) second += "  ± " + magnitude_text(std::max(c.error, numbers.noise), numbers) + " " + si;
   if (compact)

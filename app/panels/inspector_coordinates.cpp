@@ -1,16 +1,14 @@
 // What acts on each coordinate of a joint: drive, spring, damper, stop; and where it settles.
 #include "app/panels/inspector_parts.hpp"
 #include "app/panels/inspector_rows.hpp"
+#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 namespace flyball {
 
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi, millimetres = 1000;
 
 // What a new drive, spring, ... begins with, to be changed at once.
 struct Beginning {
@@ -79,12 +77,12 @@ struct CoordinateRows {
     const CoordinateSolution* found = solution();
     if (!found || found->driven) return;
     const NumberStyle& numbers = app.options.numbers;
-    const double factor = angle() ? degrees : millimetres;
+    const double factor = screen_factor(angle());
     std::string help = value_text(found->value, found->error, numbers) + " " + value_unit();
     if (found->error > 0)
       help += " ± " + magnitude_text(std::max(found->error, numbers.noise), numbers) + " " + value_unit();
     row(app, "Settles at", value_text(found->value * factor, found->error * factor, numbers),
-        angle() ? "°" : "mm", ("In the steady state: " + help + ".").c_str());
+        screen_unit(angle()), ("In the steady state: " + help + ".").c_str());
     note_widget(app.widgets, widget(key("settles")));
   }
 

@@ -1,6 +1,7 @@
 // What the drives and joints bear.
 #include "app/panels/panels.hpp"
 #include "app/panels/widgets.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -33,7 +34,7 @@ void drive_torques(App& app) {
   for (const DriveTorque& t : torques)
     largest = std::max(largest, std::abs(t.value));
   for (const DriveTorque& t : torques) {
-    const std::string name = t.count > 1 ? t.joint + "." + std::to_string(t.index) : t.joint;
+    const std::string name = coordinate_label(t);
     row(app, t.varying ? name + " (varies)" : name, force_text(t.value, largest, app.options.numbers),
         t.angle ? "N m" : "N",
         t.varying ? "Changes as the drives turn; at the drawn phase."

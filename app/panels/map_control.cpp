@@ -1,7 +1,7 @@
 #include "app/panels/map_control.hpp"
 
-#include "app/panels/state_words.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/study/sweep.hpp"
 
 #include <algorithm>

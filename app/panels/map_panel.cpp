@@ -1,11 +1,12 @@
 // The map of two parameters: what is wanted of it, and the plot.
 #include "app/panels/inspector_rows.hpp"
 #include "app/panels/map_control.hpp"
-#include "app/panels/state_words.hpp"
 #include "app/panels/study_panels.hpp"
 #include "app/panels/typed_field.hpp"
+#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <cmath>

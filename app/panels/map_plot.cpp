@@ -1,7 +1,8 @@
 // The map as a plot: colours, hatching where it is unstable, the curves in it and the present place.
 #include "app/panels/map_control.hpp"
-#include "app/panels/state_words.hpp"
+#include "app/panels/units.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <cmath>
 #include <limits>

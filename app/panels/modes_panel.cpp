@@ -5,9 +5,11 @@
 #include "app/panels/state_words.hpp"
 #include "app/panels/study_panels.hpp"
 #include "app/panels/typed_field.hpp"
+#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -142,8 +144,8 @@ std::string largest_movement(const App& app, const VibrationMode& mode) {
   const ModeAmplitude* most = angle && (std::abs(angle->value) > 0.5 || !slide) ? angle : slide;
   if (!most) return {};
   const double movement = app.study.modes.amplitude * std::abs(most->value) * screen_factor(most->angle);
-  return (most->count > 1 ? most->joint + "." + std::to_string(most->index) : most->joint) + " ± " +
-         short_text(movement, 3) + (most->angle ? "" : " ") + screen_unit(most->angle);
+  return coordinate_label(*most) + " ± " + short_text(movement, 3) + (most->angle ? "" : " ") +
+         screen_unit(most->angle);
 }
 
 std::string speed_words(const VibrationMode& mode) {

@@ -1,6 +1,7 @@
 #include "app/panels/motion_control.hpp"
 
 #include "engine/dynamics/joined.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +92,7 @@ bool computing_motion(const App& app) {
 std::vector<std::string> free_coordinates(const App& app) {
   std::vector<std::string> names;
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if (!c.driven) names.push_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index));
+    if (!c.driven) names.push_back(coordinate_label(c));
   return names;
 }
 

@@ -7,6 +7,7 @@
 #include "app/panels/typed_field.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -52,7 +53,7 @@ void start_choice(App& app) {
   }
   bool angle = true;
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if ((c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index)) == kicked) angle = c.angle;
+    if (coordinate_label(c) == kicked) angle = c.angle;
   if (plain_quantity_field(app, "motion/kick", "Speed", angle ? "rad/s" : "m/s", "The speed it gets.",
                            motion.kick))
     anew(app);

@@ -1,19 +1,14 @@
 // What plots over time can show, and how it becomes one.
 #include "app/panels/motion_control.hpp"
 #include "app/panels/study_panels.hpp"
+#include "app/panels/units.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 namespace flyball {
 
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi, millimetres = 1000;
-
-std::string label(const std::string& joint, int index, int count) {
-  return count == 1 ? joint : joint + "." + std::to_string(index);
-}
 
 struct Shown {
   std::string title, unit;
@@ -44,14 +39,13 @@ std::vector<double> changes(std::vector<double> values) {
 Shown shown_quantity(const Run& run, const std::string& key) {
   Shown out;
   for (const CoordinateTrack& c : run.coordinates) {
-    const std::string name = label(c.joint, c.index, c.count);
-    if (key == "value " + name)
-      return {name, c.angle ? "°" : "mm", c.angle ? degrees : millimetres, {{"", c.value}}};
+    const std::string name = coordinate_label(c);
+    if (key == "value " + name) return {name, screen_unit(c.angle), screen_factor(c.angle), {{"", c.value}}};
     if (key == "rate " + name)
-      return {"rate of " + name, c.angle ? "°/s" : "mm/s", c.angle ? degrees : millimetres, {{"", c.rate}}};
+      return {"rate of " + name, c.angle ? "°/s" : "mm/s", screen_factor(c.angle), {{"", c.rate}}};
   }
   for (const DriveTrack& d : run.drives) {
-    const std::string name = label(d.joint, d.index, d.count);
+    const std::string name = coordinate_label(d);
     if (key == "drive " + name)
       return {(d.angle ? "drive torque of " : "drive force of ") + name,
               d.angle ? "N m" : "N",
@@ -85,9 +79,9 @@ std::optional<double> steady_value(const App& app, const std::string& key) {
   const Solution& s = app.answer.solution;
   if (key.starts_with("rate ")) return 0;
   for (const CoordinateSolution& c : s.coordinates)
-    if (key == "value " + label(c.joint, c.index, c.count) && !c.driven) return c.value;
+    if (key == "value " + coordinate_label(c) && !c.driven) return c.value;
   for (const DriveTorque& d : s.drive_torques)
-    if (key == "drive " + label(d.joint, d.index, d.count) && !d.varying) return d.value;
+    if (key == "drive " + coordinate_label(d) && !d.varying) return d.value;
   for (const Reaction& r : s.reactions) {
     if (r.varying) continue;
     if (key == "force " + r.joint) return r.force.norm();
@@ -104,11 +98,11 @@ std::vector<MotionQuantity> motion_quantities(const Run& run) {
     out.push_back({key, shown_quantity(run, key).title, group});
   };
   for (const CoordinateTrack& c : run.coordinates)
-    if (!c.driven) add("value " + label(c.joint, c.index, c.count), "Coordinates");
+    if (!c.driven) add("value " + coordinate_label(c), "Coordinates");
   for (const CoordinateTrack& c : run.coordinates)
-    if (!c.driven) add("rate " + label(c.joint, c.index, c.count), "Speeds");
+    if (!c.driven) add("rate " + coordinate_label(c), "Speeds");
   for (const DriveTrack& d : run.drives)
-    add("drive " + label(d.joint, d.index, d.count), "Drives");
+    add("drive " + coordinate_label(d), "Drives");
   add("energies", "Energy");
   if (!run.energy.jacobi.empty()) add("jacobi", "Energy");
   add("balance", "Energy");

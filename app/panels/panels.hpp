@@ -8,17 +8,17 @@ namespace flyball {
 
 void toolbar_panel(App& app, const PanelRect& rect);
 void viewport_panel(App& app, const PanelRect& rect);
-void beside_panel(App& app, const PanelRect& rect); // the view of the motion alone
+void beside_panel(App& app, const PanelRect& rect);  // the view of the motion alone
 void outline_panel(App& app, const PanelRect& rect); // the parts, as a tree
 void inspector_panel(App& app,
                      const PanelRect& rect); // the selected parts' numbers; of the whole scene where none is
 void parameters_panel(App& app, const PanelRect& rect);
 void results_panel(App& app, const PanelRect& rect);
-void welcome(App& app, const PanelRect& view);     // over the view of an empty document: what to do first
+void welcome(App& app, const PanelRect& view); // over the view of an empty document: what to do first
 void factor_combo(App& app, const char* name, float width); // seconds shown a second; width in pixels
-void status_chip(App& app, const PanelRect& view); // solved, solving, or what is missing
-void history_panel(App& app);                      // the steps, to go back to
-void start_rename(App& app);                       // of the selected part, in its place in the outline
+void status_chip(App& app, const PanelRect& view);          // solved, solving, or what is missing
+void history_panel(App& app);                               // the steps, to go back to
+void start_rename(App& app); // of the selected part, in its place in the outline
 void open_dialog(App& app);
 void save_dialog(App& app);
 void unsaved_dialog(App& app);

@@ -68,9 +68,9 @@ std::array<double, 2> place_of(const PlotFrame& frame, const PixelPoint& at) {
     const double grain = worth > 0 ? std::pow(10, std::floor(std::log10(worth))) : 0;
     const double value = ruler.value(inside[k]);
     // Dividing by a whole number leaves the nearest decimal.
-    place[k] = grain == 0 ? value
+    place[k] = grain == 0  ? value
                : grain < 1 ? std::round(value / grain) / std::round(1 / grain)
-                          : std::round(value / grain) * grain;
+                           : std::round(value / grain) * grain;
   }
   return place;
 }

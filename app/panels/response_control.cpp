@@ -181,13 +181,6 @@ bool near(const std::vector<CoordinateSolution>& a, const std::vector<Coordinate
   return true;
 }
 
-std::vector<std::pair<std::string, double>> start_at(const ResponsePoint& point) {
-  std::vector<std::pair<std::string, double>> start;
-  for (const CoordinateSolution& c : point.coordinates)
-    if (!c.driven) start.emplace_back(coordinate_name(c), c.value);
-  return start;
-}
-
 // Between two points of a line; angles by the short way.
 ResponsePoint between(const ResponsePoint& a, const ResponsePoint& b, double part) {
   ResponsePoint out = part < 0.5 ? a : b;
@@ -356,7 +349,7 @@ void go_to_response(App& app, const PlotHit& hit, bool dragged) {
   const bool there =
       app.on_branch && point.parameter == get_parameter(app.mechanism(), state.result->of.address);
   if (dragged && there && (solving(app) || near(app.answer.solution.coordinates, point.coordinates))) return;
-  go_to_state(app, state.result->of.address, point.parameter, start_at(point));
+  go_to_state(app, state.result->of.address, point.parameter, start_values(point.coordinates));
 }
 
 void find_design(App& app) {
@@ -387,7 +380,7 @@ void find_design(App& app) {
 
 void go_to_design(App& app, const DesignSolution& solution) {
   const auto& answer = app.study.response.design.answer;
-  if (answer) go_to_state(app, answer->of.address, solution.parameter, start_at(solution.at));
+  if (answer) go_to_state(app, answer->of.address, solution.parameter, start_values(solution.at.coordinates));
 }
 
 void draw_response(App& app) {

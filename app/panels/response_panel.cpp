@@ -3,12 +3,13 @@
 #include "app/panels/response_control.hpp"
 #include "app/panels/study_panels.hpp"
 #include "app/panels/typed_field.hpp"
+#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace flyball {
 
@@ -16,7 +17,6 @@ namespace {
 
 constexpr float choices_width = 300; // points
 constexpr double patience = 0.25;    // s: a shorter wait is not worth a bar
-constexpr double degrees = 180 / std::numbers::pi, millimetres = 1000;
 
 void parameter_choice(App& app) {
   std::vector<std::string> phrases;
@@ -146,13 +146,13 @@ void branch_note(App& app) {
 // The coordinate of the answer that design mode asks for.
 const CoordinateSolution* design_coordinate(const App& app) {
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if (!c.driven && coordinate_name(c) == app.study.response.design.coordinate) return &c;
+    if (!c.driven && coordinate_label(c) == app.study.response.design.coordinate) return &c;
   return nullptr;
 }
 
 double present_value(const App& app, const std::string& name) {
   for (const CoordinateSolution& c : app.answer.solution.coordinates)
-    if (coordinate_name(c) == name) return c.value;
+    if (coordinate_label(c) == name) return c.value;
   return 0;
 }
 
@@ -162,7 +162,7 @@ void choose_design(App& app, const std::string& name) {
   design.answer.reset();
   ++app.study.response.version;
   const CoordinateSolution* c = design_coordinate(app);
-  const double factor = c && c->angle ? degrees : millimetres;
+  const double factor = screen_factor(c && c->angle);
   design.value = std::round(present_value(app, name) * factor) / factor;
 }
 
@@ -194,14 +194,13 @@ void solution_row(App& app, const DesignAnswer& answer, const DesignSolution& s,
   std::string help = "Click to go there.\nError estimate " + magnitude_text(s.parameter_error, numbers) +
                      " " + unit + ", " + std::to_string(s.iterations) + " iterations.";
   if (s.rate)
-    help += "\nThe coordinate changes by " +
-            short_text(*s.rate * (answer.coordinate.angle ? degrees : millimetres), 4) +
+    help += "\nThe coordinate changes by " + short_text(*s.rate * screen_factor(answer.coordinate.angle), 4) +
             (answer.coordinate.angle ? " °" : " mm") + " per " + (unit.empty() ? "unit." : unit + ".");
   constexpr std::size_t most_told = 8;
   for (std::size_t k = 0; k < s.at.coordinates.size() && k < most_told; ++k) {
     const CoordinateSolution& c = s.at.coordinates[k];
     if (!c.driven)
-      help += "\n" + coordinate_name(c) + "  " + short_text(c.value * (c.angle ? degrees : millimetres), 6) +
+      help += "\n" + coordinate_label(c) + "  " + short_text(c.value * screen_factor(c.angle), 6) +
               (c.angle ? " °" : " mm");
   }
   help_on_hover(help.c_str());
@@ -231,7 +230,7 @@ void design_rows(App& app) {
   if (!control) return;
   std::vector<std::string> names;
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if (!c.driven) names.push_back(coordinate_name(c));
+    if (!c.driven) names.push_back(coordinate_label(c));
   if (names.empty()) return;
   ResponseDesign& design = app.study.response.design;
   if (std::ranges::find(names, design.coordinate) == names.end()) {
@@ -247,7 +246,7 @@ void design_rows(App& app) {
     choose_design(app, *chosen);
   const CoordinateSolution* c = design_coordinate(app);
   const bool angle = c && c->angle;
-  const double factor = angle ? degrees : millimetres;
+  const double factor = screen_factor(angle);
   const float width = row_label(app, "is", "Where it is wanted.");
   const float button = 62 * app.scale, gap = 6 * app.scale;
   quantity_field(app,

@@ -1,4 +1,6 @@
 #include "app/panels/response_quantity.hpp"
+#include "app/panels/units.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +10,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi, millimetres = 1000;
 constexpr double turns = 1 / (2 * std::numbers::pi);
-
-std::string drive_name(const DriveTorque& d) {
-  return d.count == 1 ? d.joint : d.joint + "." + std::to_string(d.index);
-}
 
 // The end of the key where it begins like that.
 std::optional<std::string> after(const std::string& key, std::string_view begin) {
@@ -46,20 +43,16 @@ ResponsePoint response_point(const Solution& solution, double parameter) {
   return point;
 }
 
-std::string coordinate_name(const CoordinateSolution& c) {
-  return c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index);
-}
-
 std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point) {
   std::vector<ResponseQuantity> out;
   for (const CoordinateSolution& c : point.coordinates)
     if (!c.driven)
-      out.push_back({"value " + coordinate_name(c), coordinate_name(c), "Coordinates", c.angle ? "°" : "mm",
-                     c.angle ? degrees : millimetres});
+      out.push_back({"value " + coordinate_label(c), coordinate_label(c), "Coordinates", screen_unit(c.angle),
+                     screen_factor(c.angle)});
   for (const DriveTorque& d : point.drive_torques)
     if (!d.varying)
-      out.push_back({"drive " + drive_name(d),
-                     (d.angle ? "drive torque of " : "drive force of ") + drive_name(d), "Drives",
+      out.push_back({"drive " + coordinate_label(d),
+                     (d.angle ? "drive torque of " : "drive force of ") + coordinate_label(d), "Drives",
                      d.angle ? "N m" : "N", 1});
   for (const Reaction& r : point.reactions)
     out.push_back({"force " + r.joint, "force through " + r.joint, "Reactions", "N", 1});
@@ -80,10 +73,10 @@ bool needs_reactions(const std::string& key) {
 std::vector<double> quantity_values(const ResponsePoint& point, const std::string& key) {
   if (const auto name = after(key, "value ")) {
     for (const CoordinateSolution& c : point.coordinates)
-      if (coordinate_name(c) == *name) return {c.value};
+      if (coordinate_label(c) == *name) return {c.value};
   } else if (const auto drive = after(key, "drive ")) {
     for (const DriveTorque& d : point.drive_torques)
-      if (drive_name(d) == *drive) return {d.value};
+      if (coordinate_label(d) == *drive) return {d.value};
   } else if (const auto force = after(key, "force ")) {
     for (const Reaction& r : point.reactions)
       if (r.joint == *force) return {r.force.norm()};

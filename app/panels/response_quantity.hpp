@@ -19,9 +19,6 @@ struct ResponseQuantity {
 // A steady state as a point of a curve.
 ResponsePoint response_point(const Solution& solution, double parameter);
 
-// "joint", or "joint.index" where the joint has several coordinates.
-std::string coordinate_name(const CoordinateSolution& c);
-
 // All that the point, with everything in it, can tell.
 std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point);
 // Whether its points need reactions and drive torques.

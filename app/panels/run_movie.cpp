@@ -15,9 +15,7 @@ std::optional<Analysis> analysis_at(const Mechanism& mechanism, const Solution& 
   SolveOptions options;
   options.nearest = true;
   options.details = false;
-  for (const CoordinateSolution& c : steady.coordinates)
-    if (!c.driven)
-      options.start.emplace_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index), c.value);
+  options.start = start_values(steady.coordinates);
   if (analysis.solve(options).status != Status::converged) return std::nullopt;
   return analysis;
 }

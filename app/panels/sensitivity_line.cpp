@@ -1,16 +1,16 @@
 #include "app/panels/sensitivity_line.hpp"
 
+#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace flyball {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi, millimetres = 1000;
 constexpr double patience = 0.15;   // s: what was told a moment ago stays while the next is solved
 constexpr float small_text = 0.87f; // of the panel's
 // Round-off: of the rate that moves most, and over a change of the number by as much as itself (rad or parts
@@ -59,9 +59,9 @@ std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
     });
     if (c == solution.coordinates.end() || c->driven) continue;
     ShownRate shown;
-    shown.name = rate.count == 1 ? rate.joint : rate.joint + "." + std::to_string(rate.index);
-    shown.value = rate.value * (c->angle ? degrees : millimetres);
-    shown.unit = per(c->angle ? "°" : "mm", control->unit);
+    shown.name = coordinate_label(rate);
+    shown.value = rate.value * screen_factor(c->angle);
+    shown.unit = per(screen_unit(c->angle), control->unit);
     shown.share = std::abs(rate.value) / (c->angle ? 1 : size);
     out.push_back(std::move(shown));
   }

@@ -1,6 +1,7 @@
 #include "app/panels/state_words.hpp"
 
 #include "app/render/icons.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,25 +30,6 @@ const char* reason_text(StabilityReason reason) {
   case StabilityReason::unstable: return "Disturbances grow.";
   }
   return "";
-}
-
-std::string coordinate_label(const CoordinateSolution& c) {
-  return c.count > 1 ? c.joint + "." + std::to_string(c.index) : c.joint;
-}
-
-const char* screen_unit(bool angle) {
-  return angle ? "°" : "mm";
-}
-
-double screen_factor(bool angle) {
-  return angle ? 180 / std::numbers::pi : 1000;
-}
-
-std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates) {
-  std::vector<std::pair<std::string, double>> values;
-  for (const CoordinateSolution& c : coordinates)
-    if (!c.driven) values.emplace_back(coordinate_label(c), c.value);
-  return values;
 }
 
 bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b,

@@ -1,4 +1,4 @@
-// A steady state in words, and its coordinates by name, in the units of the screen.
+// A steady state in words.
 #pragma once
 
 #include "app/panels/ui_style.hpp"
@@ -6,7 +6,6 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace flyball {
@@ -22,14 +21,6 @@ StabilityWords stability_words(std::optional<bool> stable, std::optional<Stabili
 // "A minimum of the amended potential."
 const char* reason_text(StabilityReason reason);
 
-// "theta", or "ball.2" of a joint that has several.
-std::string coordinate_label(const CoordinateSolution& c);
-// On the screen: ° or mm, and what SI values are multiplied by.
-const char* screen_unit(bool angle);
-double screen_factor(bool angle);
-
-// The free coordinates by label, to start solving from: rad, m.
-std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates);
 // Whether two lists of coordinates are one state but for rounding: whole turns, and joints in which nothing
 // resists, do not count.
 bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b,

@@ -3,8 +3,10 @@
 #include "app/panels/states_control.hpp"
 #include "app/panels/study_panels.hpp"
 #include "app/panels/typed_field.hpp"
+#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -59,9 +61,8 @@ void search_bounds(App& app, const FoundStates& found) {
   note_widget(app.widgets, "states/search");
   for (const AllSolutions::Bound& b : found.all.bounds) {
     const double factor = screen_factor(b.angle);
-    row(app, b.count > 1 ? b.joint + "." + std::to_string(b.index) : b.joint,
-        short_text(b.lower * factor, 5) + " … " + short_text(b.upper * factor, 5), screen_unit(b.angle),
-        "Where starts lay. What was found a range's width further out was kept, too.");
+    row(app, coordinate_label(b), short_text(b.lower * factor, 5) + " … " + short_text(b.upper * factor, 5),
+        screen_unit(b.angle), "Where starts lay. What was found a range's width further out was kept, too.");
   }
   if (app.options.numbers.run_times)
     row(app, "Run time", duration_text(found.run_time_s, app.options.numbers), "");

@@ -22,7 +22,8 @@ struct Tab {
 };
 constexpr std::array tabs{
     Tab{Study::motion, "study/motion", "Motion", "The damped motion beside the steady state"},
-    Tab{Study::response, "study/response", "Response", "The steady states over one parameter: branches, folds and crossings"},
+    Tab{Study::response, "study/response", "Response",
+        "The steady states over one parameter: branches, folds and crossings"},
     Tab{Study::states, "study/states", "States", "Every equilibrium that a bounded search finds"},
     Tab{Study::modes, "study/modes", "Modes", "How the steady state swings, and at which speeds"},
     Tab{Study::map, "study/map", "Map", "A coordinate over the plane of two parameters, with its folds"},
@@ -101,8 +102,10 @@ void study_panel(App& app, const PanelRect& rect) {
 }
 
 bool studying(const App& app) {
-  return computing_motion(app) || computing_response(app) || (app.study.compare.task && app.study.compare.task->running()) ||
-         (app.study.states.task && app.study.states.task->running()) || finding_modes(app) || computing_map(app);
+  return computing_motion(app) || computing_response(app) ||
+         (app.study.compare.task && app.study.compare.task->running()) ||
+         (app.study.states.task && app.study.states.task->running()) || finding_modes(app) ||
+         computing_map(app);
 }
 
 } // namespace flyball

@@ -76,4 +76,12 @@ std::span<const std::string_view> unit_names() {
   return names;
 }
 
+const char* screen_unit(bool angle) {
+  return angle ? "°" : "mm";
+}
+
+double screen_factor(bool angle) {
+  return angle ? 180 / std::numbers::pi : 1000;
+}
+
 } // namespace flyball

@@ -14,6 +14,10 @@ struct Dimension {
   bool none() const { return *this == Dimension{}; }
 };
 
+// What a coordinate is shown in: ° or mm; and what SI values are multiplied by.
+const char* screen_unit(bool angle);
+double screen_factor(bool angle);
+
 Dimension operator+(const Dimension& a, const Dimension& b); // of a product
 Dimension operator*(const Dimension& a, int power);
 

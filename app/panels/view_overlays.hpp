@@ -7,9 +7,9 @@
 namespace flyball {
 
 // In the view's window:
-void caption(App& app, const PanelRect& rect);    // what the picture shows, in its upper left corner
+void caption(App& app, const PanelRect& rect);        // what the picture shows, in its upper left corner
 void motion_caption(App& app, const PanelRect& rect); // of the view beside it
-void view_lines(App& app, const PanelRect& rect); // what to do next with the tool, and what was last done
+void view_lines(App& app, const PanelRect& rect);     // what to do next with the tool, and what was last done
 // Windows of their own:
 void part_label(App& app);                            // "arm1", and what it is, beside the cursor
 void problem_banner(App& app, const PanelRect& rect); // a scene that cannot be read

@@ -10,21 +10,13 @@ namespace flyball {
 
 namespace {
 
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (char c : text)
-    out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
 std::string number(double value) {
   return std::isfinite(value) ? number_text(value) : "";
 }
 
 std::string header_of(const PlotAxis& axis, const char* otherwise) {
   const std::string text = axis_text(axis.label, axis.unit);
-  return field(text.empty() ? otherwise : text);
+  return csv_field(text.empty() ? otherwise : text);
 }
 
 } // namespace
@@ -35,7 +27,7 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
   std::string out = "curve," + header_of(plot.x, "x") + "," + header_of(plot.y, "y");
   if (heat) {
     const std::string text = axis_text(plot.heat->label, plot.heat->unit);
-    out += "," + field(text.empty() ? "value" : text);
+    out += "," + csv_field(text.empty() ? "value" : text);
   }
   out += "\r\n";
   const auto row = [&](const std::string& name, double x, double y) {
@@ -48,14 +40,14 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const PlotCurve& curve = plot.curves[i];
     if (!is_shown(curve, look) || curve.hatching) continue;
-    const std::string name = field(curve.name.empty() ? fmt::format("curve {}", i + 1) : curve.name);
+    const std::string name = csv_field(curve.name.empty() ? fmt::format("curve {}", i + 1) : curve.name);
     for (const auto& point : curve.points) {
       row(name, point[0], point[1]);
       out += end;
     }
   }
   for (const PlotMark& mark : plot.marks) {
-    row(field(mark.label.empty() ? "mark" : mark.label), mark.at[0], mark.at[1]);
+    row(csv_field(mark.label.empty() ? "mark" : mark.label), mark.at[0], mark.at[1]);
     out += end;
   }
   if (!heat) return out;

@@ -78,7 +78,8 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
     std::optional<double> best;
     double least = 0;
     for (const PlotCurve& curve : plot.curves) {
-      if (curve.name != entry.name || !is_shown(curve, look) || curve.line == PlotLine::none || curve.hatching)
+      if (curve.name != entry.name || !is_shown(curve, look) || curve.line == PlotLine::none ||
+          curve.hatching)
         continue;
       for (std::size_t i = 1; i < curve.points.size(); ++i) {
         const auto &a = curve.points[i - 1], &b = curve.points[i];

@@ -1,9 +1,9 @@
 #include "engine/dynamics/choose_method.hpp"
 
 #include "engine/equilibrium/stability.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 namespace flyball {
 namespace {
@@ -13,11 +13,6 @@ namespace {
 constexpr double stages = 13, stable_step = 4.5;
 // Steps that an oscillation needs a radian, times the tolerance to the power of one over the order.
 constexpr double steps_explicit = 0.09, steps_implicit = 0.25;
-
-std::string rounded(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 2).ptr};
-}
 
 } // namespace
 
@@ -67,13 +62,14 @@ MethodChoice choose_method(Equations& equations, double duration, double toleran
   }
   if (explicit_cost > implicit_cost) {
     out.method = Integrator::bdf;
-    out.reason = "BDF: a motion at " + rounded(std::abs(costly)) + " 1/s dies out within " +
-                 rounded(-std::log(tolerance) / std::max(1e-300, -costly.real())) +
-                 " s, but would keep explicit steps below " + rounded(stable_step / std::abs(costly)) + " s.";
+    out.reason = "BDF: a motion at " + rounded_text(std::abs(costly), 2) + " 1/s dies out within " +
+                 rounded_text(-std::log(tolerance) / std::max(1e-300, -costly.real()), 2) +
+                 " s, but would keep explicit steps below " +
+                 rounded_text(stable_step / std::abs(costly), 2) + " s.";
   } else {
     out.reason = "Runge-Kutta: no fast motion dies out early, so that explicit steps are held by accuracy "
                  "alone (fastest " +
-                 (fastest > 0 ? rounded(fastest) + " 1/s)." : std::string("0)."));
+                 (fastest > 0 ? rounded_text(fastest, 2) + " 1/s)." : std::string("0)."));
   }
   return out;
 }

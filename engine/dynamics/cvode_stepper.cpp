@@ -13,39 +13,18 @@
 namespace flyball {
 namespace {
 
-Ode& ode_of(void* data) {
-  return *static_cast<Ode*>(data);
-}
-
-int rate(realtype t, N_Vector y, N_Vector out, void* data) {
-  return ode_of(data).rate(t, sundials::data(y), sundials::data(out)) ? 0 : 1;
-}
-
-int weights(N_Vector y, N_Vector out, void* data) {
-  ode_of(data).weights(sundials::data(y), sundials::data(out));
-  double* w = sundials::data(out);
-  for (sunindextype i = 0; i < N_VGetLength(out); ++i)
-    w[i] = 1 / w[i];
-  return 0;
-}
-
 int jacobian(realtype t, N_Vector y, N_Vector rate, SUNMatrix out, void* data, N_Vector, N_Vector, N_Vector) {
-  return ode_of(data).jacobian(t, sundials::data(y), sundials::data(rate), SUNDenseMatrix_Data(out)) ? 0 : 1;
+  return sundials::ode_of(data).jacobian(t, sundials::data(y), sundials::data(rate), SUNDenseMatrix_Data(out))
+             ? 0
+             : 1;
 }
 
 int project(realtype t, N_Vector y, N_Vector correction, realtype, N_Vector, void* data) {
   N_VScale(1, y, correction);
-  if (!ode_of(data).project(t, sundials::data(correction))) return 1;
+  if (!sundials::ode_of(data).project(t, sundials::data(correction))) return 1;
   N_VLinearSum(1, correction, -1, y, correction);
   return 0;
 }
-
-int event_values(realtype t, N_Vector y, realtype* out, void* data) {
-  ode_of(data).event_values(t, sundials::data(y), out);
-  return 0;
-}
-
-void keep_silent(int, const char*, const char*, char*, void*) {}
 
 std::string clause(int flag) {
   switch (flag) {
@@ -86,10 +65,10 @@ class CvodeStepper : public Stepper {
       return;
     }
     started_ = true;
-    CVodeInit(memory_, rate, t, y_);
+    CVodeInit(memory_, sundials::rate, t, y_);
     CVodeSetUserData(memory_, &ode_);
-    CVodeSetErrHandlerFn(memory_, keep_silent, nullptr);
-    CVodeWFtolerances(memory_, weights);
+    CVodeSetErrHandlerFn(memory_, sundials::keep_silent, nullptr);
+    CVodeWFtolerances(memory_, sundials::weights);
     CVodeSetMaxNumSteps(memory_, -1);
     CVodeSetMaxHnilWarns(memory_, -1);
     CVodeSetMaxErrTestFails(memory_, 20);
@@ -110,7 +89,7 @@ class CvodeStepper : public Stepper {
       }
     }
     if (ode_.events() > 0) {
-      CVodeRootInit(memory_, ode_.events(), event_values);
+      CVodeRootInit(memory_, ode_.events(), sundials::event_values);
       CVodeSetNoInactiveRootWarn(memory_);
     }
   }

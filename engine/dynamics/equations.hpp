@@ -107,6 +107,7 @@ class Equations {
   void choose_idle();
   void choose_kinds();
   bool find_null_directions();
+  void evaluate_damping(Eigen::MatrixXd& out) const;
   bool find_damped_velocity();
   bool find_standing_velocity();
   bool balanced_to_rounding();

@@ -47,6 +47,12 @@ Eigen::VectorXd Equations::null_motion(const Eigen::VectorXd& idle) const {
   return (null_ * idle).cwiseProduct(model_.scaling.column);
 }
 
+// Derivative of all damping and drag forces with u.
+void Equations::evaluate_damping(Eigen::MatrixXd& out) const {
+  out.setZero(system_.nv, system_.nv);
+  add_damping(system_, parameters_, q_, kinematics_, out);
+}
+
 // Newton on the balance along the damped directions; one step where dampers are linear.
 bool Equations::find_damped_velocity() {
   const auto count = static_cast<Eigen::Index>(idle_.size());
@@ -58,7 +64,7 @@ bool Equations::find_damped_velocity() {
     u_.head(n_) = s_.head(n_) + null_motion(idle_velocity_);
     place();
     forces();
-    damping_matrix(system_, parameters_, q_, kinematics_, damping_);
+    evaluate_damping(damping_);
     const auto& column = model_.scaling.column;
     null_damping_.noalias() = null_.transpose() * column.asDiagonal() * damping_.topLeftCorner(n_, n_) *
                               column.asDiagonal() * null_;

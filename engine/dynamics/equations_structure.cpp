@@ -105,11 +105,11 @@ void Equations::choose_kinds() {
   std::vector<BodyForceParameters> drags = parameters_.body_forces;
   for (BodyForceParameters& f : parameters_.body_forces)
     f.quadratic = 0;
-  damping_matrix(system_, parameters_, q_, kinematics_, damping_);
+  evaluate_damping(damping_);
   for (std::size_t i = 0; i < drags.size(); ++i)
     parameters_.body_forces[i].linear = drags[i].linear + drags[i].quadratic * (drags[i].linear == 0);
   Eigen::MatrixXd any_drag;
-  damping_matrix(system_, parameters_, q_, kinematics_, any_drag);
+  evaluate_damping(any_drag);
   parameters_.body_forces = std::move(drags);
   const Eigen::MatrixXd motion = model_.scaling.column.asDiagonal() * null_;
   sort_kinds(motion.transpose() * damping_.topLeftCorner(n_, n_) * motion);

@@ -1,5 +1,6 @@
 #include "engine/dynamics/recorder.hpp"
 
+#include "engine/equilibrium/report.hpp"
 #include "engine/system/potential.hpp"
 #include "engine/system/reactions.hpp"
 #include "engine/system/rotation_vector.hpp"
@@ -36,11 +37,7 @@ void Recorder::lay_out() {
     track.angle = c.angle;
     track.driven = link.drive >= 0;
     track.rotation = link.type == LinkType::spherical;
-    const bool geared = std::ranges::any_of(system.cuts, [&](const CutJoint& cut) {
-      return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
-    });
-    track.turns = link.type == LinkType::revolute && !track.driven && !geared &&
-                  !model_->parameters.links[at(c.link)].elastic;
+    track.turns = turns_freely(system, model_->parameters, c);
     run_.coordinates.push_back(std::move(track));
   }
   for (std::size_t d = 0; d < system.drives.size(); ++d) {

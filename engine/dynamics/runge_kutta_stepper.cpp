@@ -10,32 +10,9 @@
 namespace flyball {
 namespace {
 
-Ode& ode_of(void* data) {
-  return *static_cast<Ode*>(data);
-}
-
-int rate(realtype t, N_Vector y, N_Vector out, void* data) {
-  return ode_of(data).rate(t, sundials::data(y), sundials::data(out)) ? 0 : 1;
-}
-
-int weights(N_Vector y, N_Vector out, void* data) {
-  ode_of(data).weights(sundials::data(y), sundials::data(out));
-  double* w = sundials::data(out);
-  for (sunindextype i = 0; i < N_VGetLength(out); ++i)
-    w[i] = 1 / w[i];
-  return 0;
-}
-
 int project(realtype t, N_Vector y, void* data) {
-  return ode_of(data).project(t, sundials::data(y)) ? 0 : 1;
+  return sundials::ode_of(data).project(t, sundials::data(y)) ? 0 : 1;
 }
-
-int event_values(realtype t, N_Vector y, realtype* out, void* data) {
-  ode_of(data).event_values(t, sundials::data(y), out);
-  return 0;
-}
-
-void keep_silent(int, const char*, const char*, char*, void*) {}
 
 std::string clause(int flag) {
   switch (flag) {
@@ -82,11 +59,11 @@ class RungeKuttaStepper : public Stepper {
     if (memory_) {
       ERKStepReset(memory_, t, y_);
     } else {
-      memory_ = ERKStepCreate(rate, t, y_, context_);
+      memory_ = ERKStepCreate(sundials::rate, t, y_, context_);
       if (!memory_) throw std::bad_alloc();
       ERKStepSetUserData(memory_, &ode_);
-      ERKStepSetErrHandlerFn(memory_, keep_silent, nullptr);
-      ERKStepWFtolerances(memory_, weights);
+      ERKStepSetErrHandlerFn(memory_, sundials::keep_silent, nullptr);
+      ERKStepWFtolerances(memory_, sundials::weights);
       set_method(memory_);
       // The interpolant only finds events; that of degree 3 costs no evaluations.
       if (ode_.events() == 0) ERKStepSetInterpolantDegree(memory_, 3);
@@ -96,7 +73,7 @@ class RungeKuttaStepper : public Stepper {
       if (fixed_ > 0) ERKStepSetFixedStep(memory_, fixed_);
       if (ode_.has_manifold()) ERKStepSetPostprocessStepFn(memory_, project);
       if (ode_.events() > 0) {
-        ERKStepRootInit(memory_, ode_.events(), event_values);
+        ERKStepRootInit(memory_, ode_.events(), sundials::event_values);
         ERKStepSetNoInactiveRootWarn(memory_);
       }
     }

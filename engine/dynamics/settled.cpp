@@ -5,20 +5,10 @@
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <numbers>
 
 namespace flyball {
-namespace {
-
-std::string rounded(double value, int digits) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
-}
-
-} // namespace
-
 double distance_from(const Run& run, std::size_t sample, const Solution& steady) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (run.segments.empty() || steady.coordinates.size() != run.coordinates.size()) return infinity;
@@ -61,14 +51,14 @@ Settled find_settled(const Run& run, const Solution& steady, double within) {
     if (!(away <= within)) break;
     --first;
   }
-  const std::string distance = rounded(out.distance, 2) + " from the direct solution";
+  const std::string distance = rounded_text(out.distance, 2) + " from the direct solution";
   if (first == run.time.size()) {
     out.message =
-        "Not settled after " + rounded(run.time.back() - run.time.front(), 4) + " s: " + distance + ".";
+        "Not settled after " + rounded_text(run.time.back() - run.time.front(), 4) + " s: " + distance + ".";
     return out;
   }
   out.time = run.time[first] - run.time.front();
-  out.message = "Settled after " + rounded(*out.time, 4) + " s, " + distance + ".";
+  out.message = "Settled after " + rounded_text(*out.time, 4) + " s, " + distance + ".";
   return out;
 }
 

@@ -1,5 +1,7 @@
-// What the steppers share of SUNDIALS: contexts and vectors that free themselves.
+// What the steppers share of SUNDIALS: contexts and vectors that free themselves, and what is called back.
 #pragma once
+
+#include "engine/dynamics/stepper.hpp"
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
@@ -49,5 +51,29 @@ class Vector {
 inline double* data(N_Vector v) {
   return N_VGetArrayPointer(v);
 }
+
+// The functions that an integrator calls back; what they are given to know it by is the Ode.
+inline Ode& ode_of(void* ode) {
+  return *static_cast<Ode*>(ode);
+}
+
+inline int rate(realtype t, N_Vector y, N_Vector out, void* ode) {
+  return ode_of(ode).rate(t, data(y), data(out)) ? 0 : 1;
+}
+
+inline int weights(N_Vector y, N_Vector out, void* ode) {
+  ode_of(ode).weights(data(y), data(out));
+  double* w = data(out);
+  for (sunindextype i = 0; i < N_VGetLength(out); ++i)
+    w[i] = 1 / w[i];
+  return 0;
+}
+
+inline int event_values(realtype t, N_Vector y, realtype* out, void* ode) {
+  ode_of(ode).event_values(t, data(y), out);
+  return 0;
+}
+
+inline void keep_silent(int, const char*, const char*, char*, void*) {}
 
 } // namespace flyball::sundials

@@ -26,13 +26,9 @@ Mechanism with_parameter(const Mechanism& mechanism, const std::string& address,
 }
 
 Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates) {
-  std::vector<std::pair<std::string, double>> values;
-  for (const CoordinateSolution& c : coordinates)
-    if (!c.driven)
-      values.emplace_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index), c.value);
   Eigen::VectorXd q;
   drawn_configuration(problem.system, problem.parameters, q);
-  set_start(problem.system, problem.parameters, values, q);
+  set_start(problem.system, problem.parameters, start_values(coordinates), q);
   return q;
 }
 

@@ -16,11 +16,8 @@ Eigen::VectorXd coordinate_gradient(const System& system, const Parameters& para
     out[link.v] = 1;
     return out;
   }
-  const LinkParameters& lp = parameters.links[static_cast<std::size_t>(coordinate.link)];
-  const Mat3 j = inverse_left_jacobian(rotation_vector(link, lp, q));
-  // Run against the joint, a step turns the joint's parent in the axes of its child.
   const Mat3 rate =
-      link.reversed ? Mat3(-j.transpose() * lp.drawn_rotation.toRotationMatrix().transpose()) : j;
+      rotation_vector_rate(link, parameters.links[static_cast<std::size_t>(coordinate.link)], q);
   out.segment<3>(link.v) = rate.row(coordinate.index - link.coordinate).transpose();
   return out;
 }

@@ -1,6 +1,7 @@
 #include "engine/equilibrium/report.hpp"
 
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/system/reactions.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -27,34 +28,8 @@ double error_of(const System& system, const Parameters& p, const CoordinateInfo&
   const Link& link = system.links[static_cast<std::size_t>(c.link)];
   if (link.v < 0) return 0;
   if (link.type != LinkType::spherical) return error[link.v];
-  const LinkParameters& lp = p.links[static_cast<std::size_t>(c.link)];
-  const Mat3 j = inverse_left_jacobian(rotation_vector(link, lp, q));
-  const Mat3 rate =
-      link.reversed ? Mat3(j.transpose() * lp.drawn_rotation.toRotationMatrix().transpose()) : j;
+  const Mat3 rate = rotation_vector_rate(link, p.links[static_cast<std::size_t>(c.link)], q);
   return rate.row(c.index - link.coordinate).cwiseAbs().dot(error.segment<3>(link.v));
-}
-
-void report_coordinates(const ReportInput& in, const Eigen::VectorXd& error, Solution& out) {
-  const System& system = in.problem.system;
-  const Parameters& p = in.problem.parameters;
-  for (const CoordinateInfo& c : system.coordinates) {
-    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-    const Link& link = system.links[static_cast<std::size_t>(c.link)];
-    CoordinateSolution x;
-    x.joint = joint.name;
-    x.index = c.index;
-    x.count = coordinate_count(joint.type);
-    x.angle = c.angle;
-    x.driven = link.drive >= 0;
-    x.value = coordinate_value(system, p, in.found.z.q, c);
-    const bool geared = std::ranges::any_of(system.cuts, [&](const CutJoint& cut) {
-      return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
-    });
-    const bool unwrapped = geared || p.links[static_cast<std::size_t>(c.link)].elastic;
-    if (c.angle && link.type == LinkType::revolute && !unwrapped && !x.driven) x.value = wrapped(x.value);
-    x.error = error_of(system, p, c, in.found.z.q, error);
-    out.coordinates.push_back(std::move(x));
-  }
 }
 
 // Whether a transmitted wrench changes with the drives' phase as seen from both its parts.
@@ -155,6 +130,41 @@ void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
 
 } // namespace
 
+bool turns_freely(const System& system, const Parameters& p, const CoordinateInfo& c) {
+  const Link& link = system.links[static_cast<std::size_t>(c.link)];
+  const bool geared = std::ranges::any_of(system.cuts, [&](const CutJoint& cut) {
+    return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
+  });
+  return link.type == LinkType::revolute && link.drive < 0 && !geared &&
+         !p.links[static_cast<std::size_t>(c.link)].elastic;
+}
+
+std::vector<CoordinateSolution> coordinate_solutions(const System& system, const Parameters& p,
+                                                     const Eigen::VectorXd& q, const Eigen::VectorXd& error) {
+  std::vector<CoordinateSolution> out;
+  for (const CoordinateInfo& c : system.coordinates) {
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+    CoordinateSolution x;
+    x.joint = joint.name;
+    x.index = c.index;
+    x.count = coordinate_count(joint.type);
+    x.angle = c.angle;
+    x.driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
+    x.value = coordinate_value(system, p, q, c);
+    if (turns_freely(system, p, c)) x.value = wrapped(x.value);
+    x.error = error_of(system, p, c, q, error);
+    out.push_back(std::move(x));
+  }
+  return out;
+}
+
+std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates) {
+  std::vector<std::pair<std::string, double>> values;
+  for (const CoordinateSolution& c : coordinates)
+    if (!c.driven) values.emplace_back(coordinate_label(c), c.value);
+  return values;
+}
+
 std::string failure_message(const ReportInput& in, Workspace& w) {
   if (in.found.status == Status::infeasible)
     return "The loops cannot be closed: \"" + cut_name(in, in.found.open_cut) +
@@ -174,7 +184,7 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
 
 void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, Workspace& w, Solution& out) {
   const System& system = in.problem.system;
-  report_coordinates(in, error, out);
+  out.coordinates = coordinate_solutions(in.problem.system, in.problem.parameters, in.found.z.q, error);
   out.stable = in.stability.stable;
   out.stability_reason = in.stability.reason;
   out.eigenvalues = in.stability.eigenvalues;

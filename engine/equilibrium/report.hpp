@@ -23,6 +23,14 @@ std::string failure_message(const ReportInput& input, Workspace& w);
 void report(const ReportInput& input, const Eigen::VectorXd& error, bool details, Workspace& w,
             Solution& out);
 
+// Whether whole turns of a coordinate do not matter: nothing springs back, stops, gears or drives it. Such an
+// angle is told in (-pi, pi].
+bool turns_freely(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate);
+
+// A configuration as its joints label it; `error` by coordinate of q_R (rad, m).
+std::vector<CoordinateSolution> coordinate_solutions(const System& system, const Parameters& parameters,
+                                                     const Eigen::VectorXd& q, const Eigen::VectorXd& error);
+
 // Rates of q_R by the names of its coordinates.
 Sensitivity name_rates(const System& system, const std::string& address, const Eigen::VectorXd& rate);
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace flyball {
@@ -76,6 +77,9 @@ struct Sensitivity {
   };
   std::vector<Rate> rates;
 };
+
+// The free ones by name, as SolveOptions::start wants them.
+std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates);
 
 struct Solution {
   Status status = Status::not_converged;

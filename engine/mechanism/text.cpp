@@ -40,6 +40,27 @@ std::string number_text(double value) {
   return {buffer.data(), result.ptr};
 }
 
+std::string rounded_text(double value, int digits) {
+  std::array<char, 32> buffer{};
+  const auto result =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
+  return {buffer.data(), result.ptr};
+}
+
+std::string coordinate_label(const std::string& joint, int index, int count) {
+  return count == 1 ? joint : joint + "." + std::to_string(index);
+}
+
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates) {
   constexpr std::size_t longest = 64; // nobody mistypes a word of this length, and the cost is quadratic
   if (word.size() > longest) return {};

@@ -10,6 +10,21 @@ namespace flyball {
 // The shortest text that reads back as exactly this number.
 std::string number_text(double value);
 
+// At most `digits` significant digits: for a sentence, not for reading back.
+std::string rounded_text(double value, int digits);
+
+// What a coordinate is called in results, tables and options: "swing", or "ball.3" where the joint has
+// several.
+std::string coordinate_label(const std::string& joint, int index, int count);
+// Of anything with these three.
+template <class Coordinate>
+std::string coordinate_label(const Coordinate& c) {
+  return coordinate_label(c.joint, c.index, c.count);
+}
+
+// A field of a CSV table, quoted where a comma, a quote or a line end asks for it (RFC 4180).
+std::string csv_field(std::string_view text);
+
 // The candidate a person most likely meant by `word`, or "" where none is close.
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);
 // `; did you mean "axis"?`, or "" where nothing is close.

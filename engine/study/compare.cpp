@@ -6,6 +6,7 @@
 #include "engine/equilibrium/existence.hpp"
 #include "engine/equilibrium/find_equilibrium.hpp"
 #include "engine/equilibrium/refine.hpp"
+#include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/stability.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -93,22 +94,9 @@ class Direct {
       retract<long double>(system_, step, reference_);
       previous = size;
     }
-    const Eigen::VectorXd rounded = reference_.cast<double>();
-    for (const CoordinateInfo& c : system_.coordinates) {
-      const TreeJoint& joint = system_.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-      const Link& link = system_.links[static_cast<std::size_t>(c.link)];
-      CoordinateSolution x;
-      x.joint = joint.name;
-      x.index = c.index;
-      x.count = coordinate_count(joint.type);
-      x.angle = c.angle;
-      x.driven = link.drive >= 0;
-      x.value = coordinate_value(system_, parameters_, rounded, c);
-      if (!x.driven && correction.size() > 0)
-        x.error = link.type == LinkType::spherical ? correction.segment<3>(link.v).norm()
-                                                   : std::abs(correction[link.v]);
-      out.reference.push_back(std::move(x));
-    }
+    if (correction.size() == 0) correction.setZero(system_.nv);
+    out.reference =
+        coordinate_solutions(system_, parameters_, reference_.cast<double>(), correction.cwiseAbs());
   }
 
   // The largest difference from q*, in radians or relative to the reach.

@@ -1,6 +1,6 @@
-// What the paper claims, measured: the error of the direct solution against its run time, one Newton iteration
-// after the other, beside the error of the damped motion against its run time, for every integrator over its
-// tolerances and over simulated durations.
+// What the paper claims, measured: the error of the direct solution against its run time, one Newton
+// iteration after the other, beside the error of the damped motion against its run time, for every integrator
+// over its tolerances and over simulated durations.
 //
 // Everything runs in this process on one thread, from the same drawn pose; times are medians over repeats and
 // leave out what both do once: reading and compiling the scene.
@@ -53,8 +53,8 @@ struct Comparison {
   // The reference q*, iterated in extended precision until it stood: values rounded to double, `error` how
   // far the last correction moved it.
   std::vector<CoordinateSolution> reference;
-  double reference_error = 0; // the largest of these, scaled
-  double reference_residual = 0; // of q* in extended precision, scaled
+  double reference_error = 0;     // the largest of these, scaled
+  double reference_residual = 0;  // of q* in extended precision, scaled
   std::vector<DirectMark> direct; // by iteration; without the iterations where a safety net was needed
   DirectMark answer;              // with refinement, existence and the sign of stability
   std::vector<MotionCurve> motion;

@@ -213,16 +213,10 @@ class Designer {
     for (std::size_t i = 0; i < merged.size(); ++i) {
       const auto& [lowest, highest] = merged[i];
       if (i > 0) out += i + 1 == merged.size() ? " and " : ", ";
-      out += number_text(rounded(lowest)) + unit_name;
-      if (highest > lowest + slack) out += " to " + number_text(rounded(highest)) + unit_name;
+      out += rounded_text(lowest, 6) + unit_name;
+      if (highest > lowest + slack) out += " to " + rounded_text(highest, 6) + unit_name;
     }
     return out;
-  }
-  // For a sentence: six digits.
-  static double rounded(double v) {
-    if (v == 0 || !std::isfinite(v)) return v;
-    const double step = std::pow(10., std::floor(std::log10(std::abs(v))) - 5);
-    return step < 1 ? std::round(v / step) / std::round(1 / step) : std::round(v / step) * step;
   }
 
   const Mechanism& mechanism_;

@@ -124,6 +124,12 @@ void set_coordinate(const System& system, const Parameters& parameters, const Co
   set_rotation_vector(link, p, r, q);
 }
 
+Mat3 rotation_vector_rate(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
+  const Mat3 j = inverse_left_jacobian(rotation_vector(link, p, q));
+  // Run against the joint, a step turns the joint's parent in the axes of its child.
+  return link.reversed ? Mat3(-j.transpose() * p.drawn_rotation.toRotationMatrix().transpose()) : j;
+}
+
 void set_rotation_vector(const Link& link, const LinkParameters& p, const Vec3& r, Eigen::VectorXd& q) {
   Quat d = exp_rotation(r) * p.drawn_rotation.conjugate();
   if (link.reversed) d = d.conjugate();

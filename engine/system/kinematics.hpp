@@ -69,6 +69,9 @@ double coordinate_value(const System& system, const Parameters& parameters, cons
 template <class S>
 Vec3T<S> rotation_vector(const Link& link, const LinkParameters& parameters, const Configuration<S>& q);
 
+// r' = J u: its rate when the link's coordinates move with u, in the joint's own order.
+Mat3 rotation_vector_rate(const Link& link, const LinkParameters& parameters, const Eigen::VectorXd& q);
+
 // Sets a coordinate by label; of a rotation vector one component.
 void set_coordinate(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate,
                     double value, Eigen::VectorXd& q);

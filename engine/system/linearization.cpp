@@ -169,11 +169,9 @@ Mat3 rotation_stiffness(const Link& link, const LinkParameters& p, const Eigen::
 }
 
 Mat3 rotation_damping(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
-  const Mat3 j = inverse_left_jacobian(rotation_vector(link, p, q));
-  const Mat3 to_rate =
-      link.reversed ? Mat3(-j.transpose() * p.drawn_rotation.toRotationMatrix().transpose()) : j;
+  const Mat3 rate = rotation_vector_rate(link, p, q);
   const Vec3 c(p.force[0].damping, p.force[1].damping, p.force[2].damping);
-  return to_rate.transpose() * c.asDiagonal() * to_rate;
+  return rate.transpose() * c.asDiagonal() * rate;
 }
 
 void add_body_forces(const System& system, const Parameters& p, const Kinematics<double>& k,
@@ -280,13 +278,18 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
         [](const Row& row, const ScrewRates& s, const Vec3& arm) {
           return 2 * apply_inertia(row, s.dw, s.dv, arm) + s.sw.dot(row.b);
         });
+  add_damping(system, p, q, k, out.velocity);
+}
+
+void add_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                 const Kinematics<double>& k, Eigen::MatrixXd& velocity) {
   for (std::size_t l = 0; l < system.links.size(); ++l) {
     const Link& link = system.links[l];
     if (link.v < 0) continue;
     if (link.type == LinkType::spherical)
-      out.velocity.block<3, 3>(link.v, link.v) += rotation_damping(link, p.links[l], q);
+      velocity.block<3, 3>(link.v, link.v) += rotation_damping(link, p.links[l], q);
     else
-      out.velocity(link.v, link.v) += p.links[l].force[0].damping;
+      velocity(link.v, link.v) += p.links[l].force[0].damping;
   }
   for (std::size_t n = 0; n < system.body_forces.size(); ++n) {
     const BodyForceElement& e = system.body_forces[n];
@@ -299,10 +302,10 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
       Vec3 force = (f.linear + f.quadratic * speed) * dv;
       if (speed > 0) force += f.quadratic / speed * v * v.dot(dv);
       for (const SupportColumn& ci : e.support)
-        out.velocity(ci.v, cj.v) += k.columns[static_cast<std::size_t>(ci.v)].at(point).dot(force);
+        velocity(ci.v, cj.v) += k.columns[static_cast<std::size_t>(ci.v)].at(point).dot(force);
     }
   }
-  add_pair_damping(system, p, k, out.velocity);
+  add_pair_damping(system, p, k, velocity);
 }
 
 } // namespace flyball

@@ -50,4 +50,9 @@ void linearize(const System& system, const Parameters& parameters, const Eigen::
 void linearize_motion(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                       const Kinematics<double>& kinematics, Linearization& out);
 
+// Adds the derivative of all damping and drag forces with the velocities; symmetric and positive
+// semidefinite.
+void add_damping(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                 const Kinematics<double>& kinematics, Eigen::MatrixXd& velocity);
+
 } // namespace flyball

@@ -39,8 +39,8 @@ void constraint_accelerations(const System& system, const Parameters& parameters
                               const Kinematics<double>& kinematics, const std::vector<LinkRates>& carried,
                               Eigen::VectorXd& out);
 
-// M by the composite-body algorithm. `size` gets what the diagonal could be at most in each coordinate (kg, or
-// kg m^2: the trace of what moves with it), to tell rounding from mass.
+// M by the composite-body algorithm. `size` gets what the diagonal could be at most in each coordinate (kg,
+// or kg m^2: the trace of what moves with it), to tell rounding from mass.
 struct MassMatrix {
   Eigen::MatrixXd mass;
   Eigen::VectorXd size;
@@ -48,9 +48,6 @@ struct MassMatrix {
 };
 void evaluate_mass(const System& system, const Parameters& parameters, const Kinematics<double>& kinematics,
                    MassMatrix& out);
-
-// r' = J u of a spherical link's rotation vector r, in the joint's own order.
-Mat3 rotation_vector_rate(const Link& link, const LinkParameters& parameters, const Eigen::VectorXd& q);
 
 // Adds the forces of dampers on coordinates to f: those between two bodies and drag are in the residual.
 void add_coordinate_damping(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
@@ -60,10 +57,6 @@ void add_coordinate_damping(const System& system, const Parameters& parameters, 
 void add_coordinate_damping_stiffness(const System& system, const Parameters& parameters,
                                       const Eigen::VectorXd& q, const Eigen::VectorXd& u,
                                       Eigen::MatrixXd& stiffness);
-
-// Derivative of all damping and drag forces with u; symmetric and positive semidefinite.
-void damping_matrix(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
-                    const Kinematics<double>& kinematics, Eigen::MatrixXd& out);
 
 // W: taken by dampers and drag; given by torques and forces fixed in bodies, which have no potential.
 struct ForcePowers {

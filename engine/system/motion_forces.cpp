@@ -13,22 +13,7 @@ Vec3 dampings(const LinkParameters& p) {
   return {p.force[0].damping, p.force[1].damping, p.force[2].damping};
 }
 
-// Calls visit(v) for every coordinate between a link and ground.
-template <class Visit>
-void for_coordinates_of(const System& system, int link, Visit visit) {
-  for (int l = link; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
-    const Link& x = system.links[static_cast<std::size_t>(l)];
-    for (int k = 0; x.v >= 0 && k < (x.type == LinkType::spherical ? 3 : 1); ++k)
-      visit(x.v + k);
-  }
-}
-
 } // namespace
-
-Mat3 rotation_vector_rate(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
-  const Mat3 j = inverse_left_jacobian(rotation_vector(link, p, q));
-  return link.reversed ? Mat3(-j.transpose() * p.drawn_rotation.toRotationMatrix().transpose()) : j;
-}
 
 void add_coordinate_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                             const Eigen::VectorXd& u, Eigen::VectorXd& f) {
@@ -61,37 +46,6 @@ void add_coordinate_damping_stiffness(const System& system, const Parameters& p,
           j.transpose() * dampings(p.links[i]).cwiseProduct(dj * rate);
     }
   }
-}
-
-void damping_matrix(const System& system, const Parameters& p, const Eigen::VectorXd& q,
-                    const Kinematics<double>& k, Eigen::MatrixXd& out) {
-  out.setZero(system.nv, system.nv);
-  for (std::size_t i = 0; i < system.links.size(); ++i) {
-    const Link& link = system.links[i];
-    if (link.v < 0 || !damped(p.links[i])) continue;
-    if (link.type == LinkType::spherical) {
-      const Mat3 j = rotation_vector_rate(link, p.links[i], q);
-      out.block<3, 3>(link.v, link.v) += j.transpose() * dampings(p.links[i]).asDiagonal() * j;
-    } else {
-      out(link.v, link.v) += p.links[i].force[0].damping;
-    }
-  }
-  for (std::size_t n = 0; n < system.body_forces.size(); ++n) {
-    const BodyForceElement& e = system.body_forces[n];
-    const BodyForceParameters& f = p.body_forces[n];
-    if (e.link < 0 || f.type != ForceType::drag) continue;
-    const Vec3 point = k.point(e.link, f.at), v = k.velocity(e.link, point);
-    const double speed = v.norm();
-    for_coordinates_of(system, e.link, [&](int j) {
-      const Vec3 dv = k.columns[static_cast<std::size_t>(j)].at(point);
-      Vec3 force = (f.linear + f.quadratic * speed) * dv;
-      if (speed > 0) force += f.quadratic / speed * v * v.dot(dv);
-      for_coordinates_of(system, e.link, [&](int i) {
-        out(i, j) += k.columns[static_cast<std::size_t>(i)].at(point).dot(force);
-      });
-    });
-  }
-  add_pair_damping(system, p, k, out);
 }
 
 ForcePowers force_powers(const System& system, const Parameters& p, const Eigen::VectorXd& q,

@@ -27,12 +27,6 @@ void join_again(const System& system, PairEnds& ends) {
   ends.support.insert(ends.support.end(), b.begin() + static_cast<std::ptrdiff_t>(common), b.end());
 }
 
-// Body forces know the coordinates above them in some layouts of System only.
-template <class Element>
-void fill_support(const System& system, Element& e) {
-  if constexpr (requires { e.support; }) e.support = path_to_root(system, e.link, false);
-}
-
 } // namespace
 
 System released(const System& system) {
@@ -53,8 +47,8 @@ System released(const System& system) {
     join_again(out, e.ends);
   for (CutJoint& c : out.cuts)
     if (c.type != JointType::gear) join_again(out, c.ends);
-  for (auto& e : out.body_forces)
-    fill_support(out, e);
+  for (BodyForceElement& e : out.body_forces)
+    e.support = path_to_root(out, e.link, false);
   return out;
 }
 
