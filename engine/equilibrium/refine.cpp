@@ -1,36 +1,146 @@
 #include "engine/equilibrium/refine.hpp"
 
+#include <bit>
+
 namespace flyball {
+namespace {
+
+constexpr auto long_rounding = static_cast<double>(std::numeric_limits<long double>::epsilon());
+
+// The balance at z in extended precision; what is left of it is small, and then rounded.
+void evaluate_long(const Problem& problem, const Unknowns& z, Workspace& w) {
+  w.q_long = z.q.cast<long double>();
+  // Quaternions of double precision are of unit length to double precision only, and scale what they turn.
+  for (const Link& link : problem.system.links)
+    if (link.v >= 0 && link.type == LinkType::spherical) w.q_long.segment<4>(link.q).normalize();
+  w.lambda_long = z.lambda.cast<long double>();
+  forward<long double>(problem.system, problem.parameters, w.q_long, 0, w.kinematics_long);
+  evaluate_residual<long double>(problem.system, problem.parameters, w.q_long, w.lambda_long,
+                                 w.kinematics_long, w.residual_long);
+  w.residual.f = w.residual_long.f.cast<double>();
+  w.residual.phi = w.residual_long.phi.cast<double>();
+}
+
+// What the rounding of the residual and of the solution for the step, and equations of redundant loops that
+// disagree, do to each coordinate: the step that noise of this size with arbitrary signs asks for, twice
+// over. `left` (scaled) is the largest force that the step had to balance: a stiff spring's, by its rounded
+// length. Loops mix it with the softest.
+void add_noise(const Problem& problem, double left, double opening, Workspace& w, Eigen::VectorXd& error) {
+  const double mixed = w.constraints.rank() > 0 ? std::numeric_limits<double>::epsilon() * left : 0;
+  for (unsigned pattern : {1U, 5U}) {
+    const auto sign = [&](Eigen::Index i) {
+      return std::popcount((static_cast<unsigned>(i) + 1) * pattern) % 2 == 0 ? 1. : -1.;
+    };
+    for (Eigen::Index i = 0; i < w.residual.f.size(); ++i)
+      w.residual.f[i] =
+          sign(i) * (8 * long_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
+    for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
+      w.residual.phi[i] = sign(i) * (8 * long_rounding + opening) / problem.scaling.row[i];
+    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+    error += w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs();
+  }
+}
+
+// How far (scaled) the state can be moved along a direction without stiffness before double precision can
+// tell that it is no longer in balance; zero where that never happens.
+double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction, Workspace& w) {
+  const auto force_along = [&](double way, double& noise) {
+    Unknowns moved = z;
+    w.step = way * direction.cwiseProduct(problem.scaling.column);
+    retract<double>(problem.system, w.step, moved.q);
+    if (way != 0 && !assemble(problem, moved.q, 0, w)) return std::numeric_limits<double>::infinity();
+    factor_with_multipliers(problem, moved, w);
+    const Eigen::VectorXd terms = w.magnitudes.force.cwiseProduct(problem.scaling.column);
+    noise = std::numeric_limits<double>::epsilon() * direction.cwiseAbs().dot(terms);
+    return std::abs(direction.dot(w.residual.f.cwiseProduct(problem.scaling.column)));
+  };
+  double noise = 0;
+  const double here = force_along(0, noise);
+  double farthest = 0;
+  for (const double side : {1., -1.}) {
+    double way = 1e-10;
+    while (way < 0.1 && force_along(side * way, noise) <= 2 * (here + noise))
+      way *= 2;
+    if (way < 0.1) farthest = std::max(farthest, way);
+  }
+  return farthest;
+}
+
+// Whether loops whose equations depend on each other here do so no longer some way along: arms straight, a
+// linkage flat. There lengths change with the square of the angles.
+bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) {
+  const int rank = w.constraints.rank();
+  w.trial.q = z.q;
+  w.trial.lambda = z.lambda;
+  w.scaled_step.setZero(problem.system.nv);
+  for (Eigen::Index c = 0; c < w.constraints.basis().cols(); ++c)
+    w.scaled_step += 1e-4 * w.constraints.basis().col(c);
+  w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
+  retract<double>(problem.system, w.step, w.trial.q);
+  evaluate(problem, w.trial, 0, w);
+  linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
+  factor_constraints(problem, w);
+  const bool more = w.constraints.rank() > rank;
+  evaluate(problem, z, 0, w);
+  factor(problem, z, w);
+  return more;
+}
+
+void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, Eigen::VectorXd& error) {
+  const Eigen::MatrixXd flat = w.constraints.basis() * w.hessian.null_basis();
+  for (Eigen::Index c = 0; c < flat.cols(); ++c) {
+    Eigen::VectorXd direction = flat.col(c);
+    const double size = direction.lpNorm<Eigen::Infinity>();
+    if (!(size > 0)) continue;
+    direction /= size;
+    const double way = undecided(problem, z, direction, w);
+    error = error.cwiseMax(way * direction.cwiseProduct(problem.scaling.column).cwiseAbs());
+  }
+  evaluate(problem, z, 0, w);
+  factor(problem, z, w);
+}
+
+} // namespace
 
 void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, Workspace& w,
             Eigen::VectorXd& error) {
   const System& system = problem.system;
   error.setZero(system.nv);
   if (system.nv == 0) return;
-  double previous = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < 3; ++round) {
-    w.q_long = z.q.cast<long double>();
-    w.lambda_long.setZero(system.rows);
-    forward<long double>(system, problem.parameters, w.q_long, 0, w.kinematics_long);
-    evaluate_residual<long double>(system, problem.parameters, w.q_long, w.lambda_long, w.kinematics_long,
-                                   w.residual_long);
-    // With multipliers solved for whole: what they cannot balance is what counts.
-    w.residual.f = w.residual_long.f.cast<double>();
-    w.residual.phi = w.residual_long.phi.cast<double>();
-    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, z.lambda);
+  double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
+  constexpr int last_round = 4;
+  for (int round = 0; round <= last_round; ++round) {
+    evaluate_long(problem, z, w);
+    left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
+    // Multipliers are corrected like the rest, so that the forces they balance do not drown what they cannot.
+    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
     if (!w.scaled_step.allFinite()) break;
-    w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
     const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
+    w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
     error = w.step.cwiseAbs();
-    if (size > 0.5 * previous) break; // no longer contracting: rounding, or a singular state
+    if (w.constraints.rank() < system.rows) {
+      w.scaled_phi = w.residual.phi.cwiseProduct(problem.scaling.row);
+      w.scaled_phi.noalias() += w.scaled_jacobian * w.scaled_step;
+      opening = w.scaled_phi.lpNorm<Eigen::Infinity>();
+    }
+    if (size > 0.5 * previous) { // no longer contracting: rounding, or a singular state
+      error *= 4 * std::max(1., previous / size);
+      break;
+    }
     retract<double>(system, w.step, z.q);
+    z.lambda += w.trial.lambda;
     previous = size;
-    if (size < 1e-13) break;
+    if (size < 1e-15) break;
+    if (round == last_round)
+      error *= 4; // converging slowly: what is left may be more than the last correction
   }
-  if (outcome.linear) // about a singular state the error is of the size of the last step
-    error = error.cwiseMax(2 * outcome.last_step * problem.scaling.column);
-  // Corrections carry the rounding of the residual that they come from.
-  error += 16 * static_cast<double>(std::numeric_limits<long double>::epsilon()) * problem.scaling.column;
+  if (outcome.linear) // to a root of order n the steps shrink by (n - 1) / n: n - 1 of the last are left
+    error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
+  add_noise(problem, left, opening, w, error);
+  error += long_rounding * problem.scaling.column;
+  if (w.constraints.rank() < std::min(system.rows, system.nv) && at_singular_loops(problem, z, w))
+    error += 4 * std::sqrt(opening + long_rounding) * problem.scaling.column;
+  if (w.hessian.singular()) add_singular_directions(problem, z, w, error);
   for (const Link& link : system.links) {
     if (link.v < 0) continue;
     const int n = link.type == LinkType::spherical ? 3 : 1;

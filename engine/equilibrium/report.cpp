@@ -254,7 +254,7 @@ void set_start(const System& system, const Parameters& parameters,
                const std::vector<std::pair<std::string, double>>& start, Eigen::VectorXd& q) {
   std::vector<std::optional<double>> values(system.coordinates.size());
   for (const auto& [name, value] : start) {
-    const auto named = [&](const CoordinateInfo& c) {
+    const auto named = [&system, &name = name](const CoordinateInfo& c) { // clang captures no binding
       const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
       return name == joint.name + "." + std::to_string(c.index) ||
              (coordinate_count(joint.type) == 1 && name == joint.name);

@@ -8,7 +8,7 @@ Eigen::VectorXd sensitivity(const Problem& problem, const Mechanism& mechanism, 
                             const std::string& address, Workspace& w) {
   const System& system = problem.system;
   const double value = get_parameter(mechanism, address);
-  const double h = 1e-6 * (value != 0 ? std::abs(value) : 1.);
+  const double h = 1e-6 * (std::abs(value) > 1e-100 ? std::abs(value) : 1.);
   Mechanism varied = mechanism;
   Parameters numbers;
   Eigen::VectorXd f[2], phi[2];

@@ -53,9 +53,17 @@ std::string json_key(std::string_view key) {
   return path;
 }
 
+// Beyond this the forces, products of up to seven numbers, overflow; no mechanism comes near.
+constexpr double largest_number = 1e30;
+
 void expect_finite(const std::vector<Number>& numbers, const std::string& prefix, Mistakes& mistakes) {
-  for (const Number& number : numbers)
-    mistakes.expect(std::isfinite(number.value), prefix + json_key(number.key), "expected a finite number");
+  for (const Number& number : numbers) {
+    const std::string where = prefix + json_key(number.key);
+    if (!std::isfinite(number.value))
+      mistakes.add(where, "expected a finite number");
+    else
+      mistakes.expect(std::abs(number.value) <= largest_number, where, "expected no more than 1e30 in size");
+  }
 }
 
 void find_non_finite(const Mechanism& mechanism, Mistakes& mistakes) {

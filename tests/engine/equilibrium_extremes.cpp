@@ -114,37 +114,6 @@ class Judge {
   Residual<Real> residual_;
 };
 
-// The mechanism in another size: lengths times `factor`, inertias with their square.
-Mechanism resized(Mechanism m, double factor) {
-  for (Body& b : m.bodies) {
-    b.position *= factor;
-    for (double& i : b.inertia)
-      i *= factor * factor;
-  }
-  for (Joint& j : m.joints) {
-    j.at *= factor;
-    for (Vec3& p : j.points)
-      p *= factor;
-    if (j.length) *j.length *= factor;
-    for (std::size_t i = 0; i < j.coordinates.size(); ++i) {
-      if (is_angle(j.type, static_cast<int>(i))) continue;
-      Coordinate& c = j.coordinates[i];
-      c.drawn *= factor;
-      if (c.spring) c.spring->free *= factor;
-    }
-  }
-  return m;
-}
-
-Mechanism heavier(Mechanism m, double factor) {
-  for (Body& b : m.bodies) {
-    b.mass *= factor;
-    for (double& i : b.inertia)
-      i *= factor;
-  }
-  return m;
-}
-
 } // namespace
 
 TEST_CASE("numbers far apart: right to the estimate, or refused in words") {
@@ -201,7 +170,7 @@ TEST_CASE("a place so far away that stiffnesses overflow ends in words") {
   m.bodies = {body("block", 0.01, {-0.2, -0.1, -0.8}, {3e-6, 3e-6, 3e-7})};
   m.joints = {joint(JointType::planar, "plane", "ground", "block", {0.1, -0.4, -1e300}, {0.8, 0.4, 1})};
   m.joints[0].axis2 = {-0.8, -0.6, 0.9};
-  const Solution s = solve(m);
+  const Solution s = Analysis(m).solve(); // which validation would not let through
   CHECK(s.status != Status::converged);
   CHECK_FALSE(s.message.empty());
 }

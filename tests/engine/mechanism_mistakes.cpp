@@ -35,6 +35,7 @@ constexpr Mistake mistakes_of_meaning[] = {
     {R"("name": "turn")", R"("name": "push")", "forces[2].name", "forces[1]"},
     // bodies
     {R"("mass": 2)", R"("mass": -2)", "bodies.table.mass", "expected zero or more, found -2"},
+    {R"("mass": 2)", R"("mass": 2e30)", "bodies.table.mass", "no more than 1e30"},
     {R"("inertia": [1, 1.5, 1])", R"("inertia": [1, 2.5, 1])", "bodies.table.inertia",
      "sum of the other two"},
     {R"("inertia": [1, 1.5, 1])", R"("inertia": [1, 2.00000001, 1])", "bodies.table.inertia",

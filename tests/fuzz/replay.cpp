@@ -1,0 +1,44 @@
+// The fuzzer's corpus, replayed: fuzz_corpus FOLDER [FILE ...].
+#include "tests/fuzz/check_scene.hpp"
+
+#include "engine/mechanism/file.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <vector>
+
+int main(int argc, char** argv) try {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> files;
+  for (int i = 1; i < argc; ++i) {
+    if (!fs::is_directory(argv[i])) {
+      files.emplace_back(argv[i]);
+      continue;
+    }
+    for (const fs::directory_entry& entry : fs::directory_iterator(argv[i]))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  int wrong = files.empty() ? 1 : 0;
+  for (const fs::path& file : files) {
+    const auto begin = std::chrono::steady_clock::now();
+    std::optional<std::string> complaint;
+    try {
+      complaint = flyball::fuzz::check_scene(flyball::read_bytes(file), std::chrono::seconds(2));
+    } catch (const std::exception& error) {
+      complaint = error.what();
+    }
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+    if (!complaint && spent.count() > 10) complaint = "took " + std::to_string(spent.count()) + " s";
+    if (!complaint) continue;
+    ++wrong;
+    std::printf("%s: %s\n", file.filename().c_str(), complaint->c_str());
+  }
+  std::printf("%zu scenes, %d wrong\n", files.size(), wrong);
+  return wrong == 0 ? 0 : 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "fuzz_corpus: %s\n", error.what());
+  return 1;
+}

@@ -1,0 +1,61 @@
+// Numbers to try: decades, random ones that are the same everywhere, and short words for them.
+#pragma once
+
+#include "engine/equilibrium/analysis.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace flyball::stress {
+
+// The standard's distributions differ between libraries; these do not.
+class Dice {
+ public:
+  explicit Dice(std::uint32_t seed) : engine_(seed) {}
+  double between(double from, double to) {
+    return from + (to - from) * (static_cast<double>(engine_()) + 0.5) / 4294967296.;
+  }
+  double decade(double from, double to) { return std::pow(10, between(from, to)); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+inline std::string digits(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", x);
+  return text;
+}
+
+// 10^from ... 10^to by `step` decades; the short form takes every third.
+inline std::vector<double> decades(int from, int to, int step, bool thinned) {
+  std::vector<double> out;
+  for (int e = from; e <= to; e += thinned ? 3 * step : step)
+    out.push_back(std::pow(10., e));
+  return out;
+}
+
+// Free coordinates anywhere: angles in a whole turn, lengths within twice the size of the mechanism.
+inline std::vector<std::pair<std::string, double>> random_start(const Analysis& analysis, const Mechanism& m,
+                                                                Dice& dice) {
+  double reach = 0;
+  for (const Body& b : m.bodies)
+    for (const Body& other : m.bodies)
+      reach = std::max(reach, (b.position - other.position).norm());
+  if (reach == 0) reach = 1;
+  std::vector<std::pair<std::string, double>> start;
+  for (const CoordinateSolution& c : analysis.summary().coordinates) {
+    if (c.driven) continue;
+    const double at =
+        c.angle ? dice.between(-std::numbers::pi, std::numbers::pi) : c.value + dice.between(-2, 2) * reach;
+    start.emplace_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index), at);
+  }
+  return start;
+}
+
+} // namespace flyball::stress

@@ -1,0 +1,20 @@
+// Runs cases on a few threads, each on its own: an exception is that case's failure, a hang is ended, and a
+// crash is told with the names of the cases that ran.
+#pragma once
+
+#include "tests/stress/case.hpp"
+
+namespace flyball::stress {
+
+inline constexpr double patience = 20; // s a case
+
+struct Result {
+  std::string family, name;
+  Verdict verdict;
+  double wall_s = 0; // with the reference
+};
+
+// In the order of the cases.
+std::vector<Result> run_cases(const Cases& cases, int threads);
+
+} // namespace flyball::stress
