@@ -4,6 +4,7 @@
 #include "engine/equilibrium/drive_cuts.hpp"
 #include "engine/equilibrium/existence.hpp"
 #include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/pivot_stability.hpp"
 #include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/sensitivity.hpp"
@@ -42,6 +43,17 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
       return false;
   }
   return true;
+}
+
+// Eigenvalues need the matrices; beyond a size the pivots have to do.
+Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eigenvalues, int modes,
+                       Workspace& w) {
+  const bool many = problem.system.nv > largest_for_eigenvalues && modes == 0;
+  if (many && !problem.is_dense()) return find_pivot_stability(problem, z, w);
+  const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
+  Stability out = find_stability(whole, z, with_eigenvalues && !many, w);
+  if (many) out.eigenvalues.reset();
+  return out;
 }
 
 } // namespace
@@ -89,7 +101,7 @@ void Analysis::update(const Mechanism& mechanism) {
 
 Solution Analysis::solve(const SolveOptions& options) {
   State& s = *state_;
-  const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
+  const Problem problem{s.system, s.parameters, s.scaling, options.cancel, true};
   const bool warm = options.warm && s.answered && options.start.empty();
   s.start = warm ? s.answer : s.drawn;
   set_start(s.system, s.parameters, options.start, s.start);
@@ -114,7 +126,7 @@ Solution Analysis::solve(const SolveOptions& options) {
   if (steady && s.found.minimum)
     stability = {true, StabilityReason::minimum, {}, {}};
   else if (steady)
-    stability = find_stability(problem, s.found.z, false, s.workspace);
+    stability = stability_of(problem, s.found.z, false, 0, s.workspace);
   const auto end = std::chrono::steady_clock::now();
 
   Solution out;
@@ -134,12 +146,9 @@ Solution Analysis::solve(const SolveOptions& options) {
   s.answer = s.found.z.q;
   s.answered = s.settled = true;
   if (options.details) {
-    const bool many = s.system.nv > 200 && options.modes == 0;
-    stability = find_stability(problem, s.found.z, !many, s.workspace);
-    if (many)
-      stability.eigenvalues.reset();
-    else if (options.modes > 0 && stability.eigenvalues &&
-             stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
+    stability = stability_of(problem, s.found.z, true, options.modes, s.workspace);
+    if (options.modes > 0 && stability.eigenvalues &&
+        stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
       stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
   }
   const ReportInput input{s.mechanism, problem, s.found, existence, stability};
@@ -187,7 +196,7 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
     refine(problem, found.z, found.newton, s.workspace, s.error);
     const Existence existence = check_existence(problem, found.z.q, phases, s.workspace);
     if (!existence.holds) continue;
-    const bool many = s.system.nv > 200 && options.modes == 0;
+    const bool many = s.system.nv > largest_for_eigenvalues && options.modes == 0;
     const Stability stability = find_stability(problem, found.z, !many, s.workspace);
     // A family along a direction that nothing resists is one entry.
     if (!stability.neutral.empty() && std::ranges::any_of(entries, [&](const Entry& e) {

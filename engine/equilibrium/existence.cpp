@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace flyball {
 namespace {
@@ -54,15 +55,20 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
     }
     if (result.loops_open) continue;
     w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
-    const Eigen::MatrixXd& basis = w.constraints.basis();
-    w.reduced_rhs.noalias() = basis.transpose() * w.scaled_force;
-    for (Eigen::Index k = 0; k < basis.cols(); ++k) {
-      const double size =
-          basis.col(k).cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
-      const double left = std::abs(w.reduced_rhs[k]);
+    const auto judge = [&](double left, double size) {
       if (left > tolerance * size && left / size > result.violation)
         result = {false, false, t, left / size, -1};
+    };
+    if (problem.system.rows == 0) {
+      for (Eigen::Index k = 0; k < w.scaled_force.size(); ++k)
+        judge(std::abs(w.scaled_force[k]), w.magnitudes.force[k] * problem.scaling.column[k]);
+      continue;
     }
+    const Eigen::MatrixXd& basis = w.constraints.basis();
+    w.reduced_rhs.noalias() = basis.transpose() * w.scaled_force;
+    for (Eigen::Index k = 0; k < basis.cols(); ++k)
+      judge(std::abs(w.reduced_rhs[k]),
+            basis.col(k).cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column)));
   }
   return result;
 }
@@ -84,52 +90,90 @@ std::string blame(const Problem& problem, const Mechanism& mechanism, const Eige
   }
   for (CutDamperParameters& d : only.cut_dampers)
     d.damping = 0;
-  const Problem part{system, only, problem.scaling};
+  const Problem part{system, only, problem.scaling, problem.cancel, problem.eliminated};
   // How much the projected force of what is left in `only` changes from the drawn phase to the bad one.
   const auto change = [&] {
     Eigen::VectorXd f[2];
     for (int i : {0, 1}) {
       evaluate_phase(part, q, i == 0 ? 0. : phase, w);
-      f[i] = w.constraints.basis().transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
+      f[i] = w.residual.f.cwiseProduct(problem.scaling.column);
+      if (system.rows > 0) f[i] = w.constraints.basis().transpose() * f[i];
     }
     return f[0].size() == f[1].size() ? (f[1] - f[0]).norm() : 0.;
   };
   double worst = 0;
   std::string phrase = "the balance";
-  const auto consider = [&](const std::string& what) {
-    if (const double c = change(); c > worst) {
-      worst = c;
-      phrase = what;
+  // The part whose force changes most: by trying each, or where there are many the half that changes more,
+  // again and again.
+  const auto search = [&](const std::vector<std::size_t>& parts, const auto& set, const auto& name) {
+    const auto change_of = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        set(parts[i], true);
+      const double c = change();
+      for (std::size_t i = begin; i < end; ++i)
+        set(parts[i], false);
+      return c;
+    };
+    const auto consider = [&](std::size_t i) {
+      if (const double c = change_of(i, i + 1); c > worst) {
+        worst = c;
+        phrase = name(parts[i]);
+      }
+    };
+    std::size_t begin = 0, end = parts.size();
+    while (end - begin > 100) {
+      const std::size_t middle = (begin + end) / 2;
+      (change_of(begin, middle) >= change_of(middle, end) ? end : begin) = middle;
     }
+    for (std::size_t i = begin; i < end; ++i)
+      consider(i);
   };
-  const Vec3 gravity = only.gravity;
+  std::vector<std::size_t> bodies, springs(only.springs.size()), forces(only.body_forces.size());
   for (std::size_t l = 0; l < only.links.size(); ++l) {
     const LinkParameters& real = problem.parameters.links[l];
-    if (system.links[l].body < 0 || (real.mass == 0 && !real.has_inertia)) continue;
-    const std::string& name = mechanism.bodies[static_cast<std::size_t>(system.links[l].body)].name;
-    only.links[l].mass = real.mass;
-    only.moving = false;
-    consider("the weight of " + name);
-    only.moving = problem.parameters.moving;
-    only.gravity.setZero();
-    only.links[l].has_inertia = real.has_inertia;
-    consider("the inertia of " + name);
-    only.gravity = gravity;
-    only.links[l].mass = 0;
-    only.links[l].has_inertia = false;
+    if (system.links[l].body >= 0 && (real.mass != 0 || real.has_inertia)) bodies.push_back(l);
   }
-  for (std::size_t i = 0; i < only.springs.size(); ++i) {
-    only.springs[i] = problem.parameters.springs[i];
-    consider("the spring " + mechanism.forces[static_cast<std::size_t>(system.springs[i].force)].name);
-    only.springs[i].stiffness = only.springs[i].damping = 0;
-  }
-  for (std::size_t i = 0; i < only.body_forces.size(); ++i) {
-    only.body_forces[i] = problem.parameters.body_forces[i];
-    const Force& f = mechanism.forces[static_cast<std::size_t>(system.body_forces[i].force)];
-    consider("the " + std::string(type_name(f.type)) + " " + f.name);
-    only.body_forces[i].vector.setZero();
-    only.body_forces[i].linear = only.body_forces[i].quadratic = 0;
-  }
+  std::iota(springs.begin(), springs.end(), std::size_t{0});
+  std::iota(forces.begin(), forces.end(), std::size_t{0});
+  const auto body_name = [&](std::size_t l) {
+    return mechanism.bodies[static_cast<std::size_t>(system.links[l].body)].name;
+  };
+  only.moving = false;
+  search(
+      bodies, [&](std::size_t l, bool on) { only.links[l].mass = on ? problem.parameters.links[l].mass : 0; },
+      [&](std::size_t l) { return "the weight of " + body_name(l); });
+  only.moving = problem.parameters.moving;
+  const Vec3 gravity = only.gravity;
+  only.gravity.setZero();
+  search(
+      bodies,
+      [&](std::size_t l, bool on) {
+        only.links[l].mass = on ? problem.parameters.links[l].mass : 0;
+        only.links[l].has_inertia = on && problem.parameters.links[l].has_inertia;
+      },
+      [&](std::size_t l) { return "the inertia of " + body_name(l); });
+  only.gravity = gravity;
+  search(
+      springs,
+      [&](std::size_t i, bool on) {
+        only.springs[i] = problem.parameters.springs[i];
+        if (!on) only.springs[i].stiffness = only.springs[i].damping = 0;
+      },
+      [&](std::size_t i) {
+        return "the spring " + mechanism.forces[static_cast<std::size_t>(system.springs[i].force)].name;
+      });
+  search(
+      forces,
+      [&](std::size_t i, bool on) {
+        only.body_forces[i] = problem.parameters.body_forces[i];
+        if (on) return;
+        only.body_forces[i].vector.setZero();
+        only.body_forces[i].linear = only.body_forces[i].quadratic = 0;
+      },
+      [&](std::size_t i) {
+        const Force& f = mechanism.forces[static_cast<std::size_t>(system.body_forces[i].force)];
+        return "the " + std::string(type_name(f.type)) + " " + f.name;
+      });
   return phrase;
 }
 

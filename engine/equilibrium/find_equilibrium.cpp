@@ -3,6 +3,7 @@
 #include "engine/equilibrium/descent.hpp"
 #include "engine/equilibrium/homotopy.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/equilibrium/trust_region.hpp"
 
 #include <random>
 
@@ -23,7 +24,10 @@ class Search {
     found_.open_cut = -1;
     found_.minimum = false;
     history_.clear();
-    if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, {}, &history_); })) return;
+    NewtonSettings plain;
+    plain.trusting = warm_;
+    if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, plain, &history_); }))
+      return;
     if (p_.cancelled()) return cancelled();
     if (!close_loops()) {
       if (!arrived_) {
@@ -44,7 +48,7 @@ class Search {
         return;
       if (p_.cancelled()) return cancelled();
     }
-    if (p_.system.conservative && !nearest_ && go_downhill()) return;
+    if (has_descent() && go_downhill()) return;
     if (p_.cancelled()) return cancelled();
     settle_for_unstable();
   }
@@ -100,10 +104,12 @@ class Search {
     factor(p_, found_.z, w_);
     if (p_.symmetric()) {
       potential_ = true;
-      found_.minimum = w_.hessian.positive_definite();
-      unstable_ = !found_.minimum && !only_flat(w_.hessian);
+      found_.minimum = positive_definite(p_, w_);
+      unstable_ = !found_.minimum &&
+                  !(p_.is_dense() ? only_flat(w_.hessian) : w_.eliminator(p_).negative_count() == 0);
       return;
     }
+    if (!p_.is_dense()) return;
     potential_ = !nearest_ && has_potential(p_, found_.z, w_);
     found_.minimum = unstable_ = false;
     if (!potential_) return;
@@ -111,6 +117,10 @@ class Search {
     energy.factor(w_.constraints.rank() == 0 ? w_.scaled_stiffness : w_.reduced, w_.noise, true);
     found_.minimum = energy.positive_definite();
     unstable_ = !found_.minimum && !only_flat(energy);
+  }
+
+  bool has_descent() const {
+    return p_.system.conservative && !nearest_ && (p_.is_dense() || p_.symmetric());
   }
 
   static bool only_flat(const ReducedHessian& hessian) {
@@ -159,7 +169,10 @@ class Search {
   bool go_downhill() {
     found_.net = Net::descent;
     found_.z.q = w_.assembled;
-    const DescentOutcome descent = descend(p_, found_.z, w_, &history_);
+    // Small trees are solved densely, but go down by what they trust, too: it takes far fewer iterations.
+    const bool by_trust = !p_.is_dense() || (p_.symmetric() && is_plain_tree(p_.system));
+    const DescentOutcome descent =
+        by_trust ? descend_by_trust(p_, found_.z, w_, &history_) : descend(p_, found_.z, w_, &history_);
     found_.iterations += descent.iterations;
     if (descent.end != DescentEnd::minimum) {
       fell_ = descent.end == DescentEnd::unbounded;
@@ -219,7 +232,7 @@ class Search {
     found_.net.reset();
     found_.message = "Newton-Raphson, its damped form";
     if (p_.parameters.moving) found_.message += ", homotopy from rest";
-    if (p_.system.conservative && !nearest_) found_.message += ", descent of the potential";
+    if (has_descent()) found_.message += ", descent of the potential";
     found_.message += fell_ ? " found no equilibrium: the potential falls without end."
                             : " found no equilibrium from this start.";
   }

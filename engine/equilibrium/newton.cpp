@@ -15,13 +15,33 @@ void apply_step(const Problem& problem, const Eigen::VectorXd& scaled_step, doub
   retract<double>(problem.system, w.step, q);
 }
 
+// A point mass that may turn feels nothing of it, but the terms of its balance cancel with rounding only,
+// which nothing is there to drown.
+void clear_rounding(const Problem& problem, Workspace& w) {
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const Link& link = problem.system.links[l];
+    if (link.v < 0 || link.type != LinkType::spherical) continue;
+    const double rounding = 1e-15 * w.magnitudes.link_force[l] * problem.parameters.length;
+    for (int v = link.v; v < link.v + 3; ++v) {
+      if (w.scaled_stiffness.row(v).lpNorm<Eigen::Infinity>() > rounding ||
+          w.scaled_stiffness.col(v).lpNorm<Eigen::Infinity>() > rounding)
+        continue;
+      w.scaled_stiffness.row(v).setZero();
+      w.scaled_stiffness.col(v).setZero();
+    }
+  }
+}
+
 // What is left of the force balance when the best multipliers have been found; f is without constraint
 // forces.
 double merit(const Problem& problem, Workspace& w) {
   w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
   double sum = 0;
   const double size = std::max(1e-300, w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff());
-  w.reduced_rhs.noalias() = w.constraints.basis().transpose() * w.scaled_force;
+  if (problem.system.rows == 0)
+    w.reduced_rhs = w.scaled_force;
+  else
+    w.reduced_rhs.noalias() = w.constraints.basis().transpose() * w.scaled_force;
   sum += (w.reduced_rhs / size).squaredNorm();
   sum += w.residual.phi.cwiseProduct(problem.scaling.row).squaredNorm();
   return std::sqrt(sum);
@@ -46,6 +66,7 @@ double scaled_residual(const Problem& problem, const Workspace& w) {
 }
 
 void factor_constraints(const Problem& problem, Workspace& w) {
+  if (!problem.is_dense()) return;
   w.scaled_jacobian.resize(problem.system.rows, problem.system.nv);
   for (int j = 0; j < problem.system.nv; ++j)
     for (int i = 0; i < problem.system.rows; ++i)
@@ -54,7 +75,21 @@ void factor_constraints(const Problem& problem, Workspace& w) {
   w.constraints.factor(w.scaled_jacobian, rank_tolerance(problem, w.residual.phi));
 }
 
+bool positive_definite(const Problem& problem, const Workspace& w) {
+  return problem.is_dense() ? w.hessian.positive_definite() : w.eliminator(problem).positive_definite();
+}
+
+bool singular(const Problem& problem, const Workspace& w) {
+  return problem.is_dense() ? w.hessian.singular() : !w.eliminator(problem).flat().empty();
+}
+
 void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
+  if (!problem.is_dense()) {
+    Eliminator& eliminator = w.eliminator(problem);
+    eliminator.linearize(problem, z.q, w.kinematics, w.residual, w.magnitudes);
+    eliminator.factor();
+    return;
+  }
   linearize(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.linearization);
   factor_constraints(problem, w);
   const int n = problem.system.nv;
@@ -63,6 +98,7 @@ void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
     for (int i = 0; i < n; ++i)
       w.scaled_stiffness(i, j) =
           w.linearization.stiffness(i, j) * problem.scaling.column[i] * problem.scaling.column[j];
+  clear_rounding(problem, w);
   // Below this a stiffness is rounding: the forces behind it, per radian or reach.
   const double rounding = 1e-15;
   if (w.constraints.rank() == 0) {
@@ -100,6 +136,12 @@ void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) 
 void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::VectorXd& phi, Workspace& w,
                  Eigen::VectorXd& scaled_step, Eigen::VectorXd& lambda) {
   w.scaled_force = f.cwiseProduct(problem.scaling.column);
+  if (!problem.is_dense()) {
+    w.reduced_rhs = -w.scaled_force;
+    w.eliminator(problem).solve(w.reduced_rhs, scaled_step);
+    lambda.setZero(0);
+    return;
+  }
   if (w.constraints.rank() == 0) {
     w.reduced_rhs = -w.scaled_force;
     w.hessian.solve(w.reduced_rhs, scaled_step);
@@ -163,13 +205,17 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     outcome.largest_step = std::max(outcome.largest_step, fraction * size);
     outcome.last_step = size;
     evaluate(problem, z, 0, w);
-    if (size <= settings.step_tolerance && fraction == 1.) {
+    const double contraction = previous_step > 0 ? size / (previous_step * previous_step) : 0;
+    const bool next_is_none = settings.trusting && previous_step > 0 && size < 1e-4 &&
+                              size < 0.1 * previous_step &&
+                              std::max(1., contraction) * size * size <= 1e-2 * settings.step_tolerance;
+    if ((size <= settings.step_tolerance || next_is_none) && fraction == 1.) {
       // No step is left; but a force that no coordinate resists, or a loop that cannot close, asks for none
       // either.
       const double left = scaled_residual(problem, w);
       if (left > 1e-8) break;
       // Where a direction has no stiffness, short steps tell nothing of the force along it.
-      outcome.converged = !w.hessian.singular() || left <= 1e-13;
+      outcome.converged = !singular(problem, w) || left <= 1e-13;
     } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {
       outcome.converged = outcome.linear = true;
     }

@@ -22,6 +22,11 @@ void factor_constraints(const Problem& problem, Workspace& w);
 // Linearises and factors at an evaluated state.
 void factor(const Problem& problem, const Unknowns& z, Workspace& w);
 
+// Of the factored balance, where it is the gradient of a potential.
+bool positive_definite(const Problem& problem, const Workspace& w);
+// Some direction has no stiffness.
+bool singular(const Problem& problem, const Workspace& w);
+
 // The same at any state, with the multipliers that balance it best.
 void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w);
 
@@ -34,6 +39,7 @@ struct NewtonSettings {
   int max_iterations = 30;
   bool damped = false;          // halve steps until the scaled residual falls
   double step_tolerance = 1e-9; // scaled; quadratic convergence puts the error at its square
+  bool trusting = false; // stop where the next step would be within the tolerance by the last two's ratio
 };
 
 struct NewtonOutcome {

@@ -21,9 +21,14 @@ struct Problem {
   const Parameters& parameters;
   const Scaling& scaling;
   const std::atomic<bool>* cancel = nullptr;
+  // As the system's elimination says; else by dense matrices whatever their size, which is what studies of
+  // the matrices themselves need.
+  bool eliminated = false;
 
   // The balance is the gradient of the amended potential, so its Jacobian is symmetric where it matters.
   bool symmetric() const { return system.conservative && system.single_drives; }
+  Elimination elimination() const { return eliminated ? system.elimination : Elimination::dense; }
+  bool is_dense() const { return elimination() == Elimination::dense; }
   bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
 };
 

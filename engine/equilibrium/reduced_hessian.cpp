@@ -80,6 +80,14 @@ void ReducedHessian::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
   x.array() *= scale_.array();
 }
 
+Eigen::VectorXd ReducedHessian::singular_values() const {
+  if (matrix_.rows() == 0 || !matrix_.allFinite()) return {};
+  if (!symmetric_) return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix_).singularValues();
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix_, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .cwiseAbs();
+}
+
 Eigen::MatrixXd ReducedHessian::null_basis() const {
   const Eigen::Index n = scale_.size();
   Eigen::MatrixXd basis(n, null_);

@@ -33,6 +33,8 @@ class ReducedHessian {
   void decompose();
   const Eigen::VectorXd& scale() const { return scale_; }
   const Eigen::MatrixXd& equilibrated() const { return matrix_; }
+  // Of the equilibrated matrix.
+  Eigen::VectorXd singular_values() const;
   // Basis of the directions without stiffness, in the original's coordinates.
   Eigen::MatrixXd null_basis() const;
 

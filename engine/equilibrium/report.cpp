@@ -90,24 +90,30 @@ void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
     };
     return differs(fa.parent, fb.parent) && differs(fa.child, fb.child);
   };
-  for (const Joint& j : in.mechanism.joints) {
+  std::vector<int> tree_of(in.mechanism.joints.size(), -1), cut_of(in.mechanism.joints.size(), -1);
+  for (std::size_t i = 0; i < system.tree_joints.size(); ++i)
+    if (const int j = system.tree_joints[i].joint; j >= 0)
+      tree_of[static_cast<std::size_t>(j)] = static_cast<int>(i);
+  for (std::size_t i = 0; i < system.cuts.size(); ++i)
+    cut_of[static_cast<std::size_t>(system.cuts[i].joint)] = static_cast<int>(i);
+  for (std::size_t n = 0; n < in.mechanism.joints.size(); ++n) {
+    const Joint& j = in.mechanism.joints[n];
     if (j.type == JointType::gear) continue;
     const auto add = [&](const JointWrench& x, bool varying) {
       out.reactions.push_back({j.name, x.force, x.torque, varying});
     };
-    const auto tree = std::ranges::find(system.tree_joints, j.name, &TreeJoint::name);
-    if (tree != system.tree_joints.end()) {
-      const auto i = static_cast<std::size_t>(tree - system.tree_joints.begin());
+    if (tree_of[n] >= 0) {
+      const auto i = static_cast<std::size_t>(tree_of[n]);
       add(drawn.forces.tree[i], std::ranges::any_of(others, [&](const Snapshot& s) {
             return varies(drawn.forces.tree[i], drawn.tree[i], s.forces.tree[i], s.tree[i]);
           }));
       continue;
     }
-    for (std::size_t i = 0; i < system.cuts.size(); ++i)
-      if (in.mechanism.joints[static_cast<std::size_t>(system.cuts[i].joint)].name == j.name)
-        add(drawn.forces.cuts[i], std::ranges::any_of(others, [&](const Snapshot& s) {
-              return varies(drawn.forces.cuts[i], drawn.cuts[i], s.forces.cuts[i], s.cuts[i]);
-            }));
+    if (cut_of[n] < 0) continue;
+    const auto i = static_cast<std::size_t>(cut_of[n]);
+    add(drawn.forces.cuts[i], std::ranges::any_of(others, [&](const Snapshot& s) {
+          return varies(drawn.forces.cuts[i], drawn.cuts[i], s.forces.cuts[i], s.cuts[i]);
+        }));
   }
   for (std::size_t d = 0; d < system.drives.size(); ++d) {
     if (system.drives[d].motor != static_cast<int>(d)) continue;
@@ -188,13 +194,18 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   out.stable = in.stability.stable;
   out.stability_reason = in.stability.reason;
   out.eigenvalues = in.stability.eigenvalues;
-  for (int v : in.stability.neutral)
-    for (const Link& link : system.links) {
-      const int n = link.type == LinkType::spherical ? 3 : 1;
-      if (link.v < 0 || v < link.v || v >= link.v + n) continue;
-      const std::string& name = system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
-      if (std::ranges::find(out.neutral, name) == out.neutral.end()) out.neutral.push_back(name);
-    }
+  if (!in.stability.neutral.empty()) {
+    std::vector<bool> takes_part(static_cast<std::size_t>(system.nv)), named(system.tree_joints.size());
+    for (int v : in.stability.neutral)
+      takes_part[static_cast<std::size_t>(v)] = true;
+    for (const Link& link : system.links)
+      for (int v = link.v; link.v >= 0 && v < link.v + (link.type == LinkType::spherical ? 3 : 1); ++v) {
+        const auto t = static_cast<std::size_t>(link.tree_joint);
+        if (!takes_part[static_cast<std::size_t>(v)] || named[t]) continue;
+        named[t] = true;
+        out.neutral.push_back(system.tree_joints[t].name);
+      }
+  }
   if (details) report_forces(in, w, out);
   // The balance with its multipliers, as solved.
   w.zero_lambda.setZero(system.rows);
@@ -207,21 +218,18 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   evaluate(in.problem, z, 0, w);
   out.residual = scaled_residual(in.problem, w);
   body_poses(system, in.mechanism, in.problem.parameters, w.kinematics, out.poses);
-  if (details && system.nv > 0) {
-    factor(in.problem, z, w);
-    const int n = system.nv, m = w.constraints.rank();
+  if (details && system.nv > 0 && system.nv <= largest_for_eigenvalues) {
+    const Problem whole{system, in.problem.parameters, in.problem.scaling, in.problem.cancel, true};
+    factor(whole, z, w);
     // Of the balance on the null space and the constraints on the range, both in scaled units and
     // equilibrated.
-    if (n <= 400) {
-      out.condition = 1;
-      if (n > m) {
-        const Eigen::JacobiSVD<Eigen::MatrixXd> svd(w.hessian.equilibrated());
-        // Directions that nothing resists are not solved for.
-        double low = svd.singularValues()[0];
-        for (double value : svd.singularValues())
-          if (value > ReducedHessian::zero * svd.singularValues()[0]) low = value;
-        if (low > 0) out.condition = svd.singularValues()[0] / low;
-      }
+    out.condition = 1;
+    if (const Eigen::VectorXd values = w.hessian.singular_values(); values.size() > 0) {
+      // Directions that nothing resists are not solved for.
+      double low = values.maxCoeff();
+      for (double value : values)
+        if (value > ReducedHessian::zero * values.maxCoeff()) low = std::min(low, value);
+      if (low > 0) out.condition = values.maxCoeff() / low;
     }
   }
   out.message = in.found.message;
@@ -230,11 +238,17 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
     out.message += " The loops are redundant: " + std::to_string(rank) + " of " +
                    std::to_string(system.rows) + " constraint equations are independent.";
   if (!out.neutral.empty()) {
+    constexpr std::size_t named = 20;
     out.message += " Nothing resists";
-    for (std::size_t i = 0; i < out.neutral.size(); ++i)
+    for (std::size_t i = 0; i < std::min(named, out.neutral.size()); ++i)
       out.message += (i ? ", " : " ") + out.neutral[i];
+    if (out.neutral.size() > named)
+      out.message += " and " + std::to_string(out.neutral.size() - named) + " more";
     out.message += out.neutral.size() == 1 ? "; its value is arbitrary." : "; their values are arbitrary.";
   }
+  if (!out.stability_reason)
+    out.message += " Whether it is stable was left out: that takes eigenvalues, and there are more than " +
+                   std::to_string(largest_for_eigenvalues) + " coordinates.";
   if (out.stable == false && in.found.message.empty()) out.message += " This state is unstable.";
 }
 

@@ -9,6 +9,9 @@
 
 namespace flyball {
 
+// Coordinates up to which eigenvalues are found without being asked for.
+inline constexpr int largest_for_eigenvalues = 200;
+
 struct Stability {
   std::optional<bool> stable;
   std::optional<StabilityReason> reason;

@@ -4,16 +4,28 @@
 #include "engine/equilibrium/constraint_space.hpp"
 #include "engine/equilibrium/problem.hpp"
 #include "engine/equilibrium/reduced_hessian.hpp"
+#include "engine/equilibrium/sparse_elimination.hpp"
+#include "engine/equilibrium/tree_elimination.hpp"
 
 namespace flyball {
 
 struct Workspace {
+  // Of a problem that is not dense.
+  Eliminator& eliminator(const Problem& problem) {
+    return problem.elimination() == Elimination::tree ? static_cast<Eliminator&>(tree) : sparse;
+  }
+  const Eliminator& eliminator(const Problem& problem) const {
+    return const_cast<Workspace*>(this)->eliminator(problem);
+  }
+
   Kinematics<double> kinematics;
   Residual<double> residual;
   Magnitudes magnitudes;
   Linearization linearization;
   ConstraintSpace constraints;
   ReducedHessian hessian;
+  TreeElimination tree;
+  SparseElimination sparse;
   Eigen::MatrixXd scaled_jacobian, scaled_stiffness, product, reduced;
   Eigen::VectorXd scaled_phi, scaled_force, range_step, target, reduced_rhs, reduced_step, noise, scaled_step,
       scaled_lambda, step, zero_lambda;

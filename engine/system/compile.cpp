@@ -1,8 +1,11 @@
+#include "engine/mechanism/body_groups.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/system/coordinate_pattern.hpp"
 #include "engine/system/joint_parts.hpp"
 
 #include <algorithm>
 #include <numeric>
+#include <queue>
 #include <tuple>
 
 namespace flyball {
@@ -41,7 +44,8 @@ struct DriveOrigin {
 
 class Compiler {
  public:
-  Compiler(const Mechanism& mechanism, const CutChoice& choice) : m_(mechanism), choice_(choice) {}
+  Compiler(const Mechanism& mechanism, const CutChoice& choice)
+      : m_(mechanism), choice_(choice), numbers_(mechanism) {}
 
   System run() {
     propagate_drives();
@@ -51,20 +55,19 @@ class Compiler {
     add_forces();
     list_coordinates();
     classify();
+    choose_elimination();
     return std::move(s_);
   }
 
  private:
   const Joint& joint(int j) const { return m_.joints[static_cast<std::size_t>(j)]; }
   int joint_count() const { return static_cast<int>(m_.joints.size()); }
-  int body_count() const { return static_cast<int>(m_.bodies.size()); }
   Link& link(int l) { return s_.links[static_cast<std::size_t>(l)]; }
+  const Link& link_at(int l) const { return s_.links[static_cast<std::size_t>(l)]; }
 
   int body_of(const std::string& name, const std::string& where) const {
-    if (name == ground_name) return ground;
-    const int b = body_index(m_, name);
-    if (b < 0) throw SceneError(where, "there is no body \"" + name + "\"");
-    return b;
+    if (!numbers_.has(name)) throw SceneError(where, "there is no body \"" + name + "\"");
+    return static_cast<int>(numbers_[name]) - 1;
   }
   std::string joint_path(int j) const { return "joints." + joint(j).name; }
 
@@ -188,6 +191,8 @@ class Compiler {
         s_.nv += part.type == LinkType::spherical ? 3 : 1;
       }
       l.mobile = l.v >= 0 || (l.parent >= 0 && link(l.parent).mobile);
+      l.depth = l.parent >= 0 ? link(l.parent).depth + 1 : 1;
+      l.frame = l.drive >= 0 ? last : l.parent >= 0 ? link(l.parent).frame : -1;
       s_.links.push_back(l);
     }
     s_.tree_joints.push_back(std::move(record));
@@ -196,13 +201,14 @@ class Compiler {
 
   int drive_depth(int l) const {
     int depth = 0;
-    for (; l >= 0; l = s_.links[static_cast<std::size_t>(l)].parent)
-      depth += s_.links[static_cast<std::size_t>(l)].drive >= 0;
+    for (l = moving_frame(l); l >= 0; l = moving_frame(link_at(l).parent))
+      ++depth;
     return depth;
   }
 
   // Walks the tree outwards from a body that has its link already.
   void grow(int from) {
+    offer_neighbours(from);
     std::vector<int> stack{from};
     while (!stack.empty()) {
       const int body = stack.back();
@@ -222,44 +228,68 @@ class Compiler {
         const int l = add_chain(j, x.type, parent, reversed, std::move(record));
         link(l).body = other;
         s_.body_link[static_cast<std::size_t>(other)] = l;
+        offer_neighbours(other);
         found.push_back(other);
       }
       stack.insert(stack.end(), found.rbegin(), found.rend());
     }
   }
 
-  // A body held only by distance joints, springs or joints marked to be cut gets a free joint to its most
-  // driven neighbour. Returns false when nothing joins what is left to what is there.
-  bool add_implicit_joint() {
-    int best_depth = -1, best_from = ground, best_to = ground;
-    const auto consider = [&](const std::array<std::string, 2>& bodies) {
+  // A body that has its link offers itself to those it is connected with and that have none yet.
+  void offer_neighbours(int body) {
+    if (connections_at_.empty()) return;
+    const int depth = drive_depth(link_of(body));
+    for (int c : connections_at_[static_cast<std::size_t>(body + 1)])
       for (int end : {0, 1}) {
-        const int from = body_of(bodies[static_cast<std::size_t>(end)], "");
-        const int to = body_of(bodies[static_cast<std::size_t>(1 - end)], "");
-        if (to == ground || s_.body_link[static_cast<std::size_t>(to)] >= 0) continue;
-        const int l = from == ground ? -1 : s_.body_link[static_cast<std::size_t>(from)];
-        if (from != ground && l < 0) continue;
-        if (const int depth = drive_depth(l); depth > best_depth) {
-          best_depth = depth;
-          best_from = from;
-          best_to = to;
-        }
+        const std::array<int, 2>& bodies = connections_[static_cast<std::size_t>(c)];
+        if (bodies[static_cast<std::size_t>(end)] != body) continue;
+        const int to = bodies[static_cast<std::size_t>(1 - end)];
+        if (to != ground && s_.body_link[static_cast<std::size_t>(to)] < 0)
+          offers_.push({-depth, 2 * c + end, body, to});
       }
-    };
+  }
+
+  // What connects bodies without being in the tree, found only where a body hangs on nothing else.
+  void list_connections() {
     for (const Joint& x : m_.joints)
-      if (x.type != JointType::gear) consider(x.bodies);
+      if (x.type != JointType::gear)
+        connections_.push_back({body_of(x.bodies[0], ""), body_of(x.bodies[1], "")});
     for (const Force& f : m_.forces)
-      if (f.type == ForceType::spring) consider(f.bodies);
-    if (best_to == ground) return false;
+      if (f.type == ForceType::spring)
+        connections_.push_back(
+            {body_of(f.bodies[0], "forces." + f.name), body_of(f.bodies[1], "forces." + f.name)});
+    connections_at_.resize(m_.bodies.size() + 1);
+    for (std::size_t c = 0; c < connections_.size(); ++c)
+      for (int end : {0, 1})
+        connections_at_[static_cast<std::size_t>(connections_[c][static_cast<std::size_t>(end)] + 1)]
+            .push_back(static_cast<int>(c));
+    for (int body = ground; body < static_cast<int>(m_.bodies.size()); ++body)
+      if (body == ground || s_.body_link[static_cast<std::size_t>(body)] >= 0) offer_neighbours(body);
+  }
+
+  // A body held only by distance joints, springs or joints marked to be cut gets a free joint to the frame
+  // that its most driven neighbour moves with. To the frame and not to the neighbour, so that the bodies of a
+  // net stand side by side and each feels its own neighbours alone. Returns false when nothing joins what is
+  // left to what is there.
+  bool add_implicit_joint() {
+    while (!offers_.empty() && s_.body_link[static_cast<std::size_t>(offers_.top().to)] >= 0)
+      offers_.pop();
+    if (offers_.empty()) return false;
+    const auto [depth, order, from, to] = offers_.top();
+    offers_.pop();
+    int parent_body = from, parent = link_of(from);
+    if (const int frame = moving_frame(parent); frame < 0 || link_at(frame).body >= 0) {
+      parent = frame;
+      parent_body = frame < 0 ? ground : link_at(frame).body;
+    }
     TreeJoint record;
-    record.name = m_.bodies[static_cast<std::size_t>(best_to)].name + ".free";
-    record.parent_body = best_from;
-    record.child_body = best_to;
-    const int parent = best_from == ground ? -1 : s_.body_link[static_cast<std::size_t>(best_from)];
+    record.name = m_.bodies[static_cast<std::size_t>(to)].name + ".free";
+    record.parent_body = parent_body;
+    record.child_body = to;
     const int l = add_chain(-1, JointType::free, parent, false, std::move(record));
-    link(l).body = best_to;
-    s_.body_link[static_cast<std::size_t>(best_to)] = l;
-    grow(best_to);
+    link(l).body = to;
+    s_.body_link[static_cast<std::size_t>(to)] = l;
+    grow(to);
     return true;
   }
 
@@ -272,9 +302,9 @@ class Compiler {
         joints_at_[static_cast<std::size_t>(body_of(name, joint_path(j)) + 1)].push_back(j);
     }
     grow(ground);
-    while (true) {
-      const auto lost = std::ranges::find(s_.body_link, -1);
-      if (lost == s_.body_link.end()) break;
+    for (auto lost = std::ranges::find(s_.body_link, -1); lost != s_.body_link.end();
+         lost = std::find(lost, s_.body_link.end(), -1)) {
+      if (connections_at_.empty()) list_connections();
       if (!add_implicit_joint())
         throw SceneError("bodies." + m_.bodies[static_cast<std::size_t>(lost - s_.body_link.begin())].name,
                          "is connected to nothing; join it to the ground or to another body");
@@ -291,29 +321,30 @@ class Compiler {
 
   int link_of(int body) const { return body == ground ? -1 : s_.body_link[static_cast<std::size_t>(body)]; }
 
-  // Free coordinates on the way from `l` to the root.
-  Support path_to_root(int l, bool second) const {
-    Support path;
-    for (; l >= 0; l = s_.links[static_cast<std::size_t>(l)].parent) {
-      const Link& x = s_.links[static_cast<std::size_t>(l)];
+  PairEnds ends_between(int a, int b) const {
+    int top_a = a, top_b = b;
+    while (top_a != top_b) // where the ways to the root meet
+      if (top_b < 0 || (top_a >= 0 && link_at(top_a).depth >= link_at(top_b).depth))
+        top_a = link_at(top_a).parent;
+      else
+        top_b = link_at(top_b).parent;
+    PairEnds ends{a, b, {}};
+    add_path(a, top_a, false, ends.support);
+    add_path(b, top_a, true, ends.support);
+    return ends;
+  }
+
+  // Free coordinates on the way from `top` (left out) to `l`, the nearest to the root first.
+  void add_path(int l, int top, bool second, Support& out) const {
+    const auto begin = static_cast<std::ptrdiff_t>(out.size());
+    for (; l != top; l = link_at(l).parent) {
+      const Link& x = link_at(l);
       if (x.v < 0) continue;
       const int n = x.type == LinkType::spherical ? 3 : 1;
       for (int k = n - 1; k >= 0; --k)
-        path.push_back({x.v + k, l, second});
+        out.push_back({x.v + k, l, second});
     }
-    std::ranges::reverse(path);
-    return path;
-  }
-
-  PairEnds ends_between(int a, int b) const {
-    PairEnds ends{a, b, {}};
-    const Support pa = path_to_root(a, false), pb = path_to_root(b, true);
-    std::size_t common = 0;
-    while (common < pa.size() && common < pb.size() && pa[common].v == pb[common].v)
-      ++common;
-    ends.support.assign(pa.begin() + static_cast<std::ptrdiff_t>(common), pa.end());
-    ends.support.insert(ends.support.end(), pb.begin() + static_cast<std::ptrdiff_t>(common), pb.end());
-    return ends;
+    std::reverse(out.begin() + begin, out.end());
   }
 
   void add_cut(CutJoint cut, JointType type) {
@@ -392,8 +423,7 @@ class Compiler {
         s_.springs.push_back(
             {f, ends_between(link_of(body_of(x.bodies[0], path)), link_of(body_of(x.bodies[1], path)))});
       } else {
-        const int l = link_of(body_of(x.body, path));
-        s_.body_forces.push_back({f, l, path_to_root(l, false)});
+        s_.body_forces.push_back({f, link_of(body_of(x.body, path))});
       }
     }
   }
@@ -416,16 +446,12 @@ class Compiler {
 
   // The drives a link turns with, innermost last; two links with the same ones never move against each other
   // in the steady state.
-  int moving_frame(int l) const {
-    for (; l >= 0; l = s_.links[static_cast<std::size_t>(l)].parent)
-      if (s_.links[static_cast<std::size_t>(l)].drive >= 0) return l;
-    return -1;
-  }
+  int moving_frame(int l) const { return l < 0 ? -1 : link_at(l).frame; }
 
   void classify() {
     for (const DrivenCoordinate& d : s_.drives)
-      for (int l = link(d.link).parent; l >= 0; l = link(l).parent)
-        if (link(l).drive >= 0 || link(l).v >= 0) s_.single_drives = false;
+      if (const int l = link(d.link).parent; l >= 0 && (link(l).frame >= 0 || link(l).mobile))
+        s_.single_drives = false;
     for (const BodyForceElement& e : s_.body_forces) {
       const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
       if (f.type != ForceType::force || f.frame != ForceFrame::world) s_.conservative = false;
@@ -438,16 +464,51 @@ class Compiler {
       if (moving_frame(e.ends.a) != moving_frame(e.ends.b)) s_.conservative = false;
   }
 
+  // Below some coordinates the dense equations are faster (measured: `flyball_bench`, chains).
+  void choose_elimination() {
+    constexpr int few = 24, few_without_potential = 200,
+                  few_for_sparse = 24; // those ask for eigenvalues in any case
+    const bool potential = s_.conservative && s_.single_drives;
+    if (s_.nv <= (potential ? few : few_without_potential) || s_.rows > 0) return;
+    constexpr long entries_a_row = 150;
+    if (is_plain_tree(s_))
+      s_.elimination = Elimination::tree;
+    else if (const long enough = entries_a_row * s_.nv;
+             s_.nv > few_for_sparse && count_coordinate_pairs(s_, enough) < enough)
+      s_.elimination = Elimination::sparse;
+  }
+
   const Mechanism& m_;
   const CutChoice& choice_;
+  const BodyNumbers numbers_;
   System s_;
   std::vector<std::vector<DriveOrigin>> origins_;
   std::vector<CoordinateReference> motors_; // by entry of s_.drives
   std::vector<bool> needs_coordinate_, in_tree_;
   std::vector<std::vector<int>> joints_at_;
+
+  // For implicit joints: connections by their two bodies, and which of them could hold a body next, the most
+  // driven first and then in the scene's order.
+  struct Offer {
+    int negative_depth, order, from, to;
+    bool operator>(const Offer& o) const {
+      return std::tie(negative_depth, order) > std::tie(o.negative_depth, o.order);
+    }
+  };
+  std::vector<std::array<int, 2>> connections_;
+  std::vector<std::vector<int>> connections_at_;
+  std::priority_queue<Offer, std::vector<Offer>, std::greater<>> offers_;
 };
 
 } // namespace
+
+bool is_plain_tree(const System& system) {
+  if (system.rows > 0 || !system.springs.empty() || !system.cut_dampers.empty()) return false;
+  return std::ranges::none_of(system.drives, [&](const DrivenCoordinate& d) {
+    const int parent = system.links[static_cast<std::size_t>(d.link)].parent;
+    return parent >= 0 && system.links[static_cast<std::size_t>(parent)].mobile;
+  });
+}
 
 System compile(const Mechanism& mechanism, const CutChoice& choice) {
   return Compiler(mechanism, choice).run();

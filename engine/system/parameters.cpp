@@ -170,7 +170,7 @@ class Binder {
     for (std::size_t i = 0; i < s_.body_forces.size(); ++i) {
       const BodyForceElement& e = s_.body_forces[i];
       const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
-      const int b = body_index(m_, f.body);
+      const int b = e.link >= 0 ? s_.links[static_cast<std::size_t>(e.link)].body : -1;
       const Vec3 centre = b >= 0 ? m_.bodies[static_cast<std::size_t>(b)].position : Vec3(Vec3::Zero());
       Vec3 vector = f.vector;
       if (f.frame == ForceFrame::body && b >= 0)
@@ -248,11 +248,7 @@ class Binder {
     if (link.type == LinkType::revolute &&
         p_.gravity.cross(p_.links[static_cast<std::size_t>(d)].axis).norm() > 1e-14 * p_.gravity.norm())
       return false;
-    const auto turns = [&](int l) {
-      for (; l >= 0; l = s_.links[static_cast<std::size_t>(l)].parent)
-        if (l == d) return true;
-      return false;
-    };
+    const auto turns = [&](int l) { return l >= 0 && s_.links[static_cast<std::size_t>(l)].frame == d; };
     const auto apart = [&](const PairEnds& e) { return turns(e.a) != turns(e.b); };
     for (const PointSpringElement& e : s_.springs)
       if (apart(e.ends)) return false;

@@ -38,6 +38,7 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
         e.angular ? Vec3(-torque) : Vec3(Vec3::Zero()));
   }
   out.cuts.resize(system.cuts.size());
+  std::size_t damper = 0;
   for (std::size_t i = 0; i < system.cuts.size(); ++i) {
     const CutJoint& cut = system.cuts[i];
     if (cut.type == JointType::gear) continue;
@@ -61,10 +62,10 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     }
     add(cut.ends.b, w.point, -w.force, -w.torque);
     add(cut.ends.a, w.point, w.force, w.torque);
-    // Damping in a cut joint is part of what the joint transmits.
-    for (std::size_t d = 0; d < system.cut_dampers.size(); ++d) {
-      const CutDamperElement& e = system.cut_dampers[d];
-      if (e.joint != cut.joint) continue;
+    // Damping in a cut joint is part of what the joint transmits. Dampers are in the order of their joints.
+    for (; damper < system.cut_dampers.size() && system.cut_dampers[damper].joint == cut.joint; ++damper) {
+      const CutDamperElement& e = system.cut_dampers[damper];
+      const std::size_t d = damper;
       const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[d].axis;
       if (e.angular)
         w.torque -= p.cut_dampers[d].damping * axis * axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w);

@@ -47,8 +47,6 @@ System released(const System& system) {
     join_again(out, e.ends);
   for (CutJoint& c : out.cuts)
     if (c.type != JointType::gear) join_again(out, c.ends);
-  for (BodyForceElement& e : out.body_forces)
-    e.support = path_to_root(out, e.link, false);
   return out;
 }
 

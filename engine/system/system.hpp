@@ -29,6 +29,8 @@ struct Link {
   int q = -1;          // first entry in the configuration (spherical: a quaternion w x y z, four entries)
   int v = -1;          // first entry in q_R as a tangent vector (spherical: three); -1 where driven or fixed
   int drive = -1;      // in System::drives
+  int frame = -1;      // link: the nearest driven one from here to the root, itself included; -1: none
+  int depth = 0;       // links from here to the root, itself included
   bool mobile = false; // some coordinate of q_R moves it
 };
 
@@ -73,7 +75,6 @@ struct PointSpringElement {
 struct BodyForceElement {
   int force = 0;
   int link = -1;
-  Support support; // every coordinate from the root to the link
 };
 
 // Damping in a cut joint that slides or turns about `axis` (prismatic, revolute, cylindrical).
@@ -120,6 +121,13 @@ struct CutChoice {
   std::vector<int> cut; // joints of the mechanism to cut, beyond those marked; empty: by preference
 };
 
+// How the linearised balance is solved. See Problem::elimination().
+enum class Elimination {
+  dense,  // as a matrix of all coordinates: the fastest for few of them
+  tree,   // along the tree, in proportion to the bodies
+  sparse, // as a sparse matrix of all coordinates
+};
+
 struct System {
   std::vector<Link> links; // parents before children
   std::vector<TreeJoint> tree_joints;
@@ -140,10 +148,15 @@ struct System {
   // No drive rides on another or on a free coordinate: the inertia forces then have a potential, too (see
   // potential.hpp).
   bool single_drives = true;
+  Elimination elimination = Elimination::dense;
 };
 
 // Compiles. Throws SceneError where a mechanism has no meaning (validate() finds the same and more).
 System compile(const Mechanism& mechanism, const CutChoice& choice = {});
+
+// No loops, nothing between two bodies but tree joints, and no drive that rides on a free coordinate: what
+// elimination along the tree takes for granted.
+bool is_plain_tree(const System& system);
 
 // The other ways to cut the loops: each joint cut by choice exchanged for a joint of its loop that may be cut
 // instead, one at a time.

@@ -1,0 +1,76 @@
+// The linearised balance of a tree, solved in time proportional to its bodies by eliminating coordinate after
+// coordinate from the tips to the root, as the articulated-body algorithm does (Featherstone, Rigid Body
+// Dynamics Algorithms, 2008, chapter 7) with stiffness in the place of inertia.
+//
+// Derivation. Where no drive rides on a free coordinate, the parts beyond a drive stand still in its frame,
+// and the wrench F_b that a body's inertia and loads ask for depends on the body's pose alone. A small motion
+// X_b (a twist) turns the wrench along and changes it by a 6 x 6 stiffness: dF_b = X_b x* F_b + K_b X_b. With
+// F_l the sum over the subtree of link l, f_l = S_l^T F_l and dS_l = X_p x S_l for the parent's motion X_p,
+//   df_l = S_l^T (G_l - X_p x* F_l) + k_l dq_l,  G_l = dF_l = sum of (X_b x* F_b + K_b X_b),  X_l = X_p + S_l
+//   dq_l.
+// Let G_l - X_l x* F_l = H_l X_l + g_l once everything beyond l is eliminated. Then with u = H_l S_l + S_l x*
+// F_l, r = S_l^T H_l and the pivot D = S_l^T u + k_l,
+//   D dq_l = b_l - S_l^T g_l - r X_p,   H_p = K_p + sum over children of (H_l - u D^-1 r),
+//   g_p = sum of (g_l + u D^-1 (b_l - S_l^T g_l)).
+// X x* F is antisymmetric in X. Where there is a potential, H plus half of it is symmetric, r = u^T, and the
+// symmetric part is carried alone. The pivots are those of L D L^T, so their signs are those of the Hessian's
+// eigenvalues (Sylvester).
+//
+// The metric adds to the inertia of the bodies what it takes to turn each as if it were as large as the
+// mechanism: what bends is then measured, too.
+#pragma once
+
+#include "engine/equilibrium/eliminator.hpp"
+
+namespace flyball {
+
+class TreeElimination final : public Eliminator {
+ public:
+  // Of a system with is_plain_tree().
+  void linearize(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& kinematics,
+                 const Residual<double>& residual, const Magnitudes& magnitudes) override;
+  void factor(double shift = 0) override;
+  void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) override;
+  double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
+  void direction_of(const Flat& flat, Eigen::VectorXd& x) override;
+
+ private:
+  using Vec6 = Eigen::Matrix<double, 6, 1>;
+  using Mat6 = Eigen::Matrix<double, 6, 6>;
+  using Mat63 = Eigen::Matrix<double, 6, 3>;
+
+  struct Node {
+    int parent = -1, v = -1, columns = 0;
+    Vec3 arm;                          // m, from the parent's origin
+    Mat6 own, h;                       // K_b; H before this link's coordinates are eliminated
+    Vec3 force, moment;                // F_l about the link's origin
+    double mass = 0;                   // kg
+    double turning = 0;                // kg m^2, what the metric adds to the inertia
+    Vec3 first_moment;                 // kg m
+    Mat3 inertia;                      // kg m^2, about the link's origin
+    double size_m, size_mf, size_f;    // of the stiffness of the subtree, before elimination
+    double heavy_m, heavy_mf, heavy_f; // of its inertia
+    Mat63 s, u, r;                     // scaled; r transposed
+    Mat3 joint;                        // stiffness of the coordinates
+    Vec3 metric;                       // of the coordinates themselves
+    Vec3 noise;                        // below this a pivot is rounding
+    Mat3 inverse;                      // of the pivot
+    Vec6 g, motion;
+    Vec3 e;
+  };
+
+  void set_body(const Problem& problem, std::size_t l, const Kinematics<double>& k);
+  void set_joint(const Problem& problem, std::size_t l, const Eigen::VectorXd& q, const Kinematics<double>& k,
+                 const Magnitudes& magnitudes);
+  void add_body_forces(const Problem& problem, const Kinematics<double>& k);
+  void eliminate_one(Node& n, double shift);
+  void eliminate_three(Node& n, double shift);
+  void outwards(Eigen::VectorXd& x);
+
+  bool symmetric_ = true;
+  std::vector<Node> nodes_;       // of mobile links, parents before children
+  std::vector<int> node_of_link_; // -1: immobile
+  int size_ = 0;
+};
+
+} // namespace flyball

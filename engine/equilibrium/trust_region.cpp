@@ -1,0 +1,201 @@
+#include "engine/equilibrium/trust_region.hpp"
+
+#include <random>
+
+namespace flyball {
+namespace {
+
+class TrustRegion {
+ public:
+  TrustRegion(const Problem& problem, Unknowns& z, Workspace& w, std::vector<double>* history)
+      : p_(problem), z_(z), w_(w),
+        e_(problem.is_dense() ? static_cast<Eliminator&>(w.tree) : w.eliminator(problem)), history_(history) {
+  }
+
+  DescentOutcome run() {
+    linearize_here();
+    unit_ = std::sqrt(e_.mass()) * p_.parameters.length;
+    radius_ = 0.5 * unit_;
+    double travelled = 0;
+    for (int i = 0; i < 1000; ++i) {
+      if (p_.cancelled()) return {DescentEnd::cancelled, i};
+      choose_step();
+      const double size = step_.lpNorm<Eigen::Infinity>();
+      if (shift_ == 0 && size < 1e-8) return {DescentEnd::minimum, i};
+      if (!(predicted_ > 0) || !std::isfinite(size))
+        return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
+      moved_ = z_.q;
+      w_.step = step_.cwiseProduct(p_.scaling.column);
+      retract<double>(p_.system, w_.step, moved_);
+      forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
+      const Potential next = amended_potential(p_.system, p_.parameters, moved_, w_.kinematics);
+      const double rounding = 1e-14 * (potential_.magnitude + next.magnitude);
+      const double gain = potential_.value - next.value;
+      // Below rounding the potential cannot judge; there the model is as good as exact.
+      const bool measurable = predicted_ > 10 * rounding;
+      const double ratio = measurable ? gain / predicted_ : 1;
+      // A long step for nothing: along what nothing resists, where rounding looks like curvature.
+      if (!measurable && size > 1e-4 && gradient_.lpNorm<Eigen::Infinity>() < 1e-6 * force_)
+        return {DescentEnd::minimum, i};
+      if (!measurable && std::abs(gain) > 10 * rounding)
+        radius_ = length_ / 4;
+      else if (!(ratio > 0.25))
+        radius_ = length_ / 4;
+      else if (ratio > 0.7 && length_ > 0.8 * radius_)
+        radius_ = std::min(2 * radius_, 2 * unit_);
+      if (std::isfinite(next.value) && ratio > 1e-4 && gain > -10 * rounding) {
+        z_.q = moved_;
+        travelled += length_;
+        if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
+        linearize_here();
+      } else if (radius_ < 1e-12 * unit_) {
+        return {DescentEnd::stalled, i};
+      }
+    }
+    return {DescentEnd::stalled, 1000};
+  }
+
+ private:
+  void linearize_here() {
+    z_.lambda.setZero(0);
+    evaluate(p_, z_, 0, w_);
+    if (history_) history_->push_back(scaled_residual(p_, w_));
+    gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
+    force_ = w_.magnitudes.force.cwiseProduct(p_.scaling.column).maxCoeff();
+    potential_ = amended_potential(p_.system, p_.parameters, z_.q, w_.kinematics);
+    e_.linearize(p_, z_.q, w_.kinematics, w_.residual, w_.magnitudes);
+    least_shift_ = 0;
+  }
+
+  // The step for K + shift W; true where that is positive definite, apart from directions that nothing
+  // resists and nothing pushes.
+  bool solve_with(double shift) {
+    e_.factor(shift);
+    if (e_.negative_count() > 0) return false;
+    for (const Eliminator::Flat& flat : e_.flat()) {
+      double push = 0;
+      for (int c = 0; c < flat.columns; ++c)
+        push += flat.way[c] * gradient_[flat.v + c];
+      if (std::abs(push) > 1e-9 * force_) return false;
+    }
+    shift_ = shift;
+    rhs_ = -gradient_;
+    e_.solve(rhs_, step_);
+    length_ = std::sqrt(e_.metric(step_, metric_step_));
+    predicted_ = (-gradient_.dot(step_) + shift * length_ * length_) / 2;
+    return std::isfinite(length_);
+  }
+
+  // Minimises the model within the radius, by 25 % of it.
+  void choose_step() {
+    double low = least_shift_, high = 0; // the shift sought lies between, once high is known
+    bool low_definite = false;
+    if (low == 0 && solve_with(0)) {
+      if (length_ <= 1.25 * radius_) return;
+      low_definite = true;
+    }
+    double shift =
+        low_definite
+            ? low + newton_on_length()
+            : std::max({last_shift_, 2 * low, 0.01 * potential_.magnitude / (unit_ * unit_), 1e-300});
+    for (int tries = 0; tries < 100; ++tries) {
+      if (!solve_with(shift)) {
+        least_shift_ = low = std::max(low, shift);
+        low_definite = false;
+      } else if (length_ > 1.25 * radius_) {
+        low = shift;
+        low_definite = true;
+      } else if (length_ < 0.75 * radius_) {
+        high = shift;
+      } else {
+        break;
+      }
+      // Close above the lowest curvature and still short: the rest of the way goes along it.
+      if (high > 0 && !low_definite && high < 1.2 * low) {
+        if (shift_ != high || shift != high) solve_with(high);
+        last_shift_ = high;
+        add_negative_curvature();
+        return;
+      }
+      const double next = shift_ == shift ? shift + newton_on_length() : 0;
+      if (high == 0)
+        shift = next > shift ? std::min(next, 100 * shift) : 8 * shift;
+      else if (next > low + 0.05 * (high - low) && next < high - 0.05 * (high - low))
+        shift = next;
+      else
+        shift = low > 0 && high > 4 * low   ? std::sqrt(low * high)
+                : low == 0 && !low_definite ? high / 16
+                                            : (low + high) / 2;
+    }
+    last_shift_ = shift_;
+  }
+
+  // What to add to the shift for a step as long as the radius, by Newton's method on 1/length.
+  double newton_on_length() {
+    e_.solve(metric_step_, other_);
+    const double decline = metric_step_.dot(other_);
+    return decline > 0 ? length_ * length_ / decline * (length_ - radius_) / radius_ : 0;
+  }
+
+  // Inverse iteration with the factor at hand, which is positive definite and nearly singular.
+  void add_negative_curvature() {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> any(-1, 1);
+    Eigen::VectorXd v(step_.size()), before, image;
+    for (double& x : v)
+      x = any(random);
+    double size = 1;
+    for (int i = 0; i < 6; ++i) {
+      before = v / std::sqrt(e_.metric(v, image));
+      e_.metric(before, image); // W before
+      e_.solve(image, v);
+      size = std::sqrt(e_.metric(v, other_));
+      v /= size;
+    }
+    image /= size; // (K + shift W) v
+    const double along = v.dot(metric_step_);
+    const double room = std::sqrt(along * along + std::max(0., radius_ * radius_ - length_ * length_));
+    // The two ways to the edge of the region: the lower one, or where they are alike the one that takes the
+    // coordinate that moves most up.
+    double ways[2] = {-along + room, -along - room};
+    Eigen::Index most = 0;
+    v.cwiseAbs().maxCoeff(&most);
+    if (v[most] < 0) std::swap(ways[0], ways[1]);
+    const double slope = gradient_.dot(v);
+    double best = 0, most_gained = -std::numeric_limits<double>::infinity();
+    const double stiffness = image.dot(v); // of v in K + shift W
+    const double image_step = image.dot(step_);
+    for (double t : ways) {
+      const double quadratic =
+          -gradient_.dot(step_) + 2 * t * image_step + t * t * stiffness - shift_ * radius_ * radius_;
+      const double gained = -(gradient_.dot(step_) + t * slope) - quadratic / 2;
+      if (gained > most_gained + 1e-9 * std::abs(gained)) {
+        most_gained = gained;
+        best = t;
+      }
+    }
+    step_ += best * v;
+    length_ = radius_;
+    predicted_ = most_gained;
+  }
+
+  const Problem& p_;
+  Unknowns& z_;
+  Workspace& w_;
+  Eliminator& e_;
+  std::vector<double>* history_;
+  Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
+  Potential potential_;
+  double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
+  double shift_ = 0, last_shift_ = 0;
+  double least_shift_ = 0; // below this K + shift W is known not to be positive definite
+};
+
+} // namespace
+
+DescentOutcome descend_by_trust(const Problem& problem, Unknowns& z, Workspace& w,
+                                std::vector<double>* history) {
+  return TrustRegion(problem, z, w, history).run();
+}
+
+} // namespace flyball

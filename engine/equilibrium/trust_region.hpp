@@ -1,0 +1,20 @@
+// Downhill on the amended potential of a system without loops, each iteration at the cost of an Eliminator
+// and as many of them for a fine chain as for a coarse one.
+//
+// Newton steps within a trust region (More and Sorensen, Computing a trust region step, 1983). What is
+// trusted is the length of the motion in the eliminator's metric and not that of the joint angles: in a fine
+// chain a smooth bend takes small angles at many joints and a kink a large one at a single joint. Where the
+// potential is not convex the signs of the pivots say so, and a direction of negative curvature comes from
+// inverse iteration.
+#pragma once
+
+#include "engine/equilibrium/descent.hpp"
+
+namespace flyball {
+
+// As descend(), for a problem that is the gradient of the potential and either is not dense or has
+// is_plain_tree().
+DescentOutcome descend_by_trust(const Problem& problem, Unknowns& z, Workspace& w,
+                                std::vector<double>* history);
+
+} // namespace flyball
