@@ -1,0 +1,118 @@
+#include "tests/bench/large_scenes.hpp"
+
+#include <cmath>
+
+namespace flyball::bench {
+namespace {
+
+constexpr double gravity = 9.80665;
+
+Mechanism on_a_hub(const std::string& name, double speed) {
+  Mechanism m;
+  m.name = name;
+  m.gravity = {0, -gravity, 0};
+  Body hub;
+  hub.name = "hub";
+  hub.mass = 1;
+  m.bodies.push_back(hub);
+  Joint spin;
+  spin.name = "spin";
+  spin.type = JointType::revolute;
+  spin.bodies = {"ground", "hub"};
+  spin.axis = Vec3::UnitY();
+  spin.coordinates.resize(1);
+  spin.coordinates[0].drive = Drive{speed, {}};
+  m.joints.push_back(spin);
+  return m;
+}
+
+Body rod(const std::string& name, double mass, const Vec3& from, const Vec3& to) {
+  Body b;
+  b.name = name;
+  b.mass = mass;
+  b.position = (from + to) / 2;
+  const Vec3 d = to - from;
+  const Mat3 i = mass / 12 * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+  b.inertia = {i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)};
+  return b;
+}
+
+Joint hinge(const std::string& name, const std::string& parent, const std::string& child, const Vec3& at,
+            const Vec3& axis) {
+  Joint j;
+  j.name = name;
+  j.type = JointType::revolute;
+  j.bodies = {parent, child};
+  j.at = at;
+  j.axis = axis;
+  j.coordinates.resize(1);
+  return j;
+}
+
+} // namespace
+
+Mechanism chain(int links, double speed, double tilt, double length, double mass) {
+  Mechanism m = on_a_hub("Chain of " + std::to_string(links), speed);
+  const Vec3 way = length / links * Vec3(std::sin(tilt), -std::cos(tilt), 0);
+  for (int i = 0; i < links; ++i) {
+    const std::string name = "rod" + std::to_string(i);
+    m.bodies.push_back(rod(name, mass / links, i * way, (i + 1) * way));
+    m.joints.push_back(hinge("hinge" + std::to_string(i), m.bodies[static_cast<std::size_t>(i)].name, name,
+                             i * way, Vec3::UnitZ()));
+  }
+  return m;
+}
+
+Mechanism binary_tree(int rods, double speed) {
+  Mechanism m = on_a_hub("Tree of " + std::to_string(rods), speed);
+  std::vector<Vec3> tip{Vec3::Zero()};
+  for (int i = 0; i < rods; ++i) {
+    const int parent = i == 0 ? 0 : (i + 1) / 2; // in m.bodies
+    const int level = static_cast<int>(std::log2(i + 1));
+    const double size = std::pow(0.8, level), side = i % 2 == 0 ? 0.4 : -0.4;
+    const Vec3 from = tip[static_cast<std::size_t>(parent)];
+    const Vec3 to = from + size * (level % 2 == 0 ? Vec3(side, -1, 0) : Vec3(0, -1, side));
+    const std::string name = "rod" + std::to_string(i);
+    m.bodies.push_back(rod(name, size * size, from, to));
+    tip.push_back(to);
+    Joint j = hinge("hinge" + std::to_string(i), m.bodies[static_cast<std::size_t>(parent)].name, name, from,
+                    level % 2 == 0 ? Vec3::UnitZ() : Vec3::UnitX());
+    j.coordinates[0].spring = CoordinateSpring{300 * size * size, 0};
+    m.joints.push_back(j);
+  }
+  return m;
+}
+
+Mechanism spring_net(int side, double speed) {
+  Mechanism m = on_a_hub("Net of " + std::to_string(side) + " x " + std::to_string(side), speed);
+  const double cell = 1. / (side + 1);
+  const auto at = [&](int i, int j) { return Vec3((i + 1) * cell - 0.5, 0, (j + 1) * cell - 0.5); };
+  const auto name = [](int i, int j) { return "knot" + std::to_string(i) + "_" + std::to_string(j); };
+  const auto tie = [&](const std::string& a, const std::string& b, const Vec3& from, const Vec3& to) {
+    Force spring;
+    spring.name = "cable" + std::to_string(m.forces.size());
+    spring.type = ForceType::spring;
+    spring.bodies = {a, b};
+    spring.points = {from, to};
+    spring.stiffness = 200;
+    spring.free_length = cell / 1.1;
+    m.forces.push_back(spring);
+  };
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      Body knot;
+      knot.name = name(i, j);
+      knot.mass = 1. / (side * side);
+      knot.position = at(i, j);
+      m.bodies.push_back(knot);
+    }
+  for (int i = 0; i < side; ++i)
+    for (int j = -1; j < side; ++j) {
+      const bool first = j < 0, last = j + 1 == side;
+      tie(first ? "hub" : name(i, j), last ? "hub" : name(i, j + 1), at(i, j), at(i, j + 1));
+      tie(first ? "hub" : name(j, i), last ? "hub" : name(j + 1, i), at(j, i), at(j + 1, i));
+    }
+  return m;
+}
+
+} // namespace flyball::bench
