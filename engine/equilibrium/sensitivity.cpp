@@ -23,7 +23,7 @@ Eigen::VectorXd sensitivity(const Problem& problem, const Mechanism& mechanism, 
   const Eigen::VectorXd f_rate = (f[0] - f[1]) / (2 * h), phi_rate = (phi[0] - phi[1]) / (2 * h);
   evaluate(problem, z, 0, w);
   factor(problem, z, w);
-  if (w.hessian.singular()) return {};
+  if (singular(problem, w)) return {};
   Eigen::VectorXd step, multipliers;
   newton_step(problem, f_rate, phi_rate, w, step, multipliers);
   return step.cwiseProduct(problem.scaling.column);

@@ -28,7 +28,8 @@ void SparseElimination::take_pattern(const System& system) {
   stiffness_.resize(system.nv, system.nv);
   stiffness_.setFromTriplets(places.begin(), places.end());
   stiffness_.makeCompressed();
-  metric_ = sum_ = stiffness_;
+  metric_ = stiffness_;
+  place_.clear();
 }
 
 void SparseElimination::linearize(const Problem& problem, const Eigen::VectorXd& q,
@@ -65,46 +66,74 @@ void SparseElimination::linearize(const Problem& problem, const Eigen::VectorXd&
     double& weight = weights(i, i);
     weight = weight > 0 ? weight * (1 + own_share) : least;
   }
+  leave_out_what_is_loose();
+}
+
+// What nothing holds at all, like the turns of a point mass, is left out.
+void SparseElimination::leave_out_what_is_loose() {
+  std::vector<int> place(static_cast<std::size_t>(stiffness_.rows()), -1);
+  held_ = 0;
+  for (int i = 0; i < stiffness_.rows(); ++i) {
+    double largest = 0;
+    for (Sparse::InnerIterator it(stiffness_, i); it; ++it)
+      largest = std::max(largest, std::abs(it.value()));
+    if (largest > noise_[i]) place[static_cast<std::size_t>(i)] = held_++;
+  }
+  if (place == place_) return;
+  place_ = std::move(place);
+  analysed_ = false;
+}
+
+void SparseElimination::sum_up(double shift) {
+  sum_.resize(held_, held_);
+  sum_.reserve(stiffness_.nonZeros());
+  for (int j = 0; j < stiffness_.outerSize(); ++j) {
+    const int column = place_[static_cast<std::size_t>(j)];
+    if (column < 0) continue;
+    sum_.startVec(column);
+    Sparse::InnerIterator weight(metric_, j);
+    for (Sparse::InnerIterator it(stiffness_, j); it; ++it, ++weight)
+      if (const int row = place_[static_cast<std::size_t>(it.row())]; row >= 0)
+        sum_.insertBack(row, column) = it.value() + shift * weight.value();
+  }
+  sum_.finalize();
 }
 
 void SparseElimination::factor(double shift) {
-  sum_ = stiffness_;
-  const double* weights = metric_.valuePtr();
-  for (Eigen::Index e = 0; e < sum_.nonZeros(); ++e)
-    sum_.valuePtr()[e] += shift * weights[e];
   flat_.clear();
   negative_ = 0;
-  const auto n = static_cast<std::size_t>(sum_.rows());
-  pinned_.assign(n, false);
-  const Entries entries(sum_);
-  // What nothing holds at all, like a point mass that may turn: held for the elimination's sake.
-  for (int i = 0; i < sum_.rows(); ++i) {
-    double largest = 0;
-    for (Sparse::InnerIterator it(sum_, i); it; ++it)
-      largest = std::max(largest, std::abs(it.value()));
-    if (largest > noise_[i]) continue;
-    pinned_[static_cast<std::size_t>(i)] = true;
-    flat_.push_back({i, 1, Vec3::UnitX()});
-    entries(i, i) += 1;
-  }
-  // Other pivots without stiffness show in the elimination.
-  for (int round = 0; round < 4; ++round) {
+  for (std::size_t i = 0; i < place_.size(); ++i)
+    if (place_[i] < 0) flat_.push_back({static_cast<int>(i), 1, Vec3::UnitX()});
+  solved_ = true;
+  if (held_ == 0) return;
+  sum_up(shift);
+  const std::size_t loose = flat_.size();
+  // Other pivots without stiffness show in the elimination, one at a time: those after it have eliminated
+  // with nothing.
+  for (int round = 0; round < 8; ++round) {
     solved_ = decompose();
     if (!solved_ || !symmetric_) break;
     const Eigen::VectorXd pivots = ldlt_.vectorD();
-    const auto& place = ldlt_.permutationP().indices();
-    bool again = false;
+    const auto& order = ldlt_.permutationP().indices();
+    int next = -1, first = held_;
     negative_ = 0;
-    for (int i = 0; i < sum_.rows(); ++i) {
-      const double pivot = pivots[place.size() > 0 ? place[i] : i];
-      if (pivot < -noise_[i]) ++negative_;
-      if (std::abs(pivot) > noise_[i] || pinned_[static_cast<std::size_t>(i)]) continue;
-      pinned_[static_cast<std::size_t>(i)] = again = true;
-      flat_.push_back({i, 1, Vec3::UnitX()});
-      entries(i, i) += std::max(std::abs(entries(i, i)), 1e3 * noise_[i]);
-      break; // those after it have eliminated with nothing
+    for (std::size_t i = 0; i < place_.size(); ++i) {
+      if (place_[i] < 0) continue;
+      const int at = order.size() > 0 ? order[place_[i]] : place_[i];
+      const double noise = noise_[static_cast<Eigen::Index>(i)];
+      if (pivots[at] < -noise) ++negative_;
+      if (std::abs(pivots[at]) > noise || at >= first) continue;
+      first = at;
+      next = static_cast<int>(i);
     }
-    if (!again) break;
+    if (next < 0) break;
+    const bool known = std::any_of(flat_.begin() + static_cast<std::ptrdiff_t>(loose), flat_.end(),
+                                   [&](const Flat& f) { return f.v == next; });
+    if (!known) flat_.push_back({next, 1, Vec3::UnitX()});
+    const Entries entries(sum_);
+    double& diagonal =
+        entries(place_[static_cast<std::size_t>(next)], place_[static_cast<std::size_t>(next)]);
+    diagonal += std::max(std::abs(diagonal), 1e3 * noise_[next]);
   }
   if (!solved_) negative_ = std::max(negative_, 1);
 }
@@ -123,17 +152,19 @@ bool SparseElimination::decompose() {
 }
 
 void SparseElimination::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
-  if (!solved_) {
-    x.setZero(rhs.size());
-    return;
-  }
-  masked_ = rhs;
+  x.setZero(rhs.size());
+  if (!solved_ || held_ == 0) return;
+  gathered_.resize(held_);
+  for (std::size_t i = 0; i < place_.size(); ++i)
+    if (place_[i] >= 0) gathered_[place_[i]] = rhs[static_cast<Eigen::Index>(i)];
   for (const Flat& f : flat_)
-    masked_[f.v] = 0;
+    if (const int at = place_[static_cast<std::size_t>(f.v)]; at >= 0) gathered_[at] = 0;
   if (symmetric_)
-    x = ldlt_.solve(masked_);
+    gathered_ = ldlt_.solve(gathered_).eval();
   else
-    x = lu_.solve(masked_);
+    gathered_ = lu_.solve(gathered_).eval();
+  for (std::size_t i = 0; i < place_.size(); ++i)
+    if (place_[i] >= 0) x[static_cast<Eigen::Index>(i)] = gathered_[place_[i]];
   for (const Flat& f : flat_)
     x[f.v] = 0;
 }

@@ -24,15 +24,17 @@ class SparseElimination final : public Eliminator {
   using Sparse = Eigen::SparseMatrix<double>;
 
   void take_pattern(const System& system);
+  void leave_out_what_is_loose();
+  void sum_up(double shift);
   bool decompose();
-  void count_pivots();
 
   bool symmetric_ = true, analysed_ = false, solved_ = false;
   std::size_t pattern_ = 0; // hash of what the pattern was made for
   Sparse stiffness_, metric_, sum_;
   Linearization work_;
-  Eigen::VectorXd noise_, masked_;
-  std::vector<bool> pinned_;
+  Eigen::VectorXd noise_, gathered_;
+  std::vector<int> place_; // of each coordinate in what is solved; -1: nothing holds it
+  int held_ = 0;
   Eigen::SimplicialLDLT<Sparse> ldlt_;
   Eigen::SparseLU<Sparse> lu_;
 };

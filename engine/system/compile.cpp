@@ -466,8 +466,8 @@ class Compiler {
 
   // Below some coordinates the dense equations are faster (measured: `flyball_bench`, chains).
   void choose_elimination() {
-    constexpr int few = 24, few_without_potential = 200,
-                  few_for_sparse = 24; // those ask for eigenvalues in any case
+    // Without a potential stability asks for eigenvalues, and so for the matrices, as far as those are found.
+    constexpr int few = 8, few_for_sparse = 24, few_without_potential = 200;
     const bool potential = s_.conservative && s_.single_drives;
     if (s_.nv <= (potential ? few : few_without_potential) || s_.rows > 0) return;
     constexpr long entries_a_row = 150;

@@ -77,7 +77,7 @@ Mechanism binary_tree(int rods, double speed) {
     tip.push_back(to);
     Joint j = hinge("hinge" + std::to_string(i), m.bodies[static_cast<std::size_t>(parent)].name, name, from,
                     level % 2 == 0 ? Vec3::UnitZ() : Vec3::UnitX());
-    j.coordinates[0].spring = CoordinateSpring{300 * size * size, 0};
+    j.coordinates[0].spring = CoordinateSpring{3000 * size * size, 0};
     m.joints.push_back(j);
   }
   return m;
