@@ -18,7 +18,7 @@ class Family {
   double value() const { return value_; }
   double scale() const { return scale_; } // the range of interest, in the parameter's unit
   const Mechanism& mechanism() const { return mechanism_; }
-  Problem problem() const { return {system_, parameters_, scaling_, nullptr, true}; }
+  Problem problem() const { return {system_, parameters_, scaling_}; }
 
  private:
   const System& system_;

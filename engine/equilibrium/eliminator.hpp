@@ -1,5 +1,6 @@
-// Solves the linearised balance of a system without loops by elimination, at a cost that grows with its
-// bodies and not with their square: along the tree or as a sparse matrix. All in scaled units.
+// Solves the linearised balance by elimination, at a cost that grows with the bodies and not with the square
+// of their coordinates: along the tree, or as the sparse equations of all bodies and loops. All in scaled
+// units.
 //
 // A multiple of a metric can be added to the stiffness: the bodies' inertias in the main, so that a step's
 // length is that of the motion it makes and not of the angles it takes.
@@ -7,36 +8,44 @@
 
 #include "engine/equilibrium/problem.hpp"
 
+#include <utility>
+#include <vector>
+
 namespace flyball {
 
 class Eliminator {
  public:
-  // A pivot that is zero but for rounding: `way` within the columns of one link.
-  struct Flat {
-    int v = 0, columns = 1;
-    Vec3 way = Vec3::UnitX();
-  };
+  // A direction without stiffness but for rounding: coordinates and their shares before the rest gives way.
+  using Flat = std::vector<std::pair<int, double>>;
 
   virtual ~Eliminator() = default;
 
-  // Takes in a state. Kinematics, residual and magnitudes must be at q.
-  virtual void linearize(const Problem& problem, const Eigen::VectorXd& q,
-                         const Kinematics<double>& kinematics, const Residual<double>& residual,
-                         const Magnitudes& magnitudes) = 0;
+  // Takes in a state. Kinematics, residual and magnitudes must be at z; the residual's wrenches of the links
+  // are used, not its sums with multipliers.
+  virtual void linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
+                         const Residual<double>& residual, const Magnitudes& magnitudes) = 0;
 
   // Eliminates K + shift W (shift in 1/s^2).
   virtual void factor(double shift = 0) = 0;
 
-  // Solves (K + shift W) x = rhs. Directions without stiffness get no component.
-  virtual void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) = 0;
+  // Solves [K + shift W, J^T; J, 0] [x; lambda] = [rhs; closing], J the constraints' Jacobian. Directions
+  // without stiffness and redundant constraints get no component.
+  virtual void solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
+                     Eigen::VectorXd& lambda) = 0;
+  // Of steps that leave the loops closed.
+  void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
+    none_.setZero(rows_);
+    solve(rhs, none_, x, multipliers_);
+  }
 
   // W x, and x^T W x.
   virtual double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) = 0;
 
-  // The direction of a zero pivot: its own way, and what follows of what is eliminated before it.
+  // A direction without stiffness with all that follows it.
   virtual void direction_of(const Flat& flat, Eigen::VectorXd& x) = 0;
 
-  // Of the last factor(), where there is a potential: negative eigenvalues of K + shift W (Sylvester).
+  // Of the last factor(), where there is a potential: negative eigenvalues of K + shift W on what the
+  // constraints leave free (Sylvester).
   int negative_count() const { return negative_; }
   const std::vector<Flat>& flat() const { return flat_; }
   bool positive_definite() const { return negative_ == 0 && flat_.empty(); }
@@ -48,8 +57,11 @@ class Eliminator {
   static constexpr double own_share = 1e-6; // of the metric: what coordinates have beside the bodies
 
   std::vector<Flat> flat_;
-  int negative_ = 0;
+  int negative_ = 0, rows_ = 0;
   double mass_ = 0;
+
+ private:
+  Eigen::VectorXd none_, multipliers_;
 };
 
 } // namespace flyball

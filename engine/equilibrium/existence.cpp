@@ -14,7 +14,6 @@ void evaluate_phase(const Problem& problem, const Eigen::VectorXd& q, double t, 
   w.zero_lambda.setZero(problem.system.rows);
   Unknowns z{q, w.zero_lambda};
   evaluate(problem, z, t, w);
-  linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
   factor_constraints(problem, w);
 }
 
@@ -59,7 +58,13 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
       if (left > tolerance * size && left / size > result.violation)
         result = {false, false, t, left / size, -1};
     };
-    if (problem.system.rows == 0) {
+    if (problem.system.rows > 0 && !problem.is_dense()) { // with the multipliers that do best
+      Unknowns z{q, {}};
+      best_multipliers(problem, w, z.lambda);
+      evaluate(problem, z, t, w);
+      w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
+    }
+    if (problem.system.rows == 0 || !problem.is_dense()) {
       for (Eigen::Index k = 0; k < w.scaled_force.size(); ++k)
         judge(std::abs(w.scaled_force[k]), w.magnitudes.force[k] * problem.scaling.column[k]);
       continue;
@@ -97,7 +102,13 @@ std::string blame(const Problem& problem, const Mechanism& mechanism, const Eige
     for (int i : {0, 1}) {
       evaluate_phase(part, q, i == 0 ? 0. : phase, w);
       f[i] = w.residual.f.cwiseProduct(problem.scaling.column);
-      if (system.rows > 0) f[i] = w.constraints.basis().transpose() * f[i];
+      if (system.rows == 0) continue;
+      if (problem.is_dense()) {
+        f[i] = w.constraints.basis().transpose() * f[i];
+      } else {
+        const Eigen::VectorXd whole = f[i];
+        w.loops.solve(whole, f[i]);
+      }
     }
     return f[0].size() == f[1].size() ? (f[1] - f[0]).norm() : 0.;
   };

@@ -1,5 +1,7 @@
 #include "engine/equilibrium/newton.hpp"
 
+#include "engine/system/constraint_row.hpp"
+
 namespace flyball {
 namespace {
 
@@ -15,13 +17,20 @@ void apply_step(const Problem& problem, const Eigen::VectorXd& scaled_step, doub
   retract<double>(problem.system, w.step, q);
 }
 
-// A point mass that may turn feels nothing of it, but the terms of its balance cancel with rounding only,
-// which nothing is there to drown.
+// A point mass that may turn feels nothing of it, but the terms of its balance cancel with rounding only: of
+// the forces that act along its joint's other coordinates, which nothing is there to drown.
 void clear_rounding(const Problem& problem, Workspace& w) {
-  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
-    const Link& link = problem.system.links[l];
+  const System& system = problem.system;
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const Link& link = system.links[l];
     if (link.v < 0 || link.type != LinkType::spherical) continue;
-    const double rounding = 1e-15 * w.magnitudes.link_force[l] * problem.parameters.length;
+    double force = w.magnitudes.link_force[l] * problem.parameters.length;
+    for (int i = static_cast<int>(l); i >= 0; i = system.links[static_cast<std::size_t>(i)].parent) {
+      const Link& other = system.links[static_cast<std::size_t>(i)];
+      if (other.tree_joint != link.tree_joint) break;
+      if (other.v >= 0) force = std::max(force, w.magnitudes.force[other.v] * problem.scaling.column[other.v]);
+    }
+    const double rounding = 1e-15 * force;
     for (int v = link.v; v < link.v + 3; ++v) {
       if (w.scaled_stiffness.row(v).lpNorm<Eigen::Infinity>() > rounding ||
           w.scaled_stiffness.col(v).lpNorm<Eigen::Infinity>() > rounding)
@@ -32,19 +41,49 @@ void clear_rounding(const Problem& problem, Workspace& w) {
   }
 }
 
+void factor_dense_constraints(const Problem& problem, Workspace& w) {
+  w.scaled_jacobian.resize(problem.system.rows, problem.system.nv);
+  for (int j = 0; j < problem.system.nv; ++j)
+    for (int i = 0; i < problem.system.rows; ++i)
+      w.scaled_jacobian(i, j) =
+          w.linearization.constraint(i, j) * problem.scaling.row[i] * problem.scaling.column[j];
+  w.constraints.factor(w.scaled_jacobian, rank_tolerance(problem, w.residual.phi));
+}
+
 // What is left of the force balance when the best multipliers have been found; f is without constraint
 // forces.
 double merit(const Problem& problem, Workspace& w) {
   w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
   double sum = 0;
   const double size = std::max(1e-300, w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff());
-  if (problem.system.rows == 0)
-    w.reduced_rhs = w.scaled_force;
-  else
+  if (problem.system.rows == 0) {
+    sum += (w.scaled_force / size).squaredNorm();
+  } else if (problem.is_dense()) {
     w.reduced_rhs.noalias() = w.constraints.basis().transpose() * w.scaled_force;
-  sum += (w.reduced_rhs / size).squaredNorm();
+    sum += (w.reduced_rhs / size).squaredNorm();
+  } else { // in the metric, at the mass and reach of the whole
+    w.loops.solve(w.scaled_force, w.reduced_rhs);
+    sum += std::max(0., w.reduced_rhs.dot(w.scaled_force)) * w.loops.mass() *
+           (problem.parameters.length / size) * (problem.parameters.length / size);
+  }
   sum += w.residual.phi.cwiseProduct(problem.scaling.row).squaredNorm();
   return std::sqrt(sum);
+}
+
+// The balance with the multipliers' forces taken off again.
+void take_off_multipliers(const Problem& problem, const Eigen::VectorXd& lambda, Workspace& w) {
+  if (problem.system.rows == 0) return;
+  if (problem.is_dense()) {
+    w.residual.f.noalias() -= w.linearization.constraint.transpose() * lambda;
+    return;
+  }
+  for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
+    const CutJoint& cut = problem.system.cuts[c];
+    for (std::size_t r = 0; r < cut.rows.size(); ++r)
+      row_gradient(cut, problem.parameters.cuts[c], cut.rows[r], w.kinematics, [&](int v, double g) {
+        w.residual.f[v] -= g * lambda[cut.first_row + static_cast<int>(r)];
+      });
+  }
 }
 
 } // namespace
@@ -66,13 +105,44 @@ double scaled_residual(const Problem& problem, const Workspace& w) {
 }
 
 void factor_constraints(const Problem& problem, Workspace& w) {
+  if (problem.system.rows > 0 && !problem.is_dense()) {
+    w.loops.linearize_metric(problem, w.kinematics, rank_tolerance(problem, w.residual.phi));
+    w.loops.factor();
+    return;
+  }
   if (!problem.is_dense()) return;
-  w.scaled_jacobian.resize(problem.system.rows, problem.system.nv);
-  for (int j = 0; j < problem.system.nv; ++j)
-    for (int i = 0; i < problem.system.rows; ++i)
-      w.scaled_jacobian(i, j) =
-          w.linearization.constraint(i, j) * problem.scaling.row[i] * problem.scaling.column[j];
-  w.constraints.factor(w.scaled_jacobian, rank_tolerance(problem, w.residual.phi));
+  linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
+  factor_dense_constraints(problem, w);
+}
+
+int independent_rows(const Problem& problem, const Workspace& w) {
+  if (problem.system.rows == 0) return 0;
+  return problem.is_dense() ? w.constraints.rank() : problem.system.rows - w.loops.redundant();
+}
+
+void best_multipliers(const Problem& problem, Workspace& w, Eigen::VectorXd& lambda) {
+  w.target = -w.residual.f.cwiseProduct(problem.scaling.column);
+  if (problem.system.rows == 0) {
+    lambda.resize(0);
+    return;
+  }
+  if (problem.is_dense()) {
+    w.constraints.multipliers(w.target, w.scaled_lambda);
+  } else {
+    w.zero_lambda.setZero(problem.system.rows);
+    w.loops.solve(w.target, w.zero_lambda, w.range_step, w.scaled_lambda);
+  }
+  lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
+}
+
+void close(const Problem& problem, Workspace& w, Eigen::VectorXd& scaled_step) {
+  w.scaled_phi = -w.residual.phi.cwiseProduct(problem.scaling.row);
+  if (problem.is_dense()) {
+    w.constraints.solve(w.scaled_phi, scaled_step);
+    return;
+  }
+  w.reduced_rhs.setZero(problem.system.nv);
+  w.loops.solve(w.reduced_rhs, w.scaled_phi, scaled_step, w.scaled_lambda);
 }
 
 bool positive_definite(const Problem& problem, const Workspace& w) {
@@ -86,12 +156,12 @@ bool singular(const Problem& problem, const Workspace& w) {
 void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
   if (!problem.is_dense()) {
     Eliminator& eliminator = w.eliminator(problem);
-    eliminator.linearize(problem, z.q, w.kinematics, w.residual, w.magnitudes);
+    eliminator.linearize(problem, z, w.kinematics, w.residual, w.magnitudes);
     eliminator.factor();
     return;
   }
   linearize(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.linearization);
-  factor_constraints(problem, w);
+  factor_dense_constraints(problem, w);
   const int n = problem.system.nv;
   w.scaled_stiffness.resize(n, n);
   for (int j = 0; j < n; ++j)
@@ -123,11 +193,8 @@ void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) 
   z.lambda.setZero(problem.system.rows);
   evaluate(problem, z, 0, w);
   if (problem.system.rows > 0) {
-    linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
     factor_constraints(problem, w);
-    w.target = -w.residual.f.cwiseProduct(problem.scaling.column);
-    w.constraints.multipliers(w.target, w.scaled_lambda);
-    z.lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
+    best_multipliers(problem, w, z.lambda);
     evaluate(problem, z, 0, w);
   }
   factor(problem, z, w);
@@ -138,8 +205,9 @@ void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::
   w.scaled_force = f.cwiseProduct(problem.scaling.column);
   if (!problem.is_dense()) {
     w.reduced_rhs = -w.scaled_force;
-    w.eliminator(problem).solve(w.reduced_rhs, scaled_step);
-    lambda.setZero(0);
+    w.scaled_phi = -phi.cwiseProduct(problem.scaling.row);
+    w.eliminator(problem).solve(w.reduced_rhs, w.scaled_phi, scaled_step, w.scaled_lambda);
+    lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
     return;
   }
   if (w.constraints.rank() == 0) {
@@ -181,19 +249,19 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     // The multipliers are solved for whole at every step, so the step needs the balance without them.
     w.trial.q = z.q;
     w.trial.lambda = z.lambda;
-    if (problem.system.rows > 0) w.residual.f.noalias() -= w.linearization.constraint.transpose() * z.lambda;
+    take_off_multipliers(problem, z.lambda, w);
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, z.lambda);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > 1e8) break;
     double fraction = 1;
     if (settings.damped) {
+      if (!problem.is_dense()) factor_constraints(problem, w); // the balance has its own factors
       const double start = merit(problem, w);
       for (;; fraction /= 2) {
         z.q = w.trial.q;
         apply_step(problem, w.scaled_step, fraction, z.q, w);
         Unknowns probe{z.q, w.zero_lambda};
         evaluate(problem, probe, 0, w);
-        linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
         factor_constraints(problem, w);
         const double now = merit(problem, w);
         if (now <= (1 - 1e-4 * fraction) * start || now < 1e-13 || fraction < 1e-6) break;
@@ -239,9 +307,8 @@ bool assemble(const Problem& problem, Eigen::VectorXd& q, double t, Workspace& w
   for (int i = 0; i < 60; ++i) {
     if (!std::isfinite(open)) return false;
     if (open < 1e-14) break;
-    linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
     factor_constraints(problem, w);
-    w.constraints.solve(w.scaled_phi, w.scaled_step);
+    close(problem, w, w.scaled_step);
     const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
     if (size < 1e-15) break;
     double fraction = std::min(1., 0.5 / size), next = open;

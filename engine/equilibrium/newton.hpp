@@ -16,8 +16,14 @@ void evaluate(const Problem& problem, const Unknowns& z, double t, Workspace& w)
 // mechanism's reach.
 double scaled_residual(const Problem& problem, const Workspace& w);
 
-// Scales and factors the constraint Jacobian in w.linearization.
+// Linearises and factors the constraints at an evaluated state.
 void factor_constraints(const Problem& problem, Workspace& w);
+
+// Of the factored constraints: how many do not follow from others; the multipliers that balance the evaluated
+// forces (without multipliers) best, in N or N m; the shortest scaled step that closes the loops.
+int independent_rows(const Problem& problem, const Workspace& w);
+void best_multipliers(const Problem& problem, Workspace& w, Eigen::VectorXd& lambda);
+void close(const Problem& problem, Workspace& w, Eigen::VectorXd& scaled_step);
 
 // Linearises and factors at an evaluated state.
 void factor(const Problem& problem, const Unknowns& z, Workspace& w);

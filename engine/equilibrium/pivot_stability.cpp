@@ -53,11 +53,15 @@ Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Worksp
     }
   } else { // each by itself would cost too much: without what follows beyond
     for (const Eliminator::Flat& f : flat)
-      for (int c = 0; c < f.columns; ++c)
-        if (std::abs(f.way[c]) > 1e-6) {
-          takes_part[static_cast<std::size_t>(f.v + c)] = true;
-          all[f.v + c] += f.way[c];
+      for (const auto& [v, share] : f)
+        if (std::abs(share) > 1e-6) {
+          takes_part[static_cast<std::size_t>(v)] = true;
+          all[v] += share;
         }
+  }
+  if (all.isZero(0)) { // too many to name
+    if (!out.reason && negative == 0) out.reason = StabilityReason::marginal;
+    return out;
   }
   all /= all.lpNorm<Eigen::Infinity>();
   const bool balanced =

@@ -13,11 +13,12 @@ void ReducedHessian::factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd
   for (Eigen::Index i = 0; i < n; ++i) {
     // By the diagonal, but an entry of rounding alone must come out as zero, and one beside a zero diagonal
     // no larger than one; entries of definite matrices never ask for the latter.
-    double size = std::max({std::abs(matrix(i, i)), noise[i] / zero, 1e-300});
+    double size = std::max(std::abs(matrix(i, i)), noise[i] / zero);
     for (Eigen::Index j = 0; j < n; ++j)
       if (const double a = std::abs(matrix(i, j)); a > 0)
         size = std::max(size, a * (a / std::max(a, std::abs(matrix(j, j)))));
-    scale_[i] = 1 / std::sqrt(size);
+    // What feels nothing at all takes no part, or rounding elsewhere would be a force on it.
+    scale_[i] = size > 1e-300 ? 1 / std::sqrt(size) : 0;
   }
   matrix_.resize(n, n);
   for (Eigen::Index j = 0; j < n; ++j)
@@ -93,16 +94,18 @@ Eigen::MatrixXd ReducedHessian::null_basis() const {
   Eigen::MatrixXd basis(n, null_);
   if (null_ == n) return Eigen::MatrixXd::Identity(n, n);
   if (null_ == 0) return basis;
+  // What feels nothing at all has no scale; here it takes part as it is.
+  const Eigen::VectorXd scale = (scale_.array() > 0).select(scale_, 1.);
   if (symmetric_) {
     Eigen::Index c = 0;
     for (Eigen::Index k = 0; k < n; ++k)
       if (std::abs(eigen_.eigenvalues()[k]) <= zero)
-        basis.col(c++) = scale_.cwiseProduct(eigen_.eigenvectors().col(k));
+        basis.col(c++) = scale.cwiseProduct(eigen_.eigenvectors().col(k));
     return basis;
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix_, Eigen::ComputeFullV);
   for (int k = 0; k < null_; ++k)
-    basis.col(k) = scale_.cwiseProduct(svd.matrixV().col(n - null_ + k));
+    basis.col(k) = scale.cwiseProduct(svd.matrixV().col(n - null_ + k));
   return basis;
 }
 

@@ -44,10 +44,21 @@ Frames frames_of(const System& system, const Kinematics<double>& k, const TreeJo
   return {r(t.parent_body), r(t.child_body)};
 }
 
+// At a state evaluated without multipliers. Where loops are redundant those of least norm, or in large
+// mechanisms with none on rows that follow from others.
+Eigen::VectorXd reported_multipliers(const Problem& problem, Workspace& w) {
+  factor_constraints(problem, w);
+  Eigen::VectorXd lambda;
+  best_multipliers(problem, w, lambda);
+  if (problem.is_dense() && problem.system.rows > 0)
+    lambda = w.constraints.least_norm_multipliers(w.target).cwiseProduct(problem.scaling.row);
+  return lambda;
+}
+
 void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
   const System& system = in.problem.system;
   const Parameters& p = in.problem.parameters;
-  const bool redundant = w.constraints.rank() < system.rows;
+  const bool redundant = independent_rows(in.problem, w) < system.rows;
   out.reactions_nonunique = redundant;
   struct Snapshot {
     TransmittedForces forces;
@@ -57,10 +68,7 @@ void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
     w.zero_lambda.setZero(system.rows);
     Unknowns z{in.found.z.q, w.zero_lambda};
     evaluate(in.problem, z, t, w);
-    linearize_constraints(system, p, w.kinematics, w.linearization);
-    factor_constraints(in.problem, w);
-    const Eigen::VectorXd rhs = -w.residual.f.cwiseProduct(in.problem.scaling.column);
-    z.lambda = w.constraints.least_norm_multipliers(rhs).cwiseProduct(in.problem.scaling.row);
+    z.lambda = reported_multipliers(in.problem, w);
     Snapshot s{transmitted_forces(system, p, z.lambda, w.kinematics, w.residual), {}, {}};
     for (const TreeJoint& tree : system.tree_joints)
       s.tree.push_back(frames_of(system, w.kinematics, tree));
@@ -211,15 +219,12 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   w.zero_lambda.setZero(system.rows);
   Unknowns z{in.found.z.q, w.zero_lambda};
   evaluate(in.problem, z, 0, w);
-  linearize_constraints(system, in.problem.parameters, w.kinematics, w.linearization);
-  factor_constraints(in.problem, w);
-  const Eigen::VectorXd rhs = -w.residual.f.cwiseProduct(in.problem.scaling.column);
-  z.lambda = w.constraints.least_norm_multipliers(rhs).cwiseProduct(in.problem.scaling.row);
+  z.lambda = reported_multipliers(in.problem, w);
   evaluate(in.problem, z, 0, w);
   out.residual = scaled_residual(in.problem, w);
   body_poses(system, in.mechanism, in.problem.parameters, w.kinematics, out.poses);
   if (details && system.nv > 0 && system.nv <= largest_for_eigenvalues) {
-    const Problem whole{system, in.problem.parameters, in.problem.scaling, in.problem.cancel, true};
+    const Problem whole{system, in.problem.parameters, in.problem.scaling, in.problem.cancel};
     factor(whole, z, w);
     // Of the balance on the null space and the constraints on the range, both in scaled units and
     // equilibrated.
@@ -234,7 +239,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   }
   out.message = in.found.message;
   if (out.message.empty()) out.message = "Converged.";
-  if (const int rank = w.constraints.rank(); rank < system.rows)
+  if (const int rank = independent_rows(in.problem, w); rank < system.rows)
     out.message += " The loops are redundant: " + std::to_string(rank) + " of " +
                    std::to_string(system.rows) + " constraint equations are independent.";
   if (!out.neutral.empty()) {

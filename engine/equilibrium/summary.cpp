@@ -48,8 +48,8 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   if (system.nv > 0)
     out.in.emplace_back(system.elimination == Elimination::tree
                             ? "elimination along the tree: cost in proportion to the bodies"
-                        : system.elimination == Elimination::sparse
-                            ? "sparse elimination: bodies feel their neighbours alone"
+                        : system.elimination == Elimination::bodies
+                            ? "sparse equations of all bodies: each feels its neighbours alone"
                             : "dense equations: the fastest for few coordinates");
   say(!p.phase_free, p.phase_free
                          ? "checks at other phases of the drives: the mechanism's shape makes all alike"

@@ -6,17 +6,6 @@
 namespace flyball {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
-
-// [a] [b].
-Mat3 skew_product(const Vec3& a, const Vec3& b) {
-  Mat3 m;
-  m.noalias() = b * a.transpose();
-  m.diagonal().array() -= a.dot(b);
-  return m;
-}
-
 // Adds a stiffness about the child's origin to one about the parent's, `r` away.
 void add_shifted(const Mat6& h, const Vec3& r, bool symmetric, Mat6& out) {
   const Mat3 rx = skew(r), e = h.bottomRightCorner<3, 3>();
@@ -28,110 +17,11 @@ void add_shifted(const Mat6& h, const Vec3& r, bool symmetric, Mat6& out) {
   out.bottomRightCorner<3, 3>() += e;
 }
 
-void add_wrench(const Vec6& wrench, const Vec3& r, Vec6& out) {
-  out.head<3>() += wrench.head<3>() + r.cross(wrench.tail<3>());
-  out.tail<3>() += wrench.tail<3>();
-}
-
-// The motion of a body at a point `r` from where it is given.
-Vec6 carried(const Vec6& motion, const Vec3& r) {
-  Vec6 x = motion;
-  x.tail<3>() += motion.head<3>().cross(r);
-  return x;
-}
-
-// S x* F.
-Vec6 turned(const Vec6& s, const Vec3& moment, const Vec3& force) {
-  Vec6 x;
-  x.head<3>() = s.head<3>().cross(moment) + s.tail<3>().cross(force);
-  x.tail<3>() = s.head<3>().cross(force);
-  return x;
-}
-
-Vec6 times_inertia(double mass, const Vec3& h, const Mat3& inertia, const Vec6& x) {
-  Vec6 y;
-  y.head<3>() = inertia * x.head<3>() + h.cross(x.tail<3>());
-  y.tail<3>() = mass * x.tail<3>() - h.cross(x.head<3>());
-  return y;
+Eliminator::Flat way(int v, const Vec3& direction) {
+  return {{v, direction[0]}, {v + 1, direction[1]}, {v + 2, direction[2]}};
 }
 
 } // namespace
-
-void TreeElimination::set_body(const Problem& problem, std::size_t l, const Kinematics<double>& k) {
-  const LinkParameters& lp = problem.parameters.links[l];
-  const LinkState<double>& x = k.links[l];
-  Node& n = nodes_[static_cast<std::size_t>(node_of_link_[l])];
-  n.mass = lp.mass;
-  n.turning = lp.mass * problem.parameters.length * problem.parameters.length / 4;
-  if (lp.mass == 0 && !lp.has_inertia) {
-    n.first_moment.setZero();
-    n.inertia.setZero();
-    n.own.setZero();
-    n.size_m = n.size_mf = n.size_f = n.heavy_m = n.heavy_mf = n.heavy_f = 0;
-    return;
-  }
-  const Vec3 c = x.R * lp.com;
-  const Mat3 central = lp.has_inertia ? Mat3(x.R * lp.inertia * x.R.transpose()) : Mat3(Mat3::Zero());
-  n.first_moment = lp.mass * c;
-  n.inertia = central - lp.mass * skew_product(c, c);
-  n.heavy_m = n.inertia.norm() + n.turning;
-  n.heavy_mf = n.first_moment.norm();
-  n.heavy_f = lp.mass;
-  const Mat3 hx = skew(n.first_moment);
-  if (!problem.parameters.moving) {
-    const Mat3 ax = skew(x.dv);
-    n.own.setZero();
-    n.own.topLeftCorner<3, 3>().noalias() = hx * ax;
-    n.own.bottomLeftCorner<3, 3>() = lp.mass * ax;
-    return;
-  }
-  // See linearization.hpp: Psi'' = A x X + V x (V x X), and B on Psi' = V x X.
-  const Vec3 momentum = lp.mass * (x.v + x.w.cross(c));
-  const Mat3 wx = skew(x.w), swept = wx * central;
-  const Mat3 b = swept + swept.transpose() - skew<double>(central * x.w) - 2 * skew_product(c, momentum);
-  const Mat3 turn = skew(x.dw) + skew_product(x.w, x.w);
-  const Mat3 shift = skew<double>(x.dv - x.w.cross(x.v)) + skew_product(x.w, x.v) + skew_product(x.v, x.w);
-  const Mat3 moved = hx * turn;
-  n.own.topLeftCorner<3, 3>().noalias() = n.inertia * turn;
-  n.own.topLeftCorner<3, 3>().noalias() += hx * shift;
-  n.own.topLeftCorner<3, 3>().noalias() += b * wx;
-  n.own.topRightCorner<3, 3>() = moved;
-  n.own.bottomLeftCorner<3, 3>() = lp.mass * shift - moved - 2 * skew_product(momentum, x.w);
-  n.own.bottomRightCorner<3, 3>() = lp.mass * turn;
-}
-
-void TreeElimination::add_body_forces(const Problem& problem, const Kinematics<double>& k) {
-  for (std::size_t i = 0; i < problem.system.body_forces.size(); ++i) {
-    const BodyForceElement& e = problem.system.body_forces[i];
-    const BodyForceParameters& f = problem.parameters.body_forces[i];
-    // A force fixed in the body turns with it, as F_b does by itself.
-    if (e.link < 0 || (f.type != ForceType::drag && f.frame == ForceFrame::body)) continue;
-    const int at = node_of_link_[static_cast<std::size_t>(e.link)];
-    if (at < 0) continue;
-    Mat6& own = nodes_[static_cast<std::size_t>(at)].own;
-    const LinkState<double>& x = k.links[static_cast<std::size_t>(e.link)];
-    const AppliedForce<double> a = applied_force(e, f, k);
-    const Vec3 arm = a.point - x.o;
-    const Mat3 armx = skew(arm);
-    if (f.type != ForceType::drag) {
-      const Mat3 fx = skew(a.force);
-      own.topLeftCorner<3, 3>() -= armx * fx + skew(a.torque);
-      own.bottomLeftCorner<3, 3>() -= fx;
-      continue;
-    }
-    const Vec3 v = k.velocity(e.link, a.point);
-    const double speed = v.norm();
-    Mat3 j = (f.linear + f.quadratic * speed) * Mat3::Identity();
-    if (speed > 0) j += f.quadratic / speed * v * v.transpose();
-    // Velocity at the point of V x X, whose parts are w x theta and v x theta + w x x.
-    const Mat3 wx = skew(x.w);
-    const Mat3 by_turn = j * (skew(x.v) - armx * wx), by_shift = j * wx;
-    own.topLeftCorner<3, 3>() += armx * by_turn;
-    own.topRightCorner<3, 3>() += armx * by_shift;
-    own.bottomLeftCorner<3, 3>() += by_turn;
-    own.bottomRightCorner<3, 3>() += by_shift;
-  }
-}
 
 void TreeElimination::set_joint(const Problem& problem, std::size_t l, const Eigen::VectorXd& q,
                                 const Kinematics<double>& k, const Magnitudes& magnitudes) {
@@ -158,7 +48,7 @@ void TreeElimination::set_joint(const Problem& problem, std::size_t l, const Eig
     n.joint = lp.elastic ? rotation_stiffness(link, lp, q) : Mat3(Mat3::Zero());
 }
 
-void TreeElimination::linearize(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k,
+void TreeElimination::linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                                 const Residual<double>& residual, const Magnitudes& magnitudes) {
   const System& system = problem.system;
   symmetric_ = problem.symmetric();
@@ -178,9 +68,17 @@ void TreeElimination::linearize(const Problem& problem, const Eigen::VectorXd& q
     n.arm = k.links[l].o - k.at(link.parent).o;
     n.force = residual.force[l];
     n.moment = residual.moment[l];
-    set_body(problem, l, k);
+    set_body_stiffness(problem.parameters, l, k, n);
+    n.heavy_m = n.inertia.norm() + n.turning;
+    n.heavy_mf = n.first_moment.norm();
+    n.heavy_f = n.mass;
   }
-  add_body_forces(problem, k);
+  for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
+    const BodyForceElement& e = system.body_forces[i];
+    const int at = e.link < 0 ? -1 : node_of_link_[static_cast<std::size_t>(e.link)];
+    if (at >= 0)
+      add_body_force(e, problem.parameters.body_forces[i], k, nodes_[static_cast<std::size_t>(at)].own);
+  }
   mass_ = 0;
   for (Node& n : nodes_) {
     if (symmetric_) n.own = 0.5 * (n.own + n.own.transpose()).eval();
@@ -205,7 +103,7 @@ void TreeElimination::linearize(const Problem& problem, const Eigen::VectorXd& q
       own_share * own_share * std::max(mass_, 1e-300) * problem.parameters.length * problem.parameters.length;
   for (std::size_t l = 0; l < system.links.size(); ++l) {
     if (node_of_link_[l] < 0) continue;
-    set_joint(problem, l, q, k, magnitudes);
+    set_joint(problem, l, z.q, k, magnitudes);
     // What has no mass of its own to speak of would be free to go anywhere.
     Node& n = nodes_[static_cast<std::size_t>(node_of_link_[l])];
     for (int c = 0; c < n.columns; ++c)
@@ -227,7 +125,7 @@ void TreeElimination::eliminate_one(Node& n, double shift) {
   n.u.col(0) = u;
   if (!(std::abs(pivot) > n.noise[0])) {
     n.inverse(0, 0) = 0;
-    flat_.push_back({n.v, 1, Vec3::UnitX()});
+    flat_.push_back({{n.v, 1.}});
     return;
   }
   n.inverse(0, 0) = 1 / pivot;
@@ -259,7 +157,7 @@ void TreeElimination::eliminate_three(Node& n, double shift) {
       const double value = eigen.eigenvalues()[c];
       const bool flat = !(std::abs(value) > noise);
       inverse[c] = flat ? 0 : 1 / value;
-      if (flat) flat_.push_back({n.v, 3, eigen.eigenvectors().col(c)});
+      if (flat) flat_.push_back(way(n.v, eigen.eigenvectors().col(c)));
       if (!flat && value < 0) ++negative_;
     }
     n.inverse = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
@@ -271,7 +169,7 @@ void TreeElimination::eliminate_three(Node& n, double shift) {
   for (int c = 0; c < 3; ++c) {
     const bool flat = !(svd.singularValues()[c] > noise);
     inverse[c] = flat ? 0 : 1 / svd.singularValues()[c];
-    if (flat) flat_.push_back({n.v, 3, svd.matrixV().col(c)});
+    if (flat) flat_.push_back(way(n.v, svd.matrixV().col(c)));
   }
   n.inverse = svd.matrixV() * inverse.asDiagonal() * svd.matrixU().transpose();
   n.h.noalias() -= n.u * n.inverse * n.r.transpose();
@@ -282,13 +180,7 @@ void TreeElimination::factor(double shift) {
   negative_ = 0;
   for (Node& n : nodes_) {
     n.h = n.own;
-    if (shift == 0 || (n.mass == 0 && n.inertia.isZero(0))) continue;
-    const Mat3 hx = shift * skew(n.first_moment);
-    n.h.topLeftCorner<3, 3>() += shift * n.inertia;
-    n.h.topLeftCorner<3, 3>().diagonal().array() += shift * n.turning;
-    n.h.topRightCorner<3, 3>() += hx;
-    n.h.bottomLeftCorner<3, 3>() -= hx;
-    n.h.bottomRightCorner<3, 3>().diagonal().array() += shift * n.mass;
+    if (shift != 0 && !n.massless()) n.h += shift * inertia_matrix(n);
   }
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     Node& n = nodes_[i];
@@ -300,7 +192,9 @@ void TreeElimination::factor(double shift) {
   }
 }
 
-void TreeElimination::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
+void TreeElimination::solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd&, Eigen::VectorXd& x,
+                            Eigen::VectorXd& lambda) {
+  lambda.resize(0);
   x.resize(rhs.size());
   for (Node& n : nodes_)
     n.g.setZero();
@@ -345,7 +239,8 @@ void TreeElimination::direction_of(const Flat& flat, Eigen::VectorXd& x) {
   x.setZero(size_);
   for (Node& n : nodes_) {
     n.e.setZero();
-    if (n.columns > 0 && n.v == flat.v) n.e = flat.way;
+    for (const auto& [v, share] : flat)
+      if (n.columns > 0 && v >= n.v && v < n.v + n.columns) n.e[v - n.v] = share;
   }
   outwards(x);
 }
@@ -361,8 +256,7 @@ double TreeElimination::metric(const Eigen::VectorXd& x, Eigen::VectorXd& produc
       product[n.v + c] = n.metric[c] * x[n.v + c];
       square += product[n.v + c] * x[n.v + c];
     }
-    n.g = times_inertia(n.mass, n.first_moment, n.inertia, n.motion);
-    n.g.head<3>() += n.turning * n.motion.head<3>();
+    n.g = times_inertia(n, n.motion);
     square += n.motion.dot(n.g);
   }
   for (std::size_t i = nodes_.size(); i-- > 0;) {

@@ -20,6 +20,7 @@
 // mechanism: what bends is then measured, too.
 #pragma once
 
+#include "engine/equilibrium/body_stiffness.hpp"
 #include "engine/equilibrium/eliminator.hpp"
 
 namespace flyball {
@@ -27,27 +28,23 @@ namespace flyball {
 class TreeElimination final : public Eliminator {
  public:
   // Of a system with is_plain_tree().
-  void linearize(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& kinematics,
+  void linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                  const Residual<double>& residual, const Magnitudes& magnitudes) override;
   void factor(double shift = 0) override;
-  void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) override;
+  using Eliminator::solve;
+  void solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
+             Eigen::VectorXd& lambda) override;
   double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
   void direction_of(const Flat& flat, Eigen::VectorXd& x) override;
 
  private:
-  using Vec6 = Eigen::Matrix<double, 6, 1>;
-  using Mat6 = Eigen::Matrix<double, 6, 6>;
   using Mat63 = Eigen::Matrix<double, 6, 3>;
 
-  struct Node {
+  struct Node : BodyStiffness {
     int parent = -1, v = -1, columns = 0;
     Vec3 arm;                          // m, from the parent's origin
-    Mat6 own, h;                       // K_b; H before this link's coordinates are eliminated
+    Mat6 h;                            // H before this link's coordinates are eliminated
     Vec3 force, moment;                // F_l about the link's origin
-    double mass = 0;                   // kg
-    double turning = 0;                // kg m^2, what the metric adds to the inertia
-    Vec3 first_moment;                 // kg m
-    Mat3 inertia;                      // kg m^2, about the link's origin
     double size_m, size_mf, size_f;    // of the stiffness of the subtree, before elimination
     double heavy_m, heavy_mf, heavy_f; // of its inertia
     Mat63 s, u, r;                     // scaled; r transposed
@@ -59,10 +56,8 @@ class TreeElimination final : public Eliminator {
     Vec3 e;
   };
 
-  void set_body(const Problem& problem, std::size_t l, const Kinematics<double>& k);
   void set_joint(const Problem& problem, std::size_t l, const Eigen::VectorXd& q, const Kinematics<double>& k,
                  const Magnitudes& magnitudes);
-  void add_body_forces(const Problem& problem, const Kinematics<double>& k);
   void eliminate_one(Node& n, double shift);
   void eliminate_three(Node& n, double shift);
   void outwards(Eigen::VectorXd& x);

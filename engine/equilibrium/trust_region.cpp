@@ -28,6 +28,7 @@ class TrustRegion {
       w_.step = step_.cwiseProduct(p_.scaling.column);
       retract<double>(p_.system, w_.step, moved_);
       forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
+      const bool closed = close_loops();
       const Potential next = amended_potential(p_.system, p_.parameters, moved_, w_.kinematics);
       const double rounding = 1e-14 * (potential_.magnitude + next.magnitude);
       const double gain = potential_.value - next.value;
@@ -39,11 +40,11 @@ class TrustRegion {
         return {DescentEnd::minimum, i};
       if (!measurable && std::abs(gain) > 10 * rounding)
         radius_ = length_ / 4;
-      else if (!(ratio > 0.25))
+      else if (!closed || !(ratio > 0.25))
         radius_ = length_ / 4;
       else if (ratio > 0.7 && length_ > 0.8 * radius_)
         radius_ = std::min(2 * radius_, 2 * unit_);
-      if (std::isfinite(next.value) && ratio > 1e-4 && gain > -10 * rounding) {
+      if (closed && std::isfinite(next.value) && ratio > 1e-4 && gain > -10 * rounding) {
         z_.q = moved_;
         travelled += length_;
         if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
@@ -56,14 +57,37 @@ class TrustRegion {
   }
 
  private:
+  // Steps along the loops open them by a little. By the factors from before the step, which is short.
+  bool close_loops() {
+    if (p_.system.rows == 0) return true;
+    double before = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 30; ++i) {
+      evaluate_residual<double>(p_.system, p_.parameters, moved_, w_.zero_lambda, w_.kinematics, w_.residual);
+      const double open = w_.residual.phi.cwiseProduct(p_.scaling.row).lpNorm<Eigen::Infinity>();
+      if (open < 1e-13) return true;
+      if (!(open < 0.7 * before)) return open < 1e-11;
+      before = open;
+      close(p_, w_, w_.scaled_step);
+      w_.step = w_.scaled_step.cwiseProduct(p_.scaling.column);
+      retract<double>(p_.system, w_.step, moved_);
+      forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
+    }
+    return false;
+  }
+
   void linearize_here() {
-    z_.lambda.setZero(0);
+    z_.lambda.setZero(p_.system.rows);
     evaluate(p_, z_, 0, w_);
+    if (p_.system.rows > 0) {
+      factor_constraints(p_, w_);
+      best_multipliers(p_, w_, z_.lambda);
+      evaluate(p_, z_, 0, w_);
+    }
     if (history_) history_->push_back(scaled_residual(p_, w_));
     gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
     force_ = w_.magnitudes.force.cwiseProduct(p_.scaling.column).maxCoeff();
     potential_ = amended_potential(p_.system, p_.parameters, z_.q, w_.kinematics);
-    e_.linearize(p_, z_.q, w_.kinematics, w_.residual, w_.magnitudes);
+    e_.linearize(p_, z_, w_.kinematics, w_.residual, w_.magnitudes);
     least_shift_ = 0;
   }
 
@@ -74,8 +98,8 @@ class TrustRegion {
     if (e_.negative_count() > 0) return false;
     for (const Eliminator::Flat& flat : e_.flat()) {
       double push = 0;
-      for (int c = 0; c < flat.columns; ++c)
-        push += flat.way[c] * gradient_[flat.v + c];
+      for (const auto& [v, share] : flat)
+        push += share * gradient_[v];
       if (std::abs(push) > 1e-9 * force_) return false;
     }
     shift_ = shift;

@@ -1,4 +1,4 @@
-// Downhill on the amended potential of a system without loops, each iteration at the cost of an Eliminator
+// Downhill on the amended potential, each iteration at the cost of an Eliminator
 // and as many of them for a fine chain as for a coarse one.
 //
 // Newton steps within a trust region (More and Sorensen, Computing a trust region step, 1983). What is

@@ -1,10 +1,10 @@
 // Storage that solves reuse, so that repeating one allocates nothing.
 #pragma once
 
+#include "engine/equilibrium/body_elimination.hpp"
 #include "engine/equilibrium/constraint_space.hpp"
 #include "engine/equilibrium/problem.hpp"
 #include "engine/equilibrium/reduced_hessian.hpp"
-#include "engine/equilibrium/sparse_elimination.hpp"
 #include "engine/equilibrium/tree_elimination.hpp"
 
 namespace flyball {
@@ -12,7 +12,7 @@ namespace flyball {
 struct Workspace {
   // Of a problem that is not dense.
   Eliminator& eliminator(const Problem& problem) {
-    return problem.elimination() == Elimination::tree ? static_cast<Eliminator&>(tree) : sparse;
+    return problem.elimination() == Elimination::tree ? static_cast<Eliminator&>(tree) : bodies;
   }
   const Eliminator& eliminator(const Problem& problem) const {
     return const_cast<Workspace*>(this)->eliminator(problem);
@@ -25,7 +25,7 @@ struct Workspace {
   ConstraintSpace constraints;
   ReducedHessian hessian;
   TreeElimination tree;
-  SparseElimination sparse;
+  BodyElimination bodies, loops; // of the balance; of the constraints alone
   Eigen::MatrixXd scaled_jacobian, scaled_stiffness, product, reduced;
   Eigen::VectorXd scaled_phi, scaled_force, range_step, target, reduced_rhs, reduced_step, noise, scaled_step,
       scaled_lambda, step, zero_lambda;

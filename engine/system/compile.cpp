@@ -1,6 +1,5 @@
 #include "engine/mechanism/body_groups.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/system/coordinate_pattern.hpp"
 #include "engine/system/joint_parts.hpp"
 
 #include <algorithm>
@@ -467,15 +466,13 @@ class Compiler {
   // Below some coordinates the dense equations are faster (measured: `flyball_bench`, chains).
   void choose_elimination() {
     // Without a potential stability asks for eigenvalues, and so for the matrices, as far as those are found.
-    constexpr int few = 8, few_for_sparse = 24, few_without_potential = 200;
+    constexpr int few = 8, few_for_bodies = 60, few_without_potential = 200;
     const bool potential = s_.conservative && s_.single_drives;
-    if (s_.nv <= (potential ? few : few_without_potential) || s_.rows > 0) return;
-    constexpr long entries_a_row = 150;
+    if (!no_drive_rides(s_) || s_.nv <= (potential ? few : few_without_potential)) return;
     if (is_plain_tree(s_))
       s_.elimination = Elimination::tree;
-    else if (const long enough = entries_a_row * s_.nv;
-             s_.nv > few_for_sparse && count_coordinate_pairs(s_, enough) < enough)
-      s_.elimination = Elimination::sparse;
+    else if (s_.nv > few_for_bodies)
+      s_.elimination = Elimination::bodies;
   }
 
   const Mechanism& m_;
@@ -502,12 +499,15 @@ class Compiler {
 
 } // namespace
 
-bool is_plain_tree(const System& system) {
-  if (system.rows > 0 || !system.springs.empty() || !system.cut_dampers.empty()) return false;
+bool no_drive_rides(const System& system) {
   return std::ranges::none_of(system.drives, [&](const DrivenCoordinate& d) {
     const int parent = system.links[static_cast<std::size_t>(d.link)].parent;
     return parent >= 0 && system.links[static_cast<std::size_t>(parent)].mobile;
   });
+}
+
+bool is_plain_tree(const System& system) {
+  return system.rows == 0 && system.springs.empty() && system.cut_dampers.empty() && no_drive_rides(system);
 }
 
 System compile(const Mechanism& mechanism, const CutChoice& choice) {

@@ -55,17 +55,10 @@ void fill_screws(const System& system, const Parameters& p, const Kinematics<dou
   }
 }
 
-// Adds s [a] [b] = s (b a^T - a . b).
-void add_skew_product(double s, const Vec3& a, const Vec3& b, Mat3& out) {
-  out.noalias() += (s * b) * a.transpose();
-  out.diagonal().array() -= s * a.dot(b);
-}
-
 void fill_composites(const System& system, const Parameters& p, const Kinematics<double>& k,
                      std::vector<CompositeBody>& out) {
   out.resize(system.links.size());
   for (std::size_t i = 0; i < system.links.size(); ++i) {
-    if (!system.links[i].mobile) continue;
     CompositeBody& b = out[i];
     const LinkParameters& lp = p.links[i];
     const LinkState<double>& x = k.links[i];
@@ -76,37 +69,30 @@ void fill_composites(const System& system, const Parameters& p, const Kinematics
     }
     const Vec3 c = x.R * lp.com;
     const Mat3 inertia = lp.has_inertia ? Mat3(x.R * lp.inertia * x.R.transpose()) : Mat3(Mat3::Zero());
+    const Mat3 cx = skew(c);
     b.first_moment = lp.mass * c;
-    b.inertia = inertia;
-    add_skew_product(-lp.mass, c, c, b.inertia);
+    b.inertia = inertia - lp.mass * cx * cx;
     if (!p.moving) {
       b.b.setZero();
       b.momentum.setZero();
       continue;
     }
     b.momentum = lp.mass * (x.v + x.w.cross(c));
-    b.b.setZero();
-    if (lp.has_inertia) {
-      const Mat3 turned = skew(x.w) * inertia;
-      b.b = turned + turned.transpose() - skew<double>(inertia * x.w);
-    }
-    add_skew_product(-2, c, b.momentum, b.b);
+    const Mat3 w = skew(x.w);
+    b.b = w * inertia - inertia * w - skew<double>(inertia * x.w) - 2 * cx * skew(b.momentum);
   }
   for (std::size_t i = system.links.size(); i-- > 0;) {
     const int parent = system.links[i].parent;
-    if (parent < 0 || !system.links[static_cast<std::size_t>(parent)].mobile) continue;
+    if (parent < 0) continue;
     const CompositeBody& b = out[i];
     CompositeBody& a = out[static_cast<std::size_t>(parent)];
     const Vec3 r = k.links[i].o - k.at(parent).o;
+    const Mat3 rx = skew(r), hx = skew(b.first_moment);
     a.mass += b.mass;
     a.first_moment += b.first_moment + b.mass * r;
-    a.inertia += b.inertia;
-    add_skew_product(-1, r, Vec3(b.first_moment + b.mass * r), a.inertia);
-    add_skew_product(-1, b.first_moment, r, a.inertia);
+    a.inertia += b.inertia - rx * hx - hx * rx - b.mass * rx * rx;
     a.momentum += b.momentum;
-    if (!p.moving) continue;
-    a.b += b.b;
-    add_skew_product(-2, r, b.momentum, a.b);
+    if (p.moving) a.b += b.b - 2 * rx * skew(b.momentum);
   }
 }
 
@@ -133,7 +119,7 @@ void walk_up(const System& system, const Kinematics<double>& k, std::size_t from
 // row(i) applied to j (j strictly before i).
 template <class WrenchOf, class RowOf, class Apply>
 void fill_tree(const System& system, const Kinematics<double>& k, const std::vector<ScrewRates>& screws,
-               const Entries& out, WrenchOf wrench_of, RowOf row_of, Apply apply) {
+               Eigen::MatrixXd& out, WrenchOf wrench_of, RowOf row_of, Apply apply) {
   for (std::size_t l = 0; l < system.links.size(); ++l) {
     const Link& link = system.links[l];
     for (int c = 0; c < column_count(link); ++c) {
@@ -168,12 +154,6 @@ Mat3 rotation_damping(const Link& link, const LinkParameters& p, const Eigen::Ve
   return rate.transpose() * c.asDiagonal() * rate;
 }
 
-void add_block(const Mat3& block, int v, const Entries& out) {
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i)
-      out(v + i, v + j) += block(i, j);
-}
-
 // Calls visit(v) for every free coordinate from the link to the root.
 template <class Visit>
 void for_coordinates_of(const System& system, int link, Visit visit) {
@@ -185,7 +165,7 @@ void for_coordinates_of(const System& system, int link, Visit visit) {
 }
 
 void add_body_forces(const System& system, const Parameters& p, const Kinematics<double>& k,
-                     const std::vector<ScrewRates>& screws, const Entries& out) {
+                     const std::vector<ScrewRates>& screws, Eigen::MatrixXd& out) {
   for (std::size_t n = 0; n < system.body_forces.size(); ++n) {
     const BodyForceElement& e = system.body_forces[n];
     const BodyForceParameters& f = p.body_forces[n];
@@ -247,17 +227,10 @@ void linearize(const System& system, const Parameters& p, const Eigen::VectorXd&
                const Eigen::VectorXd& lambda, const Kinematics<double>& k, const Residual<double>& residual,
                Linearization& out) {
   out.stiffness.setZero(system.nv, system.nv);
-  linearize_stiffness(system, p, q, lambda, k, residual, Entries(out.stiffness), out);
-  linearize_constraints(system, p, k, out);
-}
-
-void linearize_stiffness(const System& system, const Parameters& p, const Eigen::VectorXd& q,
-                         const Eigen::VectorXd& lambda, const Kinematics<double>& k,
-                         const Residual<double>& residual, const Entries& stiffness, Linearization& out) {
   fill_screws(system, p, k, out.screws);
   fill_composites(system, p, k, out.composites);
   fill_tree(
-      system, k, out.screws, stiffness,
+      system, k, out.screws, out.stiffness,
       [&](std::size_t l, const ScrewRates& s) {
         const CompositeBody& b = out.composites[l];
         Wrench u = times_inertia(b, s.ddw, s.ddv);
@@ -276,25 +249,13 @@ void linearize_stiffness(const System& system, const Parameters& p, const Eigen:
     const Link& link = system.links[l];
     if (link.v < 0 || !p.links[l].elastic) continue;
     if (link.type == LinkType::spherical)
-      add_block(rotation_stiffness(link, p.links[l], q), link.v, stiffness);
+      out.stiffness.block<3, 3>(link.v, link.v) += rotation_stiffness(link, p.links[l], q);
     else
-      stiffness(link.v, link.v) += p.links[l].force[0].curvature(q[link.q]);
+      out.stiffness(link.v, link.v) += p.links[l].force[0].curvature(q[link.q]);
   }
-  add_body_forces(system, p, k, out.screws, stiffness);
-  add_pair_stiffness(system, p, lambda, k, out.screws, stiffness);
-}
-
-void linearize_mass(const System& system, const Kinematics<double>& k, const Linearization& at,
-                    const Entries& mass) {
-  fill_tree(
-      system, k, at.screws, mass,
-      [&](std::size_t l, const ScrewRates& s) { return times_inertia(at.composites[l], s.sw, s.sv); },
-      [&](std::size_t l, const ScrewRates& s) {
-        return Row{times_inertia(at.composites[l], s.sw, s.sv), Vec3::Zero()};
-      },
-      [](const Row& row, const ScrewRates& s, const Vec3& arm) {
-        return apply_inertia(row, s.sw, s.sv, arm);
-      });
+  add_body_forces(system, p, k, out.screws, out.stiffness);
+  add_pair_stiffness(system, p, lambda, k, out.screws, out.stiffness);
+  linearize_constraints(system, p, k, out);
 }
 
 void linearize_motion(const System& system, const Parameters& p, const Eigen::VectorXd& q,
@@ -305,10 +266,16 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
     const CompositeBody& b = out.composites[l];
     return Row{times_inertia(b, s.sw, s.sv), b.b.transpose() * s.sw - 2 * s.sv.cross(b.momentum)};
   };
-  linearize_mass(system, k, out, Entries(out.mass));
+  fill_tree(
+      system, k, out.screws, out.mass,
+      [&](std::size_t l, const ScrewRates& s) { return times_inertia(out.composites[l], s.sw, s.sv); },
+      inertia_row,
+      [](const Row& row, const ScrewRates& s, const Vec3& arm) {
+        return apply_inertia(row, s.sw, s.sv, arm);
+      });
   if (p.moving)
     fill_tree(
-        system, k, out.screws, Entries(out.velocity),
+        system, k, out.screws, out.velocity,
         [&](std::size_t l, const ScrewRates& s) {
           const CompositeBody& b = out.composites[l];
           Wrench u = times_inertia(b, 2 * s.dw, 2 * s.dv);
@@ -348,7 +315,7 @@ void add_damping(const System& system, const Parameters& p, const Eigen::VectorX
       });
     });
   }
-  add_pair_damping(system, p, k, Entries(velocity));
+  add_pair_damping(system, p, k, velocity);
 }
 
 } // namespace flyball

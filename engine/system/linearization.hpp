@@ -9,7 +9,6 @@
 // symbols, 2021). About any point B is [B_1 0; -2 [h] 0], h the linear momentum.
 #pragma once
 
-#include "engine/system/entries.hpp"
 #include "engine/system/residual.hpp"
 
 namespace flyball {
@@ -49,13 +48,6 @@ void linearize_constraints(const System& system, const Parameters& parameters,
 void linearize(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                const Eigen::VectorXd& lambda, const Kinematics<double>& kinematics,
                const Residual<double>& residual, Linearization& out);
-
-// Adds the entries of `stiffness` alone, and fills `screws` and `composites`; those of `mass` for them.
-void linearize_stiffness(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
-                         const Eigen::VectorXd& lambda, const Kinematics<double>& kinematics,
-                         const Residual<double>& residual, const Entries& stiffness, Linearization& out);
-void linearize_mass(const System& system, const Kinematics<double>& kinematics, const Linearization& at,
-                    const Entries& mass);
 
 // Fills `mass` and `velocity`; call after linearize at the same state.
 void linearize_motion(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,

@@ -67,7 +67,7 @@ double direction_hessian(const Vec3& u, const Vec3& w, const Part& i, const Part
 }
 
 template <class Entry>
-void for_pairs(const Support& support, const Kinematics<double>& k, const Entries& out, Entry entry) {
+void for_pairs(const Support& support, const Kinematics<double>& k, Eigen::MatrixXd& out, Entry entry) {
   for (const SupportColumn& si : support)
     for (const SupportColumn& sj : support)
       out(si.v, sj.v) += entry(part(si, k), part(sj, k));
@@ -79,7 +79,7 @@ Vec3 velocity_change(const Part& j, const ScrewRates& s, const Vec3& point, cons
 }
 
 void add_springs(const System& system, const Parameters& p, const Kinematics<double>& k,
-                 const std::vector<ScrewRates>& screws, const Entries& out) {
+                 const std::vector<ScrewRates>& screws, Eigen::MatrixXd& out) {
   for (std::size_t n = 0; n < system.springs.size(); ++n) {
     const PointSpringElement& e = system.springs[n];
     const PointSpringParameters& f = p.springs[n];
@@ -115,7 +115,7 @@ double damper_gradient(const CutDamperElement& e, const Vec3& axis, const Vec3& 
 }
 
 void add_cut_dampers(const System& system, const Parameters& p, const Kinematics<double>& k,
-                     const std::vector<ScrewRates>& screws, const Entries& out) {
+                     const std::vector<ScrewRates>& screws, Eigen::MatrixXd& out) {
   if (!p.moving) return;
   for (std::size_t n = 0; n < system.cut_dampers.size(); ++n) {
     const CutDamperElement& e = system.cut_dampers[n];
@@ -151,7 +151,7 @@ void add_cut_dampers(const System& system, const Parameters& p, const Kinematics
 }
 
 void add_constraint_forces(const System& system, const Parameters& p, const Eigen::VectorXd& lambda,
-                           const Kinematics<double>& k, const Entries& out) {
+                           const Kinematics<double>& k, Eigen::MatrixXd& out) {
   for (std::size_t c = 0; c < system.cuts.size(); ++c) {
     const CutJoint& cut = system.cuts[c];
     if (cut.type == JointType::gear) continue;
@@ -182,14 +182,14 @@ void add_constraint_forces(const System& system, const Parameters& p, const Eige
 
 void add_pair_stiffness(const System& system, const Parameters& parameters, const Eigen::VectorXd& lambda,
                         const Kinematics<double>& kinematics, const std::vector<ScrewRates>& screws,
-                        const Entries& stiffness) {
+                        Eigen::MatrixXd& stiffness) {
   add_springs(system, parameters, kinematics, screws, stiffness);
   add_cut_dampers(system, parameters, kinematics, screws, stiffness);
   add_constraint_forces(system, parameters, lambda, kinematics, stiffness);
 }
 
 void add_pair_damping(const System& system, const Parameters& p, const Kinematics<double>& k,
-                      const Entries& velocity) {
+                      Eigen::MatrixXd& velocity) {
   for (std::size_t n = 0; n < system.springs.size(); ++n) {
     if (p.springs[n].damping == 0) continue;
     const PointSpringElement& e = system.springs[n];

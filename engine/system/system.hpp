@@ -125,7 +125,7 @@ struct CutChoice {
 enum class Elimination {
   dense,  // as a matrix of all coordinates: the fastest for few of them
   tree,   // along the tree, in proportion to the bodies
-  sparse, // as a sparse matrix of all coordinates
+  bodies, // as the sparse equations of all bodies and loops
 };
 
 struct System {
@@ -154,8 +154,9 @@ struct System {
 // Compiles. Throws SceneError where a mechanism has no meaning (validate() finds the same and more).
 System compile(const Mechanism& mechanism, const CutChoice& choice = {});
 
-// No loops, nothing between two bodies but tree joints, and no drive that rides on a free coordinate: what
-// elimination along the tree takes for granted.
+// No drive rides on a free coordinate: what eliminations take for granted. And there are neither loops nor
+// anything between two bodies but tree joints: what that along the tree does.
+bool no_drive_rides(const System& system);
 bool is_plain_tree(const System& system);
 
 // The other ways to cut the loops: each joint cut by choice exchanged for a joint of its loop that may be cut

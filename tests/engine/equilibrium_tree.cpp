@@ -36,7 +36,7 @@ struct BothWays {
     z.lambda.resize(0);
   }
 
-  Problem problem(bool whole) const { return {system, parameters, scaling, nullptr, whole}; }
+  Problem problem(bool whole) const { return {system, parameters, scaling, nullptr, !whole}; }
 
   void factor_at(const Eigen::VectorXd& step) {
     retract<double>(system, step, z.q);

@@ -1,0 +1,65 @@
+// How the wrench that one body's inertia and loads ask for changes with its pose: the 6 x 6 stiffness K_b of
+// tree_elimination.hpp, and the body's inertia as a metric of small motions.
+//
+// Motions are (turn, shift of the link's origin), wrenches (moment about that origin, force), world axes. K_b
+// tells the change beyond that the wrench turns along with the body.
+#pragma once
+
+#include "engine/equilibrium/problem.hpp"
+
+namespace flyball {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+struct BodyStiffness {
+  Mat6 own;            // K_b
+  double mass = 0;     // kg
+  double turning = 0;  // kg m^2, what the metric adds to the inertia: turning counts as if the body were large
+  Vec3 first_moment;   // kg m, about the link's origin
+  Mat3 inertia;        // kg m^2, about the link's origin
+  bool massless() const { return mass == 0 && inertia.isZero(0); }
+};
+
+// Inertia forces and weight of a link.
+void set_body_stiffness(const Parameters& parameters, std::size_t link, const Kinematics<double>& kinematics,
+                        BodyStiffness& out);
+
+// Adds a force, torque or drag on the body.
+void add_body_force(const BodyForceElement& element, const BodyForceParameters& force,
+                    const Kinematics<double>& kinematics, Mat6& own);
+
+// The metric as a matrix; and applied to a motion.
+Mat6 inertia_matrix(const BodyStiffness& body);
+Vec6 times_inertia(const BodyStiffness& body, const Vec6& motion);
+
+// [a] [b].
+inline Mat3 skew_product(const Vec3& a, const Vec3& b) {
+  Mat3 m;
+  m.noalias() = b * a.transpose();
+  m.diagonal().array() -= a.dot(b);
+  return m;
+}
+
+// S x* F: how a wrench changes that is turned and shifted along `s`.
+inline Vec6 turned(const Vec6& s, const Vec3& moment, const Vec3& force) {
+  Vec6 x;
+  x.head<3>() = s.head<3>().cross(moment) + s.tail<3>().cross(force);
+  x.tail<3>() = s.head<3>().cross(force);
+  return x;
+}
+
+// The motion of a body at a point `r` from where it is given.
+inline Vec6 carried(const Vec6& motion, const Vec3& r) {
+  Vec6 x = motion;
+  x.tail<3>() += motion.head<3>().cross(r);
+  return x;
+}
+
+// Adds a wrench given `r` from where `out` is.
+inline void add_wrench(const Vec6& wrench, const Vec3& r, Vec6& out) {
+  out.head<3>() += wrench.head<3>() + r.cross(wrench.tail<3>());
+  out.tail<3>() += wrench.tail<3>();
+}
+
+} // namespace flyball

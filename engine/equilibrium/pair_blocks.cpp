@@ -1,0 +1,164 @@
+#include "engine/equilibrium/pair_blocks.hpp"
+
+namespace flyball {
+namespace {
+
+using Mat36 = Eigen::Matrix<double, 3, 6>;
+
+// Motion of a point `r` from the origin: x + theta x r. Its transpose takes a force there to its wrench.
+Mat36 point_motion(const Vec3& r) {
+  Mat36 m;
+  m.leftCols<3>() = -skew(r);
+  m.rightCols<3>().setIdentity();
+  return m;
+}
+
+// v x theta, as a matrix on motions.
+Mat36 turns(const Vec3& v) {
+  Mat36 m;
+  m.leftCols<3>() = skew(v);
+  m.rightCols<3>().setZero();
+  return m;
+}
+
+Vec6 couple(const Vec3& torque) {
+  Vec6 w;
+  w << torque, Vec3::Zero();
+  return w;
+}
+
+// The force `f` on b at its point, -f on a at its own, with its change by either motion. Turning along is
+// taken off: d f - theta x f on each.
+PairBlocks force_between(const Vec3& f, const Mat36& pa, const Mat36& pb, const Mat36& by_a,
+                         const Mat36& by_b) {
+  PairBlocks x;
+  x.bb = pb.transpose() * (by_b + turns(f));
+  x.ba = pb.transpose() * by_a;
+  x.ab = -pa.transpose() * by_b;
+  x.aa = -pa.transpose() * (by_a + turns(f));
+  x.on_b = pb.transpose() * f;
+  x.on_a = -pa.transpose() * f;
+  return x;
+}
+
+// The same where both feel it at b's point, as a's frame carries it along: -f on a moves on a as b does.
+PairBlocks force_at_b(const Vec3& f, const Mat36& pa, const Mat36& pb, const Mat36& by_a, const Mat36& by_b) {
+  PairBlocks x = force_between(f, pa, pb, by_a, by_b);
+  const Mat3 arm = skew(f); // moment of -f by the shift of its point: shift x -f = [f] shift
+  x.aa.topRows<3>() -= arm * pa;
+  x.ab.topRows<3>() += arm * pb;
+  return x;
+}
+
+struct Ends {
+  Vec3 a, b;     // m, the points
+  Mat36 pa, pb;  // of a and b at their own points
+  Mat36 pa_at_b; // of a at b's point
+};
+
+Ends ends_of(const PairEnds& ends, const Vec3& a, const Vec3& b, const Kinematics<double>& k) {
+  const Vec3 &oa = k.at(ends.a).o, &ob = k.at(ends.b).o;
+  return {a, b, point_motion(a - oa), point_motion(b - ob), point_motion(b - oa)};
+}
+
+// Tension along the line between two points, which also changes by `along` per stretch.
+PairBlocks line_blocks(const Ends& e, const Vec3& direction, double length, double along, double tension) {
+  const Mat3 dd = direction * direction.transpose();
+  const Mat3 k = along * dd + tension / length * (Mat3::Identity() - dd);
+  return force_between(tension * direction, e.pa, e.pb, -k * e.pa, k * e.pb);
+}
+
+} // namespace
+
+void PairBlocks::set_zero() {
+  aa.setZero();
+  ab.setZero();
+  ba.setZero();
+  bb.setZero();
+  on_a.setZero();
+  on_b.setZero();
+}
+
+PairBlocks spring_blocks(const PointSpringElement& e, const PointSpringParameters& p,
+                         const Kinematics<double>& k, bool moving) {
+  const SpringState<double> s = spring_state(e, p, k);
+  const Ends at = ends_of(e.ends, s.a, s.b, k);
+  if (p.free_length == 0 && p.damping == 0) // needs no direction: the points may meet
+    return force_between(p.stiffness * (s.b - s.a), at.pa, at.pb, -p.stiffness * at.pa, p.stiffness * at.pb);
+  PairBlocks x = line_blocks(at, s.direction, s.length, p.stiffness, s.tension);
+  if (p.damping == 0 || !moving) return x;
+  // Points are carried by frames that turn with w: a point's velocity changes by w x its shift.
+  const Mat3 across = (Mat3::Identity() - s.direction * s.direction.transpose()) / s.length;
+  const Vec3 rate = k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a);
+  const auto change = [&](int link, const Mat36& motion) {
+    return Mat36(p.damping * s.direction *
+                 (rate.transpose() * across + s.direction.transpose() * skew(k.at(link).w)) * motion);
+  };
+  const Mat36 by_a = -change(e.ends.a, at.pa), by_b = change(e.ends.b, at.pb);
+  x.bb += at.pb.transpose() * by_b;
+  x.ba += at.pb.transpose() * by_a;
+  x.ab -= at.pa.transpose() * by_b;
+  x.aa -= at.pa.transpose() * by_a;
+  return x;
+}
+
+PairBlocks damper_blocks(const CutDamperElement& e, const CutDamperParameters& p,
+                         const Kinematics<double>& k) {
+  const LinkState<double>&la = k.at(e.ends.a), &lb = k.at(e.ends.b);
+  const Vec3 axis = la.R * p.axis;
+  if (e.angular) {
+    const Vec3 slip = lb.w - la.w, torque = p.damping * axis.dot(slip) * axis;
+    // The rate changes as the axis turns with a, and the torque with it.
+    const Mat3 by_a =
+        -p.damping * axis * slip.transpose() * skew(axis) - skew(torque);
+    PairBlocks x;
+    x.set_zero();
+    x.bb.topLeftCorner<3, 3>() = skew(torque);
+    x.ba.topLeftCorner<3, 3>() = by_a;
+    x.aa.topLeftCorner<3, 3>() = -by_a - skew(torque);
+    x.on_b = couple(torque);
+    x.on_a = -x.on_b;
+    return x;
+  }
+  const Vec3 b = k.point(e.ends.b, p.b);
+  const Ends at = ends_of(e.ends, b, b, k);
+  const Vec3 slip = k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b);
+  const Vec3 force = p.damping * axis.dot(slip) * axis;
+  const Mat36 by_a = -p.damping * axis * slip.transpose() * turns(axis) - turns(force);
+  const Mat36 by_b = p.damping * axis * axis.transpose() * skew<double>(lb.w - la.w) * at.pb;
+  return force_at_b(force, at.pa, at.pb, by_a, by_b);
+}
+
+PairBlocks row_blocks(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row, double multiplier,
+                      const Kinematics<double>& k) {
+  const Ends at = ends_of(cut.ends, k.point(cut.ends.a, p.a), k.point(cut.ends.b, p.b), k);
+  if (row.type == RowType::distance) {
+    const Vec3 d = at.b - at.a;
+    const double length = d.norm();
+    return line_blocks(at, d / length, length, 0, multiplier);
+  }
+  const Vec3 u = k.at(cut.ends.a).R * p.frame[static_cast<std::size_t>(row.u)];
+  if (row.type == RowType::point) {
+    const Vec3 force = multiplier * u;
+    return force_at_b(force, at.pa_at_b, at.pb, -turns(force), Mat36::Zero());
+  }
+  const Vec3 w = k.at(cut.ends.b).R * p.frame[static_cast<std::size_t>(row.w)];
+  const Mat3 wu = multiplier * skew(w) * skew(u);
+  PairBlocks x;
+  x.set_zero();
+  x.bb.topLeftCorner<3, 3>() = wu;
+  x.ba.topLeftCorner<3, 3>() = -wu;
+  x.ab.topLeftCorner<3, 3>() = -wu.transpose();
+  x.aa.topLeftCorner<3, 3>() = wu.transpose();
+  x.on_b = couple(multiplier * w.cross(u));
+  x.on_a = -x.on_b;
+  return x;
+}
+
+RowGradient body_row_gradient(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row,
+                              const Kinematics<double>& k) {
+  const PairBlocks unit = row_blocks(cut, p, row, 1, k);
+  return {unit.on_a, unit.on_b};
+}
+
+} // namespace flyball

@@ -1,0 +1,34 @@
+// What acts between two bodies, as the bodies feel it: wrenches on both, and how they change with the motions
+// of both beyond turning along with them (tree_elimination.hpp); and the rows of a cut joint.
+//
+// Wrenches and motions are about the links' origins; a is the first end, b the second.
+#pragma once
+
+#include "engine/equilibrium/body_stiffness.hpp"
+
+namespace flyball {
+
+struct PairBlocks {
+  Mat6 aa, ab, ba, bb; // of the balance on one body by the motion of another
+  Vec6 on_a, on_b;     // what the balance asks for: dV by a unit of motion
+  void set_zero();
+};
+
+// At velocities where `moving`: dampers between parts that turn against each other.
+PairBlocks spring_blocks(const PointSpringElement& element, const PointSpringParameters& spring,
+                         const Kinematics<double>& kinematics, bool moving);
+PairBlocks damper_blocks(const CutDamperElement& element, const CutDamperParameters& damper,
+                         const Kinematics<double>& kinematics);
+
+// Of a constraint row that is no gear, with its multiplier.
+PairBlocks row_blocks(const CutJoint& cut, const CutParameters& joint, const ConstraintRow& row,
+                      double multiplier, const Kinematics<double>& kinematics);
+
+// The row's change by a unit of motion of either body.
+struct RowGradient {
+  Vec6 a, b;
+};
+RowGradient body_row_gradient(const CutJoint& cut, const CutParameters& joint, const ConstraintRow& row,
+                              const Kinematics<double>& kinematics);
+
+} // namespace flyball

@@ -1,0 +1,51 @@
+// A sparse matrix factored with pivoting as L D L^T or L U, by MUMPS (Amestoy, Duff, L'Excellent, Koster, A
+// fully asynchronous multifrontal solver using distributed dynamic scheduling, 2001). Tells the signs of the
+// eigenvalues (Sylvester) and what the matrix maps to zero but for rounding.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <vector>
+
+namespace flyball {
+
+// Entries by row and column, counted from 1; repeated ones add up. Of a symmetric matrix one triangle.
+struct SparsePattern {
+  int size = 0;
+  bool symmetric = true;
+  std::vector<int> rows, columns;
+  void clear(int n, bool is_symmetric) {
+    size = n;
+    symmetric = is_symmetric;
+    rows.clear();
+    columns.clear();
+  }
+  bool operator==(const SparsePattern&) const = default;
+};
+
+class SparseFactorization {
+ public:
+  SparseFactorization();
+  ~SparseFactorization();
+  SparseFactorization(SparseFactorization&&) noexcept;
+  SparseFactorization& operator=(SparseFactorization&&) noexcept;
+
+  // Pivots below `zero` times the matrix (after its rows and columns are equilibrated) count as zero. The
+  // order of elimination is kept as long as the pattern stays. False where memory runs out.
+  bool factor(const SparsePattern& pattern, std::vector<double>& values, double zero);
+
+  // In place. Zero pivots get no component.
+  void solve(Eigen::VectorXd& x);
+
+  int negative() const; // pivots; of a symmetric matrix
+  int nullity() const;
+  // A basis of what is mapped to zero: (size, nullity).
+  const Eigen::MatrixXd& null_space();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace flyball

@@ -1,0 +1,197 @@
+// The sparse equations of all bodies: the same steps as the dense equations, for loops and whatever hangs on
+// springs.
+#include "tests/engine/equilibrium_mechanisms.hpp"
+#include "tests/engine/reference/random_mechanism.hpp"
+
+#include "engine/equilibrium/find_equilibrium.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <random>
+
+using namespace flyball;
+using namespace flyball::test;
+namespace ref = flyball::reference;
+
+namespace {
+
+// Point masses in a square frame that turns about the vertical, tied to their neighbours by stretched
+// springs.
+Mechanism net(int side, double speed) {
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {spindle()};
+  m.joints = {spin(speed)};
+  const double cell = 1. / (side + 1);
+  const auto at = [&](int i, int j) { return Vec3((i + 1) * cell - 0.5, 0, (j + 1) * cell - 0.5); };
+  const auto name = [&](int i, int j) {
+    const bool inside = std::min(i, j) >= 0 && std::max(i, j) < side;
+    return inside ? "knot" + std::to_string(i) + "_" + std::to_string(j) : std::string("spindle");
+  };
+  const auto tie = [&](int i, int j, int k, int l) {
+    Force s;
+    s.name = "cable" + std::to_string(m.forces.size());
+    s.bodies = {name(i, j), name(k, l)};
+    s.points = {at(i, j), at(k, l)};
+    s.stiffness = 200;
+    s.free_length = cell / 1.1;
+    m.forces.push_back(s);
+  };
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      m.bodies.push_back(body(name(i, j), 1. / (side * side), at(i, j)));
+  for (int i = 0; i < side; ++i)
+    for (int j = -1; j < side; ++j) {
+      tie(i, j, i, j + 1);
+      tie(j, i, j + 1, i);
+    }
+  return m;
+}
+
+struct Case {
+  Mechanism mechanism;
+  System system;
+  Parameters parameters;
+  Scaling scaling;
+  Unknowns z;
+  Workspace sparse, dense;
+
+  explicit Case(Mechanism m) : mechanism(std::move(m)), system(compile(mechanism)) {
+    system.elimination = Elimination::bodies;
+    bind(system, mechanism, parameters);
+    set_scaling(system, parameters, scaling);
+    drawn_configuration(system, parameters, z.q);
+    z.lambda.setZero(system.rows);
+  }
+  Problem problem(bool eliminated) const { return {system, parameters, scaling, nullptr, eliminated}; }
+  void factor_at(const Eigen::VectorXd& step) {
+    retract<double>(system, step, z.q);
+    for (const bool eliminated : {false, true}) {
+      Workspace& w = eliminated ? sparse : dense;
+      evaluate(problem(eliminated), z, 0, w);
+      factor(problem(eliminated), z, w);
+    }
+  }
+  // The whole matrix of eq. 21, scaled.
+  Eigen::MatrixXd matrix() const {
+    const Eigen::Index n = system.nv, m = system.rows;
+    Eigen::MatrixXd k = dense.scaled_stiffness;
+    if (problem(false).symmetric()) k = ((k + k.transpose()) / 2).eval();
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n + m, n + m);
+    all.topLeftCorner(n, n) = k;
+    all.bottomLeftCorner(m, n) = dense.scaled_jacobian;
+    all.topRightCorner(n, m) = dense.scaled_jacobian.transpose();
+    return all;
+  }
+};
+
+struct Tried {
+  int symmetric = 0, unsymmetric = 0;
+};
+
+// Solves for random right-hand sides at random states with random multipliers, by both.
+Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
+  Tried tried;
+  for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+    ref::RandomOptions options = sort;
+    options.conservative = seed % 2 == 0;
+    options.drives = seed % 3 == 0 ? ref::RandomDrives::several : ref::RandomDrives::root;
+    Case x(ref::random_mechanism(seed, options));
+    if (x.system.nv == 0 || !no_drive_rides(x.system)) continue;
+    CAPTURE(seed, x.system.nv, x.system.rows);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> any(-0.3, 0.3);
+    Eigen::VectorXd step(x.system.nv), rhs(x.system.nv), closing(x.system.rows), solved, lambda;
+    for (int i = 0; i < x.system.nv; ++i) {
+      step[i] = any(random) * x.scaling.column[i];
+      rhs[i] = any(random);
+    }
+    for (int i = 0; i < x.system.rows; ++i) {
+      closing[i] = any(random);
+      x.z.lambda[i] = 100 * any(random) * x.scaling.row[i];
+    }
+    x.factor_at(step);
+    const Eigen::MatrixXd all = x.matrix();
+    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(all).singularValues();
+    if (values.minCoeff() < 1e-9 * values.maxCoeff()) continue;
+    REQUIRE(x.sparse.bodies.flat().empty());
+    REQUIRE(x.sparse.bodies.redundant() == 0);
+    x.sparse.bodies.solve(rhs, closing, solved, lambda);
+    Eigen::VectorXd whole(all.rows()), right(all.rows());
+    whole << solved, lambda;
+    right << rhs, closing;
+    CHECK((all * whole - right).norm() <= 1e-9 * (values.maxCoeff() * whole.norm() + right.norm()));
+    const bool potential = x.problem(true).symmetric();
+    if (potential) {
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(all, Eigen::EigenvaluesOnly);
+      CHECK(x.sparse.bodies.negative_count() ==
+            (eigen.eigenvalues().array() < 0).count() - x.system.rows);
+    }
+    ++(potential ? tried.symmetric : tried.unsymmetric);
+  }
+  return tried;
+}
+
+} // namespace
+
+TEST_CASE("a step by the bodies' equations solves those of the coordinates") {
+  ref::RandomOptions options;
+  options.bodies = 9;
+  options.massless = false;
+  SECTION("trees and springs") {
+    const Tried tried = try_random(options, 200);
+    CHECK(tried.symmetric > 25);
+    CHECK(tried.unsymmetric > 25);
+  }
+  SECTION("loops") {
+    options.loops = 3;
+    const Tried tried = try_random(options, 1000);
+    CHECK(tried.symmetric > 80);
+    CHECK(tried.unsymmetric > 10);
+  }
+}
+
+TEST_CASE("the metric of the bodies' equations is that of the motion") {
+  ref::RandomOptions options;
+  options.bodies = 7;
+  options.loops = 2;
+  options.massless = false;
+  int tried = 0;
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    Case x(ref::random_mechanism(seed, options));
+    if (x.system.nv == 0 || x.system.rows == 0 || !no_drive_rides(x.system)) continue;
+    CAPTURE(seed);
+    x.factor_at(Eigen::VectorXd::Zero(x.system.nv));
+    if (x.dense.constraints.rank() < x.system.rows) continue;
+    // [W, J^T; J, 0] [y; lambda] = [0; closing]: J y closes, and W y is a constraint force.
+    factor_constraints(x.problem(true), x.sparse);
+    const Eigen::VectorXd closing = Eigen::VectorXd::LinSpaced(x.system.rows, -1, 2);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(x.system.nv);
+    Eigen::VectorXd y, lambda, product;
+    x.sparse.loops.solve(none, closing, y, lambda);
+    CHECK((x.dense.scaled_jacobian * y - closing).norm() < 1e-8 * closing.norm());
+    x.sparse.loops.metric(y, product);
+    CHECK((product + x.dense.scaled_jacobian.transpose() * lambda).norm() < 1e-8 * product.norm());
+    ++tried;
+  }
+  CHECK(tried > 8);
+}
+
+TEST_CASE("a net of springs hangs in its turning frame") {
+  // Sags, keeps the square's symmetry, and the weight hangs
+  // on the spindle.
+  const int side = GENERATE(3, 20); // by either way of solving
+  const Solution s = solve(net(side, 3));
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.residual < 1e-12);
+  CHECK(s.stability_reason == StabilityReason::neutral); // the point masses may turn
+  const auto knot = [&](int i, int j) {
+    return s.poses[static_cast<std::size_t>(1 + i * side + j)].position;
+  };
+  CHECK(knot(side / 2, side / 2).y() < -0.01);
+  for (int i = 0; i < side; ++i) {
+    CHECK(std::abs(knot(i, 1).y() - knot(1, i).y()) < 1e-12);
+    CHECK(std::abs(knot(i, 1).y() - knot(side - 1 - i, 1).y()) < 1e-12);
+  }
+  CHECK(std::abs(s.reactions.front().force.y() - 2 * standard_gravity) < 1e-9);
+}
