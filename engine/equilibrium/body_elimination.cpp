@@ -79,8 +79,10 @@ void BodyElimination::lay_out(const Problem& problem, const Kinematics<double>& 
 
 void BodyElimination::set_columns(const Problem& problem, const Kinematics<double>& k, Node& x) const {
   const Vec3& o = k.links[static_cast<std::size_t>(x.link)].o;
-  x.arm = x.parent < 0 ? Vec3(Vec3::Zero())
-                       : Vec3(o - k.links[static_cast<std::size_t>(nodes_[static_cast<std::size_t>(x.parent)].link)].o);
+  x.arm =
+      x.parent < 0
+          ? Vec3(Vec3::Zero())
+          : Vec3(o - k.links[static_cast<std::size_t>(nodes_[static_cast<std::size_t>(x.parent)].link)].o);
   x.shift.setIdentity();
   x.shift.bottomLeftCorner<3, 3>() = -skew(x.arm) / length_;
   x.s.resize(6, x.columns);
@@ -284,8 +286,7 @@ void BodyElimination::finish_nodes() {
     const int at = 6 * static_cast<int>(n);
     for (int j = 0; j < 6; ++j)
       for (int i = symmetric_ ? j : 0; i < 6; ++i) {
-        const double stiffness =
-            symmetric_ ? (x.stiffness(i, j) + x.stiffness(j, i)) / 2 : x.stiffness(i, j);
+        const double stiffness = symmetric_ ? (x.stiffness(i, j) + x.stiffness(j, i)) / 2 : x.stiffness(i, j);
         emit(at + i, at + j, {stiffness, x.inertial(i, j), 0});
       }
   }
@@ -313,7 +314,8 @@ void BodyElimination::linearize(const Problem& problem, const Unknowns& z, const
   leave_out_what_is_loose(problem, magnitudes);
 }
 
-void BodyElimination::linearize_metric(const Problem& problem, const Kinematics<double>& k, double tolerance) {
+void BodyElimination::linearize_metric(const Problem& problem, const Kinematics<double>& k,
+                                       double tolerance) {
   lay_out(problem, k);
   symmetric_ = pattern_.symmetric = true;
   tolerance_ = tolerance;
@@ -326,14 +328,15 @@ void BodyElimination::linearize_metric(const Problem& problem, const Kinematics<
   finish_nodes();
   for (Value& value : values_)
     std::swap(value.stiffness, value.metric);
+  number();
 }
 
 // The turns of a point mass feel nothing, but the terms of their balance cancel with rounding only.
 void BodyElimination::leave_out_what_is_loose(const Problem& problem, const Magnitudes& magnitudes) {
   largest_.assign(static_cast<std::size_t>(unknowns_), 0);
   for (std::size_t e = 0; e < values_.size(); ++e) {
-    const double size = values_[e].fixed != 0 ? std::numeric_limits<double>::infinity()
-                                              : std::abs(values_[e].stiffness);
+    const double size =
+        values_[e].fixed != 0 ? std::numeric_limits<double>::infinity() : std::abs(values_[e].stiffness);
     for (int at : {pattern_.rows[e] - 1, pattern_.columns[e] - 1})
       largest_[static_cast<std::size_t>(at)] = std::max(largest_[static_cast<std::size_t>(at)], size);
   }
@@ -349,13 +352,32 @@ void BodyElimination::leave_out_what_is_loose(const Problem& problem, const Magn
     for (std::size_t u = 6 * n; u < 6 * n + 6; ++u)
       if (largest_[u] <= noise) loose_[u] = any = true;
   }
-  if (!any) return;
+  if (!any) return number();
+  std::size_t kept = 0;
   for (std::size_t e = 0; e < values_.size(); ++e) {
     const auto row = static_cast<std::size_t>(pattern_.rows[e] - 1);
     const auto column = static_cast<std::size_t>(pattern_.columns[e] - 1);
-    if (loose_[row] || loose_[column]) values_[e].stiffness = 0;
-    if (loose_[row] && row == column) values_[e].fixed = 1;
+    if (loose_[row] || loose_[column]) continue;
+    pattern_.rows[kept] = pattern_.rows[e];
+    pattern_.columns[kept] = pattern_.columns[e];
+    values_[kept++] = values_[e];
   }
+  pattern_.rows.resize(kept);
+  pattern_.columns.resize(kept);
+  values_.resize(kept);
+  number();
+}
+
+// Numbers what is solved for.
+void BodyElimination::number() {
+  place_of_unknown_.resize(loose_.size());
+  int next = 0;
+  for (std::size_t u = 0; u < loose_.size(); ++u)
+    place_of_unknown_[u] = loose_[u] ? -1 : next++;
+  pattern_.size = next;
+  for (std::vector<int>* list : {&pattern_.rows, &pattern_.columns})
+    for (int& i : *list)
+      i = place_of_unknown_[static_cast<std::size_t>(i - 1)] + 1;
 }
 
 void BodyElimination::sum_up(double stiffness, double metric) {
@@ -367,17 +389,22 @@ void BodyElimination::sum_up(double stiffness, double metric) {
 void BodyElimination::factor(double shift) {
   flat_.clear();
   sum_up(1, shift);
-  solved_ = factors_.factor(pattern_, sum_, tolerance_);
   negative_ = 1;
+  solved_ = pattern_.size == 0 || factors_.factor(pattern_, sum_, tolerance_);
   if (!solved_) return;
+  if (pattern_.size == 0) {
+    negative_ = redundant_ = 0;
+    return find_flat_directions();
+  }
   const int multipliers = unknowns_ - 6 * static_cast<int>(nodes_.size());
   // What the metric, which is positive definite, leaves singular are the constraints.
   if (factors_.nullity() == 0 || metric_alone_) {
     redundant_ = factors_.nullity();
   } else if (factors_.nullity() != redundant_) {
     sum_up(0, 1);
-    redundant_ = constraints_.factor(pattern_, sum_, zero) ? std::min(constraints_.nullity(), factors_.nullity())
-                                                           : factors_.nullity();
+    redundant_ = constraints_.factor(pattern_, sum_, zero)
+                     ? std::min(constraints_.nullity(), factors_.nullity())
+                     : factors_.nullity();
   }
   negative_ = symmetric_ ? std::max(0, factors_.negative() - (multipliers - redundant_)) : 0;
   find_flat_directions();
@@ -393,7 +420,7 @@ void BodyElimination::find_flat_directions() {
         flat.emplace_back(x.v[static_cast<std::size_t>(c)], share);
     if (!flat.empty()) flat_.push_back(std::move(flat));
   }
-  const int count = factors_.nullity() - redundant_;
+  const int count = pattern_.size == 0 ? 0 : factors_.nullity() - redundant_;
   if (count <= 0) return;
   if (factors_.nullity() > most_null_directions) {
     flat_.resize(flat_.size() + static_cast<std::size_t>(count));
@@ -404,7 +431,7 @@ void BodyElimination::find_flat_directions() {
   Eigen::MatrixXd motions(coordinates_, space.cols());
   Eigen::VectorXd column;
   for (Eigen::Index i = 0; i < space.cols(); ++i) {
-    work_ = space.col(i);
+    spread(space.col(i));
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       const Node& x = nodes_[n];
       Vec6 m = work_.segment<6>(6 * static_cast<Eigen::Index>(n));
@@ -440,9 +467,7 @@ void BodyElimination::solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& c
     work_.segment<6>(6 * static_cast<Eigen::Index>(i)) += n.g;
     if (n.parent >= 0) work_.segment<6>(6 * n.parent) -= n.shift.transpose() * n.g;
   }
-  for (std::size_t u = 0; u < loose_.size(); ++u)
-    if (loose_[u]) work_[static_cast<Eigen::Index>(u)] = 0;
-  factors_.solve(work_);
+  solve_unknowns();
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Node& n = nodes_[i];
     Vec6 m = work_.segment<6>(6 * static_cast<Eigen::Index>(i));
@@ -451,6 +476,23 @@ void BodyElimination::solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& c
       x[n.v[static_cast<std::size_t>(c)]] = n.d.col(c).dot(m);
   }
   lambda = work_.tail(rows_);
+}
+
+// In place; what is loose gets nothing.
+void BodyElimination::solve_unknowns() {
+  held_.resize(pattern_.size);
+  for (std::size_t u = 0; u < loose_.size(); ++u)
+    if (const int at = place_of_unknown_[u]; at >= 0) held_[at] = work_[static_cast<Eigen::Index>(u)];
+  if (pattern_.size > 0) factors_.solve(held_);
+  spread(held_);
+}
+
+void BodyElimination::spread(const Eigen::Ref<const Eigen::VectorXd>& held) {
+  work_.resize(unknowns_);
+  for (std::size_t u = 0; u < loose_.size(); ++u) {
+    const int at = place_of_unknown_[u];
+    work_[static_cast<Eigen::Index>(u)] = at >= 0 ? held[at] : 0;
+  }
 }
 
 double BodyElimination::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {

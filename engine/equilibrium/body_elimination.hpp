@@ -51,14 +51,14 @@ class BodyElimination final : public Eliminator {
     int parent = -1; // node; -1: stands still
     int link = -1;
     int columns = 0;
-    std::array<int, 6> v{}, stage{}; // coordinates, the root's first, and the link of each
-    Vec3 arm;                        // m, from the parent's origin to this one's
-    Vec6 load;                       // N m, N, about the link's origin; of all beyond it
-    Columns s, d, n;                 // see above
-    Mat6 shift;                      // of the parent's motion to this one's
+    std::array<int, 6> v{}, stage{};    // coordinates, the root's first, and the link of each
+    Vec3 arm;                           // m, from the parent's origin to this one's
+    Vec6 load;                          // N m, N, about the link's origin; of all beyond it
+    Columns s, d, n;                    // see above
+    Mat6 shift;                         // of the parent's motion to this one's
     Eigen::Matrix<double, 6, 1> weight; // metric of the coordinates themselves
-    int multipliers = 0;             // first of its own among the unknowns
-    Mat6 stiffness, inertial;        // of the body and all that meets it
+    int multipliers = 0;                // first of its own among the unknowns
+    Mat6 stiffness, inertial;           // of the body and all that meets it
     Vec6 g, motion;
   };
 
@@ -76,7 +76,10 @@ class BodyElimination final : public Eliminator {
   void add_pair(int a, int b, const PairBlocks& blocks);
   void finish_nodes();
   void leave_out_what_is_loose(const Problem& problem, const Magnitudes& magnitudes);
+  void number();
   void find_flat_directions();
+  void solve_unknowns();
+  void spread(const Eigen::Ref<const Eigen::VectorXd>& held);
   void emit(int row, int column, const Value& value);
   // Entries between two nodes, and of the second by the first.
   void emit_between(int a, int b, const Mat6& ab, const Mat6& ba, const Mat6& metric_ab);
@@ -98,9 +101,10 @@ class BodyElimination final : public Eliminator {
   SparsePattern pattern_;
   std::vector<Value> values_;
   std::vector<double> sum_, largest_;
-  std::vector<bool> loose_; // unknowns that nothing holds
+  std::vector<bool> loose_;           // unknowns that nothing holds
+  std::vector<int> place_of_unknown_; // in what is solved; -1: loose
   SparseFactorization factors_, constraints_;
-  Eigen::VectorXd work_;
+  Eigen::VectorXd work_, held_;
 };
 
 } // namespace flyball

@@ -13,11 +13,11 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 struct BodyStiffness {
-  Mat6 own;            // K_b
-  double mass = 0;     // kg
-  double turning = 0;  // kg m^2, what the metric adds to the inertia: turning counts as if the body were large
-  Vec3 first_moment;   // kg m, about the link's origin
-  Mat3 inertia;        // kg m^2, about the link's origin
+  Mat6 own;           // K_b
+  double mass = 0;    // kg
+  double turning = 0; // kg m^2, what the metric adds to the inertia: turning counts as if the body were large
+  Vec3 first_moment;  // kg m, about the link's origin
+  Mat3 inertia;       // kg m^2, about the link's origin
   bool massless() const { return mass == 0 && inertia.isZero(0); }
 };
 

@@ -36,6 +36,10 @@ class Search {
       }
       w_.assembled = candidate_.q; // Newton-Raphson found a way that Gauss-Newton did not
     }
+    // In large mechanisms, where it takes few iterations, the way that leads to a stable state comes first.
+    const bool downhill_first = has_descent() && !p_.is_dense();
+    if (downhill_first && go_downhill()) return;
+    if (p_.cancelled()) return cancelled();
     if (!arrived_) {
       if (attempt(w_.assembled, Net::damped, [&](Unknowns& z) {
             return newton(p_, z, w_, {200, true}, &history_);
@@ -48,7 +52,7 @@ class Search {
         return;
       if (p_.cancelled()) return cancelled();
     }
-    if (has_descent() && go_downhill()) return;
+    if (has_descent() && !downhill_first && go_downhill()) return;
     if (p_.cancelled()) return cancelled();
     settle_for_unstable();
   }

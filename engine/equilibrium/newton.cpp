@@ -28,7 +28,8 @@ void clear_rounding(const Problem& problem, Workspace& w) {
     for (int i = static_cast<int>(l); i >= 0; i = system.links[static_cast<std::size_t>(i)].parent) {
       const Link& other = system.links[static_cast<std::size_t>(i)];
       if (other.tree_joint != link.tree_joint) break;
-      if (other.v >= 0) force = std::max(force, w.magnitudes.force[other.v] * problem.scaling.column[other.v]);
+      if (other.v >= 0)
+        force = std::max(force, w.magnitudes.force[other.v] * problem.scaling.column[other.v]);
     }
     const double rounding = 1e-15 * force;
     for (int v = link.v; v < link.v + 3; ++v) {
@@ -253,6 +254,8 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, z.lambda);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > 1e8) break;
+    // In large mechanisms steps that stay long lead nowhere and cost much.
+    if (!problem.is_dense() && !settings.damped && i >= 8 && size > 1 && size > 0.5 * previous_step) break;
     double fraction = 1;
     if (settings.damped) {
       if (!problem.is_dense()) factor_constraints(problem, w); // the balance has its own factors

@@ -109,8 +109,7 @@ PairBlocks damper_blocks(const CutDamperElement& e, const CutDamperParameters& p
   if (e.angular) {
     const Vec3 slip = lb.w - la.w, torque = p.damping * axis.dot(slip) * axis;
     // The rate changes as the axis turns with a, and the torque with it.
-    const Mat3 by_a =
-        -p.damping * axis * slip.transpose() * skew(axis) - skew(torque);
+    const Mat3 by_a = -p.damping * axis * slip.transpose() * skew(axis) - skew(torque);
     PairBlocks x;
     x.set_zero();
     x.bb.topLeftCorner<3, 3>() = skew(torque);
@@ -129,8 +128,8 @@ PairBlocks damper_blocks(const CutDamperElement& e, const CutDamperParameters& p
   return force_at_b(force, at.pa, at.pb, by_a, by_b);
 }
 
-PairBlocks row_blocks(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row, double multiplier,
-                      const Kinematics<double>& k) {
+PairBlocks row_blocks(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row,
+                      double multiplier, const Kinematics<double>& k) {
   const Ends at = ends_of(cut.ends, k.point(cut.ends.a, p.a), k.point(cut.ends.b, p.b), k);
   if (row.type == RowType::distance) {
     const Vec3 d = at.b - at.a;

@@ -15,6 +15,8 @@ constexpr int use_comm_world = -987654; // what MUMPS wants to be told where the
 struct SparseFactorization::State {
   DMUMPS_STRUC_C mumps{};
   SparsePattern pattern;
+  std::vector<double> scaled;     // values of the equilibrated matrix
+  Eigen::VectorXd scale, largest; // of each row and column
   Eigen::MatrixXd null_space;
   bool open = false;
 
@@ -33,6 +35,26 @@ struct SparseFactorization::State {
     open = false;
   }
 
+  // Rows and columns to largest entries of one, by square roots from both sides (Ruiz, A scaling algorithm to
+  // equilibrate both rows and columns norms in matrices, 2001).
+  void equilibrate(const std::vector<double>& values) {
+    scale.setOnes(pattern.size);
+    scaled = values;
+    for (int pass = 0; pass < 6; ++pass) {
+      largest.setZero(pattern.size);
+      for (std::size_t e = 0; e < scaled.size(); ++e) {
+        const double size = std::abs(scaled[e]);
+        for (int at : {pattern.rows[e] - 1, pattern.columns[e] - 1})
+          largest[at] = std::max(largest[at], size);
+      }
+      for (double& x : largest)
+        x = x > 0 ? 1 / std::sqrt(x) : 1;
+      scale.array() *= largest.array();
+      for (std::size_t e = 0; e < scaled.size(); ++e)
+        scaled[e] *= largest[pattern.rows[e] - 1] * largest[pattern.columns[e] - 1];
+    }
+  }
+
   void begin(const SparsePattern& p) {
     close();
     pattern = p;
@@ -43,12 +65,14 @@ struct SparseFactorization::State {
     run(initialise);
     open = true;
     for (int i : {1, 2, 3})
-      setting(i) = -1;   // no output
-    setting(4) = 0;      // nor messages
-    setting(7) = 0;      // ordering: approximate minimum degree
-    setting(13) = 1;     // the root is factored like the rest, for its zero pivots to be found
-    setting(14) = 50;    // per cent of memory more than estimated, for pivots that have to wait
-    setting(24) = 1;     // find zero pivots
+      setting(i) = -1; // no output
+    setting(4) = 0;    // nor messages
+    setting(7) = 4;    // ordering: PORD
+    setting(12) = 2;   // on the graph of two by two pivots: multipliers have zeros on the diagonal
+    setting(8) = 0;    // the matrix comes equilibrated
+    setting(13) = 1;   // the root is factored like the rest, for its zero pivots to be found
+    setting(14) = 50;  // per cent of memory more than estimated, for pivots that have to wait
+    setting(24) = 1;   // find zero pivots
     mumps.n = p.size;
     mumps.nnz = static_cast<MUMPS_INT8>(p.rows.size());
     mumps.irn = pattern.rows.data();
@@ -61,12 +85,14 @@ SparseFactorization::~SparseFactorization() = default;
 SparseFactorization::SparseFactorization(SparseFactorization&&) noexcept = default;
 SparseFactorization& SparseFactorization::operator=(SparseFactorization&&) noexcept = default;
 
-bool SparseFactorization::factor(const SparsePattern& pattern, std::vector<double>& values, double zero) {
+bool SparseFactorization::factor(const SparsePattern& pattern, const std::vector<double>& values,
+                                 double zero) {
   if (!state_) state_ = std::make_unique<State>();
   State& s = *state_;
   const bool known = s.open && s.pattern == pattern;
   if (!known) s.begin(pattern);
-  s.mumps.a = values.data();
+  s.equilibrate(values);
+  s.mumps.a = s.scaled.data();
   s.mumps.cntl[2] = zero;
   s.null_space.resize(0, 0);
   if (!known) s.run(analyse);
@@ -84,11 +110,13 @@ bool SparseFactorization::factor(const SparsePattern& pattern, std::vector<doubl
 
 void SparseFactorization::solve(Eigen::VectorXd& x) {
   State& s = *state_;
+  x.array() *= s.scale.array();
   s.setting(25) = 0;
   s.mumps.rhs = x.data();
   s.mumps.nrhs = 1;
   s.mumps.lrhs = s.mumps.n;
   s.run(back_substitute);
+  x.array() *= s.scale.array();
 }
 
 int SparseFactorization::negative() const {
@@ -109,6 +137,7 @@ const Eigen::MatrixXd& SparseFactorization::null_space() {
   s.mumps.lrhs = s.mumps.n;
   s.run(back_substitute);
   s.setting(25) = 0;
+  s.null_space = s.scale.asDiagonal() * s.null_space;
   return s.null_space;
 }
 

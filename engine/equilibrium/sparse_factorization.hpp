@@ -33,7 +33,7 @@ class SparseFactorization {
 
   // Pivots below `zero` times the matrix (after its rows and columns are equilibrated) count as zero. The
   // order of elimination is kept as long as the pattern stays. False where memory runs out.
-  bool factor(const SparsePattern& pattern, std::vector<double>& values, double zero);
+  bool factor(const SparsePattern& pattern, const std::vector<double>& values, double zero);
 
   // In place. Zero pivots get no component.
   void solve(Eigen::VectorXd& x);

@@ -57,17 +57,20 @@ class TrustRegion {
   }
 
  private:
-  // Steps along the loops open them by a little. By the factors from before the step, which is short.
+  // Steps along the loops open them by a little. By the factors at hand as long as they serve.
   bool close_loops() {
     if (p_.system.rows == 0) return true;
     double before = std::numeric_limits<double>::infinity();
+    int slow = 0;
     for (int i = 0; i < 30; ++i) {
       evaluate_residual<double>(p_.system, p_.parameters, moved_, w_.zero_lambda, w_.kinematics, w_.residual);
       const double open = w_.residual.phi.cwiseProduct(p_.scaling.row).lpNorm<Eigen::Infinity>();
       if (open < 1e-13) return true;
-      if (!(open < 0.7 * before)) return open < 1e-11;
+      if (!(open < 0.5 * before) && ++slow > 3) return open < 1e-11;
+      if (!(open < 0.1 * before) && i > 0) factor_constraints(p_, w_);
       before = open;
       close(p_, w_, w_.scaled_step);
+      if (!(w_.scaled_step.lpNorm<Eigen::Infinity>() < 1)) return false;
       w_.step = w_.scaled_step.cwiseProduct(p_.scaling.column);
       retract<double>(p_.system, w_.step, moved_);
       forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
@@ -77,6 +80,7 @@ class TrustRegion {
 
   void linearize_here() {
     z_.lambda.setZero(p_.system.rows);
+    w_.zero_lambda.setZero(p_.system.rows);
     evaluate(p_, z_, 0, w_);
     if (p_.system.rows > 0) {
       factor_constraints(p_, w_);

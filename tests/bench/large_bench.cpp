@@ -64,11 +64,14 @@ int main(int argc, char** argv) {
   std::printf("%-14s %6s %9s %9s %9s %9s %9s %9s %5s %6s %-9s %-11s %8s %8s\n", "scene", "bodies", "read",
               "validate", "compile", "solve", "whole", "all", "power", "iter", "net", "stable", "residual",
               "error");
-  for (const double speed : {2., 5., 10., 15.})
-    family("chain " + std::to_string(static_cast<int>(speed)) + " rad/s", largest,
-           [&](int n) { return bench::chain(n, speed); });
+  if (argc < 3)
+    for (const double speed : {2., 5., 10., 15.})
+      family("chain " + std::to_string(static_cast<int>(speed)) + " rad/s", largest,
+             [&](int n) { return bench::chain(n, speed); });
   family("net", largest, [](int n) {
     return bench::spring_net(std::max(2, static_cast<int>(std::lround(std::sqrt(n)))), 3);
   });
+  family("cable net", largest,
+         [](int n) { return bench::cable_net(std::max(2, static_cast<int>(std::lround(std::sqrt(n)))), 3); });
   family("tree", largest, [](int n) { return bench::binary_tree(n, 3); });
 }

@@ -115,4 +115,41 @@ Mechanism spring_net(int side, double speed) {
   return m;
 }
 
+Mechanism cable_net(int side, double speed) {
+  Mechanism m = on_a_hub("Cables of " + std::to_string(side) + " x " + std::to_string(side), speed);
+  const double cell = 2. / (side + 1);
+  const auto at = [&](int i, int j) {
+    const double x = (i + 1) * cell - 1, z = (j + 1) * cell - 1;
+    // Not quite even, as a net is: an even one could not move at first but by stretching.
+    const double uneven = 1 + 0.1 * std::sin(12.9898 * i + 78.233 * j);
+    return Vec3(x, -0.4 * (1 - x * x) * (1 - z * z) * uneven, z);
+  };
+  const auto inside = [&](int i, int j) { return std::min(i, j) >= 0 && std::max(i, j) < side; };
+  const auto name = [&](int i, int j) {
+    return inside(i, j) ? "knot" + std::to_string(i) + "_" + std::to_string(j) : std::string("hub");
+  };
+  const auto tie = [&](int i, int j, int k, int l) {
+    Joint cable;
+    cable.name = "cable" + std::to_string(m.joints.size());
+    cable.type = JointType::distance;
+    cable.bodies = {name(i, j), name(k, l)};
+    cable.points = {at(i, j), at(k, l)};
+    m.joints.push_back(cable);
+  };
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      Body knot;
+      knot.name = name(i, j);
+      knot.mass = 1. / (side * side);
+      knot.position = at(i, j);
+      m.bodies.push_back(knot);
+    }
+  for (int i = 0; i < side; ++i)
+    for (int j = -1; j < side; ++j) {
+      tie(i, j, i, j + 1);
+      tie(j, i, j + 1, i);
+    }
+  return m;
+}
+
 } // namespace flyball::bench

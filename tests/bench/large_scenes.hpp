@@ -17,4 +17,8 @@ Mechanism binary_tree(int rods, double speed);
 // frame that turns about the vertical through its middle at `speed`; stretched by a tenth.
 Mechanism spring_net(int side, double speed);
 
+// A square net of inextensible cables, 2 m wide and 1 kg in all, that hangs as a bag from the same frame:
+// every cell closes a loop.
+Mechanism cable_net(int side, double speed);
+
 } // namespace flyball::bench

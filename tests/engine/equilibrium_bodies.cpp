@@ -124,8 +124,7 @@ Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
     const bool potential = x.problem(true).symmetric();
     if (potential) {
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(all, Eigen::EigenvaluesOnly);
-      CHECK(x.sparse.bodies.negative_count() ==
-            (eigen.eigenvalues().array() < 0).count() - x.system.rows);
+      CHECK(x.sparse.bodies.negative_count() == (eigen.eigenvalues().array() < 0).count() - x.system.rows);
     }
     ++(potential ? tried.symmetric : tried.unsymmetric);
   }
