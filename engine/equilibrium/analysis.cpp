@@ -56,6 +56,39 @@ Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eige
   return out;
 }
 
+// Whether the least stiffness changes by its own size within the error of the state: at a fold or branch
+// point it does, and nobody can tell its sign.
+bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& error, bool minimum,
+                  Workspace& w) {
+  if (problem.system.nv == 0 || !problem.is_dense() || !problem.symmetric()) return false;
+  const double away = error.cwiseQuotient(problem.scaling.column).lpNorm<Eigen::Infinity>();
+  if (minimum && away < 1e-11) return false;
+  Unknowns here = z;
+  factor_with_multipliers(problem, here, w);
+  if (w.hessian.singular()) return true;
+  if (w.hessian.size() == 0) return false;
+  w.hessian.decompose();
+  Eigen::Index softest = 0;
+  w.hessian.eigenvalues().cwiseAbs().minCoeff(&softest);
+  Eigen::VectorXd way = w.hessian.eigenvectors().col(softest).cwiseProduct(w.hessian.scale());
+  if (problem.system.rows > 0 && w.constraints.rank() > 0) way = (w.constraints.basis() * way).eval();
+  way /= way.lpNorm<Eigen::Infinity>();
+  const auto stiffness = [&] { return way.dot(w.scaled_stiffness * way); };
+  const double noise = 4 * std::numeric_limits<double>::epsilon() *
+                       way.cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+  const double least = stiffness();
+  double change = noise;
+  for (const double side : {4., -4.}) {
+    here.q = z.q;
+    const Eigen::VectorXd step = side * away * way.cwiseProduct(problem.scaling.column);
+    retract<double>(problem.system, step, here.q);
+    if (!assemble(problem, here.q, 0, w)) continue;
+    factor_with_multipliers(problem, here, w);
+    change = std::max(change, std::abs(stiffness() - least));
+  }
+  return std::abs(least) <= change;
+}
+
 } // namespace
 
 struct Analysis::State {
@@ -127,6 +160,8 @@ Solution Analysis::solve(const SolveOptions& options) {
     stability = {true, StabilityReason::minimum, {}, {}};
   else if (steady)
     stability = stability_of(problem, s.found.z, false, 0, s.workspace);
+  const bool open = steady && stability.reason != StabilityReason::neutral &&
+                    sign_is_open(problem, s.found.z, s.error, s.found.minimum, s.workspace);
   const auto end = std::chrono::steady_clock::now();
 
   Solution out;
@@ -150,6 +185,10 @@ Solution Analysis::solve(const SolveOptions& options) {
     if (options.modes > 0 && stability.eigenvalues &&
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
       stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
+  }
+  if (open && stability.reason != StabilityReason::neutral) {
+    stability.stable.reset();
+    stability.reason = StabilityReason::marginal;
   }
   const ReportInput input{s.mechanism, problem, s.found, existence, stability};
   report(input, s.error, options.details, s.workspace, out);

@@ -51,6 +51,7 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
       }
       const Eigen::VectorXd way = basis * hessian.eigenvectors().col(k).cwiseProduct(hessian.scale());
       const double length = way.lpNorm<Eigen::Infinity>();
+      if (length == 0) continue; // what feels nothing at all
       double distance = std::abs(along / mu) * length;
       if (std::abs(mu) <= ReducedHessian::zero) {
         // Nothing resists here. A force that pushes this way has a long way to go.

@@ -8,7 +8,7 @@ namespace flyball {
 
 enum class DescentEnd {
   minimum,   // strict, or flat only along directions without stiffness
-  unbounded, // the potential falls without end
+  unbounded, // the potential falls on, hundreds of times the reach away
   stalled,   // no step lowers it: not a potential after all, or rounding
   cancelled,
 };

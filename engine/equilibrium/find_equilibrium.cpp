@@ -81,6 +81,16 @@ class Search {
     return true;
   }
 
+  // Whether the state found has no more energy than q, within rounding. Leaves the kinematics of q behind.
+  bool below(const Eigen::VectorXd& q) {
+    const auto energy = [&](const Eigen::VectorXd& at) {
+      forward<double>(p_.system, p_.parameters, at, 0, w_.kinematics);
+      return amended_potential(p_.system, p_.parameters, at, w_.kinematics);
+    };
+    const Potential end = energy(found_.z.q), begin = energy(q);
+    return end.value <= begin.value + 1e-12 * (begin.magnitude + end.magnitude);
+  }
+
   // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems
   // without a potential have no such order; their eigenvalues judge.
   bool acceptable(const NewtonOutcome& outcome) {
@@ -88,19 +98,21 @@ class Search {
     if (nearest_ || !potential_) return true;
     if (unstable_ || outcome.largest_step > 1) return false;
     if (warm_) return true;
-    const Potential end = amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics);
     const Eigen::VectorXd* from = &start_;
     if (p_.system.rows > 0) {
       w_.assembled = start_;
-      const bool closed = assemble(p_, w_.assembled, 0, w_);
-      evaluate(p_, found_.z, 0, w_);
-      factor(p_, found_.z, w_);
-      if (!closed) return true;
+      if (!assemble(p_, w_.assembled, 0, w_)) return judge_again();
       from = &w_.assembled;
     }
-    forward<double>(p_.system, p_.parameters, *from, 0, w_.kinematics);
-    const Potential begin = amended_potential(p_.system, p_.parameters, *from, w_.kinematics);
-    return end.value <= begin.value + 1e-12 * (begin.magnitude + end.magnitude);
+    const bool low = below(*from);
+    return (p_.system.rows == 0 || judge_again()) && low;
+  }
+
+  // Leaves the balance factored at the state found, as refine() wants it.
+  bool judge_again() {
+    evaluate(p_, found_.z, 0, w_);
+    factor(p_, found_.z, w_);
+    return true;
   }
 
   // Whether the state found is a minimum, from the balance factored at it.
@@ -170,22 +182,29 @@ class Search {
     }
   }
 
+  // Small trees are solved densely, but go down by what they trust, too: it takes far fewer iterations.
   bool go_downhill() {
+    const bool trusted = !p_.is_dense() || (p_.symmetric() && is_plain_tree(p_.system));
+    if (trusted && go_downhill(descend_by_trust)) return true;
+    return p_.is_dense() && !p_.cancelled() && go_downhill(descend);
+  }
+
+  template <class Descent>
+  bool go_downhill(Descent descend_from) {
     found_.net = Net::descent;
     found_.z.q = w_.assembled;
-    // Small trees are solved densely, but go down by what they trust, too: it takes far fewer iterations.
-    const bool by_trust = !p_.is_dense() || (p_.symmetric() && is_plain_tree(p_.system));
-    const DescentOutcome descent =
-        by_trust ? descend_by_trust(p_, found_.z, w_, &history_) : descend(p_, found_.z, w_, &history_);
+    const DescentOutcome descent = descend_from(p_, found_.z, w_, &history_);
     found_.iterations += descent.iterations;
-    if (descent.end != DescentEnd::minimum) {
-      fell_ = descent.end == DescentEnd::unbounded;
-      return false;
-    }
+    // A soft spring may hold a long way down: Newton's method takes that in a stride.
+    fell_ = descent.end == DescentEnd::unbounded;
+    if (descent.end != DescentEnd::minimum && !fell_) return false;
     const NewtonOutcome outcome = newton(p_, found_.z, w_, {}, &history_);
     found_.iterations += outcome.iterations;
-    if (!outcome.converged || outcome.largest_step > 0.2 || !closed_the_right_way(p_, w_.kinematics))
+    if (!outcome.converged || (outcome.largest_step > 0.2 && !fell_) ||
+        !closed_the_right_way(p_, w_.kinematics) || (fell_ && !below(w_.assembled)))
       return false;
+    if (fell_) evaluate(p_, found_.z, 0, w_);
+    fell_ = false;
     found_.newton = outcome;
     const bool left_unstable = arrived_ && unstable_;
     judge();
@@ -226,10 +245,12 @@ class Search {
       found_.newton = candidate_outcome_;
       found_.net = candidate_net_;
       found_.status = Status::converged;
-      found_.message = unstable_
-                           ? fell_ ? "The potential falls without end from here; no stable state was found."
-                                   : "No stable state was found downhill from here."
-                           : "A stable state, but the start may lie in the basin of another.";
+      found_.message =
+          unstable_ ? fell_
+                          ? "The potential falls on, hundreds of times the mechanism's reach away; no stable "
+                            "state was found."
+                          : "No stable state was found downhill from here."
+                    : "A stable state, but the start may lie in the basin of another.";
       return;
     }
     found_.status = Status::not_converged;
@@ -237,8 +258,9 @@ class Search {
     found_.message = "Newton-Raphson, its damped form";
     if (p_.parameters.moving) found_.message += ", homotopy from rest";
     if (has_descent()) found_.message += ", descent of the potential";
-    found_.message += fell_ ? " found no equilibrium: the potential falls without end."
-                            : " found no equilibrium from this start.";
+    found_.message +=
+        fell_ ? " found no equilibrium: the potential falls on, hundreds of times the mechanism's reach away."
+              : " found no equilibrium from this start.";
   }
 
   const Problem& p_;

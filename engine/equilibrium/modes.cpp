@@ -45,6 +45,25 @@ struct Shapes {
   std::vector<double> residuals; // relative
 };
 
+// Five steps from random vectors.
+void iterate(const Eigen::MatrixXcd& beside, Eigen::MatrixXcd& x) {
+  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(beside), adjoint(beside.adjoint());
+  std::mt19937 random(1);
+  for (Complex& entry : x.reshaped())
+    entry = static_cast<double>(random()) / 2147483648. - 1;
+  for (int iteration = 0; iteration < 5; ++iteration) {
+    const Eigen::MatrixXcd y = adjoint.solve(x);
+    x = lu.solve(y);
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+      x.col(j) /= x.col(j).norm();
+      for (int twice = 0; twice < 2; ++twice)
+        for (Eigen::Index i = 0; i < j; ++i)
+          x.col(j) -= x.col(i) * x.col(i).dot(x.col(j));
+      x.col(j) /= x.col(j).norm();
+    }
+  }
+}
+
 Shapes null_shapes(const ReducedMotion& motion, Complex s, Eigen::Index count) {
   const Eigen::Index n = motion.mass.rows();
   Eigen::MatrixXcd a = s * s * motion.mass.cast<Complex>() + s * motion.velocity.cast<Complex>() +
@@ -52,30 +71,21 @@ Shapes null_shapes(const ReducedMotion& motion, Complex s, Eigen::Index count) {
   const Eigen::MatrixXd terms = std::norm(s) * motion.mass.cwiseAbs() +
                                 std::abs(s) * motion.velocity.cwiseAbs() + motion.stiffness.cwiseAbs();
   Eigen::VectorXd scale(n);
+  const double largest = n > 0 ? terms.maxCoeff() : 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double size = terms.row(i).maxCoeff();
-    scale[i] = size > 0 ? 1 / std::sqrt(size) : 1;
+    scale[i] = size > 1e-40 * largest ? 1 / std::sqrt(size) : 1; // else nothing but rounding
   }
   a = scale.asDiagonal() * a * scale.asDiagonal();
-  // At the eigenvalue itself the matrix cannot be factored; a little beside it the vectors are the same.
-  Eigen::MatrixXcd beside = a;
-  beside.diagonal().array() += std::numeric_limits<double>::epsilon();
-  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(beside), adjoint(beside.adjoint());
-  std::mt19937 random(1);
   Eigen::MatrixXcd x(n, count);
-  for (Eigen::Index j = 0; j < count; ++j)
-    for (Eigen::Index i = 0; i < n; ++i)
-      x(i, j) = static_cast<double>(random()) / 2147483648. - 1;
-  for (int iteration = 0; iteration < 5; ++iteration) {
-    const Eigen::MatrixXcd y = adjoint.solve(x);
-    x = lu.solve(y);
-    for (Eigen::Index j = 0; j < count; ++j) {
-      x.col(j) /= x.col(j).norm();
-      for (int twice = 0; twice < 2; ++twice)
-        for (Eigen::Index i = 0; i < j; ++i)
-          x.col(j) -= x.col(i) * x.col(i).dot(x.col(j));
-      x.col(j) /= x.col(j).norm();
-    }
+  // At the eigenvalue itself the matrix cannot be factored; a little beside it the vectors are the same. That
+  // little may meet a zero pivot itself.
+  double shift = std::numeric_limits<double>::epsilon();
+  for (int tries = 0; tries < 4; ++tries, shift *= 3) {
+    Eigen::MatrixXcd beside = a;
+    beside.diagonal().array() += shift;
+    iterate(beside, x);
+    if (x.allFinite()) break;
   }
   Shapes out;
   for (Eigen::Index j = 0; j < count; ++j)

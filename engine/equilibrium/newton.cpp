@@ -51,6 +51,17 @@ void factor_dense_constraints(const Problem& problem, Workspace& w) {
   w.constraints.factor(w.scaled_jacobian, rank_tolerance(problem, w.residual.phi));
 }
 
+constexpr double far = 1e8, farthest = 1e14; // scaled
+
+// The largest rounding of a coordinate, scaled.
+double resolution(const Problem& problem, const Eigen::VectorXd& q) {
+  double largest = 0;
+  for (const Link& link : problem.system.links)
+    if (link.v >= 0 && link.type == LinkType::prismatic)
+      largest = std::max(largest, std::abs(q[link.q]) / problem.scaling.column[link.v]);
+  return 8 * std::numeric_limits<double>::epsilon() * largest;
+}
+
 // What is left of the force balance when the best multipliers have been found; f is without constraint
 // forces.
 double merit(const Problem& problem, Workspace& w) {
@@ -253,7 +264,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     take_off_multipliers(problem, z.lambda, w);
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, z.lambda);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
-    if (!std::isfinite(size) || size > 1e8) break;
+    if (!std::isfinite(size) || size > farthest) break;
     // In large mechanisms steps that stay long lead nowhere and cost much.
     if (!problem.is_dense() && !settings.damped && i >= 8 && size > 1 && size > 0.5 * previous_step) break;
     double fraction = 1;
@@ -276,17 +287,21 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     outcome.largest_step = std::max(outcome.largest_step, fraction * size);
     outcome.last_step = size;
     evaluate(problem, z, 0, w);
+    // So far away only a balance that is as good as linear leads.
+    if (size > far && !(scaled_residual(problem, w) < 1e-6)) break;
+    const double tolerance =
+        settings.step_tolerance + (size > far || outcome.largest_step > far ? resolution(problem, z.q) : 0);
     const double contraction = previous_step > 0 ? size / (previous_step * previous_step) : 0;
     const bool next_is_none = settings.trusting && previous_step > 0 && size < 1e-4 &&
                               size < 0.1 * previous_step &&
-                              std::max(1., contraction) * size * size <= 1e-2 * settings.step_tolerance;
-    if ((size <= settings.step_tolerance || next_is_none) && fraction == 1.) {
+                              std::max(1., contraction) * size * size <= 1e-2 * tolerance;
+    if ((size <= tolerance || next_is_none) && fraction == 1.) {
       // No step is left; but a force that no coordinate resists, or a loop that cannot close, asks for none
       // either.
       const double left = scaled_residual(problem, w);
       if (left > 1e-8) break;
       // Where a direction has no stiffness, short steps tell nothing of the force along it.
-      outcome.converged = !singular(problem, w) || left <= 1e-13;
+      outcome.converged = !singular(problem, w) || (left <= 1e-13 && outcome.largest_step <= far);
     } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {
       outcome.converged = outcome.linear = true;
     }

@@ -26,7 +26,7 @@ void evaluate_long(const Problem& problem, const Unknowns& z, Workspace& w) {
 // over. `left` (scaled) is the largest force that the step had to balance: a stiff spring's, by its rounded
 // length. Loops mix it with the softest.
 void add_noise(const Problem& problem, double left, double opening, Workspace& w, Eigen::VectorXd& error) {
-  const double mixed = w.constraints.rank() > 0 ? std::numeric_limits<double>::epsilon() * left : 0;
+  const double mixed = problem.system.rows > 0 ? std::numeric_limits<double>::epsilon() * left : 0;
   for (unsigned pattern : {1U, 5U}) {
     const auto sign = [&](Eigen::Index i) {
       return std::popcount((static_cast<unsigned>(i) + 1) * pattern) % 2 == 0 ? 1. : -1.;
@@ -78,7 +78,6 @@ bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) 
   w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
   retract<double>(problem.system, w.step, w.trial.q);
   evaluate(problem, w.trial, 0, w);
-  linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
   factor_constraints(problem, w);
   const bool more = w.constraints.rank() > rank;
   evaluate(problem, z, 0, w);
@@ -118,7 +117,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
     const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
     w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
     error = w.step.cwiseAbs();
-    if (w.constraints.rank() < system.rows) {
+    if (problem.is_dense() && w.constraints.rank() < system.rows) {
       w.scaled_phi = w.residual.phi.cwiseProduct(problem.scaling.row);
       w.scaled_phi.noalias() += w.scaled_jacobian * w.scaled_step;
       opening = w.scaled_phi.lpNorm<Eigen::Infinity>();
@@ -138,9 +137,10 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
     error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
   add_noise(problem, left, opening, w, error);
   error += long_rounding * problem.scaling.column;
-  if (w.constraints.rank() < std::min(system.rows, system.nv) && at_singular_loops(problem, z, w))
+  if (problem.is_dense() && w.constraints.rank() < std::min(system.rows, system.nv) &&
+      at_singular_loops(problem, z, w))
     error += 4 * std::sqrt(opening + long_rounding) * problem.scaling.column;
-  if (w.hessian.singular()) add_singular_directions(problem, z, w, error);
+  if (problem.is_dense() && w.hessian.singular()) add_singular_directions(problem, z, w, error);
   for (const Link& link : system.links) {
     if (link.v < 0) continue;
     const int n = link.type == LinkType::spherical ? 3 : 1;

@@ -75,12 +75,12 @@ class Direct {
     Unknowns z = answer;
     factor_with_multipliers(problem(), z, w_);
     reference_ = z.q.cast<long double>();
-    LongVector step, none = LongVector::Zero(system_.rows);
+    LongVector step, multipliers = z.lambda.cast<long double>();
     Eigen::VectorXd correction;
     double previous = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 12; ++i) {
       forward<long double>(system_, parameters_, reference_, 0, w_.kinematics_long);
-      evaluate_residual<long double>(system_, parameters_, reference_, none, w_.kinematics_long,
+      evaluate_residual<long double>(system_, parameters_, reference_, multipliers, w_.kinematics_long,
                                      w_.residual_long);
       w_.residual.f = w_.residual_long.f.cast<double>();
       w_.residual.phi = w_.residual_long.phi.cast<double>();
@@ -92,6 +92,7 @@ class Direct {
       if (!std::isfinite(size) || (i > 1 && size >= previous / 2)) break; // rounding is all that is left
       step = correction.cast<long double>();
       retract<long double>(system_, step, reference_);
+      multipliers += z.lambda.cast<long double>(); // corrected like the rest
       previous = size;
     }
     if (correction.size() == 0) correction.setZero(system_.nv);

@@ -159,7 +159,9 @@ TEST_CASE("a sprung slider on a turntable leaves when its spring is too weak") {
     check_value(s, "slide", wanted, 1e-12 * std::max(1., std::abs(static_cast<double>(wanted)) * 100));
     CHECK(s.stable == (share < 1));
     CHECK((s.stability_reason == StabilityReason::minimum) == (share < 1));
-    if (share > 1) CHECK_THAT(s.message, ContainsSubstring("falls without end"));
+    if (share > 1)
+      CHECK_THAT(s.message,
+                 ContainsSubstring("the potential falls on") || ContainsSubstring("The potential falls on"));
   }
 }
 

@@ -89,7 +89,8 @@ void add_singular_cases(const CaseChoice& choice, Cases& cases) {
     for (const double share : {0., 0.5, 0.999999999, 2.}) // of m w^2 in k
       for (const double radius : {0., 1e-12, 0.1})
         add("slider " + digits(radius) + " k " + digits(stiffness) + " share " + digits(share),
-            slider(radius, stiffness, std::sqrt(share * stiffness)), {.must = share < 1});
+            slider(radius, stiffness, std::sqrt(share * stiffness)),
+            {.must = share < 0.9}); // near one the stiffness is a difference that cancels
   for (const double rod : {1.5, 3., 1.0000001}) {
     add("dead centre rod " + digits(rod), dead_centre(1, rod, 0, 0), {.must = true});
     for (const double spring : {1e-6, 1., 1e6})
