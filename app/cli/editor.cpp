@@ -116,6 +116,7 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
            .state = state_folder()});
   const auto scale = [&] { return options.scale.value_or(std::max(window.content_scale(), 1.f)); };
   Stage stage(app, scale());
+  stage.draft_while_moving(true);
   ImGui::GetIO().ConfigInputTextCursorBlink = false;
   glfwSetWindowUserPointer(window.handle(), &app);
   glfwSetDropCallback(window.handle(), drop_file);
@@ -164,7 +165,7 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
       export_picture(app, size);
       settling = settling_frames;
     }
-    if (ImGui::IsAnyItemActive() || app.files.gallery.drawing || app.movie.progress)
+    if (ImGui::IsAnyItemActive() || app.files.gallery.drawing || app.movie.progress || stage.resting())
       settling = std::max(settling, 1);
     if (title_of(app) != title) window.set_title(title = title_of(app));
     if (!options.state_file.empty()) {

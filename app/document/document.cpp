@@ -11,9 +11,10 @@ Document::Document(Mechanism mechanism, std::filesystem::path file)
   steps_.push_back({"Open", saved_, {}, 0});
 }
 
-bool Document::unsaved() const {
+// Once after every change: comparing thousands of bodies is too much for every frame.
+void Document::compare() {
   const auto& present = steps_[position_].mechanism;
-  return present != saved_ && *present != *saved_;
+  unsaved_ = present != saved_ && *present != *saved_;
 }
 
 void Document::edit(std::string name, Mechanism next, Selection selection, std::uint64_t gesture) {
@@ -30,11 +31,12 @@ void Document::edit(std::string name, Mechanism next, Selection selection, std::
     } else {
       last = std::move(step);
     }
-    return;
+    return compare();
   }
   steps_.push_back(std::move(step));
   if (steps_.size() > most_steps) steps_.erase(steps_.begin());
   position_ = steps_.size() - 1;
+  compare();
 }
 
 void Document::select(Selection selection) {
@@ -59,11 +61,13 @@ void Document::go_to(std::size_t step) {
   position_ = step;
   selection_ = existing(steps_[step].selection, mechanism());
   ++revision_;
+  compare();
 }
 
 void Document::mark_saved(std::filesystem::path file) {
   file_ = std::move(file);
   saved_ = steps_[position_].mechanism;
+  unsaved_ = false;
 }
 
 void Document::recover(Mechanism mechanism) {

@@ -31,7 +31,7 @@ class Document {
   const std::filesystem::path& file() const { return file_; }
   // What is in the file; for a document without one, what it began as.
   const Mechanism& saved() const { return *saved_; }
-  bool unsaved() const; // whether it differs from what is in the file
+  bool unsaved() const { return unsaved_; } // whether it differs from what is in the file
   // Rises whenever the mechanism may have changed.
   std::uint64_t revision() const { return revision_; }
 
@@ -62,12 +62,15 @@ class Document {
   static constexpr std::size_t most_steps = 1000;
 
  private:
+  void compare();
+
   std::vector<Step> steps_;
   std::size_t position_ = 0;
   Selection selection_;
   std::filesystem::path file_;
   std::shared_ptr<const Mechanism> saved_;
   std::uint64_t revision_ = 1;
+  bool unsaved_ = false;
 };
 
 } // namespace flyball

@@ -1,6 +1,7 @@
 #include "app/document/part.hpp"
 
 #include <algorithm>
+#include <array>
 #include <unordered_set>
 
 namespace flyball {
@@ -55,13 +56,18 @@ void Selection::toggle(Part part) {
     add(std::move(part));
 }
 
+namespace {
+
+// Looking for each in turn takes too long where more are selected.
+constexpr std::size_t few = 16;
+
+} // namespace
+
 std::vector<PartId> find_parts(const Mechanism& mechanism, const Selection& selection) {
   std::vector<PartId> found;
   const auto add = [&](PartId id) {
     if (id.kind != PartKind::none) found.push_back(id);
   };
-  // Looking for each in turn takes too long where thousands are selected.
-  constexpr std::size_t few = 16;
   if (selection.parts.size() <= few) {
     for (const Part& part : selection.parts)
       add(find_part(mechanism, part));
@@ -81,8 +87,23 @@ std::vector<PartId> find_parts(const Mechanism& mechanism, const Selection& sele
 }
 
 Selection existing(Selection selection, const Mechanism& mechanism) {
-  std::erase_if(selection.parts,
-                [&](const Part& part) { return find_part(mechanism, part).kind == PartKind::none; });
+  if (selection.parts.size() <= few) {
+    std::erase_if(selection.parts,
+                  [&](const Part& part) { return find_part(mechanism, part).kind == PartKind::none; });
+    return selection;
+  }
+  std::array<std::unordered_set<std::string_view>, 3> names;
+  for (const Body& body : mechanism.bodies)
+    names[0].insert(body.name);
+  for (const Joint& joint : mechanism.joints)
+    names[1].insert(joint.name);
+  for (const Force& force : mechanism.forces)
+    names[2].insert(force.name);
+  constexpr std::array kinds{PartKind::body, PartKind::joint, PartKind::force};
+  std::erase_if(selection.parts, [&](const Part& part) {
+    const auto kind = std::ranges::find(kinds, part.kind);
+    return kind == kinds.end() || !names[static_cast<std::size_t>(kind - kinds.begin())].contains(part.name);
+  });
   return selection;
 }
 

@@ -1,6 +1,6 @@
 #include "app/document/snap_points.hpp"
 
-#include <algorithm>
+#include <map>
 
 namespace flyball {
 namespace {
@@ -8,17 +8,25 @@ namespace {
 class Collector {
  public:
   void add(const Vec3& point, Part part, std::string what) {
-    const auto there = [&](const SnapPoint& other) {
-      constexpr double same = 1e-9;
-      return (other.point - point).norm() <= same * (1 + point.norm());
-    };
-    if (!point.allFinite() || std::ranges::any_of(all_, there)) return;
+    if (!point.allFinite() || there(point)) return;
+    along_.emplace(direction().dot(point), all_.size());
     all_.push_back({point, std::move(part), std::move(what)});
   }
   std::vector<SnapPoint> take() { return std::move(all_); }
 
  private:
+  // Points are sorted along a direction that no mechanism lies across: what is near a point is near it there.
+  static Vec3 direction() { return {0.5671, 0.3907, 0.7250}; }
+  bool there(const Vec3& point) const {
+    const double near = 1e-9 * (1 + point.norm()), at = direction().dot(point);
+    for (auto other = along_.lower_bound(at - near); other != along_.end() && other->first <= at + near;
+         ++other)
+      if ((all_[other->second].point - point).norm() <= near) return true;
+    return false;
+  }
+
   std::vector<SnapPoint> all_;
+  std::multimap<double, std::size_t> along_; // by place along direction()
 };
 
 } // namespace

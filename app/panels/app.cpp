@@ -79,10 +79,10 @@ void take_answer(App& app) {
 void fit_view(App& app, ViewSize size) {
   if (!app.view.fit) return;
   const ViewFrame frame = view_frame(app);
-  Bounds bounds = scene_of(frame).bounds;
-  if (app.view.ghost)
-    for (const Instance& instance : build_ghost(*frame.mechanism, frame.ghost, {}))
-      bounds.add(instance_bounds(instance));
+  const ViewScene& scene = *shown_scene(app);
+  Bounds bounds = scene.solid.bounds;
+  for (const Instance& instance : scene.ghost)
+    bounds.add(instance_bounds(instance));
   if (app.view.keep_direction)
     app.view.camera.fit(bounds, size);
   else
@@ -116,6 +116,7 @@ void open_document(App& app, Document document) {
     app.view.keep_direction = false;
   }
   app.view.hovered = {};
+  app.view.scene = app.view.scene_beside = {}; // revisions begin anew
   app.opened = app.asked + 1;
   take_document(app, true, false);
 }

@@ -11,6 +11,8 @@
 #include "app/panels/movie_state.hpp"
 #include "app/panels/number_text.hpp"
 #include "app/panels/parameter_list.hpp"
+#include "app/panels/shown_rate.hpp"
+#include "app/panels/shown_scene.hpp"
 #include "app/panels/study_state.hpp"
 #include "app/panels/tool_state.hpp"
 #include "app/panels/widget_map.hpp"
@@ -23,6 +25,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,6 +56,7 @@ struct ViewState {
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
   PartId hovered;
   Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found
+  ShownScene scene, scene_beside;       // see shown_scene()
   unsigned texture = 0;                 // OpenGL's, with the picture of the view
   unsigned texture_beside = 0;          // the same of the motion, where it has a view of its own
 };
@@ -69,6 +73,7 @@ struct PanelState {
   float study_share = 0.42f; // of the height, for the studies below the view
   bool dampers = true;
   bool torques = true, reactions = false, eigenvalues = false, system = false;
+  std::map<std::string, KeptRates> rates; // by the slider's address
 };
 
 // A key that went down. Kept as it happened: Dear ImGui 1.86 only sees which keys are down when a frame

@@ -38,8 +38,21 @@ void coordinate_results(App& app) {
   const auto free = std::ranges::count(all, false, &CoordinateSolution::driven);
   if (free == 0) return;
   heading(app, "Where it settles");
-  for (const CoordinateSolution& c : all)
-    if (!c.driven) free_coordinate(app, c, free > spacious);
+  if (free <= spacious) {
+    for (const CoordinateSolution& c : all)
+      if (!c.driven) free_coordinate(app, c, false);
+    return;
+  }
+  // Of thousands only those that are in sight; the driven ones among them, which are few, take no line.
+  auto next = all.begin();
+  std::ptrdiff_t passed = 0; // free ones before `next`
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(free));
+  while (clipper.Step())
+    for (; next != all.end() && passed < clipper.DisplayEnd; ++next) {
+      if (next->driven) continue;
+      if (passed++ >= clipper.DisplayStart) free_coordinate(app, *next, true);
+    }
 }
 
 } // namespace flyball

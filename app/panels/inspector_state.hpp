@@ -2,7 +2,10 @@
 #pragma once
 
 #include "app/document/part.hpp"
+#include "app/viewport/theme.hpp"
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -35,6 +38,15 @@ struct Scrub {
   float travelled = 0;        // pixels
 };
 
+// Of the outline, kept while the mechanism and what is searched for stay the same.
+struct OutlineRows {
+  std::uint64_t revision = 0; // of the document; 0: nothing is kept
+  Theme theme = Theme::light;
+  std::string search;
+  std::vector<Color> colours;                // of the bodies
+  std::array<std::vector<PartId>, 3> listed; // bodies, joints, forces
+};
+
 struct InspectorState {
   bool history = false;   // the list of steps is shown
   int history_shown = -1; // the step last brought into view there
@@ -45,7 +57,8 @@ struct InspectorState {
   std::optional<double> plain;                   // what was typed in a field outside the document
   std::map<std::string, bool, std::less<>> open; // sections that were opened or closed by hand
 
-  std::string search;        // in the outline
+  std::string search; // in the outline
+  OutlineRows rows;
   float missing_height = 0;  // pixels, of what is missing below the outline
   std::string choice_search; // in the open list of names
   Part anchor, revealed;     // where a range of rows begins; the last one brought into view

@@ -33,13 +33,14 @@ void drive_torques(App& app) {
   double largest = 0;
   for (const DriveTorque& t : torques)
     largest = std::max(largest, std::abs(t.value));
-  for (const DriveTorque& t : torques) {
+  visible_rows(torques.size(), [&](std::size_t i) {
+    const DriveTorque& t = torques[i];
     const std::string name = coordinate_label(t);
     row(app, t.varying ? name + " (varies)" : name, force_text(t.value, largest, app.options.numbers),
         t.angle ? "N m" : "N",
         t.varying ? "Changes as the drives turn; at the drawn phase."
                   : "By the drive, positive along its coordinate.");
-  }
+  });
 }
 
 void reactions(App& app) {
@@ -56,12 +57,15 @@ void reactions(App& app) {
     force = std::max(force, r.force.lpNorm<Eigen::Infinity>());
     torque = std::max(torque, r.torque.lpNorm<Eigen::Infinity>());
   }
-  for (const Reaction& r : solution.reactions) {
+  // Torques of a mechanism that has none are round-off of its forces.
+  const bool torques = torque > 1e-9 * force;
+  const std::size_t rows = torques ? 2 : 1;
+  visible_rows(rows * solution.reactions.size(), [&](std::size_t i) {
+    const Reaction& r = solution.reactions[i / rows];
+    if (i % rows == 1) return row(app, "", vector_text(r.torque, torque), "N m");
     row(app, r.varying ? r.joint + " (varies)" : r.joint, vector_text(r.force, force), "N",
         r.varying ? "Changes as the drives turn; at the drawn phase." : nullptr);
-    // Torques of a mechanism that has none are round-off of its forces.
-    if (torque > 1e-9 * force) row(app, "", vector_text(r.torque, torque), "N m");
-  }
+  });
 }
 
 } // namespace

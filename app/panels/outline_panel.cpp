@@ -52,12 +52,12 @@ struct PartOrder {
 // What all rows of a frame share.
 struct Outline {
   App& app;
-  std::vector<PartId> rows; // in order, those of closed sections left out
-  std::vector<Color> colours;
+  std::array<bool, 3> open{}; // sections
   std::map<Part, std::size_t, PartOrder> mistakes;
   float height = 0;
 
   const Mechanism& mechanism() const { return app.mechanism(); }
+  const OutlineRows& kept() const { return app.inspector.rows; }
 };
 
 std::size_t count_of(const Mechanism& mechanism, PartKind kind) {
@@ -81,6 +81,33 @@ std::string kind_words(const Mechanism& mechanism, PartId id) {
   return damper ? "damper" : std::string(type_name(force.type));
 }
 
+// In order, those of closed sections left out.
+std::vector<PartId> open_rows(const Outline& outline) {
+  std::vector<PartId> rows;
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    if (const std::vector<PartId>& listed = outline.kept().listed[i]; outline.open[i])
+      rows.insert(rows.end(), listed.begin(), listed.end());
+  return rows;
+}
+
+void keep_rows(App& app) {
+  OutlineRows& kept = app.inspector.rows;
+  const std::string& search = app.inspector.search;
+  if (kept.revision == app.document.revision() && kept.theme == app.theme && kept.search == search) return;
+  kept.revision = app.document.revision();
+  kept.theme = app.theme;
+  kept.search = search;
+  kept.colours = body_colors(app.mechanism(), app.theme);
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    kept.listed[i].clear();
+    const int count = static_cast<int>(count_of(app.mechanism(), sections[i].kind));
+    for (int k = 0; k < count; ++k)
+      if (const PartId id{sections[i].kind, k};
+          search.empty() || matches(name_of(app.mechanism(), id), search))
+        kept.listed[i].push_back(id);
+  }
+}
+
 void choose(Outline& outline, const Part& part) {
   App& app = outline.app;
   const ImGuiIO& io = ImGui::GetIO();
@@ -88,9 +115,10 @@ void choose(Outline& outline, const Part& part) {
   InspectorState& state = app.inspector;
   if (io.KeyShift && state.anchor.kind != PartKind::none) {
     const PartId anchor = find_part(outline.mechanism(), state.anchor);
-    const auto row = [&](PartId id) { return std::ranges::find(outline.rows, id); };
+    const std::vector<PartId> rows = open_rows(outline);
+    const auto row = [&](PartId id) { return std::ranges::find(rows, id); };
     auto from = row(anchor), to = row(find_part(outline.mechanism(), part));
-    if (from != outline.rows.end() && to != outline.rows.end()) {
+    if (from != rows.end() && to != rows.end()) {
       if (to < from) std::swap(from, to);
       if (!io.KeyCtrl) selection = {};
       // By hand, as asking for each whether it is there would take too long for thousands.
@@ -137,7 +165,7 @@ void draw_sign(const Outline& outline, PartId id, ImVec2 at) {
   const ImVec2 middle(at.x + r, at.y);
   const auto i = static_cast<std::size_t>(id.index);
   if (id.kind == PartKind::body) {
-    Color color = outline.colours[i];
+    Color color = outline.kept().colours[i];
     const Body& body = outline.mechanism().bodies[i];
     if (!body.shapes.empty() && body.shapes.front().color) {
       const auto& own = *body.shapes.front().color;
@@ -223,29 +251,23 @@ void part_row(Outline& outline, PartId id) {
   ImGui::SetCursorScreenPos({from.x, from.y + outline.height});
 }
 
-void part_section(Outline& outline, const SectionWords& words) {
+void part_section(Outline& outline, std::size_t section) {
   App& app = outline.app;
+  const SectionWords& words = sections[section];
   const std::size_t count = count_of(outline.mechanism(), words.kind);
   if (count == 0) return;
-  std::vector<PartId> shown;
-  for (int i = 0; i < static_cast<int>(count); ++i)
-    if (const PartId id{words.kind, i};
-        app.inspector.search.empty() || matches(name_of(outline.mechanism(), id), app.inspector.search))
-      shown.push_back(id);
+  const std::vector<PartId>& shown = outline.kept().listed[section];
   const std::string title = std::string(words.title) + "   " + std::to_string(count);
   const Part& last = app.selection().empty() ? Part{} : app.selection().parts.back();
   const bool reveal = last.kind == words.kind && last != app.inspector.revealed;
   if (reveal) app.inspector.open[std::string("outline/") + words.list] = true;
   if (!inspector_section(app, std::string("outline/") + words.list, title.c_str(), true)) return;
-  const auto first = static_cast<std::ptrdiff_t>(outline.rows.size());
-  outline.rows.insert(outline.rows.end(), shown.begin(), shown.end());
+  outline.open[section] = true;
   if (reveal) {
-    const auto row =
-        std::find(outline.rows.begin() + first, outline.rows.end(), find_part(outline.mechanism(), last));
-    const float y =
-        ImGui::GetCursorPosY() + static_cast<float>(row - outline.rows.begin() - first) * outline.height;
+    const auto row = std::ranges::find(shown, find_part(outline.mechanism(), last));
+    const float y = ImGui::GetCursorPosY() + static_cast<float>(row - shown.begin()) * outline.height;
     const float top = ImGui::GetScrollY(), room = ImGui::GetWindowHeight();
-    if (row != outline.rows.end() && (y < top || y + 2 * outline.height > top + room))
+    if (row != shown.end() && (y < top || y + 2 * outline.height > top + room))
       ImGui::SetScrollY(std::max(y - room / 2, 0.f));
     app.inspector.revealed = last;
   }
@@ -297,16 +319,19 @@ void outline_panel(App& app, const PanelRect& rect) {
   const float footer = app.mistakes.empty() ? 0 : app.inspector.missing_height;
   const float room = ImGui::GetContentRegionAvail().y;
   ImGui::BeginChild("parts", {0, std::max(room - footer, room / 3)}, false, quiet);
-  Outline outline{app, {}, body_colors(app.mechanism(), app.theme), {}, 0};
+  keep_rows(app);
+  Outline outline{app, {}, {}, 0};
   outline.height = ImGui::GetTextLineHeight() + 8 * app.scale;
   for (std::size_t i = 0; i < app.mistakes.size(); ++i)
     if (Part part = part_of(app.mechanism(), app.mistakes[i]); part.kind != PartKind::none)
       outline.mistakes.emplace(std::move(part), i);
-  for (const SectionWords& words : sections)
-    part_section(outline, words);
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    part_section(outline, i);
   const bool none = app.mechanism().bodies.empty() && app.mechanism().joints.empty();
   if (none) paragraph("The parts of the mechanism are listed here.", colors_of(app).dim);
-  if (!none && outline.rows.empty() && !app.inspector.search.empty())
+  const bool found =
+      std::ranges::any_of(outline.kept().listed, [](const auto& rows) { return !rows.empty(); });
+  if (!none && !found && !app.inspector.search.empty())
     paragraph("No part is called so.", colors_of(app).dim);
   // A click beside the rows selects nothing.
   if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())

@@ -64,10 +64,7 @@ void verdict(App& app) {
 void neutral_joints(App& app) {
   const std::vector<std::string>& neutral = app.answer.solution.neutral;
   if (neutral.empty()) return;
-  std::string names;
-  for (const std::string& name : neutral)
-    names += (names.empty() ? "" : ", ") + name;
-  row(app, "Nothing resists", names, "",
+  row(app, "Nothing resists", name_list(neutral), "",
       "Joints that take part in a direction in which the mechanism stands anywhere.");
 }
 

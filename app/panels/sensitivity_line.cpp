@@ -43,21 +43,38 @@ std::string signed_text(double value) {
   return (value > 0 ? "+" : "") + short_text(value, 3);
 }
 
+bool has_rates(const App& app) {
+  return converged(app) && (!solving(app) || app.waited <= patience);
+}
+
+const std::vector<ShownRate>& kept_rates(App& app, const ParameterControl& control) {
+  KeptRates& kept = app.panels.rates[control.address];
+  if (kept.ticket != app.answer.ticket || kept.value != control.value || kept.from != control.from ||
+      kept.to != control.to)
+    kept = {app.answer.ticket, control.value, control.from, control.to, shown_rates(app, control.address)};
+  return kept.rates;
+}
+
 } // namespace
 
 std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
   std::vector<ShownRate> out;
-  if (!converged(app) || (solving(app) && app.waited > patience)) return out;
+  if (!has_rates(app)) return out;
   const Solution& solution = app.answer.solution;
   const auto found = std::ranges::find(solution.sensitivities, address, &Sensitivity::address);
   const auto control = std::ranges::find(app.parameters, address, &ParameterControl::address);
   if (found == solution.sensitivities.end() || control == app.parameters.end()) return out;
   const double size = reach(app.answer.mechanism);
+  // Rates come in the order of the coordinates: each is looked for from where the last was found.
+  auto from = solution.coordinates.begin();
   for (const Sensitivity::Rate& rate : found->rates) {
-    const auto c = std::ranges::find_if(solution.coordinates, [&](const CoordinateSolution& each) {
+    const auto same = [&](const CoordinateSolution& each) {
       return each.joint == rate.joint && each.index == rate.index;
-    });
+    };
+    auto c = std::find_if(from, solution.coordinates.end(), same);
+    if (c == solution.coordinates.end()) c = std::find_if(solution.coordinates.begin(), from, same);
     if (c == solution.coordinates.end() || c->driven) continue;
+    from = c;
     ShownRate shown;
     shown.name = coordinate_label(rate);
     shown.value = rate.value * screen_factor(c->angle);
@@ -80,7 +97,8 @@ void sensitivity_line(App& app, const ParameterControl& control) {
   const float width = ImGui::GetContentRegionAvail().x, height = sensitivity_height(app);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::Dummy({std::max(width, 1.f), height});
-  const std::vector<ShownRate> rates = shown_rates(app, control.address);
+  if (!has_rates(app)) return;
+  const std::vector<ShownRate>& rates = kept_rates(app, control);
   if (rates.empty()) return;
   const std::string name = "parameters/" + control.address + "/rate";
   note_widget(app.widgets, name);

@@ -3,16 +3,9 @@
 #pragma once
 
 #include "app/panels/app.hpp"
+#include "app/panels/shown_rate.hpp"
 
 namespace flyball {
-
-// One coordinate's rate with the number, as it is shown.
-struct ShownRate {
-  std::string name; // of the coordinate
-  double value = 0; // in `unit`
-  std::string unit; // "mm/(rad/s)"
-  double share = 0; // of the mechanism's reach or of a radian: to tell which moves most
-};
 
 // By how much they move, the most first. Empty without a steady state, at a singular one, and for what is no
 // slider.

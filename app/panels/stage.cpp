@@ -11,32 +11,22 @@ namespace flyball {
 namespace {
 
 constexpr float text_size = 16; // points
+constexpr int many_solids = 3000;
+constexpr std::chrono::milliseconds rest{250}; // without movement, until a draft is drawn in full
 
-ViewKey key_of(const App& app, const ViewFrame& frame, PixelSize size) {
+ViewKey key_of(const App& app, const ViewFrame& frame, const std::shared_ptr<const ViewScene>& scene,
+               PixelSize size) {
   ViewKey key;
   key.size = size;
   key.samples = app.view.samples;
-  key.ghost = app.view.ghost;
-  key.grid = app.view.grid;
-  key.shadow = app.view.shadow;
-  key.mode = app.mode;
-  // While exploring, the picture waits for the answer.
-  if (app.mode == Mode::build || !app.answer.ticket) key.revision = app.document.revision();
-  key.selection = app.selection();
-  key.theme = app.theme;
-  key.scale = app.scale;
-  key.hovered = app.view.hovered;
-  const ViewCamera& c = frame.camera;
-  key.camera = {c.target.x(), c.target.y(), c.target.z(), c.distance, c.azimuth,
-                c.elevation,  c.up.x(),     c.up.y(),     c.up.z()};
-  key.ticket = app.answer.ticket;
-  key.poses.reserve(7 * (frame.poses.size() + frame.motion.size()));
-  for (const std::span<const Pose> poses : {frame.poses, frame.motion})
-    for (const Pose& pose : poses) {
-      key.poses.insert(key.poses.end(), pose.position.begin(), pose.position.end());
-      const auto& q = pose.rotation.coeffs();
-      key.poses.insert(key.poses.end(), q.begin(), q.end());
-    }
+  key.grid = frame.options.grid;
+  key.shadow = frame.options.shadow;
+  key.scene = scene;
+  key.selected = frame.selected;
+  key.theme = frame.theme;
+  key.scale = frame.options.scale;
+  key.hovered = frame.hovered;
+  key.camera = frame.camera;
   return key;
 }
 
@@ -80,9 +70,10 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   const Layout layout = layout_of(app, width, height);
   const PanelRect& view = layout.view;
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
-  app.view.texture = draw_view(app, view_, view_frame(app), pixels_of(view));
+  app.view.texture = draw_view(app, view_, view_frame(app), shown_scene(app), pixels_of(view));
   if (layout.beside.width > 0)
-    app.view.texture_beside = draw_view(app, beside_, motion_frame(app), pixels_of(layout.beside));
+    app.view.texture_beside =
+        draw_view(app, beside_, motion_frame(app), motion_scene(app), pixels_of(layout.beside));
   else
     beside_ = {};
   scene_pictures_.update(app, view_renderer_);
@@ -105,15 +96,30 @@ void Stage::render(const App& app, PixelSize size) {
   renderer_.draw(*ImGui::GetDrawData());
 }
 
-unsigned Stage::draw_view(const App& app, View& view, const ViewFrame& frame, PixelSize size) {
-  ViewKey key = key_of(app, frame, size);
-  if (view.target && key == view.drawn) return view.target->texture();
-  if (!view.target || size != view.drawn.size || key.samples != view.drawn.samples)
-    view.target.emplace(size.width, size.height, key.samples);
-  view_renderer_.draw(frame, *view.target);
+unsigned Stage::draw_view(const App& app, View& view, const ViewFrame& shown,
+                          const std::shared_ptr<const ViewScene>& scene, PixelSize size) {
+  ViewKey key = key_of(app, shown, scene, size);
+  const auto now = std::chrono::steady_clock::now();
+  if (key.samples != view.drawn.samples) {
+    view.target.reset();
+    view.quick.reset();
+  }
+  const bool changed = !view.target || !(key == view.drawn);
+  if (!changed && !view.draft) return view.target->texture();
+  if (changed) view.moved = now;
+  const bool moving = view.target && (changed || now - view.moved < rest);
+  const bool draft = drafts_ && moving && key.samples > 1 && view.solids > many_solids && draws_in_software();
+  if (!changed && draft) return view.quick->texture();
+  std::optional<Framebuffer>& target = draft ? view.quick : view.target;
+  if (!target || target->width() != size.width || target->height() != size.height)
+    target.emplace(size.width, size.height, draft ? 1 : key.samples);
+  ViewFrame frame = shown;
+  frame.options.draft = draft;
+  view.solids = view_renderer_.draw(frame, scene, *target).drawn;
   view.drawn = std::move(key);
+  view.draft = draft;
   ++views_drawn_;
-  return view.target->texture();
+  return target->texture();
 }
 
 } // namespace flyball

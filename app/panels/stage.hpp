@@ -7,7 +7,7 @@
 #include "app/panels/scene_pictures.hpp"
 #include "app/render/imgui_renderer.hpp"
 
-#include <array>
+#include <chrono>
 #include <memory>
 
 namespace flyball {
@@ -21,16 +21,13 @@ struct PixelSize {
 struct ViewKey {
   PixelSize size;
   int samples = 0;
-  bool ghost = false, grid = false, shadow = false;
-  Mode mode = Mode::explore;
-  std::uint64_t revision = 0; // of the document, where it is what is drawn
-  Selection selection;
+  bool grid = false, shadow = false;
+  std::shared_ptr<const ViewScene> scene;
+  std::vector<PartId> selected;
   Theme theme = Theme::light;
   float scale = 1;
   PartId hovered;
-  std::array<double, 9> camera{};
-  std::uint64_t ticket = 0;
-  std::vector<double> poses; // seven numbers a body, of all that is shown
+  ViewCamera camera;
   bool operator==(const ViewKey&) const = default;
 };
 
@@ -50,14 +47,22 @@ class Stage {
   void render(const App& app, PixelSize size);
   // How often the 3-D view was drawn so far.
   int views_drawn() const { return views_drawn_; }
+  // Where a view of thousands of bodies is drawn in software, it is drawn without anti-aliasing while it
+  // moves, and in full once it rests: for windows. Frames have to go on while resting() is so.
+  void draft_while_moving(bool on) { drafts_ = on; }
+  bool resting() const { return view_.draft || beside_.draft; }
 
  private:
   // A view of the app, drawn again only where something in it changed; its texture.
   struct View {
-    std::optional<Framebuffer> target;
+    std::optional<Framebuffer> target, quick; // quick: without anti-aliasing
     ViewKey drawn;
+    bool draft = false; // what was drawn last is in `quick`
+    int solids = 0;     // that were in it
+    std::chrono::steady_clock::time_point moved{};
   };
-  unsigned draw_view(const App& app, View& view, const ViewFrame& frame, PixelSize size);
+  unsigned draw_view(const App& app, View& view, const ViewFrame& frame,
+                     const std::shared_ptr<const ViewScene>& scene, PixelSize size);
 
   ImGuiContext* former_; // that was current before
   std::unique_ptr<ImGuiContext, void (*)(ImGuiContext*)> context_;
@@ -67,6 +72,7 @@ class Stage {
   MovieExport movie_;
   View view_, beside_;
   int views_drawn_ = 0;
+  bool drafts_ = false;
 };
 
 } // namespace flyball

@@ -17,13 +17,6 @@ void list_of(App& app, const char* title, const std::vector<std::string>& words,
     paragraph(word, color);
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names)
-    text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 } // namespace
 
 void system_results(App& app) {
@@ -35,8 +28,8 @@ void system_results(App& app) {
   row(app, "Coordinates, driven", std::to_string(summary.driven_coordinates), "");
   if (summary.constraint_equations > 0)
     row(app, "Constraint equations", std::to_string(summary.constraint_equations), "");
-  if (!summary.cut_joints.empty()) row(app, "Cut joints", joined(summary.cut_joints), "");
-  if (!summary.implicit_joints.empty()) row(app, "Added joints", joined(summary.implicit_joints), "");
+  if (!summary.cut_joints.empty()) row(app, "Cut joints", name_list(summary.cut_joints), "");
+  if (!summary.implicit_joints.empty()) row(app, "Added joints", name_list(summary.implicit_joints), "");
   for (const std::string& note : summary.notes)
     paragraph(note, colors.dim);
   list_of(app, "In use", summary.in, colors.dim);

@@ -160,6 +160,7 @@ const std::vector<SnapPoint>& cached_snap_points(App& app) {
 }
 
 const SceneList& cached_scene(App& app) {
+  if (app.mode == Mode::build) return shown_scene(app)->solid;
   ToolCaches& cache = app.tool.caches;
   // Marks of cut joints come with the answer.
   if (cache.scene_revision != app.document.revision() || cache.scene_ticket != app.answer.ticket) {

@@ -13,8 +13,7 @@ namespace flyball {
 
 std::optional<Hit> part_under_cursor(App& app, const ViewInput& input) {
   const double slack = 4 * input.point;
-  if (app.mode == Mode::build) return pick(cached_scene(app).instances, input.ray(), slack);
-  return pick(scene_of(view_frame(app)).instances, input.ray(), slack);
+  return pick(shown_scene(app)->solid.instances, input.ray(), slack);
 }
 
 namespace {

@@ -121,6 +121,14 @@ void row(App& app, const std::string& label, const std::string& value, const cha
   help_on_hover(help);
 }
 
+std::string name_list(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 100;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i)
+    text += (i ? ", " : "") + names[i];
+  return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
+}
+
 void paragraph(const std::string& text, const ImVec4& color) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(0);

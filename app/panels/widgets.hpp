@@ -5,6 +5,7 @@
 #include "app/panels/ui_style.hpp"
 
 #include <string>
+#include <vector>
 
 namespace flyball {
 
@@ -32,6 +33,17 @@ float digits_drop(const App& app);
 // "label            value unit": the value in digits. Help appears over the row.
 void row(App& app, const std::string& label, const std::string& value, const char* unit,
          const char* help = nullptr);
+// Draws those of so many rows of one height that are in sight.
+template <class Draw>
+void visible_rows(std::size_t count, const Draw& draw) {
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(count));
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
+      draw(static_cast<std::size_t>(i));
+}
+// "a, b, c": the first of the names, and how many more there are.
+std::string name_list(const std::vector<std::string>& names);
 // Words that may take several lines.
 void paragraph(const std::string& text, const ImVec4& color);
 // Text cut to the width with "..." where it is longer; the whole of it appears over it.

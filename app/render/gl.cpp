@@ -1,5 +1,7 @@
 #include "app/render/gl.hpp"
 
+#include <string_view>
+
 namespace flyball {
 
 namespace {
@@ -26,6 +28,14 @@ GLuint generate(void(GLAD_API_PTR* function)(GLsizei, GLuint*)) {
 void check_gl(const char* during) {
   const GLenum error = glGetError();
   if (error != GL_NO_ERROR) throw GlError(std::string("OpenGL, ") + during + ": " + error_name(error));
+}
+
+bool draws_in_software() {
+  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const std::string_view renderer = name ? name : "";
+  for (const std::string_view known : {"llvmpipe", "softpipe", "SWR", "Software"})
+    if (renderer.find(known) != std::string_view::npos) return true;
+  return false;
 }
 
 GlBuffer make_buffer() {

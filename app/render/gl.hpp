@@ -15,6 +15,9 @@ class GlError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Whether the current context draws on the processor, where every pixel counts.
+bool draws_in_software();
+
 // Throws GlError naming `during` if OpenGL has recorded an error since the last call.
 void check_gl(const char* during);
 

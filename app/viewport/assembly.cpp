@@ -83,41 +83,18 @@ SceneScale scale_of(const Assembly& assembly) {
   return scale;
 }
 
-} // namespace
-
-Assembly::Assembly(const Mechanism& built, std::span<const Pose> in_poses)
-    : mechanism(built), poses(in_poses), attachments(built.bodies.size()) {
-  std::unordered_map<std::string_view, int> index;
-  for (std::size_t i = 0; i < built.bodies.size(); ++i)
-    index.emplace(built.bodies[i].name, static_cast<int>(i));
-  const auto find = [&](std::string_view name) {
-    const auto found = index.find(name);
-    return found == index.end() ? -1 : found->second;
-  };
-  const auto attach = [&](int body, const Attachment& a) {
-    if (body >= 0 && a.at.allFinite()) attachments[static_cast<std::size_t>(body)].push_back(a);
-  };
-  joint_bodies.reserve(built.joints.size());
-  for (std::size_t i = 0; i < built.joints.size(); ++i) {
-    const Joint& joint = built.joints[i];
-    joint_bodies.push_back({find(joint.bodies[0]), find(joint.bodies[1])});
-    if (joint.type == JointType::gear || joint.type == JointType::free) continue;
-    for (int end = 0; end < 2; ++end) {
-      const auto e = static_cast<std::size_t>(end);
-      attach(joint_bodies.back()[e],
-             {joint.type == JointType::distance ? joint.points[e] : joint.at, static_cast<int>(i), end});
-    }
-  }
-  for (const Force& force : built.forces) {
-    const bool spring = force.type == ForceType::spring;
-    force_bodies.push_back(
-        {find(spring ? force.bodies[0] : force.body), spring ? find(force.bodies[1]) : -1});
-    if (spring)
-      for (std::size_t e = 0; e < 2; ++e)
-        attach(force_bodies.back()[e], {force.points[e], -1, static_cast<int>(e)});
-  }
-  scale = scale_of(*this);
+double median_mass(const Mechanism& mechanism) {
+  std::vector<double> masses;
+  masses.reserve(mechanism.bodies.size());
+  for (const Body& body : mechanism.bodies)
+    if (body.mass > 0) masses.push_back(body.mass);
+  if (masses.empty()) return 0;
+  const auto middle = masses.begin() + static_cast<std::ptrdiff_t>(masses.size() / 2);
+  std::nth_element(masses.begin(), middle, masses.end());
+  return *middle;
 }
+
+} // namespace
 
 CoordinateAxis coordinate_axis(const Joint& joint, std::size_t coordinate) {
   const int i = static_cast<int>(coordinate);
@@ -225,9 +202,9 @@ bool on_axis(const Shaft& shaft, const Vec3& drawn, double unit) {
   return (drawn - shaft.origin).cross(shaft.direction).norm() < 0.6 * unit;
 }
 
-std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {
-  if (body < 0) return std::nullopt;
-  const auto b = static_cast<std::size_t>(body);
+namespace {
+
+std::optional<Shaft> find_shaft(const Assembly& assembly, std::size_t b) {
   const std::vector<Attachment>& attachments = assembly.attachments[b];
   const double unit = assembly.scale.unit;
   for (const Attachment& bearing : attachments) {
@@ -279,8 +256,6 @@ std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {
   return std::nullopt;
 }
 
-namespace {
-
 bool on_shaft(const Assembly& assembly, const Joint& joint, int body) {
   const std::optional<Shaft> shaft = shaft_of(assembly, body);
   return shaft && on_axis(*shaft, joint.at, assembly.scale.unit) &&
@@ -288,6 +263,47 @@ bool on_shaft(const Assembly& assembly, const Joint& joint, int body) {
 }
 
 } // namespace
+
+Assembly::Assembly(const Mechanism& built, std::span<const Pose> in_poses)
+    : mechanism(built), poses(in_poses), attachments(built.bodies.size()) {
+  std::unordered_map<std::string_view, int> index;
+  for (std::size_t i = 0; i < built.bodies.size(); ++i)
+    index.emplace(built.bodies[i].name, static_cast<int>(i));
+  const auto find = [&](std::string_view name) {
+    const auto found = index.find(name);
+    return found == index.end() ? -1 : found->second;
+  };
+  const auto attach = [&](int body, const Attachment& a) {
+    if (body >= 0 && a.at.allFinite()) attachments[static_cast<std::size_t>(body)].push_back(a);
+  };
+  joint_bodies.reserve(built.joints.size());
+  for (std::size_t i = 0; i < built.joints.size(); ++i) {
+    const Joint& joint = built.joints[i];
+    joint_bodies.push_back({find(joint.bodies[0]), find(joint.bodies[1])});
+    if (joint.type == JointType::gear || joint.type == JointType::free) continue;
+    for (int end = 0; end < 2; ++end) {
+      const auto e = static_cast<std::size_t>(end);
+      attach(joint_bodies.back()[e],
+             {joint.type == JointType::distance ? joint.points[e] : joint.at, static_cast<int>(i), end});
+    }
+  }
+  for (const Force& force : built.forces) {
+    const bool spring = force.type == ForceType::spring;
+    force_bodies.push_back(
+        {find(spring ? force.bodies[0] : force.body), spring ? find(force.bodies[1]) : -1});
+    if (spring)
+      for (std::size_t e = 0; e < 2; ++e)
+        attach(force_bodies.back()[e], {force.points[e], -1, static_cast<int>(e)});
+  }
+  scale = scale_of(*this);
+  middle_mass = median_mass(built);
+  for (std::size_t i = 0; i < built.bodies.size(); ++i)
+    shafts.push_back(find_shaft(*this, i));
+}
+
+std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {
+  return body < 0 ? std::nullopt : assembly.shafts[static_cast<std::size_t>(body)];
+}
 
 int slider_end(const Assembly& assembly, std::size_t joint) {
   const auto [parent, child] = assembly.joint_bodies[joint];

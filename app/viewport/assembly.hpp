@@ -17,6 +17,17 @@ struct Attachment {
   int end = 0;    // 0: the body is the joint's first, 1: its second
 };
 
+// A body that turns about an axis of ground through its mass centre and all its points (or only the former,
+// where its shapes are given): drawn as a shaft.
+struct Shaft {
+  Vec3 origin = Vec3::Zero();     // m, drawn pose
+  Vec3 direction = Vec3::UnitY(); // unit length, from the end held by ground
+  double from = 0, to = 0;        // m, its ends along `direction`
+  double base = 0;                // m, radius of the given shape that stands on ground; 0 without
+  double base_height = 0;         // m
+  int joint = -1;                 // that it turns in
+};
+
 struct Assembly {
   const Mechanism& mechanism;
   std::span<const Pose> poses;
@@ -24,6 +35,10 @@ struct Assembly {
   std::vector<std::array<int, 2>> force_bodies;     // spring: both; others: the body, then -1
   std::vector<std::vector<Attachment>> attachments; // by body
   SceneScale scale;
+  std::vector<std::optional<Shaft>> shafts; // by body: as what it is drawn, if it is one
+  std::vector<double>
+      balls; // m, by body: radius of the ball drawn about its mass centre, 0 for none; empty until then
+  double middle_mass = 0; // kg, the median of the bodies that have mass
 
   Assembly(const Mechanism& built, std::span<const Pose> in_poses);
 
@@ -52,16 +67,7 @@ struct SlideRange {
 };
 SlideRange slide_range(const Coordinate& coordinate, double unit);
 
-// A body that turns about an axis of ground through its mass centre and all its points (or only the former,
-// where its shapes are given): drawn as a shaft.
-struct Shaft {
-  Vec3 origin = Vec3::Zero();     // m, drawn pose
-  Vec3 direction = Vec3::UnitY(); // unit length, from the end held by ground
-  double from = 0, to = 0;        // m, its ends along `direction`
-  double base = 0;                // m, radius of the given shape that stands on ground; 0 without
-  double base_height = 0;         // m
-  int joint = -1;                 // that it turns in
-};
+// As what a body is drawn, if it is one; ground (-1) is none.
 std::optional<Shaft> shaft_of(const Assembly& assembly, int body);
 // Whether a point of the drawn pose lies on its axis, by the size of glyphs.
 bool on_axis(const Shaft& shaft, const Vec3& drawn, double unit);

@@ -39,14 +39,10 @@ void draw_shape(Sketch& sketch, const Body& body, const Shape& shape, double uni
 }
 
 // Balls grow with the cube root of their mass, within reason.
-double ball_radius(const Mechanism& mechanism, const Body& body, double unit) {
-  std::vector<double> masses;
-  for (const Body& b : mechanism.bodies)
-    if (b.mass > 0) masses.push_back(b.mass);
-  if (masses.empty() || !(body.mass > 0)) return 0.7 * unit;
-  const auto middle = masses.begin() + static_cast<std::ptrdiff_t>(masses.size() / 2);
-  std::nth_element(masses.begin(), middle, masses.end());
-  return 1.9 * unit * std::clamp(std::cbrt(body.mass / *middle), 0.8, 1.5);
+double ball_radius(const Assembly& assembly, const Body& body) {
+  const double unit = assembly.scale.unit;
+  if (!(assembly.middle_mass > 0) || !(body.mass > 0)) return 0.7 * unit;
+  return 1.9 * unit * std::clamp(std::cbrt(body.mass / assembly.middle_mass), 0.8, 1.5);
 }
 
 // The uniform cylinder, ball or box with the body's inertia, shrunk to the size of the glyphs.
@@ -166,11 +162,11 @@ void derive(Sketch& sketch, const Assembly& assembly, std::size_t index) {
   if (drawn.empty()) {
     if (slider > 0) return;
     if (std::any_of(attachments.begin(), attachments.end(), turns)) return draw_inertia(sketch, body, unit);
-    return sketch.sphere(hub, ball_radius(assembly.mechanism, body, unit));
+    return sketch.sphere(hub, ball_radius(assembly, body));
   }
   if (!(body.mass > 0) || slider > 0) return;
   const bool between = drawn.size() > 1 && distance_to_segment(hub, drawn[0], drawn[1]) < 0.5 * unit;
-  sketch.sphere(hub, between ? 0.8 * unit : ball_radius(assembly.mechanism, body, unit));
+  sketch.sphere(hub, between ? 0.8 * unit : ball_radius(assembly, body));
 }
 
 } // namespace
@@ -192,9 +188,24 @@ std::vector<Color> body_colors(const Mechanism& mechanism, Theme theme) {
   return colors;
 }
 
-std::vector<Instance> body_form(const Assembly& assembly, std::size_t index, Color color) {
-  std::vector<Instance> solids;
-  Sketch sketch(solids);
+namespace {
+
+// From the drawn pose to where the body stands.
+void carry(const Assembly& assembly, std::size_t index, std::span<Instance> solids) {
+  const Body& body = assembly.mechanism.bodies[index];
+  const Pose& pose = assembly.poses[index];
+  const Quat turn = pose.rotation * body.rotation.normalized().conjugate();
+  for (Instance& solid : solids) {
+    solid.position = pose.position + turn * (solid.position - body.position);
+    solid.rotation = turn * solid.rotation;
+  }
+}
+
+} // namespace
+
+void add_body(const Assembly& assembly, std::size_t index, Color color, std::vector<Instance>& list) {
+  const std::size_t first = list.size();
+  Sketch sketch(list);
   sketch.pen = {color, Surface::plain, Role::body, {PartKind::body, static_cast<int>(index)}};
   const Body& body = assembly.mechanism.bodies[index];
   for (const Shape& shape : body.shapes) {
@@ -206,17 +217,7 @@ std::vector<Instance> body_form(const Assembly& assembly, std::size_t index, Col
     draw_shape(sketch, body, shape, assembly.scale.unit);
   }
   if (body.shapes.empty()) derive(sketch, assembly, index);
-  return solids;
-}
-
-void carry(const Assembly& assembly, std::size_t index, std::vector<Instance>& solids) {
-  const Body& body = assembly.mechanism.bodies[index];
-  const Pose& pose = assembly.poses[index];
-  const Quat turn = pose.rotation * body.rotation.normalized().conjugate();
-  for (Instance& solid : solids) {
-    solid.position = pose.position + turn * (solid.position - body.position);
-    solid.rotation = turn * solid.rotation;
-  }
+  carry(assembly, index, std::span(list).subspan(first));
 }
 
 } // namespace flyball

@@ -10,8 +10,7 @@ namespace flyball {
 // One colour a body: bodies whose names differ in a trailing number only ("ball1", "ball2") share a hue.
 std::vector<Color> body_colors(const Mechanism& mechanism, Theme theme);
 
-// Solids in the drawn pose; carry() brings them to where the body stands.
-std::vector<Instance> body_form(const Assembly& assembly, std::size_t body, Color color);
-void carry(const Assembly& assembly, std::size_t body, std::vector<Instance>& solids);
+// Adds the body's solids to the list, where it stands.
+void add_body(const Assembly& assembly, std::size_t body, Color color, std::vector<Instance>& list);
 
 } // namespace flyball

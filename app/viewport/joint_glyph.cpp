@@ -50,7 +50,8 @@ Rank rank_on_pin(const Assembly& assembly, std::size_t index) {
   const auto [parent, child] = assembly.joint_bodies[index];
   const int body = parent >= 0 ? parent : child;
   Rank rank{0, 0};
-  if (body < 0) return {};
+  constexpr std::size_t most = 200; // that anybody could tell apart
+  if (body < 0 || assembly.attachments[static_cast<std::size_t>(body)].size() > most) return {};
   for (const Attachment& a : assembly.attachments[static_cast<std::size_t>(body)]) {
     if (a.joint < 0) continue;
     const Joint& other = assembly.joint(a.joint);
@@ -165,6 +166,14 @@ void draw_spherical(Sketch& sketch, const Assembly& assembly, const Place& p, co
   if (p.parent < 0) draw_anchor(sketch, p.at + 1.6 * u * bottom, -bottom, 2 * u, u, colors);
 }
 
+// Whether a ball of this radius at a point (m, world) is all inside that of a body, as in a net of thousands
+// of them.
+bool within_ball(const Assembly& assembly, int body, const Vec3& at, double radius) {
+  if (body < 0 || assembly.balls.empty()) return false;
+  const auto i = static_cast<std::size_t>(body);
+  return (at - assembly.poses[i].position).norm() + radius < assembly.balls[i];
+}
+
 void draw_distance(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
   const Joint& joint = assembly.mechanism.joints[index];
   const auto [first, second] = assembly.joint_bodies[index];
@@ -174,10 +183,10 @@ void draw_distance(Sketch& sketch, const Assembly& assembly, std::size_t index, 
   sketch.pen.color = colors.metal;
   sketch.rod(a, b, 0.32 * u);
   sketch.pen.color = colors.metal_dark;
-  sketch.sphere(a, 0.68 * u);
-  sketch.sphere(b, 0.68 * u);
-  for (const auto& [body, at] : {std::pair(first, a), std::pair(second, b)})
+  for (const auto& [body, at] : {std::pair(first, a), std::pair(second, b)}) {
+    if (!within_ball(assembly, body, at, 0.68 * u)) sketch.sphere(at, 0.68 * u);
     if (body < 0) draw_anchor(sketch, at, -assembly.scale.up, 1.6 * u, u, colors);
+  }
 }
 
 void draw_gear(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {

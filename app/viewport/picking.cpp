@@ -66,10 +66,15 @@ struct Pass {
 
 // Walks along the ray by the distance that is surely free (sphere tracing).
 std::optional<Pass> pass_by(const Instance& instance, const Ray& ray, double slack) {
+  const auto pixel = [&](double along) { return ray.pixel_base + ray.pixel * std::max(along, 0.0); };
+  // Most instances are nowhere near: a ball round each tells soonest.
+  const double reach = instance.extent.norm() + instance.round;
+  const double toward = ray.direction.dot(instance.position - ray.origin);
+  const double aside = (ray.origin + toward * ray.direction - instance.position).norm();
+  if (toward + reach < 0 || aside > reach + slack * pixel(toward + reach)) return std::nullopt;
   const Bounds box = instance_bounds(instance);
   const double radius = box.radius();
   const double middle = ray.direction.dot(box.center() - ray.origin);
-  const auto pixel = [&](double along) { return ray.pixel_base + ray.pixel * std::max(along, 0.0); };
   const double gap = (ray.origin + middle * ray.direction - box.center()).norm();
   if (middle + radius < 0 || gap > radius + slack * pixel(middle + radius)) return std::nullopt;
   Pass nearest{0, std::numeric_limits<double>::infinity()};

@@ -19,8 +19,8 @@ struct Hit {
 // The nearest part the ray meets; where it meets none, the one it passes closest by within `slack` pixels.
 std::optional<Hit> pick(std::span<const Instance> instances, const Ray& ray, double slack = 4);
 
-// Signed distance (m) of a point from the instance's surface, negative within; coils, spirals and gears count as
-// the solid they sweep.
+// Signed distance (m) of a point from the instance's surface, negative within; coils, spirals and gears count
+// as the solid they sweep.
 double surface_distance(const Instance& instance, const Vec3& point);
 
 } // namespace flyball

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 
 namespace flyball {
@@ -14,7 +15,11 @@ constexpr double tau = 2 * std::numbers::pi;
 class Builder {
  public:
   std::uint32_t add(const Vec3& core, const Vec3& normal) {
-    const Vec3 n = normal.normalized();
+    // Where a turn closes, sines and cosines come back to almost the same.
+    const auto tidy = [](const Vec3& v) { return Vec3((v.array() * 1e7).round() / 1e7 + 0.0); };
+    return add_vertex(tidy(core), tidy(normal.normalized()));
+  }
+  std::uint32_t add_vertex(const Vec3& core, const Vec3& n) {
     mesh.vertices.push_back(
         {{float(core.x()), float(core.y()), float(core.z())}, {float(n.x()), float(n.y()), float(n.z())}});
     return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
@@ -49,7 +54,23 @@ class Builder {
                   {mesh.indices[i], mesh.indices[i + (turned ? 2 : 1)], mesh.indices[i + (turned ? 1 : 2)]});
     }
     mesh.indices = std::move(kept);
+    weld();
     return std::move(mesh);
+  }
+
+  // Vertices that are alike become one, as at the poles of a sphere; those that no triangle uses go.
+  void weld() {
+    std::map<std::array<float, 6>, std::uint32_t> places;
+    std::vector<PrimitiveVertex> vertices;
+    for (std::uint32_t& index : mesh.indices) {
+      const PrimitiveVertex& v = mesh.vertices[index];
+      const auto added = static_cast<std::uint32_t>(vertices.size());
+      const auto [place, is_new] =
+          places.try_emplace({v.core[0], v.core[1], v.core[2], v.normal[0], v.normal[1], v.normal[2]}, added);
+      if (is_new) vertices.push_back(v);
+      index = place->second;
+    }
+    mesh.vertices = std::move(vertices);
   }
 
   PrimitiveMesh mesh;
@@ -189,10 +210,87 @@ CurvePoint flat_spiral(double t) {
   return {r * out, out, Vec3::UnitZ()};
 }
 
+// Of a regular polygon as large as the circle: its corners' distance from the middle.
+double equal_area(int sides) {
+  const double step = tau / sides;
+  return std::sqrt(step / std::sin(step));
+}
+
+// The cylinder of a few sides between two heights, its ends flat, that stands for all that is about as thick
+// all along: what is this small shows no more of itself.
+PrimitiveMesh prism(int sides, double radius, double low, double high) {
+  const double slant = std::sqrt(0.5);
+  return lathe({{0, low, 0, -1}, {radius, low, slant, -slant}, {radius, high, slant, slant}, {0, high, 0, 1}},
+               sides);
+}
+
+// Half of a ball or rod as it is seen, drawn tight over its outline; the normals lean to the eye, as if it
+// bulged. `z` is the rod's axis and `up` points to the eye.
+PrimitiveMesh flat(Primitive primitive, int detail) {
+  const int sides = detail_sides[static_cast<std::size_t>(detail)];
+  const double grown = equal_area(sides), lean = detail > 1 ? 0.3 : 0.7;
+  PrimitiveMesh mesh;
+  const auto corner = [&](double end, double x, double y, double z) {
+    mesh.vertices.push_back({{0, 0, float(end)}, {float(x), float(y), float(z)}});
+  };
+  const auto count = [&] { return static_cast<std::uint32_t>(mesh.vertices.size()); };
+  const bool ball = primitive == Primitive::sphere;
+  if (ball) {
+    if (detail > 1) corner(0, 0, 0, 1);
+    for (int i = 0; i < sides; ++i)
+      corner(0, grown * std::cos(tau * i / sides), grown * std::sin(tau * i / sides), lean);
+  } else {
+    // Round each end from one side to the other, the middle of it last.
+    const int steps = std::array{1, 2, 4}[static_cast<std::size_t>(detail)];
+    for (const double end : {-1.0, 1.0}) {
+      for (int i = 0; i <= steps; ++i) {
+        const double a = std::numbers::pi * i / steps;
+        corner(end, -end * std::cos(a), lean, steps > 1 ? end * std::sin(a) : 0);
+      }
+      if (detail > 1) corner(end, 0, 1, 0);
+    }
+  }
+  const auto fan = [&](std::uint32_t middle, std::uint32_t from, std::uint32_t to) {
+    for (std::uint32_t i = from + 1; i <= to; ++i)
+      mesh.indices.insert(mesh.indices.end(), {middle, i - 1, i});
+  };
+  const std::uint32_t last = count() - 1, half = count() / 2;
+  if (detail < 2) {
+    fan(0, 1, last);
+  } else if (ball) {
+    fan(0, 1, last);
+    mesh.indices.insert(mesh.indices.end(), {0, last, 1});
+  } else {
+    const std::uint32_t low = half - 1, high = last; // the ridge
+    fan(low, 0, low - 1);
+    fan(high, half, high - 1);
+    mesh.indices.insert(mesh.indices.end(),
+                        {low, low - 1, half, low, half, high, high, high - 1, 0, high, 0, low});
+  }
+  return mesh;
+}
+
+PrimitiveMesh coarse_solid(Primitive primitive, int detail) {
+  const int sides = detail_sides[static_cast<std::size_t>(detail)];
+  const double grown = equal_area(sides);
+  switch (primitive) {
+  case Primitive::sphere:
+  case Primitive::capsule: return flat(primitive, detail);
+  case Primitive::cone: return turned_solid(primitive, sides, 1);
+  case Primitive::bowl: return turned_solid(primitive, sides, 1 + detail);
+  case Primitive::cylinder:
+  case Primitive::tube:
+  case Primitive::gear: return prism(sides, grown, -1, 1);
+  default: return prism(sides, 0.8 * grown, 0, 1); // coils
+  }
+}
+
+// `rounding` 0: sharp.
 PrimitiveMesh rounded_box(int rounding) {
   Builder b;
   const int columns = 2 * rounding + 2;
   const auto coordinate = [&](int i) {
+    if (rounding == 0) return i == 0 ? -1.0 : 1.0;
     if (i <= rounding) return std::tan(-0.5 * quarter * (rounding - i) / rounding);
     return std::tan(0.5 * quarter * (i - rounding - 1) / rounding);
   };
@@ -243,10 +341,12 @@ PrimitiveMesh toothed_disc() {
   return b.finish();
 }
 
-PrimitiveMesh swept(Primitive primitive, bool fine) {
+PrimitiveMesh swept(Primitive primitive, int detail) {
   Builder b;
-  const int around = fine ? 10 : 5;
-  const int circle_steps = fine ? 64 : 24, coil_steps = static_cast<int>(coil_turns) * (fine ? 28 : 10);
+  const auto level = static_cast<std::size_t>(detail);
+  const int around = std::array{3, 4, 5, 6, 8, 10}[level];
+  const int circle_steps = std::array{8, 12, 20, 28, 44, 64}[level];
+  const int coil_steps = static_cast<int>(coil_turns) * std::array{0, 6, 8, 12, 20, 28}[level];
   switch (primitive) {
   case Primitive::ring: sweep(b, circle, 0, 1, circle_steps, around, false); break;
   case Primitive::arc: sweep(b, circle, 0, 0.75, circle_steps, around, true); break;
@@ -263,20 +363,23 @@ PrimitiveMesh swept(Primitive primitive, bool fine) {
 
 } // namespace
 
-PrimitiveMesh primitive_mesh(Primitive primitive, int detail) {
-  const auto level = static_cast<std::size_t>(std::clamp(detail, 0, 2));
-  const int sides = std::array{8, 16, 40}[level], rounding = std::array{2, 4, 10}[level];
+PrimitiveMesh primitive_mesh(Primitive primitive, int wanted) {
+  const int detail = std::clamp(wanted, 0, finest_detail);
+  const auto level = static_cast<std::size_t>(detail);
+  const int rounding = std::array{0, 1, 1, 2, 2, 4}[level];
   switch (primitive) {
-  case Primitive::box: return rounded_box(detail > 1 ? 4 : 1);
-  case Primitive::gear: return toothed_disc();
+  case Primitive::box: return rounded_box(rounding);
   case Primitive::ring:
   case Primitive::arc:
   case Primitive::broken_ring:
+  case Primitive::spiral: return swept(primitive, detail);
   case Primitive::coil:
-  case Primitive::open_coil:
-  case Primitive::spiral: return swept(primitive, detail > 1);
-  default: return turned_solid(primitive, sides, rounding);
+  case Primitive::open_coil: return detail > 0 ? swept(primitive, detail) : coarse_solid(primitive, detail);
+  case Primitive::gear: return detail > 1 ? toothed_disc() : coarse_solid(primitive, detail);
+  default: break;
   }
+  if (detail < 2 || is_flat(primitive, detail)) return coarse_solid(primitive, detail);
+  return turned_solid(primitive, detail_sides[level], std::array{1, 1, 2, 4, 6, 10}[level]);
 }
 
 } // namespace flyball

@@ -19,9 +19,18 @@ struct PrimitiveMesh {
   std::vector<std::uint32_t> indices; // three a triangle, counter-clockwise seen from outside
 };
 
-// `detail` 2 is smooth from near; 1 and 0 have about a fifth and a twentieth of the triangles, for thousands
-// of bodies.
+// `detail` from 0 to finest_detail, smooth from near; level_of_detail.hpp says which is drawn when. The three
+// coarsest are for what is a few pixels large: they take as much of the picture as the solid does, rather
+// than lie within it, and leave out holes and turns that nobody could see. Of them spheres are plane, to be
+// turned with z to the eye, and capsules, to be turned about z with y to the eye.
+inline constexpr int detail_levels = 6, finest_detail = 5, last_flat_detail = 2;
 PrimitiveMesh primitive_mesh(Primitive primitive, int detail);
+constexpr bool is_flat(Primitive primitive, int detail) {
+  return detail <= last_flat_detail && (primitive == Primitive::sphere || primitive == Primitive::capsule);
+}
+
+// By detail: the sides of what is round.
+inline constexpr std::array detail_sides{4, 6, 10, 16, 24, 40};
 
 // Of the tube, its hole's radius; of the coils, their turns.
 inline constexpr double tube_hole = 0.62;

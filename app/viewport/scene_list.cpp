@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <unordered_set>
 
 namespace flyball {
 
@@ -39,16 +41,14 @@ double lowest_point(const Assembly& assembly, const Bounds& drawn) {
   return low;
 }
 
-bool listed(std::span<const std::string> names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-void add_bodies(const Assembly& assembly, std::span<const Color> colors, std::vector<Instance>& list) {
-  for (std::size_t i = 0; i < assembly.mechanism.bodies.size(); ++i) {
-    std::vector<Instance> solids = body_form(assembly, i, colors[i]);
-    carry(assembly, i, solids);
-    list.insert(list.end(), solids.begin(), solids.end());
-  }
+void add_bodies(Assembly& assembly, std::span<const Color> colors, std::vector<Instance>& list) {
+  for (std::size_t i = 0; i < assembly.mechanism.bodies.size(); ++i)
+    add_body(assembly, i, colors[i], list);
+  assembly.balls.assign(assembly.mechanism.bodies.size(), 0);
+  for (const Instance& solid : list)
+    if (const auto i = static_cast<std::size_t>(solid.part.index);
+        solid.primitive == Primitive::sphere && solid.position == assembly.poses[i].position)
+      assembly.balls[i] = std::max(assembly.balls[i], solid.round);
 }
 
 bool finite(const Instance& instance) {
@@ -89,16 +89,16 @@ Bounds instance_bounds(const Instance& instance) {
 SceneList build_scene(const Mechanism& mechanism, std::span<const Pose> poses, const SceneOptions& options) {
   const std::vector<Pose> drawn = drawn_poses(mechanism);
   if (poses.size() != drawn.size()) poses = drawn;
-  const Assembly assembly(mechanism, poses);
+  Assembly assembly(mechanism, poses);
   const Palette& colors = palette(options.theme);
   SceneList scene;
   scene.scale = assembly.scale;
   add_bodies(assembly, body_colors(mechanism, options.theme), scene.instances);
   Sketch sketch(scene.instances);
+  const std::unordered_set<std::string_view> cut(options.cut_joints.begin(), options.cut_joints.end());
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
     if (options.joints) draw_joint(sketch, assembly, j, colors);
-    if (options.joints && listed(options.cut_joints, mechanism.joints[j].name))
-      draw_cut_mark(sketch, assembly, j, colors);
+    if (options.joints && cut.contains(mechanism.joints[j].name)) draw_cut_mark(sketch, assembly, j, colors);
     if (options.drives) draw_drives(sketch, assembly, j, colors);
     if (options.forces) draw_joint_forces(sketch, assembly, j, colors);
   }
@@ -118,7 +118,7 @@ SceneList build_scene(const Mechanism& mechanism, std::span<const Pose> poses, c
 std::vector<Instance> build_ghost(const Mechanism& mechanism, std::span<const Pose> poses, Color color) {
   std::vector<Instance> list;
   if (poses.size() != mechanism.bodies.size()) return list;
-  const Assembly assembly(mechanism, poses);
+  Assembly assembly(mechanism, poses);
   add_bodies(assembly, std::vector<Color>(mechanism.bodies.size(), color), list);
   Sketch sketch(list);
   const Palette& colors = palette(Theme::light);

@@ -39,6 +39,7 @@ struct Stage {
   ViewUnits units;
   ViewCamera camera;
   ViewSize size;
+  Sight sight; // m, in the world
   Mat4 view_projection;
   Vec3 up, key;
   Vec3 center; // of the solids
@@ -48,7 +49,7 @@ struct Stage {
   Stage(const ViewFrame& frame, const SceneList& scene, const Framebuffer& target)
       : units{frame.camera.target, frame.camera.distance},
         camera(in_view_units(frame.camera)), size{double(target.width()), double(target.height())},
-        up(frame.camera.up), colors(&palette(frame.theme)) {
+        sight(sight_of(frame.camera, size)), up(frame.camera.up), colors(&palette(frame.theme)) {
     const Bounds& bounds = scene.bounds;
     center = bounds.empty ? Vec3(Vec3::Zero()) : Vec3((bounds.center() - units.origin) / units.length);
     radius = std::clamp(bounds.empty ? 0.3 : bounds.radius() / units.length, 1e-6, 1e6);
@@ -104,20 +105,23 @@ struct ViewRenderer::State {
   ShaderProgram background{"background.vert", "background.frag"}, depth{"depth.vert", "depth.frag"},
       lit{"lit.vert", "lit.frag"}, outline{"outline.vert", "outline.frag"}, floor{"floor.vert", "floor.frag"};
   SolidMeshes meshes;
-  InstanceBatches solids, translucent, marked, axes;
+  InstanceBatches solids, casting, translucent, marked, axes;
   GlVertexArray none = make_vertex_array(); // for vertices the shader makes up
   std::optional<ShadowMap> shadow;          // made when first needed
+  std::shared_ptr<const ViewScene> shaded;  // that the shadow is of
+  Vec3 shaded_from = Vec3::Zero();          // the key light then
   ViewReport report;
 
   void draw_background(const Stage& stage);
-  void draw_shadow(const Stage& stage);
-  void set_shadow(const ShaderProgram& program, bool on) const;
+  void draw_shadow(const Stage& stage, const std::shared_ptr<const ViewScene>& scene);
+  void set_shadow(const ShaderProgram& program, const Stage& stage, bool on) const;
   void use_lit(const Stage& stage, const ViewFrame& frame, const SceneList& scene, bool shadowed, bool glass);
+  int draw_lit(const InstanceBatches& batches, bool draft);
   void draw_outline(const Stage& stage, const ViewFrame& frame, std::span<const Instance> part, Color ink,
                     float width);
   void draw_floor(const Stage& stage, const ViewFrame& frame, bool shadowed);
   void draw_translucent(const Stage& stage, const ViewFrame& frame, const SceneList& scene,
-                        std::span<const Pose> poses, Color color, float push);
+                        std::span<const Instance> list, float push);
   void draw_triad(const Stage& stage, const ViewFrame& frame, const SceneList& scene);
 };
 
@@ -134,26 +138,33 @@ void ViewRenderer::State::draw_background(const Stage& stage) {
   report.passes.push_back("background");
 }
 
-void ViewRenderer::State::draw_shadow(const Stage& stage) {
+void ViewRenderer::State::draw_shadow(const Stage& stage, const std::shared_ptr<const ViewScene>& scene) {
+  if (shaded == scene && shaded_from == stage.key) return;
   if (!shadow) shadow.emplace();
-  shadow->begin(stage.center, stage.radius, stage.key);
+  shadow->begin(scene->solid.bounds, stage.key);
+  casting.set(scene->solid.instances, shadow->units(), shadow->sight());
   depth.use();
   set_matrix(depth, "view_projection", shadow->matrix());
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 3);
-  report.draw_calls += meshes.draw(solids);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  report.draw_calls += meshes.draw(casting);
+  glDisable(GL_CULL_FACE);
   glDisable(GL_POLYGON_OFFSET_FILL);
   report.passes.push_back("shadow");
+  shaded = scene;
+  shaded_from = stage.key;
 }
 
-void ViewRenderer::State::set_shadow(const ShaderProgram& program, bool on) const {
+void ViewRenderer::State::set_shadow(const ShaderProgram& program, const Stage& stage, bool on) const {
   program.set("shadow_map", 0);
   program.set("shadow_on", on ? 1.f : 0.f);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, on ? shadow->texture() : 0);
   if (!on) return;
   program.set("shadow_texel", 1.f / ShadowMap::size);
-  set_matrix(program, "shadow_matrix", shadow->lookup_matrix());
+  set_matrix(program, "shadow_matrix", shadow->lookup_matrix(stage.units));
 }
 
 void ViewRenderer::State::use_lit(const Stage& stage, const ViewFrame& frame, const SceneList& scene,
@@ -166,16 +177,29 @@ void ViewRenderer::State::use_lit(const Stage& stage, const ViewFrame& frame, co
   set_vector(lit, "up", stage.up);
   set_vector(lit, "key", stage.key);
   lit.set("stripe", float(0.72 * scene.scale.unit / stage.units.length));
-  lit.set("normal_bias", shadowed ? float(1.6 * shadow->texel()) : 0.f);
+  lit.set("normal_bias", shadowed ? float(1.6 * shadow->texel() / stage.units.length) : 0.f);
   lit.set("lightness", frame.theme == Theme::light ? 1.f : 0.f);
   lit.set("glass", glass ? 1.f : 0.f);
-  set_shadow(lit, shadowed);
+  set_shadow(lit, stage, shadowed);
+}
+
+// Specks are not worth many looks at the shadow.
+int ViewRenderer::State::draw_lit(const InstanceBatches& batches, bool draft) {
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  lit.set("shadow_taps", draft ? 2 : 4);
+  int calls = meshes.draw(batches, last_flat_detail + 1);
+  lit.set("shadow_taps", 1);
+  calls += meshes.draw(batches, 0, last_flat_detail);
+  glDisable(GL_CULL_FACE);
+  return calls;
 }
 
 void ViewRenderer::State::draw_outline(const Stage& stage, const ViewFrame& frame,
                                        std::span<const Instance> part, Color ink, float width) {
   if (part.empty()) return;
-  marked.set(part, stage.units);
+  constexpr std::size_t many = 2000;
+  marked.set(part, stage.units, stage.sight, part.size() > many);
   outline.use();
   set_matrix(outline, "view_projection", stage.view_projection);
   set_vector(outline, "eye", stage.camera.eye());
@@ -185,8 +209,9 @@ void ViewRenderer::State::draw_outline(const Stage& stage, const ViewFrame& fram
   set_color(outline, "ink", ink);
   glEnable(GL_CULL_FACE);
   glCullFace(GL_FRONT);
-  report.draw_calls += meshes.draw(marked);
+  report.draw_calls += meshes.draw(marked, last_flat_detail + 1);
   glDisable(GL_CULL_FACE);
+  report.draw_calls += meshes.draw(marked, 0, last_flat_detail); // specks are covered with the colour
   if (report.passes.back() != "outline") report.passes.push_back("outline");
 }
 
@@ -216,7 +241,8 @@ void ViewRenderer::State::draw_floor(const Stage& stage, const ViewFrame& frame,
   floor.set("lines", frame.options.grid ? 1.f : 0.f);
   floor.set("above", stage.camera.elevation >= 0 ? 1.f : 0.f);
   set_color(floor, "ink", stage.colors->grid);
-  set_shadow(floor, shadowed);
+  set_shadow(floor, stage, shadowed);
+  floor.set("shadow_taps", frame.options.draft ? 2 : 4);
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
@@ -229,24 +255,25 @@ void ViewRenderer::State::draw_floor(const Stage& stage, const ViewFrame& frame,
 }
 
 void ViewRenderer::State::draw_translucent(const Stage& stage, const ViewFrame& frame, const SceneList& scene,
-                                           std::span<const Pose> poses, Color color, float push) {
-  translucent.set(build_ghost(*frame.mechanism, poses, color), stage.units);
+                                           std::span<const Instance> list, float push) {
+  translucent.set(list, stage.units, stage.sight);
   use_lit(stage, frame, scene, false, true);
   // Only the nearest surface is blended: depth first, then colour where the depth is the same. Pushed back a
   // little, so that it does not flicker through solids it coincides with.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(push, 4 * push);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  report.draw_calls += meshes.draw(translucent);
+  report.draw_calls += draw_lit(translucent, frame.options.draft);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthFunc(GL_EQUAL);
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  report.draw_calls += meshes.draw(translucent);
+  report.draw_calls += draw_lit(translucent, frame.options.draft);
   glDisable(GL_BLEND);
   glDepthFunc(GL_LESS);
   glDisable(GL_POLYGON_OFFSET_FILL);
-  report.instances += translucent.count();
+  report.instances += static_cast<int>(list.size());
+  report.drawn += translucent.count();
 }
 
 void ViewRenderer::State::draw_triad(const Stage& stage, const ViewFrame& frame, const SceneList& scene) {
@@ -263,9 +290,11 @@ void ViewRenderer::State::draw_triad(const Stage& stage, const ViewFrame& frame,
   corner.camera.field_of_view = 2 * std::atan(1.2);
   corner.view_projection =
       corner.camera.projection_matrix({1, 1}, Vec3::Zero(), 2) * corner.camera.view_matrix();
-  axes.set(triad(*stage.colors, frame.mechanism), ViewUnits{});
+  Sight sight = sight_of(corner.camera, {double(side), double(side)});
+  sight.pixel /= 16; // a handful of solids that are always there: as smooth as can be
+  axes.set(triad(*stage.colors, frame.mechanism), ViewUnits{}, sight);
   use_lit(corner, frame, scene, false, false);
-  report.draw_calls += meshes.draw(axes);
+  report.draw_calls += draw_lit(axes, frame.options.draft);
   report.passes.push_back("triad");
 }
 
@@ -274,29 +303,25 @@ ViewRenderer::~ViewRenderer() = default;
 ViewRenderer::ViewRenderer(ViewRenderer&&) noexcept = default;
 ViewRenderer& ViewRenderer::operator=(ViewRenderer&&) noexcept = default;
 
-SceneList scene_of(const ViewFrame& frame) {
-  if (!frame.mechanism) return {};
-  return build_scene(*frame.mechanism, frame.poses,
-                     {.theme = frame.theme,
-                      .joints = frame.options.joints,
-                      .drives = frame.options.drives,
-                      .forces = frame.options.forces,
-                      .cut_joints = frame.cut_joints});
+ViewReport ViewRenderer::draw(const ViewFrame& frame, Framebuffer& target) {
+  return draw(frame, std::make_shared<const ViewScene>(view_scene(frame)), target);
 }
 
-ViewReport ViewRenderer::draw(const ViewFrame& frame, Framebuffer& target) {
+ViewReport ViewRenderer::draw(const ViewFrame& frame, const std::shared_ptr<const ViewScene>& shown,
+                              Framebuffer& target) {
   State& s = *state_;
   s.report = {};
-  const SceneList scene = scene_of(frame);
+  const SceneList& scene = shown->solid;
   const Stage stage(frame, scene, target);
-  s.solids.set(scene.instances, stage.units);
-  s.report.instances = s.solids.count();
+  s.solids.set(scene.instances, stage.units, stage.sight);
+  s.report.instances = static_cast<int>(scene.instances.size());
+  s.report.drawn = s.solids.count();
   const bool floor = (frame.options.grid || frame.options.shadow) && stage.floor_in_view(stage.camera.eye());
-  const bool shadowed = frame.options.shadow && floor && s.solids.count() > 0;
+  const bool shadowed = frame.options.shadow && floor && !scene.instances.empty();
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_CULL_FACE);
   glDepthFunc(GL_LESS);
-  if (shadowed) s.draw_shadow(stage);
+  if (shadowed) s.draw_shadow(stage, shown);
 
   target.bind();
   glDepthMask(GL_TRUE);
@@ -305,7 +330,7 @@ ViewReport ViewRenderer::draw(const ViewFrame& frame, Framebuffer& target) {
   glEnable(GL_DEPTH_TEST);
   if (s.solids.count() > 0) {
     s.use_lit(stage, frame, scene, shadowed, false);
-    s.report.draw_calls += s.meshes.draw(s.solids);
+    s.report.draw_calls += s.draw_lit(s.solids, frame.options.draft);
     s.report.passes.push_back("solid");
     if (std::ranges::find(frame.selected, frame.hovered) == frame.selected.end())
       s.draw_outline(stage, frame, of_parts(scene, {frame.hovered}),
@@ -313,12 +338,12 @@ ViewReport ViewRenderer::draw(const ViewFrame& frame, Framebuffer& target) {
     s.draw_outline(stage, frame, of_parts(scene, frame.selected), stage.colors->accent, 2.5f);
   }
   if (floor) s.draw_floor(stage, frame, shadowed);
-  if (frame.mechanism && !frame.motion.empty()) {
-    s.draw_translucent(stage, frame, scene, frame.motion, stage.colors->motion, 1);
+  if (!shown->motion.empty()) {
+    s.draw_translucent(stage, frame, scene, shown->motion, 1);
     s.report.passes.push_back("motion");
   }
-  if (frame.mechanism && !frame.ghost.empty()) {
-    s.draw_translucent(stage, frame, scene, frame.ghost, stage.colors->ghost, 2);
+  if (!shown->ghost.empty()) {
+    s.draw_translucent(stage, frame, scene, shown->ghost, 2);
     s.report.passes.push_back("ghost");
   }
   if (frame.options.triad) s.draw_triad(stage, frame, scene);

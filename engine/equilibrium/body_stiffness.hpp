@@ -33,14 +33,6 @@ void add_body_force(const BodyForceElement& element, const BodyForceParameters& 
 Mat6 inertia_matrix(const BodyStiffness& body);
 Vec6 times_inertia(const BodyStiffness& body, const Vec6& motion);
 
-// [a] [b].
-inline Mat3 skew_product(const Vec3& a, const Vec3& b) {
-  Mat3 m;
-  m.noalias() = b * a.transpose();
-  m.diagonal().array() -= a.dot(b);
-  return m;
-}
-
 // S x* F: how a wrench changes that is turned and shifted along `s`.
 inline Vec6 turned(const Vec6& s, const Vec3& moment, const Vec3& force) {
   Vec6 x;

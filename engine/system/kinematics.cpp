@@ -32,7 +32,10 @@ void forward(const System& system, const Parameters& p, const Configuration<S>& 
     case LinkType::fixed: x.R = parent.R; break;
     case LinkType::revolute:
       x.axis = parent.R * lp.axis.cast<S>();
-      x.R = parent.R * rotation_about<S>(lp.axis.cast<S>(), displacement);
+      if (link.drive >= 0 && displacement == S(0)) // at the drawn phase
+        x.R = parent.R;
+      else
+        x.R = parent.R * rotation_about<S>(lp.axis.cast<S>(), displacement);
       break;
     case LinkType::prismatic:
       x.axis = parent.R * lp.axis.cast<S>();

@@ -62,6 +62,7 @@ void fill_composites(const System& system, const Parameters& p, const Kinematics
     CompositeBody& b = out[i];
     const LinkParameters& lp = p.links[i];
     const LinkState<double>& x = k.links[i];
+    if (!system.links[i].mobile) continue; // which no coordinate moves
     b.mass = lp.mass;
     if (lp.mass == 0 && !lp.has_inertia) {
       b = {0, Vec3::Zero(), Mat3::Zero(), Mat3::Zero(), Vec3::Zero()};
@@ -69,30 +70,31 @@ void fill_composites(const System& system, const Parameters& p, const Kinematics
     }
     const Vec3 c = x.R * lp.com;
     const Mat3 inertia = lp.has_inertia ? Mat3(x.R * lp.inertia * x.R.transpose()) : Mat3(Mat3::Zero());
-    const Mat3 cx = skew(c);
     b.first_moment = lp.mass * c;
-    b.inertia = inertia - lp.mass * cx * cx;
+    b.inertia = inertia - lp.mass * skew_product(c, c);
     if (!p.moving) {
       b.b.setZero();
       b.momentum.setZero();
       continue;
     }
     b.momentum = lp.mass * (x.v + x.w.cross(c));
-    const Mat3 w = skew(x.w);
-    b.b = w * inertia - inertia * w - skew<double>(inertia * x.w) - 2 * cx * skew(b.momentum);
+    b.b = -2 * skew_product(c, b.momentum);
+    if (!lp.has_inertia) continue;
+    const Mat3 swept = skew(x.w) * inertia;
+    b.b += swept + swept.transpose() - skew<double>(inertia * x.w);
   }
   for (std::size_t i = system.links.size(); i-- > 0;) {
     const int parent = system.links[i].parent;
-    if (parent < 0) continue;
+    if (parent < 0 || !system.links[static_cast<std::size_t>(parent)].mobile) continue;
     const CompositeBody& b = out[i];
     CompositeBody& a = out[static_cast<std::size_t>(parent)];
     const Vec3 r = k.links[i].o - k.at(parent).o;
-    const Mat3 rx = skew(r), hx = skew(b.first_moment);
     a.mass += b.mass;
     a.first_moment += b.first_moment + b.mass * r;
-    a.inertia += b.inertia - rx * hx - hx * rx - b.mass * rx * rx;
+    a.inertia += b.inertia - skew_product(r, b.first_moment) - skew_product(b.first_moment, r) -
+                 b.mass * skew_product(r, r);
     a.momentum += b.momentum;
-    if (p.moving) a.b += b.b - 2 * rx * skew(b.momentum);
+    if (p.moving) a.b += b.b - 2 * skew_product(r, b.momentum);
   }
 }
 

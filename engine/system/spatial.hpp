@@ -22,6 +22,14 @@ Mat3T<S> skew(const Vec3T<S>& a) {
   return m;
 }
 
+// [a] [b].
+inline Mat3 skew_product(const Vec3& a, const Vec3& b) {
+  Mat3 m;
+  m.noalias() = b * a.transpose();
+  m.diagonal().array() -= a.dot(b);
+  return m;
+}
+
 // Rotation by `angle` about the unit vector `a` (Rodrigues), with 1 - cos formed without cancellation.
 template <class S>
 Mat3T<S> rotation_about(const Vec3T<S>& a, S angle) {

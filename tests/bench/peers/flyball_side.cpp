@@ -3,7 +3,6 @@
 #include "engine/equilibrium/analysis.hpp"
 #include "engine/equilibrium/find_equilibrium.hpp"
 #include "engine/equilibrium/refine.hpp"
-#include "engine/mechanism/scene.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -30,7 +29,7 @@ struct Solve {
     set_scaling(system, parameters, scaling);
     drawn_configuration(system, parameters, drawn);
   }
-  Problem problem() const { return {system, parameters, scaling}; }
+  Problem problem() const { return {system, parameters, scaling, nullptr, true}; }
   void cold() {
     find_equilibrium(problem(), drawn, false, false, workspace, history, found);
     if (found.status == Status::converged) refine(problem(), found.z, found.newton, workspace, error);
@@ -38,41 +37,6 @@ struct Solve {
 };
 
 } // namespace
-
-Mechanism chain(int links) {
-  Mechanism m;
-  m.name = "Chain of " + std::to_string(links);
-  m.gravity = {0, -9.80665, 0};
-  Body hub;
-  hub.name = "hub";
-  hub.mass = 1;
-  hub.inertia = {1e-3, 1e-3, 1e-3, 0, 0, 0};
-  m.bodies.push_back(hub);
-  Joint spin;
-  spin.name = "spin";
-  spin.bodies = {"ground", "hub"};
-  spin.axis = Vec3::UnitY();
-  spin.coordinates.resize(1);
-  spin.coordinates[0].drive = Drive{5, {}};
-  m.joints.push_back(spin);
-  const double length = 1. / links, mass = 1. / links, inertia = mass * length * length / 12;
-  const Vec3 way = length * Vec3(std::sin(1e-3), -std::cos(1e-3), 0);
-  for (int i = 0; i < links; ++i) {
-    Body rod;
-    rod.name = "rod" + std::to_string(i);
-    rod.mass = mass;
-    rod.position = (i + 0.5) * way;
-    rod.inertia = {inertia, 0, inertia, 0, 0, 0};
-    Joint hinge;
-    hinge.name = "hinge" + std::to_string(i);
-    hinge.bodies = {m.bodies.back().name, rod.name};
-    hinge.at = i * way;
-    hinge.coordinates.resize(1);
-    m.bodies.push_back(rod);
-    m.joints.push_back(hinge);
-  }
-  return m;
-}
 
 Job make_job(const std::string& name, const Mechanism& mechanism) {
   const Solution solution = Analysis(mechanism).solve();

@@ -8,10 +8,6 @@
 
 namespace flyball::peers {
 
-// Thin rods, 1 m and 1 kg in all, hinged end to end about z below a hub that turns about the vertical at 5
-// rad/s, above the first critical speed; drawn straight, tilted by 1e-3 rad.
-Mechanism chain(int links);
-
 // For mechanisms of revolute and prismatic joints and links, with the answer that Flyball finds. Throws
 // std::invalid_argument for others and where there is no answer.
 Job make_job(const std::string& name, const Mechanism& mechanism);

@@ -64,9 +64,9 @@ class Writer {
     const JobBody& b = job_.bodies[static_cast<std::size_t>(index)];
     out_ << "<body name=\"" << b.name << "\" pos=\"" << text(less(b.position, base))
          << "\"><inertial pos=\"0 0 0\" "
-         << "mass=\"" << b.mass << "\" diaginertia=\"";
-    for (std::size_t i = 0; i < 3; ++i)
-      out_ << std::max(b.inertia[i], 1e-14) << (i < 2 ? " " : "\"/>");
+         << "mass=\"" << b.mass << "\" fullinertia=\"";
+    for (std::size_t i = 0; i < 6; ++i)
+      out_ << (i < 3 ? b.inertia[i] + 1e-14 : b.inertia[i]) << (i < 5 ? " " : "\"/>"); // thin, but no line
     for (const JobJoint* j : joints) {
       out_ << "<joint name=\"" << j->name << "\" type=\"" << (j->slides ? "slide" : "hinge") << "\" pos=\""
            << text(less(j->at, b.position)) << "\" axis=\"" << text(j->axis) << "\" ref=\"" << j->drawn

@@ -39,7 +39,7 @@ class SimbodyJob {
       const JobBody& b = job.bodies[static_cast<std::size_t>(joint.child)];
       const auto& i = b.inertia;
       // Too thin for Simbody's taste: a point or a rod.
-      const Inertia inertia(std::max(i[0], 1e-14), std::max(i[1], 1e-14), std::max(i[2], 1e-14));
+      const Inertia inertia(i[0] + 1e-14, i[1] + 1e-14, i[2] + 1e-14, i[3], i[4], i[5]);
       const Body::Rigid body(MassProperties(b.mass, Vec3(0), b.mass > 0 ? inertia : Inertia(0)));
       const Vec3 base =
           joint.parent < 0 ? Vec3(0) : vec(job.bodies[static_cast<std::size_t>(joint.parent)].position);

@@ -1,0 +1,33 @@
+// What the views show as lists of solids, made anew only where what they show has changed: for drawing, for
+// pointing and for fitting the camera alike.
+#pragma once
+
+#include "app/viewport/view_scene.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace flyball {
+
+struct App;
+
+// All that the lists depend on.
+struct SceneSource {
+  std::uint64_t revision = 0; // of the document where its mechanism is shown, else 0
+  std::uint64_t ticket = 0;   // of the answer
+  Theme theme = Theme::light;
+  std::vector<Pose> poses, ghost, motion;
+};
+
+struct ShownScene {
+  SceneSource source;
+  std::shared_ptr<const ViewScene> scene; // null: none yet
+  int made = 0;                           // how often
+};
+
+// Of the view, and of the one beside it.
+const std::shared_ptr<const ViewScene>& shown_scene(App& app);
+const std::shared_ptr<const ViewScene>& motion_scene(App& app);
+
+} // namespace flyball
