@@ -189,6 +189,8 @@ Solution Analysis::solve(const SolveOptions& options) {
   if (open && stability.reason != StabilityReason::neutral) {
     stability.stable.reset();
     stability.reason = StabilityReason::marginal;
+    s.error =
+        s.error.cwiseMax(s.workspace.unheld); // held by something too soft to be seen beside what is stiff
   }
   const ReportInput input{s.mechanism, problem, s.found, existence, stability};
   report(input, s.error, options.details, s.workspace, out);

@@ -22,12 +22,12 @@ void evaluate_long(const Problem& problem, const Unknowns& z, Workspace& w) {
 }
 
 // What the rounding of the residual and of the solution for the step, and equations of redundant loops that
-// disagree, do to each coordinate: the step that noise of this size with arbitrary signs asks for, twice
+// disagree, do to each coordinate: the step that noise of this size with arbitrary signs asks for, four times
 // over. `left` (scaled) is the largest force that the step had to balance: a stiff spring's, by its rounded
 // length. Loops mix it with the softest.
 void add_noise(const Problem& problem, double left, double opening, Workspace& w, Eigen::VectorXd& error) {
   const double mixed = problem.system.rows > 0 ? std::numeric_limits<double>::epsilon() * left : 0;
-  for (unsigned pattern : {1U, 5U}) {
+  for (unsigned pattern : {1U, 5U, 11U, 23U}) {
     const auto sign = [&](Eigen::Index i) {
       return std::popcount((static_cast<unsigned>(i) + 1) * pattern) % 2 == 0 ? 1. : -1.;
     };
@@ -42,7 +42,7 @@ void add_noise(const Problem& problem, double left, double opening, Workspace& w
 }
 
 // How far (scaled) the state can be moved along a direction without stiffness before double precision can
-// tell that it is no longer in balance; zero where that never happens.
+// tell that it is no longer in balance; not finite where that never happens.
 double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction, Workspace& w) {
   const auto force_along = [&](double way, double& noise) {
     Unknowns moved = z;
@@ -57,13 +57,16 @@ double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorX
   double noise = 0;
   const double here = force_along(0, noise);
   double farthest = 0;
+  bool decided = false;
   for (const double side : {1., -1.}) {
     double way = 1e-10;
     while (way < 0.1 && force_along(side * way, noise) <= 2 * (here + noise))
       way *= 2;
-    if (way < 0.1) farthest = std::max(farthest, way);
+    if (!(way < 0.1)) continue;
+    farthest = std::max(farthest, way);
+    decided = true;
   }
-  return farthest;
+  return decided ? farthest : std::numeric_limits<double>::infinity();
 }
 
 // Whether loops whose equations depend on each other here do so no longer some way along: arms straight, a
@@ -93,7 +96,11 @@ void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, 
     if (!(size > 0)) continue;
     direction /= size;
     const double way = undecided(problem, z, direction, w);
-    error = error.cwiseMax(way * direction.cwiseProduct(problem.scaling.column).cwiseAbs());
+    const Eigen::VectorXd moved = direction.cwiseProduct(problem.scaling.column).cwiseAbs();
+    if (std::isfinite(way))
+      error = error.cwiseMax(way * moved);
+    else // neutral, or lost in rounding: stability tells which
+      w.unheld = w.unheld.cwiseMax(moved);
   }
   evaluate(problem, z, 0, w);
   factor(problem, z, w);
@@ -105,6 +112,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
             Eigen::VectorXd& error) {
   const System& system = problem.system;
   error.setZero(system.nv);
+  w.unheld.setZero(system.nv);
   if (system.nv == 0) return;
   double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
   constexpr int last_round = 4;

@@ -34,6 +34,7 @@ struct Workspace {
   Configuration<long double> q_long, lambda_long;
   Unknowns trial, closing;
   Eigen::VectorXd assembled, moved;
+  Eigen::VectorXd unheld; // by refine(): how far (rad, m) a state moves in which no force can be told
 };
 
 } // namespace flyball

@@ -37,7 +37,7 @@ Verdict judge_motion(const Mechanism& mechanism, double duration, double amplitu
   options.duration = duration;
   options.rate = 50 / duration;
   options.tolerance = 1e-9;
-  options.max_steps = 200'000; // what takes more is refused, in words
+  options.max_steps = 100'000; // what takes more is refused, in words
   options.cancel = &cancel;
   const Run run = simulate(mechanism, options);
   out.time_s = run.statistics.run_time_s;
