@@ -189,11 +189,19 @@ Solution Analysis::solve(const SolveOptions& options) {
   if (open && stability.reason != StabilityReason::neutral) {
     stability.stable.reset();
     stability.reason = StabilityReason::marginal;
-    s.error =
-        s.error.cwiseMax(s.workspace.unheld); // held by something too soft to be seen beside what is stiff
+    // Something may hold that is too soft to be seen beside what is stiff.
+    s.error = s.error.cwiseMax(s.workspace.unheld);
   }
   const ReportInput input{s.mechanism, problem, s.found, existence, stability};
   report(input, s.error, options.details, s.workspace, out);
+  if (!is_finite(out)) {
+    s.settled = false;
+    Solution refused;
+    refused.run_time_s = out.run_time_s;
+    refused.iterations = out.iterations;
+    refused.message = "The forces are too large for the computer's numbers.";
+    return refused;
+  }
   if (options.details)
     for (const Slider& slider : s.mechanism.sliders) {
       const Eigen::VectorXd rate =

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
 namespace flyball {
 namespace {
@@ -194,6 +195,22 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
                 : ".");
   return "No steady state: " + blame(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
          " turns with the drives, so the balance holds at one moment only.";
+}
+
+bool is_finite(const Solution& s) {
+  const auto numbers = [](const auto& list, const auto& of) {
+    return std::ranges::all_of(list, [&](const auto& x) { return std::isfinite(of(x)); });
+  };
+  return std::isfinite(s.residual) && std::isfinite(s.potential.value_or(0)) &&
+         std::isfinite(s.condition.value_or(0)) &&
+         numbers(s.coordinates, [](const CoordinateSolution& c) { return c.value + c.error; }) &&
+         numbers(s.multipliers,
+                 [](const JointMultipliers& m) {
+                   return std::accumulate(m.values.begin(), m.values.end(), 0.);
+                 }) &&
+         numbers(s.drive_torques, [](const DriveTorque& t) { return t.value; }) &&
+         numbers(s.reactions, [](const Reaction& r) { return r.force.sum() + r.torque.sum(); }) &&
+         numbers(s.poses, [](const Pose& p) { return p.position.sum() + p.rotation.coeffs().sum(); });
 }
 
 void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, Workspace& w, Solution& out) {

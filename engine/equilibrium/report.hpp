@@ -19,6 +19,9 @@ struct ReportInput {
 // Why there is no answer, naming the part that is to blame.
 std::string failure_message(const ReportInput& input, Workspace& w);
 
+// Whether every number in it is one: forces can overflow where coordinates do not.
+bool is_finite(const Solution& solution);
+
 // Fills the parts of a converged solution; `error` by coordinate of q_R.
 void report(const ReportInput& input, const Eigen::VectorXd& error, bool details, Workspace& w,
             Solution& out);

@@ -38,7 +38,7 @@ struct Case {
     answer = found.z;
     answer.lambda.resize(system.rows);
   }
-  Problem problem() const { return {system, parameters, scaling}; }
+  Problem problem() const { return {system, parameters, scaling, nullptr, true}; }
   void take_numbers() {
     bind(system, mechanism, parameters);
     set_scaling(system, parameters, scaling);

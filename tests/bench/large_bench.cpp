@@ -13,6 +13,10 @@
 #include <functional>
 #include <string>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace {
 
 using namespace flyball;
@@ -23,36 +27,59 @@ double seconds(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-// Milliseconds in all.
-double measure(const std::string& family, const Mechanism& mechanism, double before) {
+// What one scene costs.
+struct Cost {
+  double bodies = 0, solving = 0, memory = 0; // compiling and solving in ms; MB held
+};
+
+double held() {
+#ifdef __GLIBC__
+  const struct mallinfo2 now = mallinfo2();
+  return static_cast<double>(now.uordblks + now.hblkhd) / 1e6;
+#else
+  return 0;
+#endif
+}
+
+std::string power(double now, double before, double ratio) {
+  if (!(before > 0) || !(now > 0)) return "";
+  char text[16];
+  std::snprintf(text, sizeof text, "%.2f", std::log(now / before) / std::log(ratio));
+  return text;
+}
+
+Cost measure(const std::string& family, const Mechanism& mechanism, const Cost& before) {
   const std::string text = write_scene(mechanism);
+  const double start = held();
   Mechanism read;
   Solution solution;
   std::optional<Analysis> analysis;
-  const double reading = seconds([&] { read = parse_scene(text); });
-  const double checking = seconds([&] { validate(read); });
-  const double compiling = seconds([&] { analysis.emplace(read); });
-  const double solving = seconds([&] { solution = analysis->solve(); });
-  const double all = 1e3 * (reading + checking + compiling + solving);
-  double error = 0;
-  for (const CoordinateSolution& c : solution.coordinates)
-    error = std::max(error, c.error);
-  const std::string power = before > 0 ? std::to_string(std::log10(all / before)).substr(0, 4) : "";
-  std::printf("%-14s %6zu %9.2f %9.2f %9.2f %9.2f %9.2f %9.1f %5s %6d %-9s %-11s %8.1e %8.1e\n",
-              family.c_str(), mechanism.bodies.size() - 1, 1e3 * reading, 1e3 * checking, 1e3 * compiling,
-              1e3 * solution.run_time_s, 1e3 * solving, all, power.c_str(), solution.iterations,
-              solution.net ? std::string(word(*solution.net)).c_str() : "-",
+  const double reading = 1e3 * seconds([&] { read = parse_scene(text); });
+  const double checking = 1e3 * seconds([&] { validate(read); });
+  const double compiling = 1e3 * seconds([&] { analysis.emplace(read); });
+  const double whole = 1e3 * seconds([&] { solution = analysis->solve(); });
+  const Cost cost{static_cast<double>(read.bodies.size() - 1), compiling + whole, held() - start};
+  const double ratio = cost.bodies / before.bodies;
+  std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %.1f | %s | %d%s | %s | %.0e |\n",
+              family.c_str(), cost.bodies, reading, checking, compiling, 1e3 * solution.run_time_s, whole,
+              power(cost.solving, before.solving, ratio).c_str(), cost.memory,
+              power(cost.memory, before.memory, ratio).c_str(), solution.iterations,
+              solution.net ? (" " + std::string(word(*solution.net))).c_str() : "",
               solution.stability_reason ? std::string(word(*solution.stability_reason)).c_str()
                                         : std::string(word(solution.status)).c_str(),
-              solution.residual, error);
+              solution.residual);
   std::fflush(stdout);
-  return all;
+  return cost;
 }
 
 void family(const std::string& name, int largest, const std::function<Mechanism(int)>& make) {
-  double before = 0;
+  Cost before;
   for (int n = 10; n <= largest; n *= 10)
     before = measure(name, make(n), before);
+}
+
+int side_of(int bodies) {
+  return std::max(2, static_cast<int>(std::lround(std::sqrt(bodies))));
 }
 
 } // namespace
@@ -60,18 +87,15 @@ void family(const std::string& name, int largest, const std::function<Mechanism(
 int main(int argc, char** argv) {
   const int largest = argc > 1 ? std::atoi(argv[1]) : 10000;
   std::printf(
-      "Milliseconds. `solve` is until the answer is accepted, `whole` with what is reported of it.\n");
-  std::printf("%-14s %6s %9s %9s %9s %9s %9s %9s %5s %6s %-9s %-11s %8s %8s\n", "scene", "bodies", "read",
-              "validate", "compile", "solve", "whole", "all", "power", "iter", "net", "stable", "residual",
-              "error");
-  if (argc < 3)
-    for (const double speed : {2., 5., 10., 15.})
-      family("chain " + std::to_string(static_cast<int>(speed)) + " rad/s", largest,
-             [&](int n) { return bench::chain(n, speed); });
-  family("net", largest, [](int n) {
-    return bench::spring_net(std::max(2, static_cast<int>(std::lround(std::sqrt(n)))), 3);
-  });
-  family("cable net", largest,
-         [](int n) { return bench::cable_net(std::max(2, static_cast<int>(std::lround(std::sqrt(n)))), 3); });
+      "Milliseconds. `accepted` is the solve until its answer stands, `solve` with all that is told of it; "
+      "`power` of the\nbodies by which compiling and solving grow, and the memory held after it (MB).\n\n"
+      "| scene | bodies | read | check | compile | accepted | solve | power | MB | power | iterations | "
+      "stability | residual |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const double speed : {2., 5., 10., 15.})
+    family("chain at " + std::to_string(static_cast<int>(speed)) + " rad/s", largest,
+           [&](int n) { return bench::chain(n, speed); });
   family("tree", largest, [](int n) { return bench::binary_tree(n, 3); });
+  family("net of springs", largest, [](int n) { return bench::spring_net(side_of(n), 3); });
+  // Inextensible cables take more iterations the finer the net is.
+  family("net of cables", std::min(largest, 1000), [](int n) { return bench::cable_net(side_of(n), 3); });
 }

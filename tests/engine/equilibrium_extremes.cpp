@@ -164,6 +164,15 @@ TEST_CASE("numbers far apart: right to the estimate, or refused in words") {
   }
 }
 
+TEST_CASE("forces beyond the largest number are refused, not shown") {
+  Mechanism m = shipped("pendulum");
+  m.joints[0].coordinates[0].drive->speed = 1e155; // whose square overflows; validation would not let it through
+  const Solution s = Analysis(m).solve();
+  CHECK(s.status == Status::not_converged);
+  CHECK(s.coordinates.empty());
+  CHECK_FALSE(s.message.empty());
+}
+
 TEST_CASE("a place so far away that stiffnesses overflow ends in words") {
   Mechanism m;
   m.gravity = {0.3, 0.8, -0.3};
