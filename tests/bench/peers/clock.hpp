@@ -19,7 +19,7 @@ inline double thread_seconds() {
 }
 
 template <class Work>
-Times time_of(Work work, double batch_s = 2e-3, int repeats = 41, double budget_s = 3) {
+Times time_of(Work work, double batch_s = 2e-3, int repeats = 41, double budget_s = 1) {
   const auto seconds = [&](long count) {
     const double begin = thread_seconds();
     for (long i = 0; i < count; ++i)

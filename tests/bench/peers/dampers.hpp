@@ -8,21 +8,17 @@ namespace flyball::peers {
 
 inline std::vector<Range> damper_ranges(const Job& job, Damping damping) {
   if (damping == Damping::critical) return {{1e-3, 1e3}}; // times the scene's
-  if (job.chain) return {{1e-3, 1e3}, {0.05, 20}}; // and the power with which they fall along the chain
   return std::vector<Range>(static_cast<std::size_t>(job.dampers), Range{1e-3, 1e7});
 }
 
 // By joint, N m s/rad or N s/m where the scan is of those.
 inline std::vector<double> chosen_dampers(const Job& job, Damping damping, const double* x) {
   std::vector<double> c;
-  const auto n = static_cast<double>(job.joints.size());
   for (const JobJoint& joint : job.joints) {
     if (joint.driven)
       c.push_back(0);
     else if (damping == Damping::critical)
       c.push_back(x[0] * joint.damping);
-    else if (job.chain)
-      c.push_back(x[0] * joint.damping * std::pow((n - static_cast<double>(c.size())) / n, x[1]));
     else
       c.push_back(x[joint.damper]);
   }

@@ -45,10 +45,13 @@ struct Job {
   std::vector<JobJoint> joints; // parents first
   std::vector<JobLink> links;
   int dampers = 0;
-  bool chain = false; // so many joints that their dampers follow a profile
+  bool chain = false; // of many joints without dampers: the peers bring their own
 };
 
 constexpr double near_enough = 1e-6; // rad or m
+
+// What the scan for an integrator's best settings may take, processor time.
+constexpr double tuning_s = 2;
 
 // Dampers that a peer may choose: all of the scene's times one factor, or one by one, as no real mechanism
 // would have them, to see what the engine could do at the very best.

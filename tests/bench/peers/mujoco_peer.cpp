@@ -156,7 +156,7 @@ class MujocoJob {
       dof_.push_back(model_->jnt_dofadr[id]);
       if (!job.joints[k].driven) moving_.push_back(k);
     }
-    largest_ = job.chain ? 900 : 2500;
+    largest_ = job.chain ? 1500 : 2500;
   }
 
   // The step, dampers, and stiffness and damping of the links in units of the step.
@@ -170,12 +170,13 @@ class MujocoJob {
   std::vector<std::vector<double>> guesses() const {
     std::vector<std::vector<double>> all;
     if (job_.chain) {
-      for (const double h : {0.01, 0.03, 0.1})
-        for (const double scale : {0.03, 0.3, 3.})
-          all.push_back(damping_ == Damping::free ? std::vector<double>{h, 30 * scale, 1}
-                                                  : std::vector<double>{h, scale});
+      for (const double h : {0.1, 0.15})
+        all.push_back({h, 1});
       return all;
     }
+    if (!job_.links.empty() && job_.dampers == 2) // the governor, from a scan of 3000 samples
+      all.push_back(damping_ == Damping::free ? std::vector<double>{0.014, 120, 750, 1.3, 0.65}
+                                              : std::vector<double>{0.016, 9, 1.9, 1});
     for (const double h : {2e-3, 0.03, 0.3, 3.}) {
       std::vector<double> g{h};
       if (damping_ == Damping::free)
@@ -229,6 +230,7 @@ class MujocoJob {
     std::ostringstream words;
     words << std::setprecision(3) << (integrator == mjINT_EULER ? "Euler" : "implicit") << ", step "
           << tuned.values[0] << " s";
+    if (damping_ == Damping::critical) words << ", dampers × " << tuned.values[1];
     result.settings = words.str();
     return result;
   }
@@ -238,7 +240,7 @@ class MujocoJob {
     model_->opt.integrator = integrator;
     const double h = model_->opt.timestep = x[0];
     // Implicit damping acts as a stiffness times the step; dampers that are free are scanned as stiffnesses.
-    const double unit = damping_ == Damping::critical ? 1 : job_.chain ? 100 * h : h;
+    const double unit = damping_ == Damping::critical ? 1 : h;
     const std::vector<double> dampers = chosen_dampers(job_, damping_, &x[1]);
     for (std::size_t k = 0; k < dampers.size(); ++k)
       model_->dof_damping[dof_[k]] = unit * dampers[k];
@@ -301,11 +303,10 @@ PeerResult run_mujoco(const Job& job, Damping damping) {
   MujocoJob mujoco(job, damping);
   PeerResult best;
   best.available = true;
-  const bool large = job.joints.size() > 20;
   for (const int integrator : {mjINT_EULER, mjINT_IMPLICIT}) {
     double fewest = 1e6;
     const Tuned tuned =
-        tune(mujoco.ranges(), mujoco.guesses(), large ? 60 : 1500, large ? 20 : 6,
+        tune(mujoco.ranges(), mujoco.guesses(), job.chain ? 0 : 600, tuning_s,
              [&](const std::vector<double>& x) { return mujoco.cost(x, integrator, fewest); });
     const PeerResult result = mujoco.measure(tuned, integrator);
     const bool better = result.reached && (!best.reached || result.fastest_s < best.fastest_s);

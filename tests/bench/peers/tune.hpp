@@ -24,7 +24,7 @@ struct Tuned {
 
 using Cost = std::function<double(const std::vector<double>&)>;
 
-// Gives up refining after `seconds`.
+// Gives up after `seconds`, but not before the first guess.
 inline Tuned tune(const std::vector<Range>& ranges, const std::vector<std::vector<double>>& guesses,
                   int samples, double seconds, const Cost& cost) {
   const double begin = thread_seconds();
@@ -39,7 +39,7 @@ inline Tuned tune(const std::vector<Range>& ranges, const std::vector<std::vecto
     return Tuned{std::move(x), c};
   };
   for (const std::vector<double>& x : guesses)
-    tried.push_back(attempt(x));
+    if (tried.empty() || time_left()) tried.push_back(attempt(x));
   for (int i = 0; i < samples && time_left(); ++i) {
     std::vector<double> x;
     for (const Range& r : ranges)
