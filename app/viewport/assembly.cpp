@@ -63,10 +63,17 @@ SceneScale scale_of(const Assembly& assembly) {
     if (const double length = (joint.points[0] - joint.points[1]).stableNorm(); length > 0)
       lengths.push_back(length);
   }
-  for (const Force& force : assembly.mechanism.forces)
-    if (force.type == ForceType::spring)
-      for (const Vec3& p : force.points)
-        scale.bounds.add(p);
+  std::vector<double> springs;
+  for (const Force& force : assembly.mechanism.forces) {
+    if (force.type != ForceType::spring) continue;
+    for (const Vec3& p : force.points)
+      scale.bounds.add(p);
+    if (const double length = (force.points[0] - force.points[1]).stableNorm(); length > 0)
+      springs.push_back(length);
+  }
+  // Where springs are most of what there is, as in a net of them, the glyphs fit into its meshes.
+  constexpr std::size_t several = 8;
+  if (springs.size() >= several && springs.size() > lengths.size()) lengths = std::move(springs);
 
   const double size = 2 * scale.bounds.radius();
   if (!(size > 0) || !std::isfinite(size)) {
@@ -297,8 +304,18 @@ Assembly::Assembly(const Mechanism& built, std::span<const Pose> in_poses)
   }
   scale = scale_of(*this);
   middle_mass = median_mass(built);
+  for (const Force& force : built.forces) {
+    double& largest = largest_vectors[static_cast<std::size_t>(force.type)];
+    largest = std::max(largest, force.vector.stableNorm());
+  }
   for (std::size_t i = 0; i < built.bodies.size(); ++i)
     shafts.push_back(find_shaft(*this, i));
+}
+
+bool within_ball(const Assembly& assembly, int body, const Vec3& at, double radius) {
+  if (body < 0 || assembly.balls.empty()) return false;
+  const auto i = static_cast<std::size_t>(body);
+  return (at - assembly.poses[i].position).norm() + radius < assembly.balls[i];
 }
 
 std::optional<Shaft> shaft_of(const Assembly& assembly, int body) {

@@ -38,7 +38,8 @@ struct Assembly {
   std::vector<std::optional<Shaft>> shafts; // by body: as what it is drawn, if it is one
   std::vector<double>
       balls; // m, by body: radius of the ball drawn about its mass centre, 0 for none; empty until then
-  double middle_mass = 0; // kg, the median of the bodies that have mass
+  double middle_mass = 0;                  // kg, the median of the bodies that have mass
+  std::array<double, 4> largest_vectors{}; // N or N m, by type of force
 
   Assembly(const Mechanism& built, std::span<const Pose> in_poses);
 
@@ -46,6 +47,10 @@ struct Assembly {
   Vec3 vector(int body, const Vec3& drawn) const { return carried_vector(mechanism, poses, body, drawn); }
   const Joint& joint(int index) const { return mechanism.joints[static_cast<std::size_t>(index)]; }
 };
+
+// Whether a ball of this radius at a point (m, world) is all inside that of a body, as in a net of thousands
+// of them.
+bool within_ball(const Assembly& assembly, int body, const Vec3& at, double radius);
 
 // One coordinate of a joint: along or about what, as drawn and fixed in the joint's parent (or child, for
 // the second axis of a universal joint).

@@ -115,17 +115,15 @@ void draw_spring(Sketch& sketch, const Assembly& assembly, std::size_t index, co
   }
   sketch.pen.role = Role::force;
   sketch.pen.color = colors.metal_dark;
-  for (const Vec3& end : {a, b})
-    sketch.sphere(end, 0.45 * u);
+  for (const auto& [body, end] : {std::pair(first, a), std::pair(second, b)})
+    if (!within_ball(assembly, body, end, 0.45 * u)) sketch.sphere(end, 0.45 * u);
   if (first < 0) draw_anchor(sketch, a, b - a, 1.5 * u, u, colors);
   if (second < 0) draw_anchor(sketch, b, a - b, 1.5 * u, u, colors);
 }
 
 // Arrows grow with the square root of what they stand for, the largest of its kind being ten units long.
 double arrow_length(const Assembly& assembly, const Force& force) {
-  double largest = 0;
-  for (const Force& other : assembly.mechanism.forces)
-    if (other.type == force.type) largest = std::max(largest, other.vector.stableNorm());
+  const double largest = assembly.largest_vectors[static_cast<std::size_t>(force.type)];
   const double share = largest > 0 ? force.vector.stableNorm() / largest : 0;
   return assembly.scale.unit * (4 + 6 * std::sqrt(share));
 }

@@ -166,14 +166,6 @@ void draw_spherical(Sketch& sketch, const Assembly& assembly, const Place& p, co
   if (p.parent < 0) draw_anchor(sketch, p.at + 1.6 * u * bottom, -bottom, 2 * u, u, colors);
 }
 
-// Whether a ball of this radius at a point (m, world) is all inside that of a body, as in a net of thousands
-// of them.
-bool within_ball(const Assembly& assembly, int body, const Vec3& at, double radius) {
-  if (body < 0 || assembly.balls.empty()) return false;
-  const auto i = static_cast<std::size_t>(body);
-  return (at - assembly.poses[i].position).norm() + radius < assembly.balls[i];
-}
-
 void draw_distance(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
   const Joint& joint = assembly.mechanism.joints[index];
   const auto [first, second] = assembly.joint_bodies[index];

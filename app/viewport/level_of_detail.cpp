@@ -31,6 +31,24 @@ double round_part(const Instance& instance) {
   }
 }
 
+bool is_coil(Primitive primitive) {
+  return primitive == Primitive::coil || primitive == Primitive::open_coil;
+}
+
+// Turns are told apart from a radius of 1.5 pixels on; wire is straight up to 2.6.
+int detail_of_coil(double pixels, double flat) {
+  if (pixels < 1.5) return 0;
+  if (pixels > flat) return std::max(detail_for(pixels), last_flat_detail + 1);
+  return pixels < 2.6 ? 1 : 2;
+}
+
+// Half the width of the line that takes as much of the picture as a coil's wire, m.
+double strip_of_coil(const Instance& coil) {
+  const double radius = coil.extent.x(), length = coil.extent.z();
+  const double wire = 2 * coil_turns * std::hypot(2 * radius, length / (2 * coil_turns));
+  return std::min(0.65 * radius + coil.round, coil.round * wire / length);
+}
+
 // About its axis to the eye; nothing where it is seen end on.
 std::optional<Quat> turned_to(const Quat& rotation, const Vec3& to_eye) {
   const Vec3 z = rotation * Vec3::UnitZ();
@@ -88,7 +106,7 @@ std::optional<SeenSolid> see(const Instance& instance, const Sight& sight, const
 
   const double pixel = sight.pixel * metres;
   const double size = reach / pixel;
-  SeenSolid seen{0, 1, instance.round, instance.rotation};
+  SeenSolid seen{instance.primitive, 0, 1, instance.round, instance.rotation};
   if (size < least) {
     if (thinned && is_detail(instance.role)) return std::nullopt;
     // A link may be two rods, so that those kept are half as far apart as they are large.
@@ -97,7 +115,8 @@ std::optional<SeenSolid> see(const Instance& instance, const Sight& sight, const
     if (thinned && (instance.part.index & (static_cast<int>(every) - 1)) != 0) return std::nullopt;
     seen.grow = least / std::max(size, 1e-9);
   } else {
-    seen.detail = detail_for(round_part(instance) / pixel);
+    const double radius = round_part(instance) / pixel;
+    seen.detail = is_coil(instance.primitive) ? detail_of_coil(radius, sight.flat_coil) : detail_for(radius);
   }
   // Of what is flat or sharp the size tells.
   if (instance.primitive == Primitive::box)
@@ -107,12 +126,17 @@ std::optional<SeenSolid> see(const Instance& instance, const Sight& sight, const
   if (!thinned) seen.detail = std::max(seen.detail, last_flat_detail + 1);
   if (!is_flat(instance.primitive, seen.detail)) return seen;
   seen.rotation = facing;
-  if (instance.primitive == Primitive::capsule) {
-    const auto turned = turned_to(instance.rotation, sight.parallel ? sight.backward : Vec3(-away));
-    if (turned)
-      seen.rotation = *turned;
-    else
-      seen = {last_flat_detail + 1, seen.grow, seen.round, instance.rotation};
+  if (instance.primitive == Primitive::sphere) return seen;
+  const bool coil = is_coil(instance.primitive);
+  const auto turned = turned_to(instance.rotation, sight.parallel ? sight.backward : Vec3(-away));
+  if (turned) {
+    seen.rotation = *turned;
+    if (coil && seen.detail == 0) seen.round = std::max(strip_of_coil(instance), sight.thinnest * pixel);
+  } else if (coil) { // a disc, seen along its axis
+    seen.primitive = Primitive::sphere;
+    seen.round = round_part(instance);
+  } else {
+    seen = {instance.primitive, last_flat_detail + 1, seen.grow, seen.round, instance.rotation};
   }
   return seen;
 }

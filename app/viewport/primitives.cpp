@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 namespace flyball {
 
@@ -270,6 +271,47 @@ PrimitiveMesh flat(Primitive primitive, int detail) {
   return mesh;
 }
 
+// A coil as it is seen from the side: `quads` straight pieces of wire for each half turn.
+PrimitiveMesh flat_coil(bool open, int quads) {
+  PrimitiveMesh mesh;
+  // From one point to the next, as wide as the wire however steep it runs, within a sixth.
+  const auto wire = [&](double x0, double z0, double x1, double z1) {
+    const double lean = 0.5, side = 0.82, across = x1 == x0 ? 1 : side * (x1 > x0 ? -1 : 1);
+    const double up = x1 == x0 ? 0 : side;
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& [x, z, sign] : {std::tuple(x0, z0, 1), {x0, z0, -1}, {x1, z1, -1}, {x1, z1, 1}})
+      mesh.vertices.push_back(
+          {{float(x), 0, float(z)}, {float(sign * across), float(lean), float(sign * up)}});
+    // Counter-clockwise seen from y.
+    const bool turned = (x1 - x0) * up - (z1 - z0) * across > 0;
+    const std::uint32_t b = turned ? 3 : 1, d = turned ? 1 : 3;
+    mesh.indices.insert(mesh.indices.end(), {first, first + b, first + 2, first, first + 2, first + d});
+  };
+  const double low = open ? 0.03 : 0.08;
+  const int steps = static_cast<int>(2 * coil_turns) * quads;
+  const auto at = [&](int i) {
+    const bool tied = !open && (i == 0 || i == steps);
+    return std::pair(tied ? 0 : std::cos(std::numbers::pi * i / quads), low + (1 - 2 * low) * i / steps);
+  };
+  for (int i = 0; i < steps; ++i)
+    wire(at(i).first, at(i).second, at(i + 1).first, at(i + 1).second);
+  if (!open) {
+    wire(0, 0, 0, low);
+    wire(0, 1 - low, 0, 1);
+  }
+  return mesh;
+}
+
+// What is left of a coil that is a line.
+PrimitiveMesh strip() {
+  PrimitiveMesh mesh;
+  for (const float end : {0.f, 1.f})
+    for (const float side : {1.f, -1.f})
+      mesh.vertices.push_back({{0, 0, end}, {side, 0.7f, 0}});
+  mesh.indices = {0, 1, 3, 0, 3, 2};
+  return mesh;
+}
+
 PrimitiveMesh coarse_solid(Primitive primitive, int detail) {
   const int sides = detail_sides[static_cast<std::size_t>(detail)];
   const double grown = equal_area(sides);
@@ -281,7 +323,7 @@ PrimitiveMesh coarse_solid(Primitive primitive, int detail) {
   case Primitive::cylinder:
   case Primitive::tube:
   case Primitive::gear: return prism(sides, grown, -1, 1);
-  default: return prism(sides, 0.8 * grown, 0, 1); // coils
+  default: return detail > 0 ? flat_coil(primitive == Primitive::open_coil, 2 * detail - 1) : strip();
   }
 }
 
@@ -346,7 +388,7 @@ PrimitiveMesh swept(Primitive primitive, int detail) {
   const auto level = static_cast<std::size_t>(detail);
   const int around = std::array{3, 4, 5, 6, 8, 10}[level];
   const int circle_steps = std::array{8, 12, 20, 28, 44, 64}[level];
-  const int coil_steps = static_cast<int>(coil_turns) * std::array{0, 6, 8, 12, 20, 28}[level];
+  const int coil_steps = static_cast<int>(coil_turns) * std::array{0, 0, 0, 12, 20, 28}[level];
   switch (primitive) {
   case Primitive::ring: sweep(b, circle, 0, 1, circle_steps, around, false); break;
   case Primitive::arc: sweep(b, circle, 0, 0.75, circle_steps, around, true); break;
@@ -374,7 +416,8 @@ PrimitiveMesh primitive_mesh(Primitive primitive, int wanted) {
   case Primitive::broken_ring:
   case Primitive::spiral: return swept(primitive, detail);
   case Primitive::coil:
-  case Primitive::open_coil: return detail > 0 ? swept(primitive, detail) : coarse_solid(primitive, detail);
+  case Primitive::open_coil:
+    return detail > last_flat_detail ? swept(primitive, detail) : coarse_solid(primitive, detail);
   case Primitive::gear: return detail > 1 ? toothed_disc() : coarse_solid(primitive, detail);
   default: break;
   }

@@ -22,11 +22,13 @@ struct PrimitiveMesh {
 // `detail` from 0 to finest_detail, smooth from near; level_of_detail.hpp says which is drawn when. The three
 // coarsest are for what is a few pixels large: they take as much of the picture as the solid does, rather
 // than lie within it, and leave out holes and turns that nobody could see. Of them spheres are plane, to be
-// turned with z to the eye, and capsules, to be turned about z with y to the eye.
+// turned with z to the eye, and capsules and coils, to be turned about z with y to the eye. A plane coil is a
+// zigzag of wire; the coarsest is a strip, `round` half its width.
 inline constexpr int detail_levels = 6, finest_detail = 5, last_flat_detail = 2;
 PrimitiveMesh primitive_mesh(Primitive primitive, int detail);
 constexpr bool is_flat(Primitive primitive, int detail) {
-  return detail <= last_flat_detail && (primitive == Primitive::sphere || primitive == Primitive::capsule);
+  return detail <= last_flat_detail && (primitive == Primitive::sphere || primitive == Primitive::capsule ||
+                                        primitive == Primitive::coil || primitive == Primitive::open_coil);
 }
 
 // By detail: the sides of what is round.

@@ -57,6 +57,7 @@ Sight ShadowMap::sight() const {
   light.half_width = light.half_height = margin * units_.length;
   light.pixel = 2 * texel(); // shadows are softened over several texels
   light.thinnest = 0;        // a net of wires is no roof
+  light.flat_coil = 5;
   return light;
 }
 

@@ -47,7 +47,7 @@ void InstanceBatches::set(std::span<const Instance> instances, const ViewUnits& 
     if (!seen) continue;
     const GpuInstance gpu = gpu_instance(instance, *seen, units);
     if (!drawable(gpu)) continue;
-    kept_[kind_of(instance.primitive, seen->detail)].push_back(gpu);
+    kept_[kind_of(seen->primitive, seen->detail)].push_back(gpu);
     ++count_;
   }
   const std::size_t bytes = static_cast<std::size_t>(count_) * sizeof(GpuInstance);

@@ -50,6 +50,7 @@ struct Stage {
       : units{frame.camera.target, frame.camera.distance},
         camera(in_view_units(frame.camera)), size{double(target.width()), double(target.height())},
         sight(sight_of(frame.camera, size)), up(frame.camera.up), colors(&palette(frame.theme)) {
+    if (frame.options.draft) sight.flat_coil = 9;
     const Bounds& bounds = scene.bounds;
     center = bounds.empty ? Vec3(Vec3::Zero()) : Vec3((bounds.center() - units.origin) / units.length);
     radius = std::clamp(bounds.empty ? 0.3 : bounds.radius() / units.length, 1e-6, 1e6);

@@ -16,7 +16,7 @@ struct ViewOptions {
   bool shadow = true;
   bool triad = true; // axes (and gravity) in the lower left corner
   bool joints = true, drives = true, forces = true;
-  bool draft = false; // shadows less soft: sooner drawn
+  bool draft = false; // shadows less soft, coils flat: sooner drawn
   float scale = 1;    // pixels a point has: widths of lines that do not scale with the mechanism
 };
 

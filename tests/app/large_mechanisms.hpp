@@ -81,6 +81,33 @@ inline Mechanism cable_net(int side) {
   return m;
 }
 
+// `side` x `side` knots in the plane of x and z, 0.1 m apart, tied to their neighbours and at two edges to
+// the ground by springs.
+inline Mechanism spring_net(int side) {
+  constexpr double cell = 0.1;
+  Mechanism m;
+  m.name = "Net of springs";
+  m.gravity = {0, -9.80665, 0};
+  const auto name = [](int i, int k) { return "n" + std::to_string(i) + "_" + std::to_string(k); };
+  const auto at = [&](int i, int k) { return Vec3(cell * (i - side / 2), 0, cell * (k - side / 2)); };
+  const auto tie = [&](const std::string& first, int i, int k, int j, int l) {
+    Force spring;
+    spring.name = "s" + std::to_string(m.forces.size());
+    spring.type = ForceType::spring;
+    spring.bodies = {first, name(j, l)};
+    spring.points = {at(i, k), at(j, l)};
+    spring.stiffness = 100;
+    m.forces.push_back(spring);
+  };
+  for (int i = 0; i < side; ++i)
+    for (int k = 0; k < side; ++k) {
+      m.bodies.push_back(make_body(name(i, k), 0.01, at(i, k)));
+      tie(i ? name(i - 1, k) : "ground", i - 1, k, i, k);
+      tie(k ? name(i, k - 1) : "ground", i, k - 1, i, k);
+    }
+  return m;
+}
+
 // Balls of given radius in the plane of x and y, `columns` a row, 0.1 m apart; each held by the ground.
 inline Mechanism ball_grid(int columns, int rows, double radius) {
   Mechanism m;

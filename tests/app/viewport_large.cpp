@@ -207,9 +207,66 @@ TEST_CASE("draw calls do not grow with the bodies") {
   CHECK(calls(30, 30) == few);
 
   // Whatever it is, a few dozen.
-  for (const Mechanism& m : {long_chain(10000), branching_tree(10000), cable_net(100)}) {
+  for (const Mechanism& m : {long_chain(10000), branching_tree(10000), cable_net(100), spring_net(100)}) {
     const ViewFrame frame = frame_of(m, {160, 120});
     CHECK(renderer.draw(frame, target).draw_calls < 70);
+  }
+}
+
+TEST_CASE("a net of springs costs a few triangles a spring, whose glyphs fit its meshes") {
+  const ViewSize view{1280, 800};
+  const auto triangles = [&](const Mechanism& m, double flat_coil) {
+    const ViewFrame frame = frame_of(m, view);
+    Sight sight = sight_of(frame.camera, view);
+    sight.flat_coil = flat_coil;
+    std::size_t sum = 0;
+    for (const Instance& instance : scene_of(frame).instances) {
+      if (instance.role != Role::spring) continue;
+      const auto seen = see(instance, sight, sight.facing());
+      if (seen) sum += primitive_mesh(seen->primitive, seen->detail).indices.size() / 3;
+    }
+    return static_cast<double>(sum) / static_cast<double>(m.forces.size());
+  };
+  constexpr double full = 2.6, draft = 9;
+  const Mechanism small = spring_net(3), middle = spring_net(32), large = spring_net(100);
+  CHECK(triangles(small, full) > 3000);
+  CHECK(triangles(middle, full) < 1200);
+  CHECK(triangles(middle, draft) < 100);
+  CHECK(triangles(large, full) < 20);
+  CHECK(triangles(large, full) >= 1.9);
+
+  // A knot, a spring each way, and what holds it at the edges.
+  const SceneList scene = build_scene(large, {});
+  CHECK(scene.instances.size() <= 3 * large.bodies.size() + 4 * 100);
+  CHECK(scene.scale.unit == Approx(0.01));
+}
+
+TEST_CASE("springs too small for their turns take as much of the picture") {
+  OffscreenContext context;
+  ViewRenderer renderer;
+  const auto mean = [](const Image& image) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        for (int c = 0; c < 3; ++c)
+          sum += image.at(x, y)[c];
+    return sum / (3.0 * image.width * image.height);
+  };
+  for (const int side : {8, 14, 24}) {
+    INFO("side " << side);
+    const Mechanism m = spring_net(side);
+    ViewFrame frame = bare(frame_of(m, {240, 160}));
+    Framebuffer small(240, 160, 4), large(1920, 1280, 1);
+    renderer.draw(frame, small);
+    const double coarse = mean(small.read());
+    renderer.draw(frame, large);
+    const double fine = mean(large.read());
+    frame.options.forces = false;
+    renderer.draw(frame, large);
+    const double without = mean(large.read());
+    INFO(coarse << ' ' << fine << ' ' << without);
+    CHECK(fine < without - 2);
+    CHECK(std::abs(coarse - fine) < 0.25 * (without - fine));
   }
 }
 
