@@ -6,7 +6,12 @@
 
 namespace flyball::stress {
 
-inline constexpr double patience = 20; // s a case
+// s a case; sanitizers slow everything down.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr double patience = 300;
+#else
+inline constexpr double patience = 20;
+#endif
 
 struct Result {
   std::string family, name;
