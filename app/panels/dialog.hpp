@@ -20,8 +20,8 @@ struct Choice {
   const char* name; // for the widget map
   const char* text;
 };
-// A row of buttons of which `marked` is the one that Enter means; the arrow keys and Tab mark another. Returns
-// the one pressed, or -1.
+// A row of buttons of which `marked` is the one that Enter means; the arrow keys and Tab mark another.
+// Returns the one pressed, or -1.
 int choice_buttons(App& app, std::span<const Choice> choices, int& marked);
 
 } // namespace flyball

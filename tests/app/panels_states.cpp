@@ -103,7 +103,7 @@ TEST_CASE("a click on a row puts the mechanism into that state, stable or not") 
 TEST_CASE("after a change the list is that of the mechanism as it is") {
   StatesRobot robot;
   App& app = robot.app;
-  app.study.states.result->run_time_s = 0; // whatever it took on a busy machine
+  app.study.states.result->run_time_s = 0;             // whatever it took on a busy machine
   change_parameter(app, "joints.spin.drive.speed", 1); // below the critical speed
   robot.frames(3);
   CHECK(states_are_current(app));

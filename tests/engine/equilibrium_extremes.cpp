@@ -166,7 +166,8 @@ TEST_CASE("numbers far apart: right to the estimate, or refused in words") {
 
 TEST_CASE("forces beyond the largest number are refused, not shown") {
   Mechanism m = shipped("pendulum");
-  m.joints[0].coordinates[0].drive->speed = 1e155; // whose square overflows; validation would not let it through
+  m.joints[0].coordinates[0].drive->speed =
+      1e155; // whose square overflows; validation would not let it through
   const Solution s = Analysis(m).solve();
   CHECK(s.status == Status::not_converged);
   CHECK(s.coordinates.empty());

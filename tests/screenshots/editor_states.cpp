@@ -138,7 +138,9 @@ TEST_CASE("the motion stands beside the steady state, with its plots") {
   hand.frames(2);
   hand.app.playback.playing = false;
   seek_motion(hand.app, 0.55);
-  SECTION("in amber") { hand.check("study-motion"); }
+  SECTION("in amber") {
+    hand.check("study-motion");
+  }
   SECTION("in a view of its own") {
     hand.app.motion.beside = true;
     hand.check("study-motion-beside");

@@ -129,10 +129,9 @@ FlyballResult newton_row(int links, const std::string& text, double seconds, dou
 }
 
 int help() {
-  std::puts(
-      "usage: peers_bench [pendulum] [governor] [chain] [bent] [motion] [newton]\n"
-      "Prints a Markdown table of Flyball against other ways to the same steady state; all parts\n"
-      "unless some are named. The scans for the peers' best settings take about two minutes.");
+  std::puts("usage: peers_bench [pendulum] [governor] [chain] [bent] [motion] [newton]\n"
+            "Prints a Markdown table of Flyball against other ways to the same steady state; all parts\n"
+            "unless some are named. The scans for the peers' best settings take about two minutes.");
   return 0;
 }
 
