@@ -37,7 +37,7 @@ void Recorder::lay_out() {
     track.angle = c.angle;
     track.driven = link.drive >= 0;
     track.rotation = link.type == LinkType::spherical;
-    track.turns = turns_freely(system, model_->parameters, c);
+    track.turns = turns_freely(system, model_->parameters, c.link);
     run_.coordinates.push_back(std::move(track));
   }
   for (std::size_t d = 0; d < system.drives.size(); ++d) {

@@ -161,13 +161,7 @@ void BodyElimination::add_pairs(const Problem& problem, const Unknowns& z, const
     for (std::size_t r = 0; r < cut.rows.size(); ++r) {
       const double multiplier = z.lambda.size() > 0 ? z.lambda[cut.first_row + static_cast<int>(r)] : 0;
       if (multiplier == 0) continue;
-      const PairBlocks x = row_blocks(cut, p.cuts[c], cut.rows[r], multiplier, k);
-      sum.aa += x.aa;
-      sum.ab += x.ab;
-      sum.ba += x.ba;
-      sum.bb += x.bb;
-      sum.on_a += x.on_a;
-      sum.on_b += x.on_b;
+      sum += row_blocks(cut, p.cuts[c], cut.rows[r], multiplier, k);
     }
     add_pair(cut.ends.a, cut.ends.b, sum);
   }

@@ -201,14 +201,17 @@ void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
   w.hessian.factor(w.reduced, w.noise, problem.symmetric());
 }
 
-void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
+void evaluate_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
   z.lambda.setZero(problem.system.rows);
   evaluate(problem, z, 0, w);
-  if (problem.system.rows > 0) {
-    factor_constraints(problem, w);
-    best_multipliers(problem, w, z.lambda);
-    evaluate(problem, z, 0, w);
-  }
+  if (problem.system.rows == 0) return;
+  factor_constraints(problem, w);
+  best_multipliers(problem, w, z.lambda);
+  evaluate(problem, z, 0, w);
+}
+
+void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
+  evaluate_with_multipliers(problem, z, w);
   factor(problem, z, w);
 }
 

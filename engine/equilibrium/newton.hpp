@@ -33,7 +33,8 @@ bool positive_definite(const Problem& problem, const Workspace& w);
 // Some direction has no stiffness.
 bool singular(const Problem& problem, const Workspace& w);
 
-// The same at any state, with the multipliers that balance it best.
+// At any state, with the multipliers that balance it best: evaluates; and factors, too.
+void evaluate_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w);
 void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w);
 
 // The Newton step at a factored state: `step` (scaled, tangent) and `lambda` (new multipliers) for the

@@ -79,6 +79,16 @@ void PairBlocks::set_zero() {
   on_b.setZero();
 }
 
+PairBlocks& PairBlocks::operator+=(const PairBlocks& other) {
+  aa += other.aa;
+  ab += other.ab;
+  ba += other.ba;
+  bb += other.bb;
+  on_a += other.on_a;
+  on_b += other.on_b;
+  return *this;
+}
+
 PairBlocks spring_blocks(const PointSpringElement& e, const PointSpringParameters& p,
                          const Kinematics<double>& k, bool moving) {
   const SpringState<double> s = spring_state(e, p, k);

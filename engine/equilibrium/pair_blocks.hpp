@@ -12,6 +12,7 @@ struct PairBlocks {
   Mat6 aa, ab, ba, bb; // of the balance on one body by the motion of another
   Vec6 on_a, on_b;     // what the balance asks for: dV by a unit of motion
   void set_zero();
+  PairBlocks& operator+=(const PairBlocks& other);
 };
 
 // At velocities where `moving`: dampers between parts that turn against each other.

@@ -145,13 +145,12 @@ void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
 
 } // namespace
 
-bool turns_freely(const System& system, const Parameters& p, const CoordinateInfo& c) {
-  const Link& link = system.links[static_cast<std::size_t>(c.link)];
-  const bool geared = std::ranges::any_of(system.cuts, [&](const CutJoint& cut) {
-    return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
-  });
-  return link.type == LinkType::revolute && link.drive < 0 && !geared &&
-         !p.links[static_cast<std::size_t>(c.link)].elastic;
+bool turns_freely(const System& system, const Parameters& p, int l) {
+  const Link& link = system.links[static_cast<std::size_t>(l)];
+  return link.type == LinkType::revolute && link.drive < 0 && !p.links[static_cast<std::size_t>(l)].elastic &&
+         std::ranges::none_of(system.cuts, [&](const CutJoint& cut) {
+           return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
+         });
 }
 
 std::vector<CoordinateSolution> coordinate_solutions(const System& system, const Parameters& p,
@@ -166,7 +165,7 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
     x.angle = c.angle;
     x.driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
     x.value = coordinate_value(system, p, q, c);
-    if (turns_freely(system, p, c)) x.value = wrapped(x.value);
+    if (turns_freely(system, p, c.link)) x.value = wrapped(x.value);
     x.error = error_of(system, p, c, q, error);
     out.push_back(std::move(x));
   }

@@ -26,9 +26,9 @@ bool is_finite(const Solution& solution);
 void report(const ReportInput& input, const Eigen::VectorXd& error, bool details, Workspace& w,
             Solution& out);
 
-// Whether whole turns of a coordinate do not matter: nothing springs back, stops, gears or drives it. Such an
-// angle is told in (-pi, pi].
-bool turns_freely(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate);
+// Whether whole turns of a link's coordinate do not matter: nothing springs back, stops, gears or drives it.
+// Such an angle is told in (-pi, pi].
+bool turns_freely(const System& system, const Parameters& parameters, int link);
 
 // A configuration as its joints label it; `error` by coordinate of q_R (rad, m).
 std::vector<CoordinateSolution> coordinate_solutions(const System& system, const Parameters& parameters,

@@ -61,6 +61,7 @@ class TrustRegion {
   bool close_loops() {
     if (p_.system.rows == 0) return true;
     double before = std::numeric_limits<double>::infinity();
+    w_.zero_lambda.setZero(p_.system.rows);
     int slow = 0;
     for (int i = 0; i < 30; ++i) {
       evaluate_residual<double>(p_.system, p_.parameters, moved_, w_.zero_lambda, w_.kinematics, w_.residual);
@@ -79,14 +80,7 @@ class TrustRegion {
   }
 
   void linearize_here() {
-    z_.lambda.setZero(p_.system.rows);
-    w_.zero_lambda.setZero(p_.system.rows);
-    evaluate(p_, z_, 0, w_);
-    if (p_.system.rows > 0) {
-      factor_constraints(p_, w_);
-      best_multipliers(p_, w_, z_.lambda);
-      evaluate(p_, z_, 0, w_);
-    }
+    evaluate_with_multipliers(p_, z_, w_);
     if (history_) history_->push_back(scaled_residual(p_, w_));
     gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
     force_ = w_.magnitudes.force.cwiseProduct(p_.scaling.column).maxCoeff();

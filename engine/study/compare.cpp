@@ -118,7 +118,7 @@ class Direct {
         continue;
       }
       long double away = static_cast<long double>(q[link.q]) - reference_[link.q];
-      if (link.type == LinkType::revolute && !parameters_.links[l].elastic && !geared(link))
+      if (turns_freely(system_, parameters_, static_cast<int>(l)))
         away = std::remainder(away, 2 * std::numbers::pi_v<long double>);
       worst = std::max(worst, std::abs(away) / static_cast<long double>(scaling_.column[link.v]));
     }
@@ -134,12 +134,6 @@ class Direct {
 
  private:
   Problem problem() const { return {system_, parameters_, scaling_}; }
-
-  bool geared(const Link& link) const {
-    return std::ranges::any_of(system_.cuts, [&](const CutJoint& cut) {
-      return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
-    });
-  }
 
   // What no multipliers balance, and how far the loops are open, relative to the terms they are made of.
   double balance(Workspace& w) const {
