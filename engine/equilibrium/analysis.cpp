@@ -47,10 +47,14 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
 }
 
 // Eigenvalues need the matrices; beyond a size the pivots have to do.
+bool pivots_decide(const Problem& problem, int modes) {
+  return problem.system.nv > largest_for_eigenvalues && modes == 0 && !problem.is_dense();
+}
+
 Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eigenvalues, int modes,
                        Workspace& w) {
+  if (pivots_decide(problem, modes)) return find_pivot_stability(problem, z, w);
   const bool many = problem.system.nv > largest_for_eigenvalues && modes == 0;
-  if (many && !problem.is_dense()) return find_pivot_stability(problem, z, w);
   const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
   Stability out = find_stability(whole, z, with_eigenvalues && !many, w);
   if (many) out.eigenvalues.reset();
@@ -148,7 +152,7 @@ Solution Analysis::solve(const SolveOptions& options) {
   }
   s.answer = s.found.z.q;
   s.answered = s.settled = true;
-  if (options.details) {
+  if (options.details && !pivots_decide(problem, options.modes)) {
     stability = stability_of(problem, s.found.z, true, options.modes, s.workspace);
     if (options.modes > 0 && stability.eigenvalues &&
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))

@@ -97,6 +97,11 @@ void BodyElimination::set_columns(const Problem& problem, const Kinematics<doubl
     x.n = Mat6::Identity();
     return;
   }
+  if (x.columns == 6) {
+    x.d = Mat6(x.s).transpose().inverse();
+    x.n.resize(6, 0);
+    return;
+  }
   const Square gram = x.s.transpose() * x.s;
   x.d = x.s * gram.inverse();
   const Eigen::HouseholderQR<Columns> qr(x.s);
@@ -125,6 +130,7 @@ void BodyElimination::add_bodies(const Problem& problem, const Kinematics<double
 }
 
 void BodyElimination::add_pair(int a, int b, const PairBlocks& x) {
+  compressed_ |= x.compressed;
   const int na = node_at(a), nb = node_at(b);
   if (na >= 0) {
     node(na).stiffness += scaled(x.aa);
@@ -141,12 +147,13 @@ void BodyElimination::add_pair(int a, int b, const PairBlocks& x) {
     emit_between(na, nb, scaled(x.ab), scaled(x.ba), Mat6::Zero());
 }
 
-void BodyElimination::add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& k) {
+void BodyElimination::add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                                Lines lines) {
   const System& system = problem.system;
   const Parameters& p = problem.parameters;
   for (std::size_t i = 0; i < system.springs.size(); ++i) {
     const PointSpringElement& e = system.springs[i];
-    add_pair(e.ends.a, e.ends.b, spring_blocks(e, p.springs[i], k, p.moving));
+    add_pair(e.ends.a, e.ends.b, spring_blocks(e, p.springs[i], k, p.moving, lines));
   }
   if (p.moving)
     for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
@@ -161,7 +168,7 @@ void BodyElimination::add_pairs(const Problem& problem, const Unknowns& z, const
     for (std::size_t r = 0; r < cut.rows.size(); ++r) {
       const double multiplier = z.lambda.size() > 0 ? z.lambda[cut.first_row + static_cast<int>(r)] : 0;
       if (multiplier == 0) continue;
-      sum += row_blocks(cut, p.cuts[c], cut.rows[r], multiplier, k);
+      sum += row_blocks(cut, p.cuts[c], cut.rows[r], multiplier, k, lines);
     }
     add_pair(cut.ends.a, cut.ends.b, sum);
   }
@@ -246,9 +253,21 @@ void BodyElimination::emit(int row, int column, const Value& value) {
   values_.push_back(value);
 }
 
+// Point masses feel no turns, neither their own nor each other's.
 void BodyElimination::emit_between(int a, int b, const Mat6& ab, const Mat6& ba, const Mat6& metric_ab) {
-  for (int j = 0; j < 6; ++j)
-    for (int i = 0; i < 6; ++i) {
+  for (const int i : {0, 3})
+    for (const int j : {0, 3}) {
+      const bool shifts = i == 3 && j == 3;
+      if (shifts || !ab.block<3, 3>(i, j).isZero(0) || !ba.block<3, 3>(j, i).isZero(0) ||
+          !metric_ab.block<3, 3>(i, j).isZero(0))
+        emit_block(a, i, b, j, ab, ba, metric_ab);
+    }
+}
+
+void BodyElimination::emit_block(int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
+                                 const Mat6& metric_ab) {
+  for (int j = first_j; j < first_j + 3; ++j)
+    for (int i = first_i; i < first_i + 3; ++i) {
       if (symmetric_) {
         emit(6 * a + i, 6 * b + j, {(ab(i, j) + ba(j, i)) / 2, metric_ab(i, j), 0});
       } else {
@@ -289,13 +308,26 @@ void BodyElimination::finish_nodes() {
 
 void BodyElimination::linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                                 const Residual<double>& residual, const Magnitudes& magnitudes) {
+  take_in(problem, z, k, residual, magnitudes, Lines::exact);
+}
+
+bool BodyElimination::linearize_convex(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                                       const Residual<double>& residual, const Magnitudes& magnitudes) {
+  if (!compressed_) return false;
+  take_in(problem, z, k, residual, magnitudes, Lines::convex);
+  return true;
+}
+
+void BodyElimination::take_in(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                              const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines) {
   lay_out(problem, k);
+  compressed_ = false;
   tolerance_ = zero;
   metric_alone_ = false;
   add_bodies(problem, k);
   for (Node& x : nodes_)
     x.load.setZero();
-  add_pairs(problem, z, k);
+  add_pairs(problem, z, k, lines);
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     Node& x = nodes_[i];
     if (x.parent >= 0) add_wrench(x.load, x.arm, node(x.parent).load);

@@ -26,6 +26,8 @@ class BodyElimination final : public Eliminator {
   // Of a system with no_drive_rides().
   void linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                  const Residual<double>& residual, const Magnitudes& magnitudes) override;
+  bool linearize_convex(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
+                        const Residual<double>& residual, const Magnitudes& magnitudes) override;
   // Takes in the metric alone, as a stiffness: then a step is the shortest one that closes the loops, and
   // multipliers are those that balance a force best. Dependent rows have pivots of the size by which the
   // loops are open, told by `tolerance`.
@@ -70,7 +72,10 @@ class BodyElimination final : public Eliminator {
   void lay_out(const Problem& problem, const Kinematics<double>& kinematics);
   void set_columns(const Problem& problem, const Kinematics<double>& kinematics, Node& node) const;
   void add_bodies(const Problem& problem, const Kinematics<double>& kinematics);
-  void add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics);
+  void add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
+                 Lines lines);
+  void take_in(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
+               const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines);
   void add_joints(const Problem& problem, const Eigen::VectorXd* q);
   void add_rows(const Problem& problem, const Kinematics<double>& kinematics);
   void add_pair(int a, int b, const PairBlocks& blocks);
@@ -83,6 +88,8 @@ class BodyElimination final : public Eliminator {
   void emit(int row, int column, const Value& value);
   // Entries between two nodes, and of the second by the first.
   void emit_between(int a, int b, const Mat6& ab, const Mat6& ba, const Mat6& metric_ab);
+  void emit_block(int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
+                  const Mat6& metric_ab);
   void emit_row(int row, int node, const Vec6& gradient);
   void emit_coordinate(int row, int coordinate, double gradient);
   int node_at(int link) const { return link < 0 ? -1 : node_of_link_[static_cast<std::size_t>(link)]; }
@@ -90,7 +97,7 @@ class BodyElimination final : public Eliminator {
   void sum_up(double stiffness, double metric);
   Mat6 scaled(const Mat6& m) const;
 
-  bool symmetric_ = true, solved_ = false, metric_alone_ = false;
+  bool symmetric_ = true, solved_ = false, metric_alone_ = false, compressed_ = false;
   int coordinates_ = 0, first_row_ = 0, unknowns_ = 0, redundant_ = 0;
   double length_ = 1, tolerance_ = zero;
   std::vector<Node> nodes_;       // parents before children

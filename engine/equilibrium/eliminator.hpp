@@ -25,6 +25,14 @@ class Eliminator {
   virtual void linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                          const Residual<double>& residual, const Magnitudes& magnitudes) = 0;
 
+  // The same without what compression takes off the stiffness of springs and loops: still a model of how the
+  // balance changes, but one whose steps are downhill far from a minimum, too (projected Newton; Teran,
+  // Sifakis, Irving, Fedkiw, Robust quasistatic finite elements, 2005). False where that changes nothing.
+  virtual bool linearize_convex(const Problem&, const Unknowns&, const Kinematics<double>&,
+                                const Residual<double>&, const Magnitudes&) {
+    return false;
+  }
+
   // Eliminates K + shift W (shift in 1/s^2).
   virtual void factor(double shift = 0) = 0;
 

@@ -269,7 +269,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > farthest) break;
     // In large mechanisms steps that stay long lead nowhere and cost much.
-    if (!problem.is_dense() && !settings.damped && i >= 8 && size > 1 && size > 0.5 * previous_step) break;
+    if (!problem.is_dense() && !settings.damped && i >= 3 && size > 1 && size > 0.5 * previous_step) break;
     double fraction = 1;
     if (settings.damped) {
       if (!problem.is_dense()) factor_constraints(problem, w); // the balance has its own factors

@@ -62,10 +62,14 @@ Ends ends_of(const PairEnds& ends, const Vec3& a, const Vec3& b, const Kinematic
 }
 
 // Tension along the line between two points, which also changes by `along` per stretch.
-PairBlocks line_blocks(const Ends& e, const Vec3& direction, double length, double along, double tension) {
+PairBlocks line_blocks(const Ends& e, const Vec3& direction, double length, double along, double tension,
+                       Lines lines) {
   const Mat3 dd = direction * direction.transpose();
-  const Mat3 k = along * dd + tension / length * (Mat3::Identity() - dd);
-  return force_between(tension * direction, e.pa, e.pb, -k * e.pa, k * e.pb);
+  const double across = (lines == Lines::convex ? std::max(tension, 0.) : tension) / length;
+  const Mat3 k = along * dd + across * (Mat3::Identity() - dd);
+  PairBlocks x = force_between(tension * direction, e.pa, e.pb, -k * e.pa, k * e.pb);
+  x.compressed = tension < 0;
+  return x;
 }
 
 } // namespace
@@ -77,6 +81,7 @@ void PairBlocks::set_zero() {
   bb.setZero();
   on_a.setZero();
   on_b.setZero();
+  compressed = false;
 }
 
 PairBlocks& PairBlocks::operator+=(const PairBlocks& other) {
@@ -86,16 +91,17 @@ PairBlocks& PairBlocks::operator+=(const PairBlocks& other) {
   bb += other.bb;
   on_a += other.on_a;
   on_b += other.on_b;
+  compressed |= other.compressed;
   return *this;
 }
 
 PairBlocks spring_blocks(const PointSpringElement& e, const PointSpringParameters& p,
-                         const Kinematics<double>& k, bool moving) {
+                         const Kinematics<double>& k, bool moving, Lines lines) {
   const SpringState<double> s = spring_state(e, p, k);
   const Ends at = ends_of(e.ends, s.a, s.b, k);
   if (p.free_length == 0 && p.damping == 0) // needs no direction: the points may meet
     return force_between(p.stiffness * (s.b - s.a), at.pa, at.pb, -p.stiffness * at.pa, p.stiffness * at.pb);
-  PairBlocks x = line_blocks(at, s.direction, s.length, p.stiffness, s.tension);
+  PairBlocks x = line_blocks(at, s.direction, s.length, p.stiffness, s.tension, lines);
   if (p.damping == 0 || !moving) return x;
   // Points are carried by frames that turn with w: a point's velocity changes by w x its shift.
   const Mat3 across = (Mat3::Identity() - s.direction * s.direction.transpose()) / s.length;
@@ -139,12 +145,12 @@ PairBlocks damper_blocks(const CutDamperElement& e, const CutDamperParameters& p
 }
 
 PairBlocks row_blocks(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row,
-                      double multiplier, const Kinematics<double>& k) {
+                      double multiplier, const Kinematics<double>& k, Lines lines) {
   const Ends at = ends_of(cut.ends, k.point(cut.ends.a, p.a), k.point(cut.ends.b, p.b), k);
   if (row.type == RowType::distance) {
     const Vec3 d = at.b - at.a;
     const double length = d.norm();
-    return line_blocks(at, d / length, length, 0, multiplier);
+    return line_blocks(at, d / length, length, 0, multiplier, lines);
   }
   const Vec3 u = k.at(cut.ends.a).R * p.frame[static_cast<std::size_t>(row.u)];
   if (row.type == RowType::point) {
@@ -166,7 +172,7 @@ PairBlocks row_blocks(const CutJoint& cut, const CutParameters& p, const Constra
 
 RowGradient body_row_gradient(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row,
                               const Kinematics<double>& k) {
-  const PairBlocks unit = row_blocks(cut, p, row, 1, k);
+  const PairBlocks unit = row_blocks(cut, p, row, 1, k, Lines::exact);
   return {unit.on_a, unit.on_b};
 }
 

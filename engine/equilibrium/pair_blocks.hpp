@@ -9,21 +9,26 @@
 namespace flyball {
 
 struct PairBlocks {
-  Mat6 aa, ab, ba, bb; // of the balance on one body by the motion of another
-  Vec6 on_a, on_b;     // what the balance asks for: dV by a unit of motion
+  Mat6 aa, ab, ba, bb;     // of the balance on one body by the motion of another
+  Vec6 on_a, on_b;         // what the balance asks for: dV by a unit of motion
+  bool compressed = false; // a line under compression
   void set_zero();
   PairBlocks& operator+=(const PairBlocks& other);
 };
 
+// What springs and loops of a given length do across their line: compression takes off stiffness there, which
+// a convex model leaves out.
+enum class Lines { exact, convex };
+
 // At velocities where `moving`: dampers between parts that turn against each other.
 PairBlocks spring_blocks(const PointSpringElement& element, const PointSpringParameters& spring,
-                         const Kinematics<double>& kinematics, bool moving);
+                         const Kinematics<double>& kinematics, bool moving, Lines lines);
 PairBlocks damper_blocks(const CutDamperElement& element, const CutDamperParameters& damper,
                          const Kinematics<double>& kinematics);
 
 // Of a constraint row that is no gear, with its multiplier.
 PairBlocks row_blocks(const CutJoint& cut, const CutParameters& joint, const ConstraintRow& row,
-                      double multiplier, const Kinematics<double>& kinematics);
+                      double multiplier, const Kinematics<double>& kinematics, Lines lines);
 
 // The row's change by a unit of motion of either body.
 struct RowGradient {

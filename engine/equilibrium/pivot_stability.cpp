@@ -12,10 +12,10 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
     w.step = step.cwiseProduct(problem.scaling.column);
     retract<double>(problem.system, w.step, moved.q);
     evaluate(problem, moved, 0, w);
-    factor(problem, moved, w);
     const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
     w.target = -w.residual.f.cwiseProduct(problem.scaling.column);
     if (w.target.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
+    factor(problem, moved, w);
     w.eliminator(problem).solve(w.target, step);
     if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
   }
@@ -26,8 +26,6 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
 
 Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w) {
   Stability out;
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
   if (!problem.symmetric()) return out;
   const int negative = w.eliminator(problem).negative_count();
   if (w.eliminator(problem).positive_definite()) {
@@ -66,8 +64,6 @@ Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Worksp
   all /= all.lpNorm<Eigen::Infinity>();
   const bool balanced =
       stays_balanced(problem, z, 0.05 * all, w) && stays_balanced(problem, z, -0.11 * all, w);
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
   if (balanced)
     for (int v = 0; v < problem.system.nv; ++v)
       if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);

@@ -38,6 +38,7 @@ struct SparseFactorization::State {
   // Rows and columns to largest entries of one, by square roots from both sides (Ruiz, A scaling algorithm to
   // equilibrate both rows and columns norms in matrices, 2001).
   void equilibrate(const std::vector<double>& values) {
+    constexpr double even = 1.2; // further apart rows need another pass
     scale.setOnes(pattern.size);
     scaled = values;
     for (int pass = 0; pass < 6; ++pass) {
@@ -47,8 +48,12 @@ struct SparseFactorization::State {
         for (int at : {pattern.rows[e] - 1, pattern.columns[e] - 1})
           largest[at] = std::max(largest[at], size);
       }
-      for (double& x : largest)
+      bool done = true;
+      for (double& x : largest) {
         x = x > 0 ? 1 / std::sqrt(x) : 1;
+        done = done && x < even && x * even > 1;
+      }
+      if (done) return;
       scale.array() *= largest.array();
       for (std::size_t e = 0; e < scaled.size(); ++e)
         scaled[e] *= largest[pattern.rows[e] - 1] * largest[pattern.columns[e] - 1];
@@ -71,7 +76,7 @@ struct SparseFactorization::State {
     setting(12) = 2;   // on the graph of two by two pivots: multipliers have zeros on the diagonal
     setting(8) = 0;    // the matrix comes equilibrated
     setting(13) = 1;   // the root is factored like the rest, for its zero pivots to be found
-    setting(14) = 50;  // per cent of memory more than estimated, for pivots that have to wait
+    setting(14) = 100; // per cent of memory more than estimated, for pivots that have to wait
     setting(24) = 1;   // find zero pivots
     mumps.n = p.size;
     mumps.nnz = static_cast<MUMPS_INT8>(p.rows.size());

@@ -17,11 +17,15 @@ class TrustRegion {
     unit_ = std::sqrt(e_.mass()) * p_.parameters.length;
     radius_ = 0.5 * unit_;
     double travelled = 0;
+    int shortened = 0;
     for (int i = 0; i < 1000; ++i) {
       if (p_.cancelled()) return {DescentEnd::cancelled, i};
-      choose_step();
+      if (shortened == 0)
+        choose_step();
+      else
+        shorten_step();
       const double size = step_.lpNorm<Eigen::Infinity>();
-      if (shift_ == 0 && size < 1e-8) return {DescentEnd::minimum, i};
+      if (shortened == 0 && shift_ == 0 && size < 1e-8) return {DescentEnd::minimum, i};
       if (!(predicted_ > 0) || !std::isfinite(size))
         return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
       moved_ = z_.q;
@@ -29,7 +33,7 @@ class TrustRegion {
       retract<double>(p_.system, w_.step, moved_);
       forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
       const bool closed = close_loops();
-      const Potential next = amended_potential(p_.system, p_.parameters, moved_, w_.kinematics);
+      const Potential next = lagrangian(moved_);
       const double rounding = 1e-14 * (potential_.magnitude + next.magnitude);
       const double gain = potential_.value - next.value;
       // Below rounding the potential cannot judge; there the model is as good as exact.
@@ -44,30 +48,44 @@ class TrustRegion {
         radius_ = length_ / 4;
       else if (ratio > 0.7 && length_ > 0.8 * radius_)
         radius_ = std::min(2 * radius_, 2 * unit_);
-      if (closed && std::isfinite(next.value) && ratio > 1e-4 && gain > -10 * rounding) {
+      if (closed && std::isfinite(next.value) && ratio > 0.1 && gain > -10 * rounding) {
         z_.q = moved_;
         travelled += length_;
         if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
         linearize_here();
-      } else if (radius_ < 1e-12 * unit_) {
-        return {DescentEnd::stalled, i};
+        shortened = 0;
+      } else {
+        if (radius_ < 1e-12 * unit_) return {DescentEnd::stalled, i};
+        // What is wrong with a step is mostly its length; in the end the direction has to turn, too.
+        shortened = (shortened + 1) % 3;
+        if (shortened == 0) evaluate(p_, z_, 0, w_);
       }
     }
     return {DescentEnd::stalled, 1000};
   }
 
  private:
-  // Steps along the loops open them by a little. By the factors at hand as long as they serve.
+  // The potential, and what the loops are still open by at the price of their multipliers.
+  Potential lagrangian(const Eigen::VectorXd& q) {
+    Potential out = amended_potential(p_.system, p_.parameters, q, w_.kinematics);
+    if (p_.system.rows > 0) out.value += z_.lambda.dot(w_.residual.phi);
+    return out;
+  }
+
+  // Steps along the loops open them by a little. By the factors at hand as long as they serve, and no further
+  // than it takes to judge the step.
   bool close_loops() {
     if (p_.system.rows == 0) return true;
     double before = std::numeric_limits<double>::infinity();
     w_.zero_lambda.setZero(p_.system.rows);
     int slow = 0;
+    const double enough = 0.01 * predicted_;
     for (int i = 0; i < 30; ++i) {
       evaluate_residual<double>(p_.system, p_.parameters, moved_, w_.zero_lambda, w_.kinematics, w_.residual);
       const double open = w_.residual.phi.cwiseProduct(p_.scaling.row).lpNorm<Eigen::Infinity>();
       if (open < 1e-13) return true;
-      if (!(open < 0.5 * before) && ++slow > 3) return open < 1e-11;
+      if (open < 1e-6 && w_.residual.phi.cwiseAbs().dot(z_.lambda.cwiseAbs()) < enough) return true;
+      if (!(open < 2 * before) || (!(open < 0.5 * before) && ++slow > 3)) return open < 1e-11;
       if (!(open < 0.1 * before) && i > 0) factor_constraints(p_, w_);
       before = open;
       close(p_, w_, w_.scaled_step);
@@ -84,7 +102,8 @@ class TrustRegion {
     if (history_) history_->push_back(scaled_residual(p_, w_));
     gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
     force_ = w_.magnitudes.force.cwiseProduct(p_.scaling.column).maxCoeff();
-    potential_ = amended_potential(p_.system, p_.parameters, z_.q, w_.kinematics);
+    potential_ = lagrangian(z_.q);
+    convex_ = false;
     e_.linearize(p_, z_, w_.kinematics, w_.residual, w_.magnitudes);
     least_shift_ = 0;
   }
@@ -108,18 +127,36 @@ class TrustRegion {
     return std::isfinite(length_);
   }
 
-  // Minimises the model within the radius, by 25 % of it.
+  // The same way, a quarter as far.
+  void shorten_step() {
+    const double slope = gradient_.dot(step_), curvature = -2 * (slope + predicted_), t = 0.25;
+    step_ *= t;
+    length_ *= t;
+    predicted_ = -t * (slope + t * curvature / 2);
+  }
+
+  // Minimises the model within the radius, by 25 % of it: the exact one where it is convex, else the convex
+  // one as long as that leads somewhere.
   void choose_step() {
     double low = least_shift_, high = 0; // the shift sought lies between, once high is known
     bool low_definite = false;
     if (low == 0 && solve_with(0)) {
       if (length_ <= 1.25 * radius_) return;
       low_definite = true;
+    } else if (!convex_ && e_.linearize_convex(p_, z_, w_.kinematics, w_.residual, w_.magnitudes)) {
+      convex_ = true;
+      least_shift_ = low = 0;
+      low_definite = solve_with(0);
+      if (low_definite && step_.lpNorm<Eigen::Infinity>() < 1e-6) {
+        e_.linearize(p_, z_, w_.kinematics, w_.residual, w_.magnitudes);
+        low_definite = false;
+      } else if (low_definite && length_ <= 1.25 * radius_) {
+        return;
+      }
     }
-    double shift =
-        low_definite
-            ? low + newton_on_length()
-            : std::max({last_shift_, 2 * low, 0.01 * potential_.magnitude / (unit_ * unit_), 1e-300});
+    double shift = low_definite      ? low + newton_on_length()
+                   : last_shift_ > 0 ? std::max(last_shift_, 2 * low)
+                                     : std::max(potential_.magnitude / (unit_ * unit_), 1e-300);
     for (int tries = 0; tries < 100; ++tries) {
       if (!solve_with(shift)) {
         least_shift_ = low = std::max(low, shift);
@@ -129,6 +166,11 @@ class TrustRegion {
         low_definite = true;
       } else if (length_ < 0.75 * radius_) {
         high = shift;
+        // The curvature along the step is not below the lowest.
+        if (const double least = shift + gradient_.dot(step_) / (length_ * length_); least > low) {
+          low = least;
+          low_definite = false;
+        }
       } else {
         break;
       }
@@ -142,7 +184,7 @@ class TrustRegion {
       const double next = shift_ == shift ? shift + newton_on_length() : 0;
       if (high == 0)
         shift = next > shift ? std::min(next, 100 * shift) : 8 * shift;
-      else if (next > low + 0.05 * (high - low) && next < high - 0.05 * (high - low))
+      else if (next > low && next < high && tries % 3 != 2)
         shift = next;
       else
         shift = low > 0 && high > 4 * low   ? std::sqrt(low * high)
@@ -211,6 +253,7 @@ class TrustRegion {
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
   double shift_ = 0, last_shift_ = 0;
   double least_shift_ = 0; // below this K + shift W is known not to be positive definite
+  bool convex_ = false;    // the convex model was tried here
 };
 
 } // namespace
