@@ -49,7 +49,7 @@ double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorX
     w.step = way * direction.cwiseProduct(problem.scaling.column);
     retract<double>(problem.system, w.step, moved.q);
     if (way != 0 && !assemble(problem, moved.q, 0, w)) return std::numeric_limits<double>::infinity();
-    factor_with_multipliers(problem, moved, w);
+    evaluate_with_multipliers(problem, moved, w);
     const Eigen::VectorXd terms = w.magnitudes.force.cwiseProduct(problem.scaling.column);
     noise = std::numeric_limits<double>::epsilon() * direction.cwiseAbs().dot(terms);
     return std::abs(direction.dot(w.residual.f.cwiseProduct(problem.scaling.column)));

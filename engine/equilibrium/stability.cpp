@@ -64,6 +64,26 @@ std::vector<Complex> singular_eigenvalues(const Eigen::MatrixXd& mass, const Eig
   return s;
 }
 
+Eigen::MatrixXd onto(const Eigen::MatrixXd& z, const Eigen::MatrixXd& a) {
+  return z.transpose() * a * z;
+}
+
+// Of massless directions z those that feel a spring or damper. The rest have no equation of motion, and would
+// make the pencil singular: then any number is an eigenvalue.
+Eigen::MatrixXd felt(const Eigen::MatrixXd& z, const Eigen::MatrixXd& velocity,
+                     const Eigen::MatrixXd& stiffness) {
+  Eigen::MatrixXd feels(z.cols(), 4 * z.rows());
+  feels << (stiffness * z).transpose(), z.transpose() * stiffness, (velocity * z).transpose(),
+      z.transpose() * velocity;
+  if (feels.isZero(0)) return Eigen::MatrixXd(z.rows(), 0);
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(feels);
+  const double rounding = 1e-13 * (stiffness.norm() + velocity.norm());
+  Eigen::Index rank = 0;
+  while (rank < z.cols() && std::abs(qr.matrixQR()(rank, rank)) > rounding)
+    ++rank;
+  return z * Eigen::MatrixXd(qr.householderQ()).leftCols(rank);
+}
+
 // Whether a way (scaled) along the directions without stiffness leads to another balanced state, the rest
 // giving way as it must: a bob that turns about the vertical goes along an arc.
 bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::MatrixXd& flat,
@@ -74,11 +94,12 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Matr
     w.step = step.cwiseProduct(problem.scaling.column);
     retract<double>(problem.system, w.step, moved.q);
     if (!assemble(problem, moved.q, 0, w)) return false;
-    factor_with_multipliers(problem, moved, w);
+    evaluate_with_multipliers(problem, moved, w);
     const Eigen::MatrixXd& basis = w.constraints.basis();
     const Eigen::VectorXd left = basis.transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
     const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
     if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
+    factor(problem, moved, w);
     const Eigen::HouseholderQR<Eigen::MatrixXd> across(basis.transpose() * flat);
     const Eigen::MatrixXd all = across.householderQ();
     const auto rest = all.rightCols(std::max<Eigen::Index>(0, all.cols() - flat.cols()));
@@ -99,7 +120,8 @@ std::vector<Complex> pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen
   if (!std::isfinite(m + k + d)) return {};
   if (m == 0) {
     if (d == 0) return {};
-    return singular_eigenvalues(mass, velocity, stiffness);
+    const Eigen::MatrixXd z = felt(Eigen::MatrixXd::Identity(mass.rows(), mass.rows()), velocity, stiffness);
+    return singular_eigenvalues(onto(z, mass), onto(z, velocity), onto(z, stiffness));
   }
   // Time in units in which mass and stiffness are alike.
   const double rate = k > 0 ? std::sqrt(k / m) : d > 0 ? d / m : 1;
@@ -112,18 +134,20 @@ std::vector<Complex> pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen
   if (massless == 0) {
     s = regular_eigenvalues(Eigen::LLT<Eigen::MatrixXd>((m1 + m1.transpose()) / 2), d1, k1);
   } else {
-    const Eigen::MatrixXd z = shape.eigenvectors().leftCols(massless);
+    const Eigen::MatrixXd z = felt(shape.eigenvectors().leftCols(massless), d1, k1);
     const Eigen::MatrixXd r = shape.eigenvectors().rightCols(m1.rows() - massless);
-    const double undamped = (d1 * z).norm() + (z.transpose() * d1).norm();
-    const Eigen::MatrixXd kzz = z.transpose() * k1 * z;
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> condensed(kzz);
-    if (undamped <= 1e-13 * (d1.norm() + 1) && condensed.rank() == massless) {
-      const Eigen::MatrixXd kc =
-          r.transpose() * k1 * r - r.transpose() * k1 * z * condensed.solve(z.transpose() * k1 * r);
+    const bool damped = (d1 * z).norm() + (z.transpose() * d1).norm() > 1e-13 * (d1.norm() + 1);
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> condensed;
+    if (z.cols() > 0) condensed.compute(onto(z, k1));
+    if (!damped && (z.cols() == 0 || condensed.rank() == z.cols())) {
+      Eigen::MatrixXd kc = r.transpose() * k1 * r;
+      if (z.cols() > 0) kc -= r.transpose() * k1 * z * condensed.solve(z.transpose() * k1 * r);
       s = regular_eigenvalues(Eigen::LLT<Eigen::MatrixXd>(r.transpose() * m1 * r), r.transpose() * d1 * r,
                               kc);
     } else {
-      s = singular_eigenvalues(m1, d1, k1);
+      Eigen::MatrixXd all(m1.rows(), z.cols() + r.cols());
+      all << z, r;
+      s = singular_eigenvalues(onto(all, m1), onto(all, d1), onto(all, k1));
     }
   }
   for (Complex& x : s)
@@ -246,7 +270,9 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
       if (local.eigenvalues()[0] < -1e-10 * std::max(stiffness.norm(), 1e-300)) right = true;
     }
   }
-  if (right) {
+  // Where the energy falls nowhere it grows nowhere either, whatever rounding makes of the eigenvalues.
+  const bool falls = !potential || most_negative < -ReducedHessian::zero;
+  if (right && falls) {
     out.stable = false;
     out.reason = StabilityReason::unstable;
   } else if (flat_count > 0) {

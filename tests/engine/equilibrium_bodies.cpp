@@ -15,27 +15,19 @@ namespace ref = flyball::reference;
 
 namespace {
 
-// Point masses in a square frame that turns about the vertical, tied to their neighbours by stretched
-// springs.
-Mechanism net(int side, double speed) {
+// Point masses in a square frame that turns about the vertical, each tied to its neighbours.
+template <class At, class Tie>
+Mechanism net(int side, double speed, At at, Tie tie_together) {
   Mechanism m;
   m.gravity = {0, -standard_gravity, 0};
   m.bodies = {spindle()};
   m.joints = {spin(speed)};
-  const double cell = 1. / (side + 1);
-  const auto at = [&](int i, int j) { return Vec3((i + 1) * cell - 0.5, 0, (j + 1) * cell - 0.5); };
   const auto name = [&](int i, int j) {
     const bool inside = std::min(i, j) >= 0 && std::max(i, j) < side;
     return inside ? "knot" + std::to_string(i) + "_" + std::to_string(j) : std::string("spindle");
   };
   const auto tie = [&](int i, int j, int k, int l) {
-    Force s;
-    s.name = "cable" + std::to_string(m.forces.size());
-    s.bodies = {name(i, j), name(k, l)};
-    s.points = {at(i, j), at(k, l)};
-    s.stiffness = 200;
-    s.free_length = cell / 1.1;
-    m.forces.push_back(s);
+    tie_together(m, {name(i, j), name(k, l)}, {at(i, j), at(k, l)});
   };
   for (int i = 0; i < side; ++i)
     for (int j = 0; j < side; ++j)
@@ -46,6 +38,41 @@ Mechanism net(int side, double speed) {
       tie(j, i, j + 1, i);
     }
   return m;
+}
+
+using Names = std::array<std::string, 2>;
+using Points = std::array<Vec3, 2>;
+
+// By stretched springs.
+Mechanism spring_net(int side, double speed) {
+  const double cell = 1. / (side + 1);
+  const auto at = [&](int i, int j) { return Vec3((i + 1) * cell - 0.5, 0, (j + 1) * cell - 0.5); };
+  return net(side, speed, at, [&](Mechanism& m, const Names& bodies, const Points& points) {
+    Force s;
+    s.name = "cable" + std::to_string(m.forces.size());
+    s.bodies = bodies;
+    s.points = points;
+    s.stiffness = 200;
+    s.free_length = cell / 1.1;
+    m.forces.push_back(s);
+  });
+}
+
+// By cables of a given length, in the rim of a bowl.
+Mechanism cable_net(int side, double speed) {
+  const double cell = 2. / (side + 1);
+  const auto at = [&](int i, int j) {
+    const double x = (i + 1) * cell - 1, z = (j + 1) * cell - 1;
+    return Vec3(x, 0.4 * (x * x + z * z) + 0.05 * std::sin(2 * x + z), z);
+  };
+  return net(side, speed, at, [&](Mechanism& m, const Names& bodies, const Points& points) {
+    Joint cable;
+    cable.name = "cable" + std::to_string(m.joints.size());
+    cable.type = JointType::distance;
+    cable.bodies = bodies;
+    cable.points = points;
+    m.joints.push_back(cable);
+  });
 }
 
 struct Case {
@@ -180,7 +207,7 @@ TEST_CASE("a net of springs hangs in its turning frame") {
   // Sags, keeps the square's symmetry, and the weight hangs
   // on the spindle.
   const int side = GENERATE(3, 20); // by either way of solving
-  const Solution s = solve(net(side, 3));
+  const Solution s = solve(spring_net(side, 3));
   REQUIRE(s.status == Status::converged);
   CHECK(s.residual < 1e-12);
   CHECK(s.stability_reason == StabilityReason::neutral); // the point masses may turn
@@ -193,4 +220,67 @@ TEST_CASE("a net of springs hangs in its turning frame") {
     CHECK(std::abs(knot(i, 1).y() - knot(side - 1 - i, 1).y()) < 1e-12);
   }
   CHECK(std::abs(s.reactions.front().force.y() - 2 * standard_gravity) < 1e-9);
+}
+
+TEST_CASE("a net of cables comes to rest as long as it was drawn") {
+  const int side = GENERATE(4, 12); // by either way of solving
+  const Mechanism drawn = cable_net(side, 3);
+  const Solution s = solve(drawn);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.residual < 1e-12);
+  CAPTURE(s.message, int(*s.stability_reason), s.iterations);
+  CHECK(s.stability_reason == StabilityReason::neutral); // the point masses may turn
+  const auto body = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(drawn.bodies, name, &Body::name) -
+                                    drawn.bodies.begin());
+  };
+  // Points are given in the drawn pose's world axes.
+  const auto now = [&](std::size_t b, const Vec3& point) -> Vec3 {
+    const Pose& pose = s.poses[b];
+    return pose.position + pose.rotation * (point - drawn.bodies[b].position);
+  };
+  double stretched = 0, moved = 0;
+  for (const Joint& cable : drawn.joints) {
+    if (cable.type != JointType::distance) continue;
+    const Vec3 a = now(body(cable.bodies[0]), cable.points[0]),
+               b = now(body(cable.bodies[1]), cable.points[1]);
+    stretched = std::max(stretched, std::abs((b - a).norm() - (cable.points[1] - cable.points[0]).norm()));
+    moved = std::max(moved, (a - cable.points[0]).norm());
+  }
+  CHECK(stretched < 1e-13);
+  CHECK(moved > 1e-3);
+  const double weight = 2 * standard_gravity;
+  CHECK(std::abs(s.reactions.front().force.y() - weight) < 1e-9 * weight);
+}
+
+TEST_CASE("without compression a net of cables is stiffer, and in nothing else different") {
+  Case x(cable_net(5, 3));
+  const Problem problem = x.problem(true);
+  BodyElimination& bodies = x.sparse.bodies;
+  int fewer = 0;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> any(-10, 10);
+    for (double& lambda : x.z.lambda)
+      lambda = any(random);
+    const auto take_in = [&](bool convex) {
+      evaluate(problem, x.z, 0, x.sparse);
+      bodies.linearize(problem, x.z, x.sparse.kinematics, x.sparse.residual, x.sparse.magnitudes);
+      if (convex)
+        REQUIRE(bodies.linearize_convex(problem, x.z, x.sparse.kinematics, x.sparse.residual,
+                                        x.sparse.magnitudes));
+      bodies.factor();
+      return bodies.negative_count();
+    };
+    const int exact = take_in(false), convex = take_in(true);
+    CHECK(convex <= exact);
+    fewer += convex < exact;
+    for (double& lambda : x.z.lambda) // all pull
+      lambda = std::abs(lambda);
+    take_in(false);
+    CHECK(
+        !bodies.linearize_convex(problem, x.z, x.sparse.kinematics, x.sparse.residual, x.sparse.magnitudes));
+  }
+  CHECK(fewer > 10);
 }

@@ -1,9 +1,13 @@
 // Eigenvalues and verdicts of stability against closed forms.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
+#include "engine/equilibrium/stability.hpp"
+
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 #include <complex>
+#include <random>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -355,5 +359,34 @@ TEST_CASE("only asked for its sign, stability says the same") {
       CHECK(full.neutral == brief.neutral);
       if (!near) CHECK(full.status == Status::converged);
     }
+  }
+}
+
+TEST_CASE("what feels neither mass nor spring nor damper has no eigenvalue") {
+  // A body on a spring beside coordinates without an equation of motion, all turned against the axes.
+  std::mt19937 random(3);
+  std::normal_distribution<double> any;
+  for (const bool damped : {false, true}) {
+    Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(5, 5), velocity = mass, stiffness = mass;
+    mass(0, 0) = 1;
+    stiffness(0, 0) = 4;
+    stiffness(1, 1) = 9; // massless
+    if (damped) velocity(1, 1) = 3;
+    Eigen::MatrixXd a(5, 5);
+    for (double& x : a.reshaped())
+      x = any(random);
+    const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(a).householderQ();
+    const auto turned = [&](const Eigen::MatrixXd& m) { return Eigen::MatrixXd(q * m * q.transpose()); };
+    const auto s = pencil_eigenvalues(turned(mass), turned(velocity), turned(stiffness));
+    CAPTURE(damped);
+    REQUIRE(s.size() == (damped ? 3 : 2));
+    double swings = 0, settles = 0;
+    for (const Complex x : s)
+      if (std::abs(x.imag()) > 1)
+        swings += std::abs(x - Complex(0, std::copysign(2, x.imag())));
+      else
+        settles = x.real();
+    CHECK(swings < 1e-9);
+    if (damped) CHECK(std::abs(settles + 3) < 1e-9);
   }
 }
