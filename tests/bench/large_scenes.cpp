@@ -120,9 +120,8 @@ Mechanism cable_net(int side, double speed) {
   const double cell = 2. / (side + 1);
   const auto at = [&](int i, int j) {
     const double x = (i + 1) * cell - 1, z = (j + 1) * cell - 1;
-    // Not quite even, as a net is: an even one could not move at first but by stretching.
-    const double uneven = 1 + 0.1 * std::sin(12.9898 * i + 78.233 * j);
-    return Vec3(x, -0.4 * (1 - x * x) * (1 - z * z) * uneven, z);
+    // A bowl, so that every cable sags alike; not quite even, or the loops would depend on each other.
+    return Vec3(x, 0.4 * (x * x + z * z) + 0.05 * std::sin(2 * x + z), z);
   };
   const auto inside = [&](int i, int j) { return std::min(i, j) >= 0 && std::max(i, j) < side; };
   const auto name = [&](int i, int j) {
