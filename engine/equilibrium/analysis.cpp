@@ -46,6 +46,8 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
   return true;
 }
 
+constexpr int largest_for_second_thoughts = 120; // coordinates; a refusal then takes a second or two
+
 // Eigenvalues need the matrices; beyond a size the pivots have to do.
 bool pivots_decide(const Problem& problem, int modes) {
   return problem.system.nv > largest_for_eigenvalues && modes == 0 && !problem.is_dense();
@@ -106,7 +108,7 @@ void Analysis::update(const Mechanism& mechanism) {
 
 Solution Analysis::solve(const SolveOptions& options) {
   State& s = *state_;
-  const Problem problem{s.system, s.parameters, s.scaling, options.cancel, true};
+  Problem problem{s.system, s.parameters, s.scaling, options.cancel, true};
   const bool warm = options.warm && s.answered && options.start.empty();
   s.start = warm ? s.answer : s.drawn;
   set_start(s.system, s.parameters, options.start, s.start);
@@ -120,6 +122,12 @@ Solution Analysis::solve(const SolveOptions& options) {
       (s.found.status != Status::converged || s.found.net || (problem.symmetric() && !s.found.minimum)) &&
       !problem.cancelled()) {
     s.start = s.drawn;
+    find_equilibrium(problem, s.start, options.nearest, false, s.workspace, s.history, s.found);
+  }
+  // The dense equations catch some that elimination does not.
+  if (s.found.status == Status::not_converged && !problem.is_dense() &&
+      s.system.nv <= largest_for_second_thoughts && !problem.cancelled()) {
+    problem.eliminated = false;
     find_equilibrium(problem, s.start, options.nearest, false, s.workspace, s.history, s.found);
   }
   if (s.found.status == Status::converged) refine(problem, s.found.z, s.found.newton, s.workspace, s.error);
