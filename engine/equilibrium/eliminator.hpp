@@ -18,6 +18,10 @@ class Eliminator {
   // A direction without stiffness but for rounding: coordinates and their shares before the rest gives way.
   using Flat = std::vector<std::pair<int, double>>;
 
+  static constexpr double zero = 1e-11;     // of the stiffness that a coordinate carries
+  static constexpr double rounding = 1e-15; // of the forces behind it
+  static constexpr double own_share = 1e-6; // of the metric: what coordinates have beside the bodies
+
   virtual ~Eliminator() = default;
 
   // Takes in a state. Kinematics, residual and magnitudes must be at z; the residual's wrenches of the links
@@ -57,16 +61,13 @@ class Eliminator {
   int negative_count() const { return negative_; }
   const std::vector<Flat>& flat() const { return flat_; }
   bool positive_definite() const { return negative_ == 0 && flat_.empty(); }
-  double mass() const { return mass_; } // kg, of what moves
+  double shift() const { return shift_; } // of the last factor()
+  double mass() const { return mass_; }   // kg, of what moves
 
  protected:
-  static constexpr double zero = 1e-11;     // of the stiffness that a coordinate carries
-  static constexpr double rounding = 1e-15; // of the forces behind it
-  static constexpr double own_share = 1e-6; // of the metric: what coordinates have beside the bodies
-
   std::vector<Flat> flat_;
   int negative_ = 0, rows_ = 0;
-  double mass_ = 0;
+  double mass_ = 0, shift_ = 0;
 
  private:
   Eigen::VectorXd none_, multipliers_;

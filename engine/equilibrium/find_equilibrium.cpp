@@ -10,6 +10,8 @@
 namespace flyball {
 namespace {
 
+constexpr double still = 1e-3; // of curvature(): holds what nothing resists, and little else
+
 class Search {
  public:
   Search(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
@@ -24,6 +26,10 @@ class Search {
     found_.open_cut = -1;
     found_.minimum = false;
     history_.clear();
+    if (p_.system.conservative && !nearest_ && !warm_) { // first, since closing loops takes the factors
+      w_.assembled = start_;
+      if (assemble(p_, w_.assembled, 0, w_)) begin_ = energy_at(w_.assembled);
+    }
     NewtonSettings plain;
     plain.trusting = warm_;
     if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, plain, &history_); }))
@@ -81,48 +87,42 @@ class Search {
     return true;
   }
 
-  // Whether the state found has no more energy than q, within rounding. Leaves the kinematics of q behind.
-  bool below(const Eigen::VectorXd& q) {
-    const auto energy = [&](const Eigen::VectorXd& at) {
-      forward<double>(p_.system, p_.parameters, at, 0, w_.kinematics);
-      return amended_potential(p_.system, p_.parameters, at, w_.kinematics);
-    };
-    const Potential end = energy(found_.z.q), begin = energy(q);
+  // Leaves the kinematics of q behind.
+  Potential energy_at(const Eigen::VectorXd& q) {
+    forward<double>(p_.system, p_.parameters, q, 0, w_.kinematics);
+    return amended_potential(p_.system, p_.parameters, q, w_.kinematics);
+  }
+
+  // Whether the evaluated state found has no more energy than another, within rounding.
+  bool below(const Potential& begin) const {
+    const Potential end = amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics);
     return end.value <= begin.value + 1e-12 * (begin.magnitude + end.magnitude);
   }
 
   // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems
   // without a potential have no such order; their eigenvalues judge.
   bool acceptable(const NewtonOutcome& outcome) {
-    judge();
+    judge(still_factored(outcome));
     if (nearest_ || !potential_) return true;
     if (unstable_ || outcome.largest_step > 1) return false;
-    if (warm_) return true;
-    const Eigen::VectorXd* from = &start_;
-    if (p_.system.rows > 0) {
-      w_.assembled = start_;
-      if (!assemble(p_, w_.assembled, 0, w_)) return judge_again();
-      from = &w_.assembled;
-    }
-    const bool low = below(*from);
-    return (p_.system.rows == 0 || judge_again()) && low;
+    return !begin_ || below(*begin_);
   }
 
-  // Leaves the balance factored at the state found, as refine() wants it.
-  bool judge_again() {
-    evaluate(p_, found_.z, 0, w_);
-    factor(p_, found_.z, w_);
-    return true;
+  // Whether Newton-Raphson's last step was rounding, and taken from a balance with these multipliers: then
+  // the factors that it used are those of the state found.
+  bool still_factored(const NewtonOutcome& outcome) const {
+    constexpr double rounding = 1e-14;
+    return !found_.net && p_.is_dense() && outcome.last_step < rounding && history_.size() >= 2 &&
+           history_[history_.size() - 2] < rounding;
   }
 
   // Whether the state found is a minimum, from the balance factored at it.
-  void judge() {
-    factor(p_, found_.z, w_);
+  void judge(bool factored = false) {
+    if (!factored) factor(p_, found_.z, w_);
     if (p_.symmetric()) {
       potential_ = true;
       found_.minimum = positive_definite(p_, w_);
-      unstable_ = !found_.minimum &&
-                  !(p_.is_dense() ? only_flat(w_.hessian) : w_.eliminator(p_).negative_count() == 0);
+      unstable_ = !found_.minimum && !(p_.is_dense() ? only_flat(w_.hessian) : only_flat());
       return;
     }
     if (!p_.is_dense()) return;
@@ -143,6 +143,42 @@ class Search {
     return hessian.singular() && hessian.eigenvalues()[0] > -ReducedHessian::zero;
   }
 
+  // A curvature (1/s^2) of the size of those that the potential has for moving the mechanism as a whole.
+  double curvature() const {
+    const double reach = p_.parameters.length;
+    return amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics).magnitude /
+           (w_.eliminator(p_).mass() * reach * reach);
+  }
+
+  // Rounding makes some of many directions that nothing resists a little stiff, either way. Leaves the
+  // balance factored with what keeps them still, then.
+  bool only_flat() {
+    Eliminator& e = w_.eliminator(p_);
+    if (e.negative_count() == 0) return true;
+    constexpr double rounding = 1e-5;
+    e.factor(rounding * curvature());
+    const bool flat = e.negative_count() == 0;
+    e.factor(flat ? still * curvature() : 0);
+    return flat;
+  }
+
+  // Newton-Raphson from where the descent ended, at last with neutral directions held still.
+  NewtonOutcome finish() {
+    const Eigen::VectorXd bottom = found_.z.q;
+    const NewtonOutcome plain = newton(p_, found_.z, w_, {}, &history_);
+    found_.iterations += plain.iterations;
+    if (p_.is_dense() || fell_ || p_.cancelled() || (plain.converged && plain.largest_step <= 0.2))
+      return plain;
+    found_.z.q = bottom;
+    found_.z.lambda.setZero(p_.system.rows);
+    evaluate(p_, found_.z, 0, w_);
+    NewtonSettings settings;
+    settings.proximal = still * curvature();
+    const NewtonOutcome held = newton(p_, found_.z, w_, settings, &history_);
+    found_.iterations += held.iterations;
+    return held;
+  }
+
   void cancelled() {
     found_.status = Status::not_converged;
     found_.message = "The solve was cancelled.";
@@ -150,7 +186,7 @@ class Search {
 
   // Fills w_.assembled or finds that it cannot be done.
   bool close_loops() {
-    w_.assembled = start_;
+    if (!begin_) w_.assembled = start_;
     if (assembled()) return true;
     // Gauss-Newton can stall: try from a few places around the start before calling it infeasible.
     record_opening();
@@ -193,17 +229,16 @@ class Search {
   bool go_downhill(Descent descend_from) {
     found_.net = Net::descent;
     found_.z.q = w_.assembled;
+    const Potential begin = energy_at(w_.assembled);
     const DescentOutcome descent = descend_from(p_, found_.z, w_, &history_);
     found_.iterations += descent.iterations;
     // A soft spring may hold a long way down: Newton's method takes that in a stride.
     fell_ = descent.end == DescentEnd::unbounded;
     if (descent.end != DescentEnd::minimum && !fell_) return false;
-    const NewtonOutcome outcome = newton(p_, found_.z, w_, {}, &history_);
-    found_.iterations += outcome.iterations;
+    const NewtonOutcome outcome = finish();
     if (!outcome.converged || (outcome.largest_step > 0.2 && !fell_) ||
-        !closed_the_right_way(p_, w_.kinematics) || (fell_ && !below(w_.assembled)))
+        !closed_the_right_way(p_, w_.kinematics) || (fell_ && !below(begin)))
       return false;
-    if (fell_) evaluate(p_, found_.z, 0, w_);
     fell_ = false;
     found_.newton = outcome;
     const bool left_unstable = arrived_ && unstable_;
@@ -269,6 +304,7 @@ class Search {
   Workspace& w_;
   std::vector<double>& history_;
   Found& found_;
+  std::optional<Potential> begin_; // of the start with its loops closed, w_.assembled, where it matters
   Unknowns candidate_;
   NewtonOutcome candidate_outcome_;
   std::optional<Net> candidate_net_;

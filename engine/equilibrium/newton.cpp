@@ -260,6 +260,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     if (outcome.converged || i >= settings.max_iterations || !std::isfinite(residual) || problem.cancelled())
       break;
     factor(problem, z, w);
+    if (settings.proximal > 0) w.eliminator(problem).factor(settings.proximal);
     if (!w.hessian.known()) break;
     // The multipliers are solved for whole at every step, so the step needs the balance without them.
     w.trial.q = z.q;
@@ -298,7 +299,9 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     const bool next_is_none = settings.trusting && previous_step > 0 && size < 1e-4 &&
                               size < 0.1 * previous_step &&
                               std::max(1., contraction) * size * size <= 1e-2 * tolerance;
-    if ((size <= tolerance || next_is_none) && fraction == 1.) {
+    // Along what nothing resists steps stay as long as rounding makes them.
+    const bool at_rounding = settings.proximal > 0 && size < 1e-5 && scaled_residual(problem, w) < 1e-12;
+    if ((size <= tolerance || next_is_none || at_rounding) && fraction == 1.) {
       // No step is left; but a force that no coordinate resists, or a loop that cannot close, asks for none
       // either.
       const double left = scaled_residual(problem, w);
@@ -340,11 +343,14 @@ bool assemble(const Problem& problem, Eigen::VectorXd& q, double t, Workspace& w
       next = opening(moved);
       if (next < open || fraction < 1e-8) break;
     }
-    if (!(next < open)) break;
+    if (!(next < open)) {
+      open = opening(q);
+      break;
+    }
     q = moved;
     open = next;
   }
-  return opening(q) < 1e-10;
+  return open < 1e-10;
 }
 
 } // namespace flyball

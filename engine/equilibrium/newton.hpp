@@ -46,6 +46,11 @@ struct NewtonSettings {
   int max_iterations = 30;
   bool damped = false;          // halve steps until the scaled residual falls
   double step_tolerance = 1e-9; // scaled; quadratic convergence puts the error at its square
+  // 1/s^2, of the metric added to the stiffness of an eliminated problem: it keeps still what nothing
+  // resists, where rounding and what is left of the forces look like a little stiffness of either sign
+  // (regularised Newton method; Li, Fukushima, Qi, Yamashita, Regularized Newton methods for convex
+  // minimization problems with singular solutions, 2004).
+  double proximal = 0;
   bool trusting = false; // stop where the next step would be within the tolerance by the last two's ratio
 };
 

@@ -1,25 +1,63 @@
 #include "engine/equilibrium/pivot_stability.hpp"
 
+#include <random>
+
 namespace flyball {
 namespace {
 
 // Whether a way (scaled) along directions without stiffness leads to another balanced state, the rest giving
-// way as it must.
-bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& way, Workspace& w) {
+// way as it must, to `rounding` of the forces.
+bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& way, double rounding,
+                    Workspace& w) {
   Unknowns moved = z;
-  Eigen::VectorXd step = way;
+  Eigen::VectorXd step = way, multipliers;
+  const double shift = w.eliminator(problem).shift();
   for (int i = 0; i < 8; ++i) {
     w.step = step.cwiseProduct(problem.scaling.column);
     retract<double>(problem.system, w.step, moved.q);
-    evaluate(problem, moved, 0, w);
+    evaluate_with_multipliers(problem, moved, w);
     const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
-    w.target = -w.residual.f.cwiseProduct(problem.scaling.column);
-    if (w.target.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
+    const double left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
+    const double open = problem.system.rows > 0
+                            ? w.residual.phi.cwiseProduct(problem.scaling.row).lpNorm<Eigen::Infinity>()
+                            : 0;
+    if (left <= rounding * force && open <= rounding) return true;
     factor(problem, moved, w);
-    w.eliminator(problem).solve(w.target, step);
+    if (shift > 0) w.eliminator(problem).factor(shift);
+    newton_step(problem, w.residual.f, w.residual.phi, w, step, multipliers);
     if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
   }
   return false;
+}
+
+// Where many directions are neutral but for rounding: inverse iteration with the factors that hold them.
+Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspace& w) {
+  constexpr int samples = 4, iterations = 4;
+  constexpr double rounding = 1e-11; // the way is short, since what is held comes back far along it
+  Stability out;
+  Eliminator& e = w.eliminator(problem);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Eigen::VectorXd way, one(problem.system.nv), image;
+  std::vector<bool> takes_part(static_cast<std::size_t>(problem.system.nv));
+  for (int i = 0; i < samples; ++i) {
+    for (double& x : one)
+      x = any(random);
+    for (int k = 0; k < iterations; ++k) {
+      e.metric(one, image);
+      e.solve(image, one);
+      one /= one.lpNorm<Eigen::Infinity>();
+    }
+    for (int v = 0; v < problem.system.nv; ++v)
+      if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
+    if (i == 0) way = one;
+  }
+  const bool balanced = stays_balanced(problem, z, 0.002 * way, rounding, w) &&
+                        stays_balanced(problem, z, -0.003 * way, rounding, w);
+  out.reason = balanced ? StabilityReason::neutral : StabilityReason::marginal;
+  for (int v = 0; balanced && v < problem.system.nv; ++v)
+    if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);
+  return out;
 }
 
 } // namespace
@@ -27,6 +65,7 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
 Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w) {
   Stability out;
   if (!problem.symmetric()) return out;
+  if (w.eliminator(problem).shift() > 0) return of_held_directions(problem, z, w);
   const int negative = w.eliminator(problem).negative_count();
   if (w.eliminator(problem).positive_definite()) {
     out.stable = true;
@@ -63,7 +102,7 @@ Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Worksp
   }
   all /= all.lpNorm<Eigen::Infinity>();
   const bool balanced =
-      stays_balanced(problem, z, 0.05 * all, w) && stays_balanced(problem, z, -0.11 * all, w);
+      stays_balanced(problem, z, 0.05 * all, 1e-9, w) && stays_balanced(problem, z, -0.11 * all, 1e-9, w);
   if (balanced)
     for (int v = 0; v < problem.system.nv; ++v)
       if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);

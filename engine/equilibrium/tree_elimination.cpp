@@ -176,6 +176,7 @@ void TreeElimination::eliminate_three(Node& n, double shift) {
 }
 
 void TreeElimination::factor(double shift) {
+  shift_ = shift;
   flat_.clear();
   negative_ = 0;
   for (Node& n : nodes_) {

@@ -4,8 +4,9 @@
 // Newton steps within a trust region (More and Sorensen, Computing a trust region step, 1983). What is
 // trusted is the length of the motion in the eliminator's metric and not that of the joint angles: in a fine
 // chain a smooth bend takes small angles at many joints and a kink a large one at a single joint. Where the
-// potential is not convex the signs of the pivots say so, and a direction of negative curvature comes from
-// inverse iteration.
+// potential is not convex the signs of the pivots say so; then a model without compression leads on, and
+// where that ends a direction of negative curvature from inverse iteration. Loops that a step opens are
+// closed by Gauss-Newton as far as it takes to judge the step, and what is left is priced by the multipliers.
 #pragma once
 
 #include "engine/equilibrium/descent.hpp"

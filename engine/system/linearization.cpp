@@ -89,10 +89,10 @@ void fill_composites(const System& system, const Parameters& p, const Kinematics
     const CompositeBody& b = out[i];
     CompositeBody& a = out[static_cast<std::size_t>(parent)];
     const Vec3 r = k.links[i].o - k.at(parent).o;
+    const Vec3 first_moment = b.first_moment + b.mass * r;
     a.mass += b.mass;
-    a.first_moment += b.first_moment + b.mass * r;
-    a.inertia += b.inertia - skew_product(r, b.first_moment) - skew_product(b.first_moment, r) -
-                 b.mass * skew_product(r, r);
+    a.first_moment += first_moment;
+    a.inertia += b.inertia - skew_product(r, b.first_moment) - skew_product(first_moment, r);
     a.momentum += b.momentum;
     if (p.moving) a.b += b.b - 2 * skew_product(r, b.momentum);
   }
@@ -106,15 +106,11 @@ Wrench times_inertia(const CompositeBody& b, const Vec3& w, const Vec3& v) {
   return {b.inertia * w + b.first_moment.cross(v), b.mass * v - b.first_moment.cross(w)};
 }
 
-// Calls visit(parent link, arm from its origin to this link's origin) for a link and its ancestors.
-template <class Visit>
-void walk_up(const System& system, const Kinematics<double>& k, std::size_t from, bool with_self,
-             Visit visit) {
-  if (with_self) visit(from, Vec3(Vec3::Zero()));
-  for (int l = system.links[from].parent; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
-    const auto i = static_cast<std::size_t>(l);
-    if (system.links[i].v >= 0) visit(i, Vec3(k.links[from].o - k.links[i].o));
-  }
+// The nearest link with coordinates of its own from here to the root, itself included; -1: none.
+int nearest_free(const System& system, int link) {
+  while (link >= 0 && system.links[static_cast<std::size_t>(link)].v < 0)
+    link = system.links[static_cast<std::size_t>(link)].parent;
+  return link;
 }
 
 // Adds, for every pair of coordinates on a common path, wrench(j) projected on i (j at or beyond i), and
@@ -124,18 +120,27 @@ void fill_tree(const System& system, const Kinematics<double>& k, const std::vec
                Eigen::MatrixXd& out, WrenchOf wrench_of, RowOf row_of, Apply apply) {
   for (std::size_t l = 0; l < system.links.size(); ++l) {
     const Link& link = system.links[l];
-    for (int c = 0; c < column_count(link); ++c) {
-      const int j = link.v + c;
-      const Wrench u = wrench_of(l, screws[static_cast<std::size_t>(j)]);
-      const auto row = row_of(l, screws[static_cast<std::size_t>(j)]);
-      walk_up(system, k, l, true, [&](std::size_t a, const Vec3& arm) {
-        const Link& other = system.links[a];
-        for (int d = 0; d < column_count(other); ++d) {
-          const ScrewRates& s = screws[static_cast<std::size_t>(other.v + d)];
-          out(other.v + d, j) += s.sw.dot(u.moment + arm.cross(u.force)) + s.sv.dot(u.force);
-          if (a != l) out(j, other.v + d) += apply(row, s, arm);
+    if (link.v < 0) continue;
+    const int nearest = nearest_free(system, link.parent);
+    for (int j = link.v; j < link.v + column_count(link); ++j) {
+      const ScrewRates& own = screws[static_cast<std::size_t>(j)];
+      const Wrench u = wrench_of(l, own);
+      for (int i = link.v; i < link.v + column_count(link); ++i) {
+        const ScrewRates& s = screws[static_cast<std::size_t>(i)];
+        out(i, j) += s.sw.dot(u.moment) + s.sv.dot(u.force);
+      }
+      if (nearest < 0) continue;
+      const auto row = row_of(l, own);
+      for (int a = nearest; a >= 0;
+           a = nearest_free(system, system.links[static_cast<std::size_t>(a)].parent)) {
+        const Link& other = system.links[static_cast<std::size_t>(a)];
+        const Vec3 arm = k.links[l].o - k.at(a).o;
+        for (int i = other.v; i < other.v + column_count(other); ++i) {
+          const ScrewRates& s = screws[static_cast<std::size_t>(i)];
+          out(i, j) += s.sw.dot(u.moment + arm.cross(u.force)) + s.sv.dot(u.force);
+          out(j, i) += apply(row, s, arm);
         }
-      });
+      }
     }
   }
 }

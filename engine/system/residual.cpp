@@ -155,11 +155,14 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
   out.phi.resize(system.rows);
   out.link_force.resize(n);
   out.link_moment.resize(n);
+  const double weight = p.gravity.norm();
   for (std::size_t i = 0; i < n; ++i) {
     const LinkParameters& lp = p.links[i];
     const LinkState<double>& x = k.links[i];
+    out.link_force[i] = out.link_moment[i] = 0;
+    if (lp.mass == 0 && !lp.has_inertia) continue;
     const double c = lp.com.norm(), w2 = x.w.squaredNorm();
-    out.link_force[i] = lp.mass * (p.gravity.norm() + (x.dv - k.ground.dv).norm() + (x.dw.norm() + w2) * c);
+    out.link_force[i] = lp.mass * (weight + (x.dv - k.ground.dv).norm() + (x.dw.norm() + w2) * c);
     out.link_moment[i] = c * out.link_force[i];
     if (lp.has_inertia && p.moving) out.link_moment[i] += lp.inertia.norm() * (x.dw.norm() + w2);
   }

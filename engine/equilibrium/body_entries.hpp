@@ -1,0 +1,67 @@
+// The matrix of the bodies' equations as a list of entries, each a sum of stiffness, metric and what is fixed
+// (the constraints), so that a multiple of the metric can be added without assembling anything again.
+//
+// Of the unknowns the first are six for each body. Those that nothing holds, the loose ones, are left out,
+// and the others numbered anew: they are the ones held.
+#pragma once
+
+#include "engine/equilibrium/body_stiffness.hpp"
+#include "engine/equilibrium/sparse_factorization.hpp"
+
+#include <vector>
+
+namespace flyball {
+
+class BodyEntries {
+ public:
+  // Starts anew. Of a symmetric matrix one triangle is kept.
+  void clear(int unknowns, bool symmetric);
+
+  // A body's own six equations.
+  void add_body(int node, const Mat6& stiffness, const Mat6& metric);
+
+  // Between two bodies: ab of a's equations by b's motion, ba of b's by a's; the metric is symmetric.
+  void add_between(int a, int b, const Mat6& ab, const Mat6& ba, const Mat6& metric_ab);
+
+  // A constraint's row, and its column, by a body's motion. Node -1 stands still.
+  void add_row(int row, int node, const Vec6& gradient);
+
+  // After the last entry, one of these. What is solved for are all unknowns, with the metric in the place of
+  // the stiffness; or all but the motions of bodies that meet no constraint and no stiffness above `noise`,
+  // by node.
+  void hold_all_by_metric();
+  void hold_above(const std::vector<double>& noise);
+
+  // By unknown: what nothing holds.
+  const std::vector<bool>& loose() const { return loose_; }
+
+  // Of what is held.
+  const SparsePattern& pattern() const { return pattern_; }
+
+  // The pattern's values: multiples of stiffness and metric, and what is fixed. Valid until the next call.
+  const std::vector<double>& sum(double stiffness, double metric);
+
+  // From all unknowns to those held, and back, where what is loose gets nothing.
+  void gather(const Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const;
+  void spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::VectorXd& unknowns) const;
+
+ private:
+  // What an entry is made of.
+  struct Value {
+    double stiffness = 0, metric = 0, fixed = 0;
+  };
+
+  void add(int row, int column, const Value& value);
+  void add_block(int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
+                 const Mat6& metric_ab);
+  void drop_loose();
+  void number();
+
+  SparsePattern pattern_;
+  std::vector<Value> values_;
+  std::vector<double> sum_, largest_;
+  std::vector<bool> loose_;
+  std::vector<int> place_; // by unknown: among those held; -1: loose
+};
+
+} // namespace flyball

@@ -1,0 +1,271 @@
+#include "engine/equilibrium/body_equations.hpp"
+
+#include "engine/equilibrium/eliminator.hpp"
+
+namespace flyball {
+namespace {
+
+// What a joint with an elastic element, and the load beyond it, ask for by a unit of its coordinates; and how
+// the load turns with each of them.
+struct JointTerms {
+  BodySquare stiffness;
+  BodyColumns turns;
+};
+
+JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Eigen::VectorXd& q) {
+  const int k = x.columns;
+  const double length = problem.parameters.length;
+  JointTerms terms{BodySquare::Zero(k, k), BodyColumns(6, k)};
+  auto& [g, turns] = terms;
+  for (int c = 0; c < k; ++c) {
+    Vec6 s = x.s.col(c);
+    s.tail<3>() *= length;
+    turns.col(c) = turned(s, x.load.head<3>(), x.load.tail<3>());
+    turns.col(c).tail<3>() *= length;
+  }
+  for (int c = 0; c < k; ++c) {
+    const auto column = static_cast<std::size_t>(c);
+    const Link& link = problem.system.links[static_cast<std::size_t>(x.stage[column])];
+    const LinkParameters& lp = problem.parameters.links[static_cast<std::size_t>(x.stage[column])];
+    for (int d = 0; d < k; ++d) { // what is nearer the root feels a wrench turn, and a rotation its own
+      const int at = x.stage[static_cast<std::size_t>(d)];
+      if (at < x.stage[column] || (at == x.stage[column] && k > 1 && link.type == LinkType::spherical))
+        g(d, c) += x.s.col(d).dot(turns.col(c));
+    }
+    if (!lp.elastic) continue;
+    if (link.type != LinkType::spherical) {
+      const double unit = problem.scaling.column[link.v];
+      g(c, c) += lp.force[0].curvature(q[link.q]) * unit * unit;
+    } else if (link.v == x.v[column]) {
+      g.block<3, 3>(c, c) += rotation_stiffness(link, lp, q);
+    }
+  }
+  return terms;
+}
+
+} // namespace
+
+void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                             const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines) {
+  lay_out(problem, k, problem.symmetric());
+  compressed_ = false;
+  add_bodies(problem, k);
+  for (BodyNode& x : nodes_)
+    x.load.setZero();
+  add_pairs(problem, z, k, lines);
+  sum_up_loads(residual);
+  add_joints(problem, &z.q);
+  add_rows(problem, k);
+  finish_bodies();
+  set_noise(problem, magnitudes);
+  entries_.hold_above(noise_);
+}
+
+void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<double>& k) {
+  lay_out(problem, k, true);
+  add_bodies(problem, k);
+  for (BodyNode& x : nodes_)
+    x.stiffness.setZero();
+  add_joints(problem, nullptr);
+  add_rows(problem, k);
+  finish_bodies();
+  entries_.hold_all_by_metric();
+}
+
+// Numbers the unknowns: motions, multipliers of tree joints, those of cut joints.
+void BodyEquations::lay_out(const Problem& problem, const Kinematics<double>& k, bool symmetric) {
+  coordinates_ = problem.system.nv;
+  rows_ = problem.system.rows;
+  nodes_.lay_out(problem, k);
+  first_row_ = 6 * nodes_.size();
+  for (BodyNode& x : nodes_) {
+    x.multipliers = first_row_;
+    first_row_ += 6 - x.columns;
+  }
+  unknowns_ = first_row_ + rows_;
+  entries_.clear(unknowns_, symmetric);
+}
+
+void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>& k) {
+  mass_ = 0;
+  for (BodyNode& x : nodes_) {
+    set_body_stiffness(problem.parameters, static_cast<std::size_t>(x.link), k, x);
+    mass_ += x.mass;
+  }
+  for (std::size_t i = 0; i < problem.system.body_forces.size(); ++i) {
+    const BodyForceElement& e = problem.system.body_forces[i];
+    if (const int n = nodes_.at(e.link); n >= 0)
+      add_body_force(e, problem.parameters.body_forces[i], k, nodes_[n].own);
+  }
+  const double reach = nodes_.length() * nodes_.length();
+  const double least = Eliminator::own_share * Eliminator::own_share * std::max(mass_, 1e-300) * reach;
+  for (BodyNode& x : nodes_) {
+    x.stiffness = nodes_.scaled(x.own);
+    x.inertial = nodes_.scaled(inertia_matrix(x));
+    for (int c = 0; c < x.columns; ++c)
+      x.weight[c] = std::max(Eliminator::own_share * x.s.col(c).dot(x.inertial * x.s.col(c)), least);
+  }
+}
+
+void BodyEquations::add_pair(int a, int b, const PairBlocks& x) {
+  compressed_ |= x.compressed;
+  const int na = nodes_.at(a), nb = nodes_.at(b);
+  if (na >= 0) {
+    nodes_[na].stiffness += nodes_.scaled(x.aa);
+    nodes_[na].load += x.on_a;
+  }
+  if (nb >= 0) {
+    nodes_[nb].stiffness += nodes_.scaled(x.bb);
+    nodes_[nb].load += x.on_b;
+  }
+  if (na < 0 || nb < 0) return;
+  if (na == nb)
+    nodes_[na].stiffness += nodes_.scaled(x.ab) + nodes_.scaled(x.ba);
+  else
+    entries_.add_between(na, nb, nodes_.scaled(x.ab), nodes_.scaled(x.ba), Mat6::Zero());
+}
+
+void BodyEquations::add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                              Lines lines) {
+  const System& system = problem.system;
+  const Parameters& p = problem.parameters;
+  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+    const PointSpringElement& e = system.springs[i];
+    add_pair(e.ends.a, e.ends.b, spring_blocks(e, p.springs[i], k, p.moving, lines));
+  }
+  if (p.moving)
+    for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
+      const CutDamperElement& e = system.cut_dampers[i];
+      add_pair(e.ends.a, e.ends.b, damper_blocks(e, p.cut_dampers[i], k));
+    }
+  PairBlocks sum;
+  for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+    const CutJoint& cut = system.cuts[c];
+    if (cut.type == JointType::gear) continue;
+    sum.set_zero();
+    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+      const double multiplier = z.lambda.size() > 0 ? z.lambda[cut.first_row + static_cast<int>(r)] : 0;
+      if (multiplier == 0) continue;
+      sum += row_blocks(cut, p.cuts[c], cut.rows[r], multiplier, k, lines);
+    }
+    add_pair(cut.ends.a, cut.ends.b, sum);
+  }
+}
+
+// Of each body with all beyond it, from the tips to the root.
+void BodyEquations::sum_up_loads(const Residual<double>& residual) {
+  for (int i = nodes_.size(); i-- > 0;) {
+    BodyNode& x = nodes_[i];
+    if (x.parent >= 0) add_wrench(x.load, x.arm, nodes_[x.parent].load);
+    x.load.head<3>() += residual.moment[static_cast<std::size_t>(x.link)];
+    x.load.tail<3>() += residual.force[static_cast<std::size_t>(x.link)];
+  }
+}
+
+// What tree joints transmit, and what they hold. Without q the metric alone.
+void BodyEquations::add_joints(const Problem& problem, const Eigen::VectorXd* q) {
+  for (int i = 0; i < nodes_.size(); ++i) {
+    BodyNode& x = nodes_[i];
+    const int k = x.columns;
+    Mat6 p = Mat6::Zero(), t = Mat6::Zero();
+    if (q) {
+      const JointTerms terms = joint_terms(problem, x, *q);
+      p = x.d * terms.stiffness * x.d.transpose();
+      t = terms.turns * x.d.transpose();
+    }
+    const Mat6 w = x.d * x.weight.head(k).asDiagonal() * x.d.transpose();
+    x.stiffness += p;
+    x.inertial += w;
+    for (int r = 0; r < 6 - k; ++r)
+      entries_.add_row(x.multipliers + r, i, x.n.col(r));
+    if (x.parent < 0) continue;
+    BodyNode& parent = nodes_[x.parent];
+    const Mat6 by_parent = -p * x.shift, on_parent = x.shift.transpose() * (t - p);
+    parent.stiffness -= on_parent * x.shift;
+    parent.inertial += x.shift.transpose() * w * x.shift;
+    entries_.add_between(i, x.parent, by_parent, on_parent, -w * x.shift);
+    for (int r = 0; r < 6 - k; ++r)
+      entries_.add_row(x.multipliers + r, x.parent, -x.shift.transpose() * x.n.col(r));
+  }
+}
+
+void BodyEquations::add_rows(const Problem& problem, const Kinematics<double>& k) {
+  const System& system = problem.system;
+  for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+    const CutJoint& cut = system.cuts[c];
+    const CutParameters& p = problem.parameters.cuts[c];
+    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+      const int row = cut.first_row + static_cast<int>(r);
+      const double unit = problem.scaling.row[row];
+      if (cut.type == JointType::gear) {
+        add_coordinate(first_row_ + row, cut.gear_va, -p.ratio * unit * problem.scaling.column[cut.gear_va]);
+        add_coordinate(first_row_ + row, cut.gear_vb, unit * problem.scaling.column[cut.gear_vb]);
+        continue;
+      }
+      RowGradient g = body_row_gradient(cut, p, cut.rows[r], k);
+      g.a.tail<3>() *= nodes_.length();
+      g.b.tail<3>() *= nodes_.length();
+      entries_.add_row(first_row_ + row, nodes_.at(cut.ends.a), unit * g.a);
+      entries_.add_row(first_row_ + row, nodes_.at(cut.ends.b), unit * g.b);
+    }
+  }
+}
+
+void BodyEquations::add_coordinate(int row, int coordinate, double gradient) {
+  const auto [n, column] = nodes_.place(coordinate);
+  const BodyNode& x = nodes_[n];
+  const Vec6 g = gradient * x.d.col(column);
+  entries_.add_row(row, n, g);
+  entries_.add_row(row, x.parent, -x.shift.transpose() * g);
+}
+
+void BodyEquations::finish_bodies() {
+  for (int n = 0; n < nodes_.size(); ++n)
+    entries_.add_body(n, nodes_[n].stiffness, nodes_[n].inertial);
+}
+
+// The turns of a point mass feel nothing, but the terms of their balance cancel with rounding only.
+void BodyEquations::set_noise(const Problem& problem, const Magnitudes& magnitudes) {
+  noise_.clear();
+  for (const BodyNode& x : nodes_) {
+    double force = magnitudes.link_force[static_cast<std::size_t>(x.link)] * problem.parameters.length;
+    for (int c = 0; c < x.columns; ++c) {
+      const int v = x.v[static_cast<std::size_t>(c)];
+      force = std::max(force, magnitudes.force[v] * problem.scaling.column[v]);
+    }
+    noise_.push_back(Eliminator::rounding * force);
+  }
+}
+
+void BodyEquations::put(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& held) {
+  work_.setZero(unknowns_);
+  work_.tail(rows_) = closing;
+  for (int i = 0; i < nodes_.size(); ++i) {
+    const BodyNode& n = nodes_[i];
+    Vec6 g = Vec6::Zero();
+    for (int c = 0; c < n.columns; ++c)
+      g += n.d.col(c) * force[n.v[static_cast<std::size_t>(c)]];
+    work_.segment<6>(6 * i) += g;
+    if (n.parent >= 0) work_.segment<6>(6 * n.parent) -= n.shift.transpose() * g;
+  }
+  entries_.gather(work_, held);
+}
+
+void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x) {
+  entries_.spread(held, work_);
+  for (int i = 0; i < nodes_.size(); ++i) {
+    const BodyNode& n = nodes_[i];
+    Vec6 m = work_.segment<6>(6 * i);
+    if (n.parent >= 0) m -= n.shift * work_.segment<6>(6 * n.parent);
+    for (int c = 0; c < n.columns; ++c)
+      x[n.v[static_cast<std::size_t>(c)]] = n.d.col(c).dot(m);
+  }
+}
+
+void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x,
+                         Eigen::VectorXd& lambda) {
+  take(held, x);
+  lambda = work_.tail(rows_);
+}
+
+} // namespace flyball

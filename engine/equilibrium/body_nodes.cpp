@@ -1,0 +1,93 @@
+#include "engine/equilibrium/body_nodes.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+namespace flyball {
+
+// Massless links of a joint belong to the one link that they carry.
+void BodyNodes::join_links(const System& system) {
+  const std::size_t count = system.links.size();
+  children_.assign(count, 0);
+  next_.assign(count, -1);
+  for (const Link& link : system.links)
+    if (link.parent >= 0) ++children_[static_cast<std::size_t>(link.parent)];
+  for (std::size_t l = 0; l < count; ++l) {
+    const int p = system.links[l].parent;
+    if (p < 0) continue;
+    const Link& parent = system.links[static_cast<std::size_t>(p)];
+    if (parent.mobile && parent.body < 0 && parent.tree_joint == system.links[l].tree_joint &&
+        children_[static_cast<std::size_t>(p)] == 1)
+      next_[static_cast<std::size_t>(p)] = static_cast<int>(l);
+  }
+}
+
+void BodyNodes::lay_out(const Problem& problem, const Kinematics<double>& k) {
+  const System& system = problem.system;
+  const std::size_t count = system.links.size();
+  length_ = problem.parameters.length;
+  join_links(system);
+  node_of_link_.assign(count, -1);
+  place_.resize(static_cast<std::size_t>(system.nv));
+  std::size_t n = 0;
+  for (std::size_t l = 0; l < count; ++l) {
+    if (!system.links[l].mobile || next_[l] >= 0) continue;
+    if (nodes_.size() <= n) nodes_.emplace_back();
+    BodyNode& x = nodes_[n];
+    node_of_link_[l] = static_cast<int>(n++);
+    x.link = static_cast<int>(l);
+    int head = x.link;
+    const auto parent_of = [&](int i) { return system.links[static_cast<std::size_t>(i)].parent; };
+    while (parent_of(head) >= 0 && next_[static_cast<std::size_t>(parent_of(head))] == head)
+      head = parent_of(head);
+    x.parent = at(parent_of(head));
+    x.columns = 0;
+    for (int i = head; i >= 0; i = i == x.link ? -1 : next_[static_cast<std::size_t>(i)]) {
+      const Link& link = system.links[static_cast<std::size_t>(i)];
+      if (link.v < 0) continue;
+      for (int c = 0; c < (link.type == LinkType::spherical ? 3 : 1); ++c) {
+        const auto column = static_cast<std::size_t>(x.columns);
+        x.v[column] = link.v + c;
+        x.stage[column] = i;
+        place_[static_cast<std::size_t>(link.v + c)] = {static_cast<int>(n) - 1, x.columns++};
+      }
+    }
+  }
+  nodes_.resize(n);
+  for (BodyNode& x : nodes_)
+    set_columns(problem, k, x);
+}
+
+void BodyNodes::set_columns(const Problem& problem, const Kinematics<double>& k, BodyNode& x) const {
+  const Vec3& o = k.links[static_cast<std::size_t>(x.link)].o;
+  x.arm =
+      x.parent < 0
+          ? Vec3(Vec3::Zero())
+          : Vec3(o - k.links[static_cast<std::size_t>(nodes_[static_cast<std::size_t>(x.parent)].link)].o);
+  x.shift.setIdentity();
+  x.shift.bottomLeftCorner<3, 3>() = -skew(x.arm) / length_;
+  x.s.resize(6, x.columns);
+  for (int c = 0; c < x.columns; ++c) {
+    const int v = x.v[static_cast<std::size_t>(c)];
+    const Column<double>& column = k.columns[static_cast<std::size_t>(v)];
+    const double unit = problem.scaling.column[v];
+    x.s.col(c) << unit * column.turn(), unit / length_ * column.at(o);
+  }
+  if (x.columns == 0) {
+    x.d.resize(6, 0);
+    x.n = Mat6::Identity();
+    return;
+  }
+  if (x.columns == 6) {
+    x.d = Mat6(x.s).transpose().inverse();
+    x.n.resize(6, 0);
+    return;
+  }
+  const BodySquare gram = x.s.transpose() * x.s;
+  x.d = x.s * gram.inverse();
+  const Eigen::HouseholderQR<BodyColumns> qr(x.s);
+  const Mat6 q = qr.householderQ() * Mat6::Identity();
+  x.n = q.rightCols(6 - x.columns);
+}
+
+} // namespace flyball

@@ -1,0 +1,80 @@
+// The moving bodies of a mechanism as nodes of a graph: what each hangs from, and the directions that the
+// tree joint between them leaves free and fixed.
+//
+// Motions are (turn, shift of the link's origin), wrenches (moment about that origin, force), world axes.
+// Both are scaled to units of energy: turns in radians, shifts in the mechanism's reach.
+#pragma once
+
+#include "engine/equilibrium/body_stiffness.hpp"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace flyball {
+
+// At most six directions of a body's motion, and what acts among them.
+using BodyColumns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+using BodySquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+
+// A link with the massless ones of its tree joint before it. Scaled but where units are given.
+struct BodyNode : BodyStiffness {
+  int parent = -1; // node; -1: stands still
+  int link = -1;
+  int columns = 0;
+  std::array<int, 6> v{}, stage{}; // coordinates, the root's first, and the link of each
+  Vec3 arm;                        // m, from the parent's origin to this one's
+  Mat6 shift;                      // of the parent's motion to this one's
+  // Motion by a unit of each coordinate; N^T S = 0, D^T S = I: what a motion is in coordinates, and what of
+  // it the joint forbids.
+  BodyColumns s, d, n;
+
+  // Of the equations (body_equations.hpp).
+  int multipliers = 0;                // first of its own among the unknowns
+  Vec6 load;                          // N m, N, about the link's origin; of all beyond it
+  Eigen::Matrix<double, 6, 1> weight; // metric of the coordinates themselves
+  Mat6 stiffness, inertial;           // of the body and all that meets it
+};
+
+class BodyNodes {
+ public:
+  // Sets all but what is of the equations. Kinematics at the problem's state.
+  void lay_out(const Problem& problem, const Kinematics<double>& kinematics);
+
+  int size() const { return static_cast<int>(nodes_.size()); }
+  BodyNode& operator[](int i) { return nodes_[static_cast<std::size_t>(i)]; }
+  const BodyNode& operator[](int i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  auto begin() { return nodes_.begin(); } // parents before children
+  auto end() { return nodes_.end(); }
+  auto begin() const { return nodes_.begin(); }
+  auto end() const { return nodes_.end(); }
+
+  // The node of a link that carries a body. -1: it stands still.
+  int at(int link) const { return link < 0 ? -1 : node_of_link_[static_cast<std::size_t>(link)]; }
+
+  // The node and the column of a coordinate.
+  std::pair<int, int> place(int coordinate) const { return place_[static_cast<std::size_t>(coordinate)]; }
+
+  double length() const { return length_; } // m, the mechanism's reach
+
+  // A map of motions (rad, m) to wrenches (N m, N) in units of energy.
+  Mat6 scaled(const Mat6& m) const {
+    Mat6 x = m;
+    x.rightCols<3>() *= length_;
+    x.bottomRows<3>() *= length_;
+    return x;
+  }
+
+ private:
+  void join_links(const System& system);
+  void set_columns(const Problem& problem, const Kinematics<double>& kinematics, BodyNode& node) const;
+
+  double length_ = 1;
+  std::vector<BodyNode> nodes_;
+  std::vector<int> node_of_link_; // -1: stands still, or part of a later link's node
+  std::vector<int> next_;         // by link: what it is part of a node with
+  std::vector<int> children_;
+  std::vector<std::pair<int, int>> place_;
+};
+
+} // namespace flyball
