@@ -150,16 +150,19 @@ class Search {
            (w_.eliminator(p_).mass() * reach * reach);
   }
 
-  // Rounding makes some of many directions that nothing resists a little stiff, either way. Leaves the
-  // balance factored with what keeps them still, then.
+  // Rounding makes some of many directions that nothing resists a little stiff, either way, and along loops
+  // they bend. Then this leaves the balance factored with what keeps them still.
   bool only_flat() {
     Eliminator& e = w_.eliminator(p_);
-    if (e.negative_count() == 0) return true;
+    const int negative = e.negative_count();
+    const std::size_t flat = e.flat().size();
+    if (negative == 0 && p_.system.rows == 0) return true;
     constexpr double rounding = 1e-5;
     e.factor(rounding * curvature());
-    const bool flat = e.negative_count() == 0;
-    e.factor(flat ? still * curvature() : 0);
-    return flat;
+    const bool none_falls = e.negative_count() == 0;
+    const bool to_be_held = negative > 0 || e.flat().size() < flat; // the rest feels nothing at all
+    e.factor(none_falls && to_be_held ? still * curvature() : 0);
+    return none_falls;
   }
 
   // Newton-Raphson from where the descent ended, at last with neutral directions held still.

@@ -52,6 +52,9 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
       if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
     if (i == 0) way = one;
   }
+  for (const Eliminator::Flat& f : e.flat()) // and what feels nothing at all
+    for (const auto& [v, share] : f)
+      if (std::abs(share) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
   const bool balanced = stays_balanced(problem, z, 0.002 * way, rounding, w) &&
                         stays_balanced(problem, z, -0.003 * way, rounding, w);
   out.reason = balanced ? StabilityReason::neutral : StabilityReason::marginal;
