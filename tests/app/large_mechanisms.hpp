@@ -54,15 +54,22 @@ inline Mechanism branching_tree(int limbs) {
   return m;
 }
 
+// Of the nets below: `side` x `side` knots in the plane of x and z, 0.1 m apart.
+inline std::string knot_name(int i, int k) {
+  return "n" + std::to_string(i) + "_" + std::to_string(k);
+}
+inline Vec3 knot_at(int side, int i, int k) {
+  return 0.1 * Vec3(i - side / 2, 0, k - side / 2);
+}
+
 // `side` x `side` balls in the plane of x and z, 0.1 m apart, joined to their neighbours by links, hung from
 // a spindle at their middle.
 inline Mechanism cable_net(int side) {
-  constexpr double cell = 0.1;
   Mechanism m;
   m.name = "Net";
   m.gravity = {0, -9.80665, 0};
-  const auto name = [](int i, int k) { return "n" + std::to_string(i) + "_" + std::to_string(k); };
-  const auto at = [&](int i, int k) { return Vec3(cell * (i - side / 2), 0, cell * (k - side / 2)); };
+  const auto name = knot_name;
+  const auto at = [&](int i, int k) { return knot_at(side, i, k); };
   m.bodies.push_back(make_body("spindle", 1, {0, 0.2, 0}));
   m.joints.push_back(make_joint("spin", JointType::revolute, "ground", "spindle", {0, 0.3, 0}, {0, 1, 0}));
   m.joints[0].coordinates[0].drive = Drive{5};
@@ -84,12 +91,11 @@ inline Mechanism cable_net(int side) {
 // `side` x `side` knots in the plane of x and z, 0.1 m apart, tied to their neighbours and at two edges to
 // the ground by springs.
 inline Mechanism spring_net(int side) {
-  constexpr double cell = 0.1;
   Mechanism m;
   m.name = "Net of springs";
   m.gravity = {0, -9.80665, 0};
-  const auto name = [](int i, int k) { return "n" + std::to_string(i) + "_" + std::to_string(k); };
-  const auto at = [&](int i, int k) { return Vec3(cell * (i - side / 2), 0, cell * (k - side / 2)); };
+  const auto name = knot_name;
+  const auto at = [&](int i, int k) { return knot_at(side, i, k); };
   const auto tie = [&](const std::string& first, int i, int k, int j, int l) {
     Force spring;
     spring.name = "s" + std::to_string(m.forces.size());
