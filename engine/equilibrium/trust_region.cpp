@@ -23,18 +23,15 @@ class TrustRegion {
       if (shortened == 0)
         choose_step();
       else
-        shorten_step();
+        shorten_step(0.25);
       const double size = step_.lpNorm<Eigen::Infinity>();
       if (shortened == 0 && shift_ == 0 && size < 1e-8) return {DescentEnd::minimum, i};
       if (!(predicted_ > 0) || !std::isfinite(size))
         return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
-      moved_ = z_.q;
-      w_.step = step_.cwiseProduct(p_.scaling.column);
-      retract<double>(p_.system, w_.step, moved_);
-      forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
-      const bool closed = close_loops();
-      const Potential next = lagrangian(moved_);
+      Potential next;
+      const bool closed = move(next);
       const double rounding = 1e-14 * (potential_.magnitude + next.magnitude);
+      if (predicted_ > 100 * rounding) look_back(next);
       const double gain = potential_.value - next.value;
       // Below rounding the potential cannot judge; there the model is as good as exact.
       const bool measurable = predicted_ > 10 * rounding;
@@ -65,6 +62,38 @@ class TrustRegion {
   }
 
  private:
+  // Takes the step, to moved_; false where the loops do not follow.
+  bool move(Potential& there) {
+    moved_ = z_.q;
+    w_.step = step_.cwiseProduct(p_.scaling.column);
+    retract<double>(p_.system, w_.step, moved_);
+    forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
+    const bool closed = close_loops();
+    there = lagrangian(moved_);
+    return closed;
+  }
+
+  // A step that gains clearly less than foreseen went too far: the parabola through the potential's value and
+  // slope here and its value there tells how far, and where that is lower it is the step.
+  void look_back(Potential& there) {
+    const double gain = potential_.value - there.value, slope = gradient_.dot(step_);
+    const double lowest = slope / (2 * (slope + gain)); // of the parabola, as a part of the step
+    if (p_.system.rows > 0 || !(gain < 0.8 * predicted_) || !(slope + gain < 0) || !(lowest < 0.95)) return;
+    const double part = std::max(lowest, 0.1);
+    full_ = moved_;
+    w_.step = part * step_.cwiseProduct(p_.scaling.column);
+    moved_ = z_.q;
+    retract<double>(p_.system, w_.step, moved_);
+    forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
+    const Potential nearer = lagrangian(moved_);
+    if (nearer.value < there.value) {
+      there = nearer;
+      shorten_step(part);
+    } else {
+      moved_.swap(full_);
+    }
+  }
+
   // The potential, and what the loops are still open by at the price of their multipliers.
   Potential lagrangian(const Eigen::VectorXd& q) {
     Potential out = amended_potential(p_.system, p_.parameters, q, w_.kinematics);
@@ -127,9 +156,9 @@ class TrustRegion {
     return std::isfinite(length_);
   }
 
-  // The same way, a quarter as far.
-  void shorten_step() {
-    const double slope = gradient_.dot(step_), curvature = -2 * (slope + predicted_), t = 0.25;
+  // The same way, `t` as far.
+  void shorten_step(double t) {
+    const double slope = gradient_.dot(step_), curvature = -2 * (slope + predicted_);
     step_ *= t;
     length_ *= t;
     predicted_ = -t * (slope + t * curvature / 2);
@@ -174,7 +203,10 @@ class TrustRegion {
       } else {
         break;
       }
-      // Close above the lowest curvature and still short: the rest of the way goes along it.
+      // Close above the lowest curvature, whose direction would take most of a longer step, and that far from
+      // where it points, mostly in some corner of the mechanism.
+      if (high > 0 && !low_definite && high < 4 * low && shift_ == high && length_ > 0.01 * radius_) break;
+      // Closer still, and hardly a step without it: the way goes along it.
       if (high > 0 && !low_definite && high < 1.2 * low) {
         if (shift_ != high || shift != high) solve_with(high);
         last_shift_ = high;
@@ -248,7 +280,7 @@ class TrustRegion {
   Workspace& w_;
   Eliminator& e_;
   std::vector<double>* history_;
-  Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
+  Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_, full_;
   Potential potential_;
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
   double shift_ = 0, last_shift_ = 0;
