@@ -25,6 +25,15 @@
 
 namespace flyball {
 
+// Of a subtree, about a point: norms of the blocks of its stiffness before elimination, and of its inertia.
+struct SubtreeSizes {
+  double m = 0, mf = 0, f = 0, heavy_m = 0, heavy_mf = 0, heavy_f = 0;
+  static SubtreeSizes Zero() { return {}; }
+  SubtreeSizes operator+(const SubtreeSizes& o) const {
+    return {m + o.m, mf + o.mf, f + o.f, heavy_m + o.heavy_m, heavy_mf + o.heavy_mf, heavy_f + o.heavy_f};
+  }
+};
+
 class TreeElimination final : public Eliminator {
  public:
   // Of a system with is_plain_tree().
@@ -38,33 +47,49 @@ class TreeElimination final : public Eliminator {
   void direction_of(const Flat& flat, Eigen::VectorXd& x) override;
 
  private:
-  using Mat63 = Eigen::Matrix<double, 6, 3>;
-
-  struct Node : BodyStiffness {
-    int parent = -1, v = -1, columns = 0;
-    Vec3 arm;                          // m, from the parent's origin
-    Mat6 h;                            // H before this link's coordinates are eliminated
-    Vec3 force, moment;                // F_l about the link's origin
-    double size_m, size_mf, size_f;    // of the stiffness of the subtree, before elimination
-    double heavy_m, heavy_mf, heavy_f; // of its inertia
-    Mat63 s, u, r;                     // scaled; r transposed
-    Mat3 joint;                        // stiffness of the coordinates
-    Vec3 metric;                       // of the coordinates themselves
-    Vec3 noise;                        // below this a pivot is rounding
-    Mat3 inverse;                      // of the pivot
-    Vec6 g, motion;
-    Vec3 e;
+  // What a rotation of three coordinates has in the place of a node's one. Scaled.
+  struct Ball {
+    Eigen::Matrix<double, 6, 3> s, u, r; // r transposed
+    Mat3 joint, inverse;
+    Vec3 metric, noise, e;
   };
 
-  void set_joint(const Problem& problem, std::size_t l, const Eigen::VectorXd& q, const Kinematics<double>& k,
-                 const Magnitudes& magnitudes);
-  void eliminate_one(Node& n, double shift);
-  void eliminate_three(Node& n, double shift);
+  // What sweeps read together lies together: caches end before large trees do.
+  struct Node : BodyStiffness {
+    Vec3 force, moment; // F_l about the link's origin
+    int link = -1, parent = -1, v = -1;
+    int ball = -1;      // in balls_
+    int branches = -1;  // in the sweeps' stores: where children add up that are not the next node
+    bool first = false; // of those children of its parent
+    bool angular = false;
+    Vec3 axis; // of the one coordinate, scaled
+    double joint, metric,
+        noise;         // stiffness of the coordinate; metric of itself; below it a pivot is rounding
+    Vec3 arm;          // m, from the parent's origin
+    double inverse, e; // of the pivot; see outwards()
+    Vec6 u, motion;
+    bool one() const { return v >= 0 && ball < 0; }
+    int at() const { return angular ? 0 : 3; } // of the axis in a twist
+  };
+
+  template <class Sum, class Visit>
+  void inwards(std::vector<Sum>& branches, Visit visit);
+  void list_nodes(const System& system);
+  void set_joint(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k,
+                 const Magnitudes& magnitudes, const SubtreeSizes& sizes, double least, Node& n);
+  void eliminate_one(Node& n, double shift, Mat6& h);
+  void eliminate_three(Node& n, double shift, Mat6& h);
   void outwards(Eigen::VectorXd& x);
 
   bool symmetric_ = true;
   std::vector<Node> nodes_;       // of mobile links, parents before children
   std::vector<int> node_of_link_; // -1: immobile
+  std::vector<Ball> balls_;
+  std::vector<Vec6> rows_; // r of a node's one coordinate, where that is not u
+  std::vector<Mat6> stiffness_branches_;
+  std::vector<Vec6> wrench_branches_;
+  std::vector<SubtreeSizes> size_branches_;
+  std::size_t branching_ = 0; // nodes with children that are not the next node
   int size_ = 0;
 };
 
