@@ -102,6 +102,10 @@ void take_off_multipliers(const Problem& problem, const Eigen::VectorXd& lambda,
 
 void evaluate(const Problem& problem, const Unknowns& z, double t, Workspace& w) {
   forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
+  evaluate_forces(problem, z, w);
+}
+
+void evaluate_forces(const Problem& problem, const Unknowns& z, Workspace& w) {
   evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
   evaluate_magnitudes(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.magnitudes);
 }

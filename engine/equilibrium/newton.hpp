@@ -11,6 +11,8 @@ namespace flyball {
 
 // Evaluates the balance at phase t: kinematics, residual at z.lambda and magnitudes.
 void evaluate(const Problem& problem, const Unknowns& z, double t, Workspace& w);
+// The rest where the kinematics are at z already.
+void evaluate_forces(const Problem& problem, const Unknowns& z, Workspace& w);
 
 // Largest scaled equation of eq. 23: forces relative to the terms they are made of, lengths to the
 // mechanism's reach.

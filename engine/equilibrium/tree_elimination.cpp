@@ -39,7 +39,7 @@ Eliminator::Flat way(int v, const Vec3& direction) {
 // stored.
 template <class Sum, class Visit>
 void TreeElimination::inwards(std::vector<Sum>& branches, Visit visit) {
-  branches.resize(branching_);
+  branches.resize(static_cast<std::size_t>(branching_));
   Sum sum;
   bool handed = false; // `sum` is for this node
   for (std::size_t i = nodes_.size(); i-- > 0;) {
@@ -58,38 +58,27 @@ void TreeElimination::inwards(std::vector<Sum>& branches, Visit visit) {
     shift_origin(n.arm, symmetric_, sum);
     handed = static_cast<std::size_t>(n.parent) + 1 == i;
     if (handed) continue;
-    Sum& others = branches[static_cast<std::size_t>(nodes_[static_cast<std::size_t>(n.parent)].branches)];
-    others = n.first ? sum : Sum(others + sum);
+    const Node& p = nodes_[static_cast<std::size_t>(n.parent)];
+    Sum& others = branches[static_cast<std::size_t>(p.branches)];
+    others = p.last == static_cast<int>(i) ? sum : Sum(others + sum);
   }
 }
 
-void TreeElimination::list_nodes(const System& system) {
-  size_ = system.nv;
-  node_of_link_.resize(system.links.size());
-  std::size_t count = 0, balls = 0;
-  for (std::size_t l = 0; l < system.links.size(); ++l)
-    node_of_link_[l] = system.links[l].mobile ? static_cast<int>(count++) : -1;
-  nodes_.resize(count);
-  for (std::size_t l = 0; l < system.links.size(); ++l) {
-    if (node_of_link_[l] < 0) continue;
-    const Link& link = system.links[l];
-    Node& n = nodes_[static_cast<std::size_t>(node_of_link_[l])];
-    n.link = static_cast<int>(l);
-    n.parent = link.parent < 0 ? -1 : node_of_link_[static_cast<std::size_t>(link.parent)];
-    n.v = link.v;
-    n.ball = link.v >= 0 && link.type == LinkType::spherical ? static_cast<int>(balls++) : -1;
-    n.branches = -1;
-    n.first = false;
+// Sets what is known of node i before its children.
+void TreeElimination::place(int i, const Link& link) {
+  Node& n = nodes_[static_cast<std::size_t>(i)];
+  n.parent = link.parent < 0 ? -1 : node_of_link_[static_cast<std::size_t>(link.parent)];
+  n.v = link.v;
+  n.ball = -1;
+  if (link.v >= 0 && link.type == LinkType::spherical) {
+    n.ball = static_cast<int>(balls_.size());
+    balls_.emplace_back();
   }
-  balls_.resize(balls);
-  branching_ = 0;
-  for (std::size_t i = nodes_.size(); i-- > 0;) {
-    Node& n = nodes_[i];
-    if (n.parent < 0 || static_cast<std::size_t>(n.parent) + 1 == i) continue;
-    Node& p = nodes_[static_cast<std::size_t>(n.parent)];
-    n.first = p.branches < 0;
-    if (n.first) p.branches = static_cast<int>(branching_++);
-  }
+  n.branches = n.last = -1;
+  if (n.parent < 0 || n.parent + 1 == i) return;
+  Node& p = nodes_[static_cast<std::size_t>(n.parent)];
+  if (p.branches < 0) p.branches = branching_++;
+  p.last = i;
 }
 
 void TreeElimination::set_joint(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k,
@@ -129,11 +118,21 @@ void TreeElimination::linearize(const Problem& problem, const Unknowns& z, const
                                 const Residual<double>& residual, const Magnitudes& magnitudes) {
   const System& system = problem.system;
   symmetric_ = problem.symmetric();
-  list_nodes(system);
-  rows_.resize(symmetric_ ? 0 : nodes_.size());
+  size_ = system.nv;
   mass_ = 0;
-  for (Node& n : nodes_) {
-    const auto l = static_cast<std::size_t>(n.link);
+  balls_.clear();
+  branching_ = 0;
+  node_of_link_.resize(system.links.size());
+  std::size_t count = 0;
+  for (std::size_t l = 0; l < system.links.size(); ++l)
+    node_of_link_[l] = system.links[l].mobile ? static_cast<int>(count++) : -1;
+  nodes_.resize(count);
+  rows_.resize(symmetric_ ? 0 : count);
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    if (node_of_link_[l] < 0) continue;
+    place(node_of_link_[l], system.links[l]);
+    Node& n = nodes_[static_cast<std::size_t>(node_of_link_[l])];
+    n.link = static_cast<int>(l);
     n.arm = k.links[l].o - k.at(system.links[l].parent).o;
     n.force = residual.force[l];
     n.moment = residual.moment[l];

@@ -58,15 +58,17 @@ class TreeElimination final : public Eliminator {
   struct Node : BodyStiffness {
     Vec3 force, moment; // F_l about the link's origin
     int link = -1, parent = -1, v = -1;
-    int ball = -1;      // in balls_
-    int branches = -1;  // in the sweeps' stores: where children add up that are not the next node
-    bool first = false; // of those children of its parent
+    int ball = -1;     // in balls_
+    int branches = -1; // in the sweeps' stores: where children add up that are not the next node
+    int last = -1;     // of these children
     bool angular = false;
-    Vec3 axis; // of the one coordinate, scaled
-    double joint, metric,
-        noise;         // stiffness of the coordinate; metric of itself; below it a pivot is rounding
-    Vec3 arm;          // m, from the parent's origin
-    double inverse, e; // of the pivot; see outwards()
+    Vec3 axis;      // of the one coordinate, scaled
+    double joint;   // stiffness of the coordinate
+    double metric;  // of the coordinate itself
+    double noise;   // below it a pivot is rounding
+    double inverse; // of the pivot
+    double e;       // see outwards()
+    Vec3 arm;       // m, from the parent's origin
     Vec6 u, motion;
     bool one() const { return v >= 0 && ball < 0; }
     int at() const { return angular ? 0 : 3; } // of the axis in a twist
@@ -74,7 +76,7 @@ class TreeElimination final : public Eliminator {
 
   template <class Sum, class Visit>
   void inwards(std::vector<Sum>& branches, Visit visit);
-  void list_nodes(const System& system);
+  void place(int i, const Link& link);
   void set_joint(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k,
                  const Magnitudes& magnitudes, const SubtreeSizes& sizes, double least, Node& n);
   void eliminate_one(Node& n, double shift, Mat6& h);
@@ -89,7 +91,7 @@ class TreeElimination final : public Eliminator {
   std::vector<Mat6> stiffness_branches_;
   std::vector<Vec6> wrench_branches_;
   std::vector<SubtreeSizes> size_branches_;
-  std::size_t branching_ = 0; // nodes with children that are not the next node
+  int branching_ = 0; // nodes with children that are not the next node
   int size_ = 0;
 };
 

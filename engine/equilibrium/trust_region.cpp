@@ -49,7 +49,7 @@ class TrustRegion {
         z_.q = moved_;
         travelled += length_;
         if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
-        linearize_here();
+        arrive(next);
         shortened = 0;
       } else {
         if (radius_ < 1e-12 * unit_) return {DescentEnd::stalled, i};
@@ -91,6 +91,7 @@ class TrustRegion {
       shorten_step(part);
     } else {
       moved_.swap(full_);
+      forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
     }
   }
 
@@ -126,12 +127,24 @@ class TrustRegion {
     return false;
   }
 
+  // At z_, where the kinematics are those of the step taken there; with its potential.
+  void arrive(const Potential& here) {
+    if (p_.system.rows > 0) return linearize_here();
+    evaluate_forces(p_, z_, w_);
+    potential_ = here;
+    linearize_evaluated();
+  }
+
   void linearize_here() {
     evaluate_with_multipliers(p_, z_, w_);
+    potential_ = lagrangian(z_.q);
+    linearize_evaluated();
+  }
+
+  void linearize_evaluated() {
     if (history_) history_->push_back(scaled_residual(p_, w_));
     gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
     force_ = w_.magnitudes.force.cwiseProduct(p_.scaling.column).maxCoeff();
-    potential_ = lagrangian(z_.q);
     convex_ = false;
     e_.linearize(p_, z_, w_.kinematics, w_.residual, w_.magnitudes);
     least_shift_ = 0;

@@ -47,6 +47,7 @@ class Compiler {
       : m_(mechanism), choice_(choice), numbers_(mechanism) {}
 
   System run() {
+    find_ends();
     propagate_drives();
     choose_tree();
     build_links();
@@ -69,6 +70,17 @@ class Compiler {
     return static_cast<int>(numbers_[name]) - 1;
   }
   std::string joint_path(int j) const { return "joints." + joint(j).name; }
+
+  void find_ends() {
+    ends_.resize(m_.joints.size());
+    for (int j = 0; j < joint_count(); ++j) {
+      if (joint(j).type == JointType::gear) continue;
+      const std::string path = joint_path(j);
+      for (std::size_t end : {0, 1})
+        ends_[static_cast<std::size_t>(j)][end] = body_of(joint(j).bodies[end], path);
+    }
+  }
+  const std::array<int, 2>& ends(int j) const { return ends_[static_cast<std::size_t>(j)]; }
 
   CoordinateReference gear_end(int j, int end) const {
     const std::string& name = joint(j).joints[static_cast<std::size_t>(end)];
@@ -131,16 +143,16 @@ class Compiler {
   }
 
   void choose_tree() {
-    std::vector<int> order;
+    std::vector<decltype(preference(0))> order;
     for (int j = 0; j < joint_count(); ++j)
-      if (joins_trees(joint(j).type)) order.push_back(j);
-    std::ranges::sort(order, [&](int a, int b) { return preference(a) < preference(b); });
+      if (joins_trees(joint(j).type)) order.push_back(preference(j));
+    std::ranges::sort(order);
     in_tree_.assign(m_.joints.size(), false);
     UnionFind parts(m_.bodies.size() + 1);
-    for (int j : order) {
+    for (const auto& [rank, coordinates, j] : order) {
       const Joint& x = joint(j);
       if (x.cut == true || std::ranges::find(choice_.cut, j) != choice_.cut.end()) continue;
-      const int a = body_of(x.bodies[0], joint_path(j)), b = body_of(x.bodies[1], joint_path(j));
+      const auto& [a, b] = ends(j);
       if (parts.unite(a + 1, b + 1)) {
         in_tree_[static_cast<std::size_t>(j)] = true;
       } else if (is_driven(j)) {
@@ -215,7 +227,7 @@ class Compiler {
       std::vector<int> found;
       for (int j : joints_at_[static_cast<std::size_t>(body + 1)]) {
         const Joint& x = joint(j);
-        const int p = body_of(x.bodies[0], ""), c = body_of(x.bodies[1], "");
+        const auto& [p, c] = ends(j);
         const bool reversed = p != body;
         const int other = reversed ? p : c;
         if (other == ground || s_.body_link[static_cast<std::size_t>(other)] >= 0) continue;
@@ -250,9 +262,8 @@ class Compiler {
 
   // What connects bodies without being in the tree, found only where a body hangs on nothing else.
   void list_connections() {
-    for (const Joint& x : m_.joints)
-      if (x.type != JointType::gear)
-        connections_.push_back({body_of(x.bodies[0], ""), body_of(x.bodies[1], "")});
+    for (int j = 0; j < joint_count(); ++j)
+      if (joint(j).type != JointType::gear) connections_.push_back(ends(j));
     for (const Force& f : m_.forces)
       if (f.type == ForceType::spring)
         connections_.push_back(
@@ -297,8 +308,8 @@ class Compiler {
     joints_at_.resize(m_.bodies.size() + 1);
     for (int j = 0; j < joint_count(); ++j) {
       if (!in_tree_[static_cast<std::size_t>(j)]) continue;
-      for (const std::string& name : joint(j).bodies)
-        joints_at_[static_cast<std::size_t>(body_of(name, joint_path(j)) + 1)].push_back(j);
+      for (int body : ends(j))
+        joints_at_[static_cast<std::size_t>(body + 1)].push_back(j);
     }
     grow(ground);
     for (auto lost = std::ranges::find(s_.body_link, -1); lost != s_.body_link.end();
@@ -363,7 +374,7 @@ class Compiler {
         continue;
       }
       if (in_tree_[static_cast<std::size_t>(j)]) continue;
-      const int a = body_of(x.bodies[0], joint_path(j)), b = body_of(x.bodies[1], joint_path(j));
+      const auto& [a, b] = ends(j);
       const bool damped =
           std::ranges::any_of(x.coordinates, [](const Coordinate& c) { return c.damping != 0; });
       const bool axial =
@@ -479,6 +490,7 @@ class Compiler {
   const CutChoice& choice_;
   const BodyNumbers numbers_;
   System s_;
+  std::vector<std::array<int, 2>> ends_; // bodies, by joint
   std::vector<std::vector<DriveOrigin>> origins_;
   std::vector<CoordinateReference> motors_; // by entry of s_.drives
   std::vector<bool> needs_coordinate_, in_tree_;

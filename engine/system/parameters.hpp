@@ -33,21 +33,22 @@ struct CoordinateForce {
   }
 };
 
+// What every pass over the links reads comes first.
 struct LinkParameters {
-  Vec3 offset = Vec3::Zero(); // m, p of this link's origin in its parent's, drawn pose
-  Vec3 origin = Vec3::Zero(); // m, this link's origin in the drawn pose, from Parameters::origin
-  Vec3 axis = Vec3::UnitZ();  // unit, drawn pose; turned round where the tree runs against the joint
-  double drawn = 0;           // label of the drawn pose
-  double speed = 0;           // driven: rad/s or m/s, before Parameters::speed_scale
-  double gear_ratio = 1;      // driven: speed per speed of its motor
-  double start = 0; // driven: displacement from the drawn pose at phase zero (a gear may ask for one)
+  Vec3 offset = Vec3::Zero();  // m, p of this link's origin in its parent's, drawn pose
+  Vec3 axis = Vec3::UnitZ();   // unit, drawn pose; turned round where the tree runs against the joint
+  double drawn = 0;            // label of the drawn pose
+  double mass = 0;             // kg
+  Vec3 com = Vec3::Zero();     // m, mass centre from the link's origin, drawn pose
+  Mat3 inertia = Mat3::Zero(); // kg m^2, about the mass centre, drawn-pose world axes
+  bool has_inertia = false;
+  bool elastic = false;  // any of `force` is a spring or stop
+  double speed = 0;      // driven: rad/s or m/s, before Parameters::speed_scale
+  double start = 0;      // driven: displacement from the drawn pose at phase zero (a gear may ask for one)
+  double gear_ratio = 1; // driven: speed per speed of its motor
+  Vec3 origin = Vec3::Zero();             // m, this link's origin in the drawn pose, from Parameters::origin
   Quat drawn_rotation = Quat::Identity(); // spherical: exp of the drawn rotation vector
   std::array<CoordinateForce, 3> force;   // one used, three for spherical
-  bool elastic = false;                   // any of them is a spring or stop
-  double mass = 0;                        // kg
-  Vec3 com = Vec3::Zero();                // m, mass centre from the link's origin, drawn pose
-  Mat3 inertia = Mat3::Zero();            // kg m^2, about the mass centre, drawn-pose world axes
-  bool has_inertia = false;
 };
 
 // A point fixed in a link, from the link's origin at the drawn pose.

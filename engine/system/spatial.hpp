@@ -36,8 +36,12 @@ Mat3T<S> rotation_about(const Vec3T<S>& a, S angle) {
   using std::cos;
   using std::sin;
   const S s = sin(angle), h = sin(angle / 2), versine = 2 * h * h;
-  const Mat3T<S> k = skew<S>(a);
-  return Mat3T<S>::Identity() + s * k + versine * (k * k);
+  const Vec3T<S> b = versine * a, c = s * a;
+  Mat3T<S> m;
+  m << 1 - b.y() * a.y() - b.z() * a.z(), b.x() * a.y() - c.z(), b.x() * a.z() + c.y(), b.x() * a.y() + c.z(),
+      1 - b.x() * a.x() - b.z() * a.z(), b.y() * a.z() - c.x(), //
+      b.x() * a.z() - c.y(), b.y() * a.z() + c.x(), 1 - b.x() * a.x() - b.y() * a.y();
+  return m;
 }
 
 } // namespace flyball
