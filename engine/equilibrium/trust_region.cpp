@@ -28,28 +28,24 @@ class TrustRegion {
       if (shortened == 0 && shift_ == 0 && size < 1e-8) return {DescentEnd::minimum, i};
       if (!(predicted_ > 0) || !std::isfinite(size))
         return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
-      Potential next;
-      const bool closed = move(next);
-      const double rounding = 1e-14 * (potential_.magnitude + next.magnitude);
-      if (predicted_ > 100 * rounding) look_back(next);
-      const double gain = potential_.value - next.value;
-      // Below rounding the potential cannot judge; there the model is as good as exact.
-      const bool measurable = predicted_ > 10 * rounding;
-      const double ratio = measurable ? gain / predicted_ : 1;
+      Trial trial = move(1);
       // A long step for nothing: along what nothing resists, where rounding looks like curvature.
-      if (!measurable && size > 1e-4 && gradient_.lpNorm<Eigen::Infinity>() < 1e-6 * force_)
-        return {DescentEnd::minimum, i};
-      if (!measurable && std::abs(gain) > 10 * rounding)
+      if (!measurable(trial) && size > 1e-4 && small_forces()) return {DescentEnd::minimum, i};
+      if (p_.system.rows == 0) look_back(trial);
+      const double rounding = trial.rounding, gain = potential_.value - trial.potential.value;
+      // Where the potential cannot judge the model is as good as exact.
+      const double ratio = measurable(trial) ? gain / predicted_ : 1;
+      if (!measurable(trial) && std::abs(gain) > 10 * rounding)
         radius_ = length_ / 4;
-      else if (!closed || !(ratio > 0.25))
+      else if (!trial.closed || !(ratio > 0.25))
         radius_ = length_ / 4;
       else if (ratio > 0.7 && length_ > 0.8 * radius_)
         radius_ = std::min(2 * radius_, 2 * unit_);
-      if (closed && std::isfinite(next.value) && ratio > 0.1 && gain > -10 * rounding) {
+      if (trial.closed && std::isfinite(trial.potential.value) && ratio > 0.1 && gain > -10 * rounding) {
         z_.q = moved_;
         travelled += length_;
         if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
-        arrive(next);
+        arrive(trial.potential);
         shortened = 0;
       } else {
         if (radius_ < 1e-12 * unit_) return {DescentEnd::stalled, i};
@@ -62,36 +58,44 @@ class TrustRegion {
   }
 
  private:
-  // Takes the step, to moved_; false where the loops do not follow.
-  bool move(Potential& there) {
+  // Where a step, or a part of it, led to: moved_, with its kinematics.
+  struct Trial {
+    Potential potential;
+    double rounding = 0; // of the difference of its potential and that here
+    bool closed = false; // the loops followed
+  };
+
+  Trial move(double part) {
+    Trial trial;
     moved_ = z_.q;
-    w_.step = step_.cwiseProduct(p_.scaling.column);
+    w_.step = part * step_.cwiseProduct(p_.scaling.column);
     retract<double>(p_.system, w_.step, moved_);
     forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
-    const bool closed = close_loops();
-    there = lagrangian(moved_);
-    return closed;
+    trial.closed = close_loops();
+    trial.potential = lagrangian(moved_);
+    trial.rounding = 1e-14 * (potential_.magnitude + trial.potential.magnitude);
+    return trial;
   }
+
+  // Below rounding the potential cannot judge.
+  bool measurable(const Trial& trial) const { return predicted_ > 10 * trial.rounding; }
+
+  // Those of a saddle, or of what nothing resists.
+  bool small_forces() const { return gradient_.lpNorm<Eigen::Infinity>() < 1e-6 * force_; }
 
   // A step that gains clearly less than foreseen went too far: the parabola through the potential's value and
   // slope here and its value there tells how far, and where that is lower it is the step.
-  void look_back(Potential& there) {
-    const double gain = potential_.value - there.value, slope = gradient_.dot(step_);
+  void look_back(Trial& trial) {
+    const double gain = potential_.value - trial.potential.value, slope = gradient_.dot(step_);
+    if (!measurable(trial) || small_forces() || !(gain < 0.8 * predicted_)) return;
     const double lowest = slope / (2 * (slope + gain)); // of the parabola, as a part of the step
-    if (p_.system.rows > 0 || !(gain < 0.8 * predicted_) || !(slope + gain < 0) || !(lowest < 0.95)) return;
-    const double part = std::max(lowest, 0.1);
-    full_ = moved_;
-    w_.step = part * step_.cwiseProduct(p_.scaling.column);
-    moved_ = z_.q;
-    retract<double>(p_.system, w_.step, moved_);
-    forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
-    const Potential nearer = lagrangian(moved_);
-    if (nearer.value < there.value) {
-      there = nearer;
-      shorten_step(part);
+    if (!(lowest > 0.1 && lowest < 0.95)) return;
+    const Trial nearer = move(lowest);
+    if (nearer.potential.value < trial.potential.value) {
+      trial = nearer;
+      shorten_step(lowest);
     } else {
-      moved_.swap(full_);
-      forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
+      trial = move(1);
     }
   }
 
@@ -178,7 +182,8 @@ class TrustRegion {
   }
 
   // Minimises the model within the radius, by 25 % of it: the exact one where it is convex, else the convex
-  // one as long as that leads somewhere.
+  // one as long as that leads somewhere. Where only the lowest curvature is in the way of a longer step, the
+  // shorter one has to do.
   void choose_step() {
     double low = least_shift_, high = 0; // the shift sought lies between, once high is known
     bool low_definite = false;
@@ -216,10 +221,12 @@ class TrustRegion {
       } else {
         break;
       }
-      // Close above the lowest curvature, whose direction would take most of a longer step, and that far from
-      // where it points, mostly in some corner of the mechanism.
-      if (high > 0 && !low_definite && high < 4 * low && shift_ == high && length_ > 0.01 * radius_) break;
-      // Closer still, and hardly a step without it: the way goes along it.
+      // Close above the lowest curvature a longer step would go along it, and that is the way of some corner
+      // of the mechanism rather than of the forces.
+      if (high > 0 && !low_definite && high < 4 * low && shift_ == high && length_ > 0.01 * radius_ &&
+          !small_forces())
+        break;
+      // Without forces to speak of it is the way.
       if (high > 0 && !low_definite && high < 1.2 * low) {
         if (shift_ != high || shift != high) solve_with(high);
         last_shift_ = high;
@@ -293,7 +300,7 @@ class TrustRegion {
   Workspace& w_;
   Eliminator& e_;
   std::vector<double>* history_;
-  Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_, full_;
+  Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
   Potential potential_;
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
   double shift_ = 0, last_shift_ = 0;

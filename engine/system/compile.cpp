@@ -10,7 +10,7 @@
 namespace flyball {
 namespace {
 
-constexpr int ground = -1;
+constexpr int ground = -1, no_body = -2;
 
 class UnionFind {
  public:
@@ -72,7 +72,7 @@ class Compiler {
   std::string joint_path(int j) const { return "joints." + joint(j).name; }
 
   void find_ends() {
-    ends_.resize(m_.joints.size());
+    ends_.resize(m_.joints.size(), {no_body, no_body}); // gears join coordinates, not bodies
     for (int j = 0; j < joint_count(); ++j) {
       if (joint(j).type == JointType::gear) continue;
       const std::string path = joint_path(j);

@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 
 #ifdef __GLIBC__
@@ -54,14 +56,27 @@ Cost measure(const std::string& family, const Mechanism& mechanism, const Cost& 
   Mechanism read;
   Solution solution;
   std::optional<Analysis> analysis;
-  const double reading = 1e3 * seconds([&] { read = parse_scene(text); });
-  const double checking = 1e3 * seconds([&] { validate(read); });
-  const double compiling = 1e3 * seconds([&] { analysis.emplace(read); });
-  const double whole = 1e3 * seconds([&] { solution = analysis->solve(); });
+  const auto unlimited = std::numeric_limits<double>::infinity();
+  double reading = unlimited, checking = unlimited, compiling = unlimited, whole = unlimited,
+         accepted = unlimited;
+  double total = 0;
+  for (int run = 0; run < 9 && total < 2; ++run) {
+    const auto least = [&](double& time, const std::function<void()>& work) {
+      const double once = seconds(work);
+      time = std::min(time, 1e3 * once);
+      total += once;
+    };
+    least(reading, [&] { read = parse_scene(text); });
+    least(checking, [&] { validate(read); });
+    analysis.reset();
+    least(compiling, [&] { analysis.emplace(read); });
+    least(whole, [&] { solution = analysis->solve(); });
+    accepted = std::min(accepted, 1e3 * solution.run_time_s);
+  }
   const Cost cost{static_cast<double>(read.bodies.size() - 1), compiling + whole, held() - start};
   const double ratio = cost.bodies / before.bodies;
   std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %.1f | %s | %d%s | %s | %.0e |\n",
-              family.c_str(), cost.bodies, reading, checking, compiling, 1e3 * solution.run_time_s, whole,
+              family.c_str(), cost.bodies, reading, checking, compiling, accepted, whole,
               power(cost.solving, before.solving, ratio).c_str(), cost.memory,
               power(cost.memory, before.memory, ratio).c_str(), solution.iterations,
               solution.net ? (" " + std::string(word(*solution.net))).c_str() : "",
@@ -87,7 +102,8 @@ int side_of(int bodies) {
 int main(int argc, char** argv) {
   const int largest = argc > 1 ? std::atoi(argv[1]) : 10000;
   std::printf(
-      "Milliseconds. `accepted` is the solve until its answer stands, `solve` with all that is told of it; "
+      "Milliseconds, the least of up to nine runs. `accepted` is the solve until its answer stands, `solve` "
+      "with all that is told of it; "
       "`power` of the\nbodies by which compiling and solving grow, and the memory held after it (MB).\n\n"
       "| scene | bodies | read | check | compile | accepted | solve | power | MB | power | iterations | "
       "stability | residual |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");

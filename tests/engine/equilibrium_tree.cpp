@@ -63,6 +63,7 @@ double size_of(const Eigen::VectorXd& v) {
 
 TEST_CASE("a step by elimination along the tree solves the dense equations") {
   int symmetric = 0, unsymmetric = 0, with_drag = 0;
+  TreeElimination used; // for one system after the other
   for (std::uint32_t seed = 1; seed <= 800; ++seed) {
     ref::RandomOptions options = open_trees();
     options.conservative = seed % 2 == 0;
@@ -72,7 +73,7 @@ TEST_CASE("a step by elimination along the tree solves the dense equations") {
     CAPTURE(seed, x.system.nv);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> any(-0.3, 0.3);
-    Eigen::VectorXd step(x.system.nv), rhs(x.system.nv), solved;
+    Eigen::VectorXd step(x.system.nv), rhs(x.system.nv), solved, by_used;
     for (int i = 0; i < x.system.nv; ++i) {
       step[i] = any(random) * x.scaling.column[i];
       rhs[i] = any(random);
@@ -84,6 +85,10 @@ TEST_CASE("a step by elimination along the tree solves the dense equations") {
     const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(k).singularValues();
     if (values.minCoeff() < 1e-9 * values.maxCoeff() || !x.tree.tree.flat().empty()) continue;
     x.tree.tree.solve(rhs, solved);
+    used.linearize(x.problem(false), x.z, x.tree.kinematics, x.tree.residual, x.tree.magnitudes);
+    used.factor();
+    used.solve(rhs, by_used);
+    CHECK(by_used == solved);
     // Within the rounding of an elimination without row exchanges.
     CHECK(size_of(k * solved - rhs) <= 1e-9 * (values.maxCoeff() * size_of(solved) + size_of(rhs)));
     CHECK(size_of(solved - k.partialPivLu().solve(rhs)) <=
