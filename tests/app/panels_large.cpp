@@ -23,7 +23,7 @@ namespace {
 thread_local bool counting = false;
 thread_local std::size_t allocations = 0, bytes = 0;
 
-void count(std::size_t size) {
+[[maybe_unused]] void count(std::size_t size) {
   allocations += counting;
   bytes += counting ? size : 0;
 }
