@@ -72,7 +72,7 @@ struct SparseFactorization::State {
     for (int i : {1, 2, 3})
       setting(i) = -1; // no output
     setting(4) = 0;    // nor messages
-    setting(7) = 6;    // ordering: approximate minimum degree; PORD ends the program on some small graphs
+    setting(7) = 2;    // ordering: approximate minimum fill; PORD ends the program on some small graphs
     setting(12) = 2;   // on the graph of two by two pivots: multipliers have zeros on the diagonal
     setting(8) = 0;    // the matrix comes equilibrated
     setting(13) = 1;   // the root is factored like the rest, for its zero pivots to be found
