@@ -76,7 +76,7 @@ class Compiler {
     for (int j = 0; j < joint_count(); ++j) {
       if (joint(j).type == JointType::gear) continue;
       const std::string path = joint_path(j);
-      for (std::size_t end : {0, 1})
+      for (std::size_t end = 0; end < 2; ++end)
         ends_[static_cast<std::size_t>(j)][end] = body_of(joint(j).bodies[end], path);
     }
   }
