@@ -156,7 +156,7 @@ void BodyEquations::add_pairs(const Problem& problem, const Unknowns& z, const K
 void BodyEquations::sum_up_loads(const Residual<double>& residual) {
   for (int i = nodes_.size(); i-- > 0;) {
     BodyNode& x = nodes_[i];
-    if (x.parent >= 0) add_wrench(x.load, x.arm, nodes_[x.parent].load);
+    if (x.parent >= 0) nodes_[x.parent].load += about(x.load, x.arm);
     x.load.head<3>() += residual.moment[static_cast<std::size_t>(x.link)];
     x.load.tail<3>() += residual.force[static_cast<std::size_t>(x.link)];
   }

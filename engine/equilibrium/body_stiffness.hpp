@@ -48,10 +48,11 @@ inline Vec6 carried(const Vec6& motion, const Vec3& r) {
   return x;
 }
 
-// Adds a wrench given `r` from where `out` is.
-inline void add_wrench(const Vec6& wrench, const Vec3& r, Vec6& out) {
-  out.head<3>() += wrench.head<3>() + r.cross(wrench.tail<3>());
-  out.tail<3>() += wrench.tail<3>();
+// A wrench about a point as one about another, from which the first is `r` away.
+inline Vec6 about(const Vec6& wrench, const Vec3& r) {
+  Vec6 x = wrench;
+  x.head<3>() += r.cross(wrench.tail<3>());
+  return x;
 }
 
 } // namespace flyball

@@ -17,7 +17,7 @@ void shift_origin(const Vec3& r, bool symmetric, Mat6& h) {
 }
 
 void shift_origin(const Vec3& r, bool, Vec6& wrench) {
-  wrench.head<3>() += r.cross(wrench.tail<3>());
+  wrench = about(wrench, r);
 }
 
 void shift_origin(const Vec3& arm, bool, SubtreeSizes& s) {

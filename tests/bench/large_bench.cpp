@@ -103,8 +103,9 @@ int main(int argc, char** argv) {
   const int largest = argc > 1 ? std::atoi(argv[1]) : 10000;
   std::printf(
       "Milliseconds, the least of up to nine runs. `accepted` is the solve until its answer stands, `solve` "
-      "with all that is told of it; "
-      "`power` of the\nbodies by which compiling and solving grow, and the memory held after it (MB).\n\n"
+      "with all that is\ntold of it; `power` of the bodies by which compiling and solving grow, and the "
+      "memory "
+      "held after it (MB).\n\n"
       "| scene | bodies | read | check | compile | accepted | solve | power | MB | power | iterations | "
       "stability | residual |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const double speed : {2., 5., 10., 15.})
