@@ -1,0 +1,86 @@
+// Documents and files as a person meets them, for the tests of what happens to both.
+#pragma once
+
+#include "robot.hpp"
+#include "temporary_folder.hpp"
+
+#include "app/panels/file_commands.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/file.hpp"
+#include "engine/mechanism/scene.hpp"
+
+namespace flyball::test {
+
+namespace fs = std::filesystem;
+
+inline constexpr const char* speed = "joints.spin.drive.speed";
+inline constexpr int key_down = 264, key_right = 262;
+
+// A program that ended without saying goodbye: its name is no running process.
+inline constexpr const char* crashed = "another machine:1:1";
+
+// The program with a state folder, and time that passes when it is told to.
+class FileRobot : public Robot {
+ public:
+  explicit FileRobot(const TemporaryFolder& folder, const char* owner = nullptr) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.KeyMap[ImGuiKey_DownArrow] = key_down;
+    io.KeyMap[ImGuiKey_RightArrow] = key_right;
+    app.options.state = folder / "state";
+    if (owner) app.files.owner = owner;
+    begin_files(app);
+    frames(3);
+  }
+  void pass(double seconds) {
+    for (double t = 0; t < seconds; t += 0.25) {
+      update_files(app, 0.25);
+      app.files.autosave.wait();
+    }
+    frames(3);
+  }
+  void set_speed(double value) {
+    ++app.gesture;
+    change_parameter(app, speed, value);
+    frames(1);
+  }
+  double speed_now() const { return get_parameter(app.mechanism(), speed); }
+  bool shows(const std::string& widget) const { return app.widgets.contains(widget); }
+  void open(const fs::path& file) {
+    open_file(app, file);
+    frames(3);
+  }
+};
+
+inline fs::path governor_in(const TemporaryFolder& folder, const char* name = "governor.json") {
+  fs::copy_file(FLYBALL_ASSETS "/scenes/governor.json", folder / name);
+  return folder / name;
+}
+
+inline Body a_body(const char* name) {
+  Body body;
+  body.name = name;
+  body.mass = 1;
+  return body;
+}
+
+inline double speed_in(const fs::path& file) {
+  return get_parameter(parse_scene(read_bytes(file)), speed);
+}
+
+inline void set_speed_in(const fs::path& file, double value) {
+  Mechanism mechanism = parse_scene(read_bytes(file));
+  set_parameter(mechanism, speed, value);
+  save_scene(mechanism, file);
+}
+
+// Of hidden files in the folder, those that end so.
+inline std::size_t hidden(const TemporaryFolder& folder, const std::string& end) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(folder.path())) {
+    const std::string name = entry.path().filename().string();
+    count += name.starts_with('.') && name.ends_with(end) ? 1 : 0;
+  }
+  return count;
+}
+
+} // namespace flyball::test

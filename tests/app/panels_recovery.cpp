@@ -1,0 +1,206 @@
+// Unsaved work while it lasts, and after a crash.
+#include "file_robot.hpp"
+
+#include "app/document/autosave.hpp"
+#include "tests/catch.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+TEST_CASE("unsaved work is kept beside the file while it lasts") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  FileRobot robot(folder);
+  App& app = robot.app;
+  robot.open(file);
+  robot.pass(3);
+  CHECK(hidden(folder, "-autosave") == 0);
+  robot.set_speed(5);
+  robot.pass(2);
+  REQUIRE(hidden(folder, "-autosave") == 1);
+  CHECK(get_parameter(parse_scene(parse_autosave(read_bytes(app.files.autosave.path())).scene), speed) == 5);
+  SECTION("until it is saved") {
+    robot.key('S', true);
+  }
+  SECTION("until it is undone") {
+    robot.key('Z', true);
+    robot.pass(1);
+  }
+  SECTION("until it is given up") {
+    robot.key('Q', true);
+    robot.click("unsaved/discard");
+    CHECK(app.quit);
+  }
+  SECTION("until another document takes its place") {
+    robot.key('N', true);
+    robot.click("unsaved/discard");
+    CHECK(app.document.file().empty());
+  }
+  CHECK(hidden(folder, "-autosave") == 0);
+}
+
+TEST_CASE("an opening that fails keeps the work and its autosave") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  FileRobot robot(folder);
+  robot.open(file);
+  robot.set_speed(5);
+  robot.pass(2);
+  write_bytes(folder / "broken.json", "no scene");
+  robot.open(folder / "broken.json");
+  robot.click("unsaved/discard");
+  robot.frames(2);
+  CHECK_THAT(robot.app.problem, ContainsSubstring("broken.json"));
+  CHECK(robot.app.document.file() == file);
+  CHECK(robot.speed_now() == 5);
+  CHECK(hidden(folder, "-autosave") == 1);
+  CHECK(recent_files(robot.app).front() == file);
+}
+
+TEST_CASE("work that a crash has left is offered when its file is opened") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  {
+    FileRobot robot(folder, crashed);
+    robot.open(file);
+    robot.set_speed(5);
+    robot.pass(2);
+  }
+  REQUIRE(hidden(folder, "-autosave") == 1);
+  // Also when the program starts, because the file was used lately.
+  FileRobot robot(folder);
+  App& app = robot.app;
+  REQUIRE(robot.shows("recover/recover"));
+  robot.click("recover/later");
+  CHECK_FALSE(app.dialog.showing);
+  robot.open(file);
+  REQUIRE(robot.shows("recover/recover"));
+  CHECK(robot.speed_now() == 11.0174);
+
+  SECTION("recovered, as a step that can be undone") {
+    robot.click("recover/recover");
+    CHECK_FALSE(app.dialog.showing);
+    CHECK(robot.speed_now() == 5);
+    CHECK(app.document.file() == file);
+    CHECK(app.document.unsaved());
+    CHECK(speed_in(file) == 11.0174);
+    CHECK(app.answer.solution.status == Status::converged);
+    CHECK(hidden(folder, "-autosave") == 1); // safe from the next crash at once
+    robot.pass(2);
+    CHECK(find_leftovers(file, app.options.state).empty()); // it is this program's now
+    robot.key('Z', true);
+    CHECK(robot.speed_now() == 11.0174);
+    robot.key('Z', true);
+    robot.set_speed(6);
+    robot.key('S', true);
+    CHECK(hidden(folder, "-autosave") == 0);
+  }
+  SECTION("discarded, and brought back") {
+    robot.click("recover/discard");
+    CHECK_FALSE(app.dialog.showing);
+    CHECK(hidden(folder, "-autosave") == 0);
+    CHECK(hidden(folder, "-discarded") == 1);
+    robot.frames(4);
+    robot.click("banner/bring_back");
+    robot.frames(2);
+    REQUIRE(robot.shows("recover/recover"));
+    robot.key(key_enter);
+    CHECK(robot.speed_now() == 5);
+  }
+  SECTION("discarded for good by the next save") {
+    robot.click("recover/discard");
+    robot.set_speed(6);
+    robot.key('S', true);
+    CHECK(hidden(folder, "-discarded") == 0);
+    CHECK_FALSE(robot.shows("banner/bring_back"));
+  }
+  SECTION("put off") {
+    robot.key(key_escape);
+    robot.frames(2);
+    CHECK_FALSE(app.dialog.showing);
+    CHECK(hidden(folder, "-autosave") == 1);
+  }
+  SECTION("recovered in two windows: the second is told") {
+    const Leftover leftover = app.files.leftovers.at(0);
+    fs::remove(leftover.path);
+    robot.click("recover/recover");
+    CHECK(robot.speed_now() == 11.0174);
+    CHECK_THAT(app.notice, ContainsSubstring("no longer there"));
+  }
+}
+
+TEST_CASE("recovering over a file that has changed since, or is gone") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  {
+    FileRobot robot(folder, crashed);
+    robot.open(file);
+    robot.set_speed(5);
+    robot.pass(2);
+  }
+  const bool gone = GENERATE(false, true);
+  if (gone)
+    fs::remove(file);
+  else
+    set_speed_in(file, 8);
+  FileRobot robot(folder);
+  App& app = robot.app;
+  // A file that is gone is no recent one: whoever asks for it by name is offered what is left.
+  app.files.leftovers = find_leftovers(file, app.options.state);
+  REQUIRE(app.files.leftovers.size() == 1);
+  CHECK(app.files.leftovers[0].outdated);
+  recover(app, Leftover(app.files.leftovers[0]));
+  CHECK(robot.speed_now() == 5);
+  CHECK(app.document.file() == file);
+  CHECK(app.document.unsaved());
+  undo(app);
+  if (gone)
+    CHECK(app.mechanism().bodies.empty());
+  else
+    CHECK(robot.speed_now() == 8);
+}
+
+TEST_CASE("untitled work that a crash has left is offered at the next start") {
+  const TemporaryFolder folder;
+  for (const char* name : {"ball", "block"}) {
+    FileRobot robot(folder, crashed);
+    robot.app.files.leftovers.clear();
+    robot.key(key_escape);
+    robot.key('N', true);
+    edit(robot.app, "Add", [&](Mechanism& m, Selection&) {
+      m.name = name;
+      m.bodies.push_back(a_body(name));
+    });
+    robot.pass(2);
+  }
+  FileRobot robot(folder);
+  App& app = robot.app;
+  REQUIRE(app.files.leftovers.size() == 2);
+  robot.click("recover/1");
+  const std::string wanted = app.files.leftovers[1].autosave.name;
+  robot.click("recover/recover");
+  CHECK(app.mechanism().bodies.at(0).name == wanted);
+  CHECK(app.document.file().empty());
+  CHECK(app.document.unsaved());
+  robot.pass(2);
+  CHECK(find_leftovers({}, app.options.state).size() == 1); // the other one, for later
+}
+
+TEST_CASE("another program's running work is not offered") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  {
+    FileRobot robot(folder); // of this process, which runs
+    robot.open(file);
+    robot.set_speed(5);
+    robot.pass(2);
+  }
+  FileRobot robot(folder);
+  robot.open(file);
+  CHECK_FALSE(robot.app.dialog.showing);
+  robot.set_speed(6);
+  robot.pass(2);
+  CHECK(hidden(folder, "-autosave") == 2);
+  robot.key('S', true);
+  CHECK(hidden(folder, "-autosave") == 1);
+}

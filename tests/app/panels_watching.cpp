@@ -1,0 +1,131 @@
+// What others do to a file that is open.
+#include "file_robot.hpp"
+#include "tests/catch.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+TEST_CASE("a file that changes on disk is read again where nothing is unsaved") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  FileRobot robot(folder);
+  App& app = robot.app;
+  robot.open(file);
+  robot.pass(3);
+  select(app, {{{PartKind::body, "ball1"}}});
+  const ViewCamera camera = app.view.camera;
+  SECTION("a scene") {
+    set_speed_in(file, 8);
+    robot.pass(3);
+    CHECK(robot.speed_now() == 8);
+    CHECK_THAT(app.notice, ContainsSubstring("Reloaded governor.json"));
+    CHECK_FALSE(app.document.unsaved());
+    CHECK(app.selection().has(Part{PartKind::body, "ball1"}));
+    CHECK(app.view.camera.eye() == camera.eye());
+    CHECK(app.answer.solution.status == Status::converged);
+    robot.key('Z', true);
+    CHECK(robot.speed_now() == 11.0174);
+    CHECK(app.document.unsaved());
+  }
+  SECTION("no scene: the open one stays") {
+    write_bytes(file, "{\"flyball\": 1");
+    robot.pass(3);
+    CHECK(robot.speed_now() == 11.0174);
+    CHECK_THAT(app.notice, ContainsSubstring("cannot be read"));
+  }
+  SECTION("the same again: nothing happens") {
+    app.notice.clear();
+    write_bytes(file, read_bytes(file));
+    robot.pass(3);
+    CHECK(app.notice.empty());
+    CHECK(app.document.steps().size() == 1);
+  }
+  SECTION("its own saving is no change") {
+    robot.set_speed(9);
+    robot.key('S', true);
+    robot.pass(3);
+    CHECK(app.notice == "Saved governor.json");
+  }
+}
+
+TEST_CASE("a file that changes on disk while there are unsaved edits is asked about") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  FileRobot robot(folder);
+  App& app = robot.app;
+  robot.open(file);
+  robot.set_speed(5);
+  set_speed_in(file, 8);
+
+  SECTION("noticed by looking") {
+    robot.pass(3);
+    REQUIRE(robot.shows("banner/keep"));
+    CHECK(robot.speed_now() == 5);
+    SECTION("keep mine") {
+      robot.click("banner/keep");
+      robot.pass(3);
+      CHECK_FALSE(robot.shows("banner/keep"));
+      CHECK(robot.speed_now() == 5);
+      CHECK(speed_in(file) == 8);
+      robot.key('S', true);
+      CHECK(speed_in(file) == 5);
+    }
+    SECTION("take the file's") {
+      robot.click("banner/reload");
+      CHECK_FALSE(robot.shows("banner/keep"));
+      CHECK(robot.speed_now() == 8);
+      CHECK_FALSE(app.document.unsaved());
+      robot.key('Z', true);
+      CHECK(robot.speed_now() == 5); // nothing is lost
+    }
+    SECTION("changed once more") {
+      robot.click("banner/keep");
+      set_speed_in(file, 7);
+      robot.pass(3);
+      CHECK(robot.shows("banner/keep"));
+    }
+  }
+  SECTION("noticed by saving") {
+    robot.key('S', true);
+    CHECK(speed_in(file) == 8);
+    REQUIRE(robot.shows("banner/keep"));
+    robot.click("banner/keep"); // overwrite
+    CHECK(speed_in(file) == 5);
+    CHECK_FALSE(robot.shows("banner/keep"));
+    CHECK_FALSE(app.document.unsaved());
+  }
+}
+
+TEST_CASE("a file that vanishes is told once, and its document is not lost") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  FileRobot robot(folder);
+  App& app = robot.app;
+  robot.open(file);
+  robot.pass(3);
+  fs::remove(file);
+  robot.pass(3);
+  CHECK_THAT(app.notice, ContainsSubstring("no longer on disk"));
+  app.notice.clear();
+  robot.pass(5);
+  CHECK(app.notice.empty());
+  CHECK(has_unsaved_work(app));
+  robot.key('Q', true);
+  CHECK_FALSE(app.quit);
+  robot.click("unsaved/save");
+  CHECK(app.quit);
+  CHECK(speed_in(file) == 11.0174);
+}
+
+TEST_CASE("reloading by hand can be undone") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  FileRobot robot(folder);
+  robot.open(file);
+  robot.set_speed(5);
+  robot.key('R', true);
+  CHECK(robot.speed_now() == 11.0174);
+  CHECK_FALSE(robot.app.document.unsaved());
+  robot.key('Z', true);
+  CHECK(robot.speed_now() == 5);
+}
