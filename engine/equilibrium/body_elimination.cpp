@@ -38,11 +38,12 @@ void BodyElimination::start(double tolerance, bool metric_alone) {
   metric_alone_ = metric_alone;
   rows_ = equations_.rows();
   mass_ = equations_.mass();
+  set_loose_directions();
 }
 
 void BodyElimination::factor(double shift) {
   shift_ = shift;
-  flat_.clear();
+  flat_.resize(loose_);
   const SparsePattern& pattern = equations_.pattern();
   const std::vector<double>& values = equations_.sum(1, shift);
   negative_ = 1;
@@ -50,7 +51,7 @@ void BodyElimination::factor(double shift) {
   if (!solved_) return;
   if (pattern.size == 0) {
     negative_ = redundant_ = 0;
-    return add_loose_directions();
+    return;
   }
   // What the metric, which is positive definite, leaves singular are the constraints.
   if (factors_.nullity() == 0 || metric_alone_) {
@@ -62,22 +63,25 @@ void BodyElimination::factor(double shift) {
   }
   const int of_constraints = equations_.multipliers() - redundant_;
   negative_ = equations_.symmetric() ? std::max(0, factors_.negative() - of_constraints) : 0;
-  add_loose_directions();
   add_flat_directions();
 }
 
-// What nothing holds, in coordinates.
-void BodyElimination::add_loose_directions() {
+// What nothing holds, in coordinates: the first of the flat directions, whatever the shift.
+void BodyElimination::set_loose_directions() {
   const std::vector<bool>& loose = equations_.loose();
+  loose_ = 0;
   for (std::size_t u = 0; u < loose.size(); ++u) {
     if (!loose[u]) continue;
     const BodyNode& x = equations_.nodes()[static_cast<int>(u / 6)];
-    Flat flat;
+    if (flat_.size() == loose_) flat_.emplace_back();
+    Flat& flat = flat_[loose_];
+    flat.clear();
     for (int c = 0; c < x.columns; ++c)
       if (const double share = x.d(static_cast<Eigen::Index>(u % 6), c); share != 0)
         flat.emplace_back(x.v[static_cast<std::size_t>(c)], share);
-    if (!flat.empty()) flat_.push_back(std::move(flat));
+    if (!flat.empty()) ++loose_;
   }
+  flat_.resize(loose_);
 }
 
 // What the factors leave singular beside the redundant rows.

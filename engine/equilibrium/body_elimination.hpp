@@ -38,13 +38,14 @@ class BodyElimination final : public Eliminator {
   void take_in(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines);
   void start(double tolerance, bool metric_alone);
-  void add_loose_directions();
+  void set_loose_directions();
   void add_flat_directions();
 
   BodyEquations equations_;
   SparseFactorization factors_, constraints_;
   bool solved_ = false, metric_alone_ = false;
   int redundant_ = 0;
+  std::size_t loose_ = 0; // of flat_, those that nothing holds
   double tolerance_ = zero;
   Eigen::VectorXd held_;
   std::vector<Vec6> motion_, wrench_; // by node

@@ -1,5 +1,7 @@
 #include "engine/equilibrium/body_entries.hpp"
 
+#include <Eigen/LU>
+
 #include <cmath>
 #include <limits>
 
@@ -8,7 +10,9 @@ namespace flyball {
 void BodyEntries::clear(int unknowns, bool symmetric) {
   pattern_.clear(unknowns, symmetric);
   values_.clear();
+  bodies_ = 0;
   loose_.assign(static_cast<std::size_t>(unknowns), false);
+  turns_apart_.clear();
 }
 
 void BodyEntries::add(int row, int column, const Value& value) {
@@ -20,6 +24,7 @@ void BodyEntries::add(int row, int column, const Value& value) {
 void BodyEntries::add_body(int node, const Mat6& stiffness, const Mat6& metric) {
   const bool symmetric = pattern_.symmetric;
   const int at = 6 * node;
+  bodies_ = std::max(bodies_, node + 1);
   for (int j = 0; j < 6; ++j)
     for (int i = symmetric ? j : 0; i < 6; ++i)
       add(at + i, at + j,
@@ -52,7 +57,7 @@ void BodyEntries::add_block(int a, int first_i, int b, int first_j, const Mat6& 
 
 void BodyEntries::add_row(int row, int node, const Vec6& gradient) {
   if (node < 0) return;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = gradient.head<3>().isZero(0) ? 3 : 0; i < 6; ++i) {
     add(row, 6 * node + i, {0, 0, gradient[i]});
     if (!pattern_.symmetric) add(6 * node + i, row, {0, 0, gradient[i]});
   }
@@ -61,7 +66,40 @@ void BodyEntries::add_row(int row, int node, const Vec6& gradient) {
 void BodyEntries::hold_all_by_metric() {
   for (Value& value : values_)
     std::swap(value.stiffness, value.metric);
+  take_turns_apart();
   number();
+}
+
+// Of bodies that loops hold at their mass centres.
+void BodyEntries::take_turns_apart() {
+  apart_.assign(static_cast<std::size_t>(bodies_), true);
+  const auto turning = [&](int place) { // the body, if it is a turn
+    const int u = place - 1;
+    return u < 6 * bodies_ && u % 6 < 3 ? u / 6 : -1;
+  };
+  for (std::size_t e = 0; e < values_.size(); ++e) {
+    const int a = turning(pattern_.rows[e]), b = turning(pattern_.columns[e]);
+    if (a == b) continue;
+    if (a >= 0) apart_[static_cast<std::size_t>(a)] = false;
+    if (b >= 0) apart_[static_cast<std::size_t>(b)] = false;
+  }
+  place_.assign(static_cast<std::size_t>(bodies_), -1);
+  for (int n = 0; n < bodies_; ++n)
+    if (apart_[static_cast<std::size_t>(n)]) {
+      place_[static_cast<std::size_t>(n)] = static_cast<int>(turns_apart_.size());
+      turns_apart_.emplace_back(6 * n, Mat3::Zero());
+    }
+  if (turns_apart_.empty()) return;
+  drop([&](std::size_t e) {
+    const int n = turning(pattern_.rows[e]);
+    if (n < 0 || !apart_[static_cast<std::size_t>(n)]) return false;
+    const int i = pattern_.rows[e] - 1 - 6 * n, j = pattern_.columns[e] - 1 - 6 * n;
+    Mat3& block = turns_apart_[static_cast<std::size_t>(place_[static_cast<std::size_t>(n)])].second;
+    block(i, j) = block(j, i) = values_[e].stiffness;
+    return true;
+  });
+  for (auto& [u, block] : turns_apart_)
+    block = block.inverse().eval();
 }
 
 void BodyEntries::hold_above(const std::vector<double>& noise) {
@@ -76,16 +114,19 @@ void BodyEntries::hold_above(const std::vector<double>& noise) {
   for (std::size_t n = 0; n < noise.size(); ++n)
     for (std::size_t u = 6 * n; u < 6 * n + 6; ++u)
       if (largest_[u] <= noise[n]) loose_[u] = any = true;
-  if (any) drop_loose();
+  if (any)
+    drop([&](std::size_t e) {
+      return loose_[static_cast<std::size_t>(pattern_.rows[e] - 1)] ||
+             loose_[static_cast<std::size_t>(pattern_.columns[e] - 1)];
+    });
   number();
 }
 
-void BodyEntries::drop_loose() {
+template <class Drops>
+void BodyEntries::drop(Drops drops) {
   std::size_t kept = 0;
   for (std::size_t e = 0; e < values_.size(); ++e) {
-    const auto row = static_cast<std::size_t>(pattern_.rows[e] - 1);
-    const auto column = static_cast<std::size_t>(pattern_.columns[e] - 1);
-    if (loose_[row] || loose_[column]) continue;
+    if (drops(e)) continue;
     pattern_.rows[kept] = pattern_.rows[e];
     pattern_.columns[kept] = pattern_.columns[e];
     values_[kept++] = values_[e];
@@ -97,10 +138,12 @@ void BodyEntries::drop_loose() {
 
 // Numbers what is solved for.
 void BodyEntries::number() {
-  place_.resize(loose_.size());
+  place_.assign(loose_.size(), 0);
+  for (const auto& [u, block] : turns_apart_)
+    std::fill_n(place_.begin() + u, 3, -1);
   int next = 0;
   for (std::size_t u = 0; u < loose_.size(); ++u)
-    place_[u] = loose_[u] ? -1 : next++;
+    place_[u] = loose_[u] || place_[u] < 0 ? -1 : next++;
   pattern_.size = next;
   for (std::vector<int>* list : {&pattern_.rows, &pattern_.columns})
     for (int& i : *list)
@@ -114,17 +157,22 @@ const std::vector<double>& BodyEntries::sum(double stiffness, double metric) {
   return sum_;
 }
 
-void BodyEntries::gather(const Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const {
+void BodyEntries::gather(Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const {
   held.resize(pattern_.size);
   for (std::size_t u = 0; u < place_.size(); ++u)
     if (const int at = place_[u]; at >= 0) held[at] = unknowns[static_cast<Eigen::Index>(u)];
+  for (const auto& [u, inverse] : turns_apart_)
+    unknowns.segment<3>(u) = inverse * unknowns.segment<3>(u).eval();
 }
 
 void BodyEntries::spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::VectorXd& unknowns) const {
   unknowns.resize(static_cast<Eigen::Index>(place_.size()));
   for (std::size_t u = 0; u < place_.size(); ++u) {
-    const int at = place_[u];
-    unknowns[static_cast<Eigen::Index>(u)] = at >= 0 ? held[at] : 0;
+    const auto at = static_cast<Eigen::Index>(u);
+    if (place_[u] >= 0)
+      unknowns[at] = held[place_[u]];
+    else if (loose_[u])
+      unknowns[at] = 0;
   }
 }
 

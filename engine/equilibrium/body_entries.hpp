@@ -2,7 +2,8 @@
 // (the constraints), so that a multiple of the metric can be added without assembling anything again.
 //
 // Of the unknowns the first are six for each body. Those that nothing holds, the loose ones, are left out,
-// and the others numbered anew: they are the ones held.
+// and turns that meet nothing but themselves are solved for apart; the others are numbered anew: they are the
+// ones held.
 #pragma once
 
 #include "engine/equilibrium/body_stiffness.hpp"
@@ -41,8 +42,9 @@ class BodyEntries {
   // The pattern's values: multiples of stiffness and metric, and what is fixed. Valid until the next call.
   const std::vector<double>& sum(double stiffness, double metric);
 
-  // From all unknowns to those held, and back, where what is loose gets nothing.
-  void gather(const Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const;
+  // From all unknowns to those held, where turns apart become their solution; and back from what is held,
+  // where what is loose gets nothing.
+  void gather(Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const;
   void spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::VectorXd& unknowns) const;
 
  private:
@@ -54,14 +56,19 @@ class BodyEntries {
   void add(int row, int column, const Value& value);
   void add_block(int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
                  const Mat6& metric_ab);
-  void drop_loose();
+  void take_turns_apart();
+  template <class Drops>
+  void drop(Drops drops); // the entries of which drops(e) is true
   void number();
 
   SparsePattern pattern_;
   std::vector<Value> values_;
   std::vector<double> sum_, largest_;
   std::vector<bool> loose_;
-  std::vector<int> place_; // by unknown: among those held; -1: loose
+  int bodies_ = 0;
+  std::vector<bool> apart_;                       // by body, whether its turns meet nothing else
+  std::vector<std::pair<int, Mat3>> turns_apart_; // the first of them, and the inverse of their block
+  std::vector<int> place_;                        // by unknown: among those held; -1: loose, or apart
 };
 
 } // namespace flyball

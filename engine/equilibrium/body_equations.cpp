@@ -8,14 +8,13 @@ namespace {
 // What a joint with an elastic element, and the load beyond it, ask for by a unit of its coordinates; and how
 // the load turns with each of them.
 struct JointTerms {
-  BodySquare stiffness;
-  BodyColumns turns;
+  Mat6 stiffness = Mat6::Zero(), turns = Mat6::Zero();
 };
 
 JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Eigen::VectorXd& q) {
   const int k = x.columns;
   const double length = problem.parameters.length;
-  JointTerms terms{BodySquare::Zero(k, k), BodyColumns(6, k)};
+  JointTerms terms;
   auto& [g, turns] = terms;
   for (int c = 0; c < k; ++c) {
     Vec6 s = x.s.col(c);
@@ -47,63 +46,73 @@ JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Eigen::V
 
 void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                              const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines) {
-  lay_out(problem, k, problem.symmetric());
+  lay_out(problem, problem.symmetric());
   compressed_ = false;
-  add_bodies(problem, k);
-  for (BodyNode& x : nodes_)
-    x.load.setZero();
+  add_bodies(problem, k, true);
   add_pairs(problem, z, k, lines);
-  sum_up_loads(residual);
-  add_joints(problem, &z.q);
+  noise_.resize(static_cast<std::size_t>(nodes_.size()));
+  for (int i = nodes_.size(); i-- > 0;) {
+    sum_up_load(nodes_[i], residual);
+    add_joint(problem, i, &z.q);
+    noise_[static_cast<std::size_t>(i)] = noise_of(problem, nodes_[i], magnitudes);
+  }
   add_rows(problem, k);
-  finish_bodies();
-  set_noise(problem, magnitudes);
   entries_.hold_above(noise_);
 }
 
 void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<double>& k) {
-  lay_out(problem, k, true);
-  add_bodies(problem, k);
-  for (BodyNode& x : nodes_)
-    x.stiffness.setZero();
-  add_joints(problem, nullptr);
+  lay_out(problem, true);
+  add_bodies(problem, k, false);
+  for (int i = nodes_.size(); i-- > 0;)
+    add_joint(problem, i, nullptr);
   add_rows(problem, k);
-  finish_bodies();
   entries_.hold_all_by_metric();
 }
 
 // Numbers the unknowns: motions, multipliers of tree joints, those of cut joints.
-void BodyEquations::lay_out(const Problem& problem, const Kinematics<double>& k, bool symmetric) {
+void BodyEquations::lay_out(const Problem& problem, bool symmetric) {
   coordinates_ = problem.system.nv;
   rows_ = problem.system.rows;
-  nodes_.lay_out(problem, k);
+  nodes_.lay_out(problem);
   first_row_ = 6 * nodes_.size();
+  mass_ = 0;
   for (BodyNode& x : nodes_) {
     x.multipliers = first_row_;
     first_row_ += 6 - x.columns;
+    mass_ += problem.parameters.links[static_cast<std::size_t>(x.link)].mass;
   }
   unknowns_ = first_row_ + rows_;
   entries_.clear(unknowns_, symmetric);
 }
 
-void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>& k) {
-  mass_ = 0;
-  for (BodyNode& x : nodes_) {
-    set_body_stiffness(problem.parameters, static_cast<std::size_t>(x.link), k, x);
-    mass_ += x.mass;
-  }
-  for (std::size_t i = 0; i < problem.system.body_forces.size(); ++i) {
-    const BodyForceElement& e = problem.system.body_forces[i];
-    if (const int n = nodes_.at(e.link); n >= 0)
-      add_body_force(e, problem.parameters.body_forces[i], k, nodes_[n].own);
-  }
+// What each body does by itself. Bodies go through the cache one after the other, few times.
+void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>& k, bool stiff) {
   const double reach = nodes_.length() * nodes_.length();
   const double least = Eliminator::own_share * Eliminator::own_share * std::max(mass_, 1e-300) * reach;
-  for (BodyNode& x : nodes_) {
-    x.stiffness = nodes_.scaled(x.own);
+  for (int i = 0; i < nodes_.size(); ++i) {
+    BodyNode& x = nodes_[i];
+    nodes_.place_node(i, problem, k);
+    x.load.setZero();
+    if (stiff) {
+      set_body_stiffness(problem.parameters, static_cast<std::size_t>(x.link), k, x);
+      x.stiffness = nodes_.scaled(x.own);
+    } else {
+      set_body_inertia(problem.parameters, static_cast<std::size_t>(x.link), k, x);
+      x.stiffness.setZero();
+    }
     x.inertial = nodes_.scaled(inertia_matrix(x));
+    x.weight.setZero();
     for (int c = 0; c < x.columns; ++c)
       x.weight[c] = std::max(Eliminator::own_share * x.s.col(c).dot(x.inertial * x.s.col(c)), least);
+  }
+  if (!stiff) return;
+  for (std::size_t i = 0; i < problem.system.body_forces.size(); ++i) {
+    const BodyForceElement& e = problem.system.body_forces[i];
+    const int n = nodes_.at(e.link);
+    if (n < 0) continue;
+    Mat6 own = Mat6::Zero();
+    add_body_force(e, problem.parameters.body_forces[i], k, own);
+    nodes_[n].stiffness += nodes_.scaled(own);
   }
 }
 
@@ -142,51 +151,52 @@ void BodyEquations::add_pairs(const Problem& problem, const Unknowns& z, const K
   for (std::size_t c = 0; c < system.cuts.size(); ++c) {
     const CutJoint& cut = system.cuts[c];
     if (cut.type == JointType::gear) continue;
-    sum.set_zero();
-    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
-      const double multiplier = z.lambda.size() > 0 ? z.lambda[cut.first_row + static_cast<int>(r)] : 0;
-      if (multiplier == 0) continue;
-      sum += row_blocks(cut, p.cuts[c], cut.rows[r], multiplier, k, lines);
+    const auto multiplier = [&](std::size_t r) {
+      return z.lambda.size() > 0 ? z.lambda[cut.first_row + static_cast<int>(r)] : 0;
+    };
+    if (cut.rows.size() == 1 && multiplier(0) != 0) {
+      add_pair(cut.ends.a, cut.ends.b, row_blocks(cut, p.cuts[c], cut.rows[0], multiplier(0), k, lines));
+      continue;
     }
+    sum.set_zero();
+    for (std::size_t r = 0; r < cut.rows.size(); ++r)
+      if (const double m = multiplier(r); m != 0) sum += row_blocks(cut, p.cuts[c], cut.rows[r], m, k, lines);
     add_pair(cut.ends.a, cut.ends.b, sum);
   }
 }
 
-// Of each body with all beyond it, from the tips to the root.
-void BodyEquations::sum_up_loads(const Residual<double>& residual) {
-  for (int i = nodes_.size(); i-- > 0;) {
-    BodyNode& x = nodes_[i];
-    if (x.parent >= 0) nodes_[x.parent].load += about(x.load, x.arm);
-    x.load.head<3>() += residual.moment[static_cast<std::size_t>(x.link)];
-    x.load.tail<3>() += residual.force[static_cast<std::size_t>(x.link)];
-  }
+// Of a body with all beyond it, whose own loads were summed up before.
+void BodyEquations::sum_up_load(BodyNode& x, const Residual<double>& residual) {
+  if (x.parent >= 0) nodes_[x.parent].load += about(x.load, x.arm);
+  x.load.head<3>() += residual.moment[static_cast<std::size_t>(x.link)];
+  x.load.tail<3>() += residual.force[static_cast<std::size_t>(x.link)];
 }
 
-// What tree joints transmit, and what they hold. Without q the metric alone.
-void BodyEquations::add_joints(const Problem& problem, const Eigen::VectorXd* q) {
-  for (int i = 0; i < nodes_.size(); ++i) {
-    BodyNode& x = nodes_[i];
-    const int k = x.columns;
-    Mat6 p = Mat6::Zero(), t = Mat6::Zero();
-    if (q) {
-      const JointTerms terms = joint_terms(problem, x, *q);
-      p = x.d * terms.stiffness * x.d.transpose();
-      t = terms.turns * x.d.transpose();
-    }
-    const Mat6 w = x.d * x.weight.head(k).asDiagonal() * x.d.transpose();
+// What a tree joint transmits, and what it holds; after those beyond it, so that then nothing is missing of
+// its body. Without q the metric alone.
+void BodyEquations::add_joint(const Problem& problem, int i, const Eigen::VectorXd* q) {
+  BodyNode& x = nodes_[i];
+  const Mat6 w = x.d * x.weight.asDiagonal() * x.d.transpose();
+  x.inertial += w;
+  Mat6 p = Mat6::Zero(), t = Mat6::Zero();
+  if (q) {
+    const JointTerms terms = joint_terms(problem, x, *q);
+    p = x.d * terms.stiffness * x.d.transpose();
     x.stiffness += p;
-    x.inertial += w;
-    for (int r = 0; r < 6 - k; ++r)
-      entries_.add_row(x.multipliers + r, i, x.n.col(r));
-    if (x.parent < 0) continue;
-    BodyNode& parent = nodes_[x.parent];
-    const Mat6 by_parent = -p * x.shift, on_parent = x.shift.transpose() * (t - p);
-    parent.stiffness -= on_parent * x.shift;
-    parent.inertial += x.shift.transpose() * w * x.shift;
-    entries_.add_between(i, x.parent, by_parent, on_parent, -w * x.shift);
-    for (int r = 0; r < 6 - k; ++r)
-      entries_.add_row(x.multipliers + r, x.parent, -x.shift.transpose() * x.n.col(r));
+    if (x.parent >= 0) t = terms.turns * x.d.transpose();
   }
+  entries_.add_body(i, x.stiffness, x.inertial);
+  const int held = 6 - x.columns;
+  for (int r = 0; r < held; ++r)
+    entries_.add_row(x.multipliers + r, i, x.n.col(r));
+  if (x.parent < 0) return;
+  BodyNode& parent = nodes_[x.parent];
+  const Mat6 by_parent = -p * x.shift, on_parent = x.shift.transpose() * (t - p);
+  parent.stiffness -= on_parent * x.shift;
+  parent.inertial += x.shift.transpose() * w * x.shift;
+  entries_.add_between(i, x.parent, by_parent, on_parent, -w * x.shift);
+  for (int r = 0; r < held; ++r)
+    entries_.add_row(x.multipliers + r, x.parent, -x.shift.transpose() * x.n.col(r));
 }
 
 void BodyEquations::add_rows(const Problem& problem, const Kinematics<double>& k) {
@@ -219,22 +229,15 @@ void BodyEquations::add_coordinate(int row, int coordinate, double gradient) {
   entries_.add_row(row, x.parent, -x.shift.transpose() * g);
 }
 
-void BodyEquations::finish_bodies() {
-  for (int n = 0; n < nodes_.size(); ++n)
-    entries_.add_body(n, nodes_[n].stiffness, nodes_[n].inertial);
-}
-
 // The turns of a point mass feel nothing, but the terms of their balance cancel with rounding only.
-void BodyEquations::set_noise(const Problem& problem, const Magnitudes& magnitudes) {
-  noise_.clear();
-  for (const BodyNode& x : nodes_) {
-    double force = magnitudes.link_force[static_cast<std::size_t>(x.link)] * problem.parameters.length;
-    for (int c = 0; c < x.columns; ++c) {
-      const int v = x.v[static_cast<std::size_t>(c)];
-      force = std::max(force, magnitudes.force[v] * problem.scaling.column[v]);
-    }
-    noise_.push_back(Eliminator::rounding * force);
+double BodyEquations::noise_of(const Problem& problem, const BodyNode& x,
+                               const Magnitudes& magnitudes) const {
+  double force = magnitudes.link_force[static_cast<std::size_t>(x.link)] * problem.parameters.length;
+  for (int c = 0; c < x.columns; ++c) {
+    const int v = x.v[static_cast<std::size_t>(c)];
+    force = std::max(force, magnitudes.force[v] * problem.scaling.column[v]);
   }
+  return Eliminator::rounding * force;
 }
 
 void BodyEquations::put(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& held) {

@@ -51,17 +51,16 @@ class BodyEquations {
             Eigen::VectorXd& lambda);
 
  private:
-  void lay_out(const Problem& problem, const Kinematics<double>& kinematics, bool symmetric);
-  void add_bodies(const Problem& problem, const Kinematics<double>& kinematics);
+  void lay_out(const Problem& problem, bool symmetric);
+  void add_bodies(const Problem& problem, const Kinematics<double>& kinematics, bool stiff);
   void add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                  Lines lines);
   void add_pair(int a, int b, const PairBlocks& blocks);
-  void sum_up_loads(const Residual<double>& residual);
-  void add_joints(const Problem& problem, const Eigen::VectorXd* q);
+  void sum_up_load(BodyNode& node, const Residual<double>& residual);
+  void add_joint(const Problem& problem, int node, const Eigen::VectorXd* q);
   void add_rows(const Problem& problem, const Kinematics<double>& kinematics);
   void add_coordinate(int row, int coordinate, double gradient);
-  void finish_bodies();
-  void set_noise(const Problem& problem, const Magnitudes& magnitudes);
+  double noise_of(const Problem& problem, const BodyNode& node, const Magnitudes& magnitudes) const;
 
   bool compressed_ = false;
   int coordinates_ = 0, rows_ = 0, first_row_ = 0, unknowns_ = 0;

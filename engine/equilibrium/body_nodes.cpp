@@ -22,7 +22,7 @@ void BodyNodes::join_links(const System& system) {
   }
 }
 
-void BodyNodes::lay_out(const Problem& problem, const Kinematics<double>& k) {
+void BodyNodes::lay_out(const Problem& problem) {
   const System& system = problem.system;
   const std::size_t count = system.links.size();
   length_ = problem.parameters.length;
@@ -54,38 +54,35 @@ void BodyNodes::lay_out(const Problem& problem, const Kinematics<double>& k) {
     }
   }
   nodes_.resize(n);
-  for (BodyNode& x : nodes_)
-    set_columns(problem, k, x);
 }
 
-void BodyNodes::set_columns(const Problem& problem, const Kinematics<double>& k, BodyNode& x) const {
+void BodyNodes::place_node(int i, const Problem& problem, const Kinematics<double>& k) {
+  BodyNode& x = nodes_[static_cast<std::size_t>(i)];
   const Vec3& o = k.links[static_cast<std::size_t>(x.link)].o;
-  x.arm =
-      x.parent < 0
-          ? Vec3(Vec3::Zero())
-          : Vec3(o - k.links[static_cast<std::size_t>(nodes_[static_cast<std::size_t>(x.parent)].link)].o);
-  x.shift.setIdentity();
-  x.shift.bottomLeftCorner<3, 3>() = -skew(x.arm) / length_;
-  x.s.resize(6, x.columns);
+  x.arm.setZero();
+  if (x.parent >= 0) {
+    x.arm = o - k.links[static_cast<std::size_t>(nodes_[static_cast<std::size_t>(x.parent)].link)].o;
+    x.shift.setIdentity();
+    x.shift.bottomLeftCorner<3, 3>() = -skew(x.arm) / length_;
+  }
+  x.s.setZero();
+  x.d.setZero();
   for (int c = 0; c < x.columns; ++c) {
     const int v = x.v[static_cast<std::size_t>(c)];
     const Column<double>& column = k.columns[static_cast<std::size_t>(v)];
     const double unit = problem.scaling.column[v];
     x.s.col(c) << unit * column.turn(), unit / length_ * column.at(o);
   }
-  if (x.columns == 0) {
-    x.d.resize(6, 0);
-    x.n = Mat6::Identity();
-    return;
+  x.n.resize(6, 6 - x.columns);
+  switch (x.columns) {
+  case 0: x.n = Mat6::Identity(); return;
+  case 6: x.d = x.s.transpose().inverse(); return;
+  default: break;
   }
-  if (x.columns == 6) {
-    x.d = Mat6(x.s).transpose().inverse();
-    x.n.resize(6, 0);
-    return;
-  }
-  const BodySquare gram = x.s.transpose() * x.s;
-  x.d = x.s * gram.inverse();
-  const Eigen::HouseholderQR<BodyColumns> qr(x.s);
+  const BodyColumns s = x.s.leftCols(x.columns);
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> gram = s.transpose() * s;
+  x.d.leftCols(x.columns) = s * gram.inverse();
+  const Eigen::HouseholderQR<BodyColumns> qr(s);
   const Mat6 q = qr.householderQ() * Mat6::Identity();
   x.n = q.rightCols(6 - x.columns);
 }

@@ -15,7 +15,6 @@ namespace flyball {
 
 // At most six directions of a body's motion, and what acts among them.
 using BodyColumns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
-using BodySquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
 // A link with the massless ones of its tree joint before it. Scaled but where units are given.
 struct BodyNode : BodyStiffness {
@@ -24,22 +23,26 @@ struct BodyNode : BodyStiffness {
   int columns = 0;
   std::array<int, 6> v{}, stage{}; // coordinates, the root's first, and the link of each
   Vec3 arm;                        // m, from the parent's origin to this one's
-  Mat6 shift;                      // of the parent's motion to this one's
-  // Motion by a unit of each coordinate; N^T S = 0, D^T S = I: what a motion is in coordinates, and what of
-  // it the joint forbids.
-  BodyColumns s, d, n;
+  Mat6 shift;                      // of the parent's motion to this one's, where there is one
+  // Motion by a unit of each coordinate; D^T S = I, N^T S = 0: what a motion is in coordinates, and what of
+  // it the joint forbids. S and D are zero beyond their columns.
+  Mat6 s, d;
+  BodyColumns n;
 
   // Of the equations (body_equations.hpp).
-  int multipliers = 0;                // first of its own among the unknowns
-  Vec6 load;                          // N m, N, about the link's origin; of all beyond it
-  Eigen::Matrix<double, 6, 1> weight; // metric of the coordinates themselves
-  Mat6 stiffness, inertial;           // of the body and all that meets it
+  int multipliers = 0;      // first of its own among the unknowns
+  Vec6 load;                // N m, N, about the link's origin; of all beyond it
+  Vec6 weight;              // metric of the coordinates themselves, zero beyond them
+  Mat6 stiffness, inertial; // of the body and all that meets it
 };
 
 class BodyNodes {
  public:
-  // Sets all but what is of the equations. Kinematics at the problem's state.
-  void lay_out(const Problem& problem, const Kinematics<double>& kinematics);
+  // Numbers the nodes, and what is joined to what.
+  void lay_out(const Problem& problem);
+
+  // Where a node is and moves; its parent first. Kinematics at the problem's state.
+  void place_node(int i, const Problem& problem, const Kinematics<double>& kinematics);
 
   int size() const { return static_cast<int>(nodes_.size()); }
   BodyNode& operator[](int i) { return nodes_[static_cast<std::size_t>(i)]; }
@@ -67,8 +70,6 @@ class BodyNodes {
 
  private:
   void join_links(const System& system);
-  void set_columns(const Problem& problem, const Kinematics<double>& kinematics, BodyNode& node) const;
-
   double length_ = 1;
   std::vector<BodyNode> nodes_;
   std::vector<int> node_of_link_; // -1: stands still, or part of a later link's node

@@ -2,21 +2,32 @@
 
 namespace flyball {
 
+namespace {
+
+// About the mass centre, as the body lies.
+Mat3 central_inertia(const LinkParameters& lp, const LinkState<double>& x) {
+  return lp.has_inertia ? Mat3(x.R * lp.inertia * x.R.transpose()) : Mat3(Mat3::Zero());
+}
+
+} // namespace
+
+void set_body_inertia(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyStiffness& n) {
+  const LinkParameters& lp = p.links[l];
+  n.mass = lp.mass;
+  n.turning = lp.mass * p.length * p.length / 4;
+  const Vec3 c = k.links[l].R * lp.com;
+  n.first_moment = lp.mass * c;
+  n.inertia = central_inertia(lp, k.links[l]) - lp.mass * skew_product(c, c);
+}
+
 void set_body_stiffness(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyStiffness& n) {
   const LinkParameters& lp = p.links[l];
   const LinkState<double>& x = k.links[l];
-  n.mass = lp.mass;
-  n.turning = lp.mass * p.length * p.length / 4;
+  set_body_inertia(p, l, k, n);
   if (lp.mass == 0 && !lp.has_inertia) {
-    n.first_moment.setZero();
-    n.inertia.setZero();
     n.own.setZero();
     return;
   }
-  const Vec3 c = x.R * lp.com;
-  const Mat3 central = lp.has_inertia ? Mat3(x.R * lp.inertia * x.R.transpose()) : Mat3(Mat3::Zero());
-  n.first_moment = lp.mass * c;
-  n.inertia = central - lp.mass * skew_product(c, c);
   const Mat3 hx = skew(n.first_moment);
   if (!p.moving) {
     const Mat3 ax = skew(x.dv);
@@ -26,7 +37,8 @@ void set_body_stiffness(const Parameters& p, std::size_t l, const Kinematics<dou
     return;
   }
   // See linearization.hpp: Psi'' = A x X + V x (V x X), and B on Psi' = V x X.
-  const Vec3 momentum = lp.mass * (x.v + x.w.cross(c));
+  const Vec3 c = x.R * lp.com, momentum = lp.mass * (x.v + x.w.cross(c));
+  const Mat3 central = central_inertia(lp, x);
   const Mat3 wx = skew(x.w), swept = wx * central;
   const Mat3 b = swept + swept.transpose() - skew<double>(central * x.w) - 2 * skew_product(c, momentum);
   const Mat3 turn = skew(x.dw) + skew_product(x.w, x.w);

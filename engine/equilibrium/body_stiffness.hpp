@@ -21,7 +21,11 @@ struct BodyStiffness {
   bool massless() const { return mass == 0 && inertia.isZero(0); }
 };
 
-// Inertia forces and weight of a link.
+// All but `own`.
+void set_body_inertia(const Parameters& parameters, std::size_t link, const Kinematics<double>& kinematics,
+                      BodyStiffness& out);
+
+// All, `own` of inertia forces and weight.
 void set_body_stiffness(const Parameters& parameters, std::size_t link, const Kinematics<double>& kinematics,
                         BodyStiffness& out);
 

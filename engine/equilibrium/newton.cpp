@@ -207,11 +207,12 @@ void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
 
 void evaluate_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
   z.lambda.setZero(problem.system.rows);
-  evaluate(problem, z, 0, w);
-  if (problem.system.rows == 0) return;
+  if (problem.system.rows == 0) return evaluate(problem, z, 0, w);
+  forward<double>(problem.system, problem.parameters, z.q, 0, w.kinematics);
+  evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
   factor_constraints(problem, w);
   best_multipliers(problem, w, z.lambda);
-  evaluate(problem, z, 0, w);
+  evaluate_forces(problem, z, w);
 }
 
 void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
@@ -327,7 +328,7 @@ bool assemble(const Problem& problem, Eigen::VectorXd& q, double t, Workspace& w
   const auto opening = [&](const Eigen::VectorXd& at) {
     z.q = at;
     forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
-    evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
+    evaluate_constraints<double>(problem.system, problem.parameters, z.q, w.kinematics, w.residual.phi);
     w.scaled_phi = -w.residual.phi.cwiseProduct(problem.scaling.row);
     return w.scaled_phi.lpNorm<Eigen::Infinity>();
   };

@@ -61,13 +61,23 @@ Ends ends_of(const PairEnds& ends, const Vec3& a, const Vec3& b, const Kinematic
   return {a, b, point_motion(a - oa), point_motion(b - ob), point_motion(b - oa)};
 }
 
-// Tension along the line between two points, which also changes by `along` per stretch.
-PairBlocks line_blocks(const Ends& e, const Vec3& direction, double length, double along, double tension,
-                       Lines lines) {
-  const Mat3 dd = direction * direction.transpose();
+// Tension along the line between two points, which also changes by `along` per stretch: force_between() with
+// by_a = -K P_a and by_b = K P_b, written out for P = [-[r], 1].
+PairBlocks line_blocks(const Vec3& ra, const Vec3& rb, const Vec3& direction, double length, double along,
+                       double tension, Lines lines) {
   const double across = (lines == Lines::convex ? std::max(tension, 0.) : tension) / length;
-  const Mat3 k = along * dd + across * (Mat3::Identity() - dd);
-  PairBlocks x = force_between(tension * direction, e.pa, e.pb, -k * e.pa, k * e.pb);
+  Mat3 k = (along - across) * direction * direction.transpose();
+  k.diagonal().array() += across;
+  const Vec3 f = tension * direction;
+  const Mat3 ax = skew(ra), bx = skew(rb), fx = skew(f), a = k * ax, b = k * bx;
+  const Mat3 by_own_a = -a - fx, by_own_b = fx - b;
+  PairBlocks x;
+  x.aa << ax * by_own_a, -a.transpose(), by_own_a, k;
+  x.ab << ax * b, a.transpose(), b, -k;
+  x.ba << bx * a, b.transpose(), a, -k;
+  x.bb << bx * by_own_b, -b.transpose(), by_own_b, k;
+  x.on_a << -ra.cross(f), -f;
+  x.on_b << rb.cross(f), f;
   x.compressed = tension < 0;
   return x;
 }
@@ -98,11 +108,14 @@ PairBlocks& PairBlocks::operator+=(const PairBlocks& other) {
 PairBlocks spring_blocks(const PointSpringElement& e, const PointSpringParameters& p,
                          const Kinematics<double>& k, bool moving, Lines lines) {
   const SpringState<double> s = spring_state(e, p, k);
-  const Ends at = ends_of(e.ends, s.a, s.b, k);
-  if (p.free_length == 0 && p.damping == 0) // needs no direction: the points may meet
+  if (p.free_length == 0 && p.damping == 0) { // needs no direction: the points may meet
+    const Ends at = ends_of(e.ends, s.a, s.b, k);
     return force_between(p.stiffness * (s.b - s.a), at.pa, at.pb, -p.stiffness * at.pa, p.stiffness * at.pb);
-  PairBlocks x = line_blocks(at, s.direction, s.length, p.stiffness, s.tension, lines);
+  }
+  PairBlocks x = line_blocks(s.a - k.at(e.ends.a).o, s.b - k.at(e.ends.b).o, s.direction, s.length,
+                             p.stiffness, s.tension, lines);
   if (p.damping == 0 || !moving) return x;
+  const Ends at = ends_of(e.ends, s.a, s.b, k);
   // Points are carried by frames that turn with w: a point's velocity changes by w x its shift.
   const Mat3 across = (Mat3::Identity() - s.direction * s.direction.transpose()) / s.length;
   const Vec3 rate = k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a);
@@ -146,14 +159,16 @@ PairBlocks damper_blocks(const CutDamperElement& e, const CutDamperParameters& p
 
 PairBlocks row_blocks(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row,
                       double multiplier, const Kinematics<double>& k, Lines lines) {
-  const Ends at = ends_of(cut.ends, k.point(cut.ends.a, p.a), k.point(cut.ends.b, p.b), k);
+  const Vec3 a = k.point(cut.ends.a, p.a), b = k.point(cut.ends.b, p.b);
   if (row.type == RowType::distance) {
-    const Vec3 d = at.b - at.a;
+    const Vec3 d = b - a;
     const double length = d.norm();
-    return line_blocks(at, d / length, length, 0, multiplier, lines);
+    return line_blocks(a - k.at(cut.ends.a).o, b - k.at(cut.ends.b).o, d / length, length, 0, multiplier,
+                       lines);
   }
   const Vec3 u = k.at(cut.ends.a).R * p.frame[static_cast<std::size_t>(row.u)];
   if (row.type == RowType::point) {
+    const Ends at = ends_of(cut.ends, a, b, k);
     const Vec3 force = multiplier * u;
     return force_at_b(force, at.pa_at_b, at.pb, -turns(force), Mat36::Zero());
   }
@@ -172,8 +187,22 @@ PairBlocks row_blocks(const CutJoint& cut, const CutParameters& p, const Constra
 
 RowGradient body_row_gradient(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row,
                               const Kinematics<double>& k) {
-  const PairBlocks unit = row_blocks(cut, p, row, 1, k, Lines::exact);
-  return {unit.on_a, unit.on_b};
+  const LinkState<double>&on_a = k.at(cut.ends.a), &on_b = k.at(cut.ends.b);
+  RowGradient g;
+  if (row.type == RowType::direction) {
+    const Vec3 u = on_a.R * p.frame[static_cast<std::size_t>(row.u)];
+    const Vec3 w = on_b.R * p.frame[static_cast<std::size_t>(row.w)];
+    g.b = couple(w.cross(u));
+    g.a = -g.b;
+    return g;
+  }
+  const Vec3 a = k.point(cut.ends.a, p.a), b = k.point(cut.ends.b, p.b);
+  const bool line = row.type == RowType::distance;
+  const Vec3 u = line ? Vec3((b - a).normalized()) : Vec3(on_a.R * p.frame[static_cast<std::size_t>(row.u)]);
+  const Vec3 at_a = line ? a : b; // a row of points is of b's in a's frame
+  g.a << -(at_a - on_a.o).cross(u), -u;
+  g.b << (b - on_b.o).cross(u), u;
+  return g;
 }
 
 } // namespace flyball

@@ -32,10 +32,11 @@ class SparseFactorization {
   SparseFactorization& operator=(SparseFactorization&&) noexcept;
 
   // Pivots below `zero` times the matrix (after its rows and columns are equilibrated) count as zero. The
-  // order of elimination is kept as long as the pattern stays. False where memory runs out.
+  // order of elimination is kept as long as the pattern stays, and the factors as long as the values do, too.
+  // False where memory runs out.
   bool factor(const SparsePattern& pattern, const std::vector<double>& values, double zero);
 
-  // In place. Zero pivots get no component.
+  // In place, with corrections until it holds to 1e-11 of its terms. Zero pivots get no component.
   void solve(Eigen::VectorXd& x);
 
   int negative() const; // pivots; of a symmetric matrix

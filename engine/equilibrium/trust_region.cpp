@@ -111,11 +111,10 @@ class TrustRegion {
   bool close_loops() {
     if (p_.system.rows == 0) return true;
     double before = std::numeric_limits<double>::infinity();
-    w_.zero_lambda.setZero(p_.system.rows);
     int slow = 0;
     const double enough = 0.01 * predicted_;
     for (int i = 0; i < 30; ++i) {
-      evaluate_residual<double>(p_.system, p_.parameters, moved_, w_.zero_lambda, w_.kinematics, w_.residual);
+      evaluate_constraints<double>(p_.system, p_.parameters, moved_, w_.kinematics, w_.residual.phi);
       const double open = w_.residual.phi.cwiseProduct(p_.scaling.row).lpNorm<Eigen::Infinity>();
       if (open < 1e-13) return true;
       if (open < 1e-6 && w_.residual.phi.cwiseAbs().dot(z_.lambda.cwiseAbs()) < enough) return true;

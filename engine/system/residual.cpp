@@ -57,11 +57,21 @@ SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParame
 }
 
 template <class S>
+void evaluate_constraints(const System& system, const Parameters& p, const Configuration<S>& q,
+                          const Kinematics<S>& k, Configuration<S>& phi) {
+  phi.resize(system.rows);
+  for (std::size_t i = 0; i < system.cuts.size(); ++i) {
+    const CutJoint& cut = system.cuts[i];
+    for (std::size_t r = 0; r < cut.rows.size(); ++r)
+      phi[cut.first_row + static_cast<int>(r)] = row_value(cut, p.cuts[i], cut.rows[r], q, k);
+  }
+}
+
+template <class S>
 void evaluate_residual(const System& system, const Parameters& p, const Configuration<S>& q,
                        const Configuration<S>& lambda, const Kinematics<S>& k, Residual<S>& out) {
   const std::size_t n = system.links.size();
   out.f.resize(system.nv);
-  out.phi.resize(system.rows);
   out.force.resize(n);
   out.moment.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -137,14 +147,12 @@ void evaluate_residual(const System& system, const Parameters& p, const Configur
       out.f[c.v] += c.second ? g : -g;
     }
   }
+  evaluate_constraints(system, p, q, k, out.phi);
   for (std::size_t i = 0; i < system.cuts.size(); ++i) {
     const CutJoint& cut = system.cuts[i];
-    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
-      const int row = cut.first_row + static_cast<int>(r);
-      out.phi[row] = row_value(cut, p.cuts[i], cut.rows[r], q, k);
-      if (const S multiplier = lambda[row]; multiplier != S(0))
+    for (std::size_t r = 0; r < cut.rows.size(); ++r)
+      if (const S multiplier = lambda[cut.first_row + static_cast<int>(r)]; multiplier != S(0))
         row_gradient(cut, p.cuts[i], cut.rows[r], k, [&](int v, S g) { out.f[v] += multiplier * g; });
-    }
   }
 }
 
@@ -266,6 +274,8 @@ template AppliedForce<double> applied_force(const BodyForceElement&, const BodyF
                                             const Kinematics<double>&);
 template SpringState<double> spring_state(const PointSpringElement&, const PointSpringParameters&,
                                           const Kinematics<double>&);
+template void evaluate_constraints<double>(const System&, const Parameters&, const Configuration<double>&,
+                                           const Kinematics<double>&, Configuration<double>&);
 template void evaluate_residual<double>(const System&, const Parameters&, const Configuration<double>&,
                                         const Configuration<double>&, const Kinematics<double>&,
                                         Residual<double>&);

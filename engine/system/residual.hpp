@@ -23,6 +23,11 @@ template <class S>
 void evaluate_residual(const System& system, const Parameters& parameters, const Configuration<S>& q,
                        const Configuration<S>& lambda, const Kinematics<S>& kinematics, Residual<S>& out);
 
+// Phi alone.
+template <class S>
+void evaluate_constraints(const System& system, const Parameters& parameters, const Configuration<S>& q,
+                          const Kinematics<S>& kinematics, Configuration<S>& phi);
+
 // How large the terms of each equation are before they cancel, for scaling and for the rounding error of f:
 // |f_i| below a few units of 1e-16 force[i] is zero as far as double can tell. Same units as f and phi.
 struct Magnitudes {
