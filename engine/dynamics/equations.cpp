@@ -73,7 +73,7 @@ void Equations::latch(const std::vector<StopElement>& stops, const std::vector<b
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const StopElement& s = stops[i];
     CoordinateForce& f =
-        parameters_.links[static_cast<std::size_t>(s.link)].force[static_cast<std::size_t>(s.component)];
+        parameters_.links[static_cast<std::size_t>(s.link)].force.hold(static_cast<std::size_t>(s.component));
     // Spring and stop together are one spring, unless they cancel.
     const double together = f.stiffness + s.stiffness;
     if (touching[i] && std::abs(together) < 1e-9 * s.stiffness) continue;

@@ -25,7 +25,7 @@ class TrustRegion {
       else
         shorten_step(0.25);
       const double size = step_.lpNorm<Eigen::Infinity>();
-      if (shortened == 0 && shift_ == 0 && size < 1e-8) return {DescentEnd::minimum, i};
+      if (shortened == 0 && (shift_ == 0 || shy_) && size < 1e-8) return {DescentEnd::minimum, i};
       if (!(predicted_ > 0) || !std::isfinite(size))
         return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
       Trial trial = move(1);
@@ -185,7 +185,8 @@ class TrustRegion {
   // shorter one has to do.
   void choose_step() {
     double low = least_shift_, high = 0; // the shift sought lies between, once high is known
-    bool low_definite = false;
+    bool low_definite = false, sought = false;
+    shy_ = false;
     if (low == 0 && solve_with(0)) {
       if (length_ <= 1.25 * radius_) return;
       low_definite = true;
@@ -221,14 +222,21 @@ class TrustRegion {
         break;
       }
       // Close above the lowest curvature a longer step would go along it, and that is the way of some corner
-      // of the mechanism rather than of the forces.
-      if (high > 0 && !low_definite && high < 4 * low && shift_ == high && length_ > 0.01 * radius_ &&
-          !small_forces())
-        break;
+      // of the mechanism rather than of the forces, or of none at all.
+      if (high > 0 && !low_definite && high < 4 * low && shift_ == high) {
+        if (length_ > 0.01 * radius_ && !small_forces()) break;
+        if (!sought) {
+          sought = true;
+          find_lowest_way();
+          shy_ = falls_by_coordinates();
+          if (shy_) break;
+        }
+      }
       // Without forces to speak of it is the way.
       if (high > 0 && !low_definite && high < 1.2 * low) {
         if (shift_ != high || shift != high) solve_with(high);
         last_shift_ = high;
+        find_lowest_way();
         add_negative_curvature();
         return;
       }
@@ -252,22 +260,35 @@ class TrustRegion {
     return decline > 0 ? length_ * length_ / decline * (length_ - radius_) / radius_ : 0;
   }
 
-  // Inverse iteration with the factor at hand, which is positive definite and nearly singular.
-  void add_negative_curvature() {
+  // The way of lowest curvature, of metric length 1, by inverse iteration with the factor at hand, which is
+  // positive definite and nearly singular.
+  void find_lowest_way() {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> any(-1, 1);
-    Eigen::VectorXd v(step_.size()), before, image;
-    for (double& x : v)
+    way_.resize(step_.size());
+    for (double& x : way_)
       x = any(random);
     double size = 1;
     for (int i = 0; i < 6; ++i) {
-      before = v / std::sqrt(e_.metric(v, image));
-      e_.metric(before, image); // W before
-      e_.solve(image, v);
-      size = std::sqrt(e_.metric(v, other_));
-      v /= size;
+      other_ = way_ / std::sqrt(e_.metric(way_, way_image_));
+      e_.metric(other_, way_image_);
+      e_.solve(way_image_, way_);
+      size = std::sqrt(e_.metric(way_, other_));
+      way_ /= size;
     }
-    image /= size; // (K + shift W) v
+    way_image_ /= size;
+  }
+
+  // Away from balance curvatures of the size of the forces come and go with the choice of coordinates, as
+  // along turns that nothing resists: bent coordinates q = r + C(r, r) / 2 add C of the gradient to them.
+  bool falls_by_coordinates() const {
+    const double fall = shift_ - way_image_.dot(way_);
+    return fall < 2 * gradient_.norm() * way_.squaredNorm();
+  }
+
+  // To the edge of the region along the lowest way.
+  void add_negative_curvature() {
+    const Eigen::VectorXd &v = way_, &image = way_image_;
     const double along = v.dot(metric_step_);
     const double room = std::sqrt(along * along + std::max(0., radius_ * radius_ - length_ * length_));
     // The two ways to the edge of the region: the lower one, or where they are alike the one that takes the
@@ -300,11 +321,13 @@ class TrustRegion {
   Eliminator& e_;
   std::vector<double>* history_;
   Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
+  Eigen::VectorXd way_, way_image_; // of lowest curvature, and (K + shift W) times it
   Potential potential_;
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
   double shift_ = 0, last_shift_ = 0;
   double least_shift_ = 0; // below this K + shift W is known not to be positive definite
   bool convex_ = false;    // the convex model was tried here
+  bool shy_ = false;       // of a longer step along a fall that coordinates make
 };
 
 } // namespace

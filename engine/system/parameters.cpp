@@ -57,7 +57,10 @@ class Binder {
     const TreeJoint& tree = s_.tree_joints[static_cast<std::size_t>(link.tree_joint)];
     const Joint* j = tree.joint >= 0 ? &joint(tree.joint) : nullptr;
     LinkParameters& out = p_.links[l];
+    CoordinateForces force = std::move(out.force); // for its memory
+    force.clear();
     out = {};
+    out.force = std::move(force);
     out.origin = joint_point(m_, tree) - p_.origin;
     out.offset = link.parent >= 0 ? Vec3(out.origin - p_.links[static_cast<std::size_t>(link.parent)].origin)
                                   : out.origin;
@@ -90,7 +93,8 @@ class Binder {
   }
 
   static void bind_coordinate(const Coordinate& c, LinkParameters& out, int k) {
-    CoordinateForce& f = out.force[static_cast<std::size_t>(k)];
+    if (!c.spring && !c.stop && c.damping == 0) return;
+    CoordinateForce& f = out.force.hold(static_cast<std::size_t>(k));
     f.damping = c.damping;
     if (c.spring) {
       f.stiffness = c.spring->stiffness;

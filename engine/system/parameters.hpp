@@ -33,22 +33,41 @@ struct CoordinateForce {
   }
 };
 
+// Those of a link, one each or three for a spherical one; most links have none and hold none.
+class CoordinateForces {
+ public:
+  const CoordinateForce& operator[](std::size_t i) const { return i < held_.size() ? held_[i] : none; }
+  CoordinateForce& hold(std::size_t i) {
+    if (i >= held_.size()) held_.resize(i + 1);
+    return held_[i];
+  }
+  void clear() { held_.clear(); }
+  auto begin() { return held_.begin(); }
+  auto end() { return held_.end(); }
+  auto begin() const { return held_.begin(); }
+  auto end() const { return held_.end(); }
+
+ private:
+  static constexpr CoordinateForce none{};
+  std::vector<CoordinateForce> held_;
+};
+
 // What every pass over the links reads comes first.
 struct LinkParameters {
-  Vec3 offset = Vec3::Zero();  // m, p of this link's origin in its parent's, drawn pose
-  Vec3 axis = Vec3::UnitZ();   // unit, drawn pose; turned round where the tree runs against the joint
-  double drawn = 0;            // label of the drawn pose
-  double mass = 0;             // kg
+  Vec3 offset = Vec3::Zero(); // m, p of this link's origin in its parent's, drawn pose
+  Vec3 axis = Vec3::UnitZ();  // unit, drawn pose; turned round where the tree runs against the joint
+  double drawn = 0;           // label of the drawn pose
+  double mass = 0;            // kg
+  bool has_inertia = false;
+  bool elastic = false;        // any of `force` is a spring or stop
   Vec3 com = Vec3::Zero();     // m, mass centre from the link's origin, drawn pose
   Mat3 inertia = Mat3::Zero(); // kg m^2, about the mass centre, drawn-pose world axes
-  bool has_inertia = false;
-  bool elastic = false;  // any of `force` is a spring or stop
-  double speed = 0;      // driven: rad/s or m/s, before Parameters::speed_scale
+  double speed = 0;            // driven: rad/s or m/s, before Parameters::speed_scale
   double start = 0;      // driven: displacement from the drawn pose at phase zero (a gear may ask for one)
   double gear_ratio = 1; // driven: speed per speed of its motor
   Vec3 origin = Vec3::Zero();             // m, this link's origin in the drawn pose, from Parameters::origin
   Quat drawn_rotation = Quat::Identity(); // spherical: exp of the drawn rotation vector
-  std::array<CoordinateForce, 3> force;   // one used, three for spherical
+  CoordinateForces force;
 };
 
 // A point fixed in a link, from the link's origin at the drawn pose.
