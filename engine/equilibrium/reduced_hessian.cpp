@@ -1,6 +1,7 @@
 #include "engine/equilibrium/reduced_hessian.hpp"
 
 #include <algorithm>
+#include <random>
 
 namespace flyball {
 
@@ -107,6 +108,15 @@ Eigen::MatrixXd ReducedHessian::null_basis() const {
   for (int k = 0; k < null_; ++k)
     basis.col(k) = scale.cwiseProduct(svd.matrixV().col(n - null_ + k));
   return basis;
+}
+
+Eigen::VectorXd mixture_of(const Eigen::MatrixXd& directions) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(0.5, 1);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(directions.rows());
+  for (Eigen::Index i = 0; i < directions.cols(); ++i)
+    sum += (i % 2 == 0 ? 1 : -1) * any(random) * directions.col(i);
+  return sum / sum.lpNorm<Eigen::Infinity>();
 }
 
 } // namespace flyball

@@ -90,12 +90,14 @@ bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) 
 
 void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, Eigen::VectorXd& error) {
   const Eigen::MatrixXd flat = w.constraints.basis() * w.hessian.null_basis();
+  // What is never decided along a mixture of many is not along any of them.
+  const bool none = flat.cols() > few_flat && !std::isfinite(undecided(problem, z, mixture_of(flat), w));
   for (Eigen::Index c = 0; c < flat.cols(); ++c) {
     Eigen::VectorXd direction = flat.col(c);
     const double size = direction.lpNorm<Eigen::Infinity>();
     if (!(size > 0)) continue;
     direction /= size;
-    const double way = undecided(problem, z, direction, w);
+    const double way = none ? std::numeric_limits<double>::infinity() : undecided(problem, z, direction, w);
     const Eigen::VectorXd moved = direction.cwiseProduct(problem.scaling.column).cwiseAbs();
     if (std::isfinite(way))
       error = error.cwiseMax(way * moved);

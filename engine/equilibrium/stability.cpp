@@ -206,14 +206,18 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   // Directions nothing resists: without stiffness here, and still in balance some way along.
   const Eigen::MatrixXd flat = basis * energy.null_basis();
   int flat_count = 0;
+  const auto stays_along = [&](const Eigen::VectorXd& direction) {
+    return stays_balanced(problem, z, flat, 0.05 * direction, w) &&
+           stays_balanced(problem, z, flat, -0.11 * direction, w);
+  };
+  // What holds for a mixture of many holds for each.
+  const bool all = flat.cols() > few_flat && stays_along(mixture_of(flat));
   for (Eigen::Index c = 0; c < flat.cols(); ++c) {
     Eigen::VectorXd direction = flat.col(c);
     const double size = direction.lpNorm<Eigen::Infinity>();
     if (!(size > 0)) continue;
     direction /= size;
-    if (!stays_balanced(problem, z, flat, 0.05 * direction, w) ||
-        !stays_balanced(problem, z, flat, -0.11 * direction, w))
-      continue;
+    if (!all && !stays_along(direction)) continue;
     ++flat_count;
     for (int i = 0; i < problem.system.nv; ++i)
       if (std::abs(direction[i]) > 1e-6 && std::ranges::find(out.neutral, i) == out.neutral.end())
