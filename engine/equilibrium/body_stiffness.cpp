@@ -4,49 +4,50 @@ namespace flyball {
 
 namespace {
 
-// About the mass centre, as the body lies.
-Mat3 central_inertia(const LinkParameters& lp, const LinkState<double>& x) {
-  return lp.has_inertia ? Mat3(x.R * lp.inertia * x.R.transpose()) : Mat3(Mat3::Zero());
+// Sets all but `own`, and returns the inertia about the mass centre.
+Mat3 set_inertia(const Parameters& p, const LinkParameters& lp, const LinkState<double>& x,
+                 BodyStiffness& n) {
+  n.mass = lp.mass;
+  n.turning = lp.mass * p.length * p.length / 4;
+  const Vec3 c = x.R * lp.com;
+  n.first_moment = lp.mass * c;
+  n.inertia = -lp.mass * skew_product(c, c);
+  if (!lp.has_inertia) return Mat3::Zero();
+  const Mat3 central = x.R * lp.inertia * x.R.transpose();
+  n.inertia += central;
+  return central;
 }
 
 } // namespace
 
 void set_body_inertia(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyStiffness& n) {
-  const LinkParameters& lp = p.links[l];
-  n.mass = lp.mass;
-  n.turning = lp.mass * p.length * p.length / 4;
-  const Vec3 c = k.links[l].R * lp.com;
-  n.first_moment = lp.mass * c;
-  n.inertia = central_inertia(lp, k.links[l]) - lp.mass * skew_product(c, c);
+  set_inertia(p, p.links[l], k.links[l], n);
 }
 
 void set_body_stiffness(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyStiffness& n) {
   const LinkParameters& lp = p.links[l];
   const LinkState<double>& x = k.links[l];
-  set_body_inertia(p, l, k, n);
+  const Mat3 central = set_inertia(p, lp, x, n);
   if (lp.mass == 0 && !lp.has_inertia) {
     n.own.setZero();
     return;
   }
-  const Mat3 hx = skew(n.first_moment);
+  const Vec3& h = n.first_moment;
   if (!p.moving) {
-    const Mat3 ax = skew(x.dv);
     n.own.setZero();
-    n.own.topLeftCorner<3, 3>().noalias() = hx * ax;
-    n.own.bottomLeftCorner<3, 3>() = lp.mass * ax;
+    n.own.topLeftCorner<3, 3>() = skew_product(h, x.dv);
+    n.own.bottomLeftCorner<3, 3>() = lp.mass * skew(x.dv);
     return;
   }
   // See linearization.hpp: Psi'' = A x X + V x (V x X), and B on Psi' = V x X.
   const Vec3 c = x.R * lp.com, momentum = lp.mass * (x.v + x.w.cross(c));
-  const Mat3 central = central_inertia(lp, x);
-  const Mat3 wx = skew(x.w), swept = wx * central;
+  const Mat3 swept = skew_times(x.w, central);
   const Mat3 b = swept + swept.transpose() - skew<double>(central * x.w) - 2 * skew_product(c, momentum);
   const Mat3 turn = skew(x.dw) + skew_product(x.w, x.w);
   const Mat3 shift = skew<double>(x.dv - x.w.cross(x.v)) + skew_product(x.w, x.v) + skew_product(x.v, x.w);
-  const Mat3 moved = hx * turn;
+  const Mat3 moved = skew_times(h, turn);
   n.own.topLeftCorner<3, 3>().noalias() = n.inertia * turn;
-  n.own.topLeftCorner<3, 3>().noalias() += hx * shift;
-  n.own.topLeftCorner<3, 3>().noalias() += b * wx;
+  n.own.topLeftCorner<3, 3>() += skew_times(h, shift) + times_skew(b, x.w);
   n.own.topRightCorner<3, 3>() = moved;
   n.own.bottomLeftCorner<3, 3>() = lp.mass * shift - moved - 2 * skew_product(momentum, x.w);
   n.own.bottomRightCorner<3, 3>() = lp.mass * turn;

@@ -69,13 +69,13 @@ PairBlocks line_blocks(const Vec3& ra, const Vec3& rb, const Vec3& direction, do
   Mat3 k = (along - across) * direction * direction.transpose();
   k.diagonal().array() += across;
   const Vec3 f = tension * direction;
-  const Mat3 ax = skew(ra), bx = skew(rb), fx = skew(f), a = k * ax, b = k * bx;
+  const Mat3 fx = skew(f), a = times_skew(k, ra), b = times_skew(k, rb);
   const Mat3 by_own_a = -a - fx, by_own_b = fx - b;
   PairBlocks x;
-  x.aa << ax * by_own_a, -a.transpose(), by_own_a, k;
-  x.ab << ax * b, a.transpose(), b, -k;
-  x.ba << bx * a, b.transpose(), a, -k;
-  x.bb << bx * by_own_b, -b.transpose(), by_own_b, k;
+  x.aa << skew_times(ra, by_own_a), -a.transpose(), by_own_a, k;
+  x.ab << skew_times(ra, b), a.transpose(), b, -k;
+  x.ba << skew_times(rb, a), b.transpose(), a, -k;
+  x.bb << skew_times(rb, by_own_b), -b.transpose(), by_own_b, k;
   x.on_a << -ra.cross(f), -f;
   x.on_b << rb.cross(f), f;
   x.compressed = tension < 0;

@@ -225,19 +225,21 @@ class TrustRegion {
       // of the mechanism rather than of the forces, or of none at all.
       if (high > 0 && !low_definite && high < 4 * low && shift_ == high) {
         if (length_ > 0.01 * radius_ && !small_forces()) break;
-        if (!sought) {
+        // To look here spares nets some factors.
+        if (p_.system.rows > 0 && !sought) {
           sought = true;
           find_lowest_way();
           shy_ = falls_by_coordinates();
           if (shy_) break;
         }
       }
-      // Without forces to speak of it is the way.
+      // Without forces to speak of it is the way, if there is one.
       if (high > 0 && !low_definite && high < 1.2 * low) {
         if (shift_ != high || shift != high) solve_with(high);
         last_shift_ = high;
         find_lowest_way();
-        add_negative_curvature();
+        shy_ = falls_by_coordinates();
+        if (!shy_) add_negative_curvature();
         return;
       }
       const double next = shift_ == shift ? shift + newton_on_length() : 0;

@@ -30,6 +30,24 @@ inline Mat3 skew_product(const Vec3& a, const Vec3& b) {
   return m;
 }
 
+// [a] m, and m [a].
+inline Mat3 skew_times(const Vec3& a, const Mat3& m) {
+  Mat3 x;
+  for (int j = 0; j < 3; ++j) {
+    x(0, j) = a.y() * m(2, j) - a.z() * m(1, j);
+    x(1, j) = a.z() * m(0, j) - a.x() * m(2, j);
+    x(2, j) = a.x() * m(1, j) - a.y() * m(0, j);
+  }
+  return x;
+}
+inline Mat3 times_skew(const Mat3& m, const Vec3& a) {
+  Mat3 x;
+  x.col(0) = a.z() * m.col(1) - a.y() * m.col(2);
+  x.col(1) = a.x() * m.col(2) - a.z() * m.col(0);
+  x.col(2) = a.y() * m.col(0) - a.x() * m.col(1);
+  return x;
+}
+
 // Rotation by `angle` about the unit vector `a` (Rodrigues), with 1 - cos formed without cancellation.
 template <class S>
 Mat3T<S> rotation_about(const Vec3T<S>& a, S angle) {
