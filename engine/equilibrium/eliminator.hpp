@@ -53,6 +53,11 @@ class Eliminator {
   // W x, and x^T W x.
   virtual double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) = 0;
 
+  // The same of what solve() has just given.
+  virtual double metric_of_solution(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
+    return metric(x, product);
+  }
+
   // A direction without stiffness with all that follows it.
   virtual void direction_of(const Flat& flat, Eigen::VectorXd& x) = 0;
 

@@ -308,10 +308,15 @@ void set_start(const System& system, const Parameters& parameters,
     if (link.type != LinkType::spherical) {
       if (values[i]) set_coordinate(system, parameters, c, *values[i], q);
     } else if (c.index == link.coordinate) { // the three components of a rotation vector come together
-      Vec3 r = rotation_vector(link, parameters.links[static_cast<std::size_t>(c.link)], q);
+      const LinkParameters& p = parameters.links[static_cast<std::size_t>(c.link)];
+      Vec3 r = rotation_vector(link, p, q);
+      bool given = false; // else not even rounding changes
       for (int k = 0; k < 3; ++k)
-        if (const auto& value = values[i + static_cast<std::size_t>(k)]) r[k] = *value;
-      set_rotation_vector(link, parameters.links[static_cast<std::size_t>(c.link)], r, q);
+        if (const auto& value = values[i + static_cast<std::size_t>(k)]) {
+          r[k] = *value;
+          given = true;
+        }
+      if (given) set_rotation_vector(link, p, r, q);
     }
   }
 }

@@ -39,11 +39,12 @@ struct SparseFactorization::State {
   }
 
   // Rows and columns to largest entries of one, by square roots from both sides (Ruiz, A scaling algorithm to
-  // equilibrate both rows and columns norms in matrices, 2001), from the scales of the values before.
+  // equilibrate both rows and columns norms in matrices, 2001). Afresh, so that no answer depends on those
+  // before.
   void equilibrate() {
     constexpr double even = 1.2; // further apart rows need another pass
     const std::size_t count = given.size();
-    if (scale.size() != pattern.size) scale.setOnes(pattern.size);
+    scale.setOnes(pattern.size);
     scaled.resize(count);
     for (int pass = 0;; ++pass) {
       largest.setZero(pattern.size);
@@ -93,7 +94,6 @@ struct SparseFactorization::State {
   void begin(const SparsePattern& p) {
     close();
     pattern = p;
-    scale.resize(0);
     mumps = {};
     mumps.par = 1;
     mumps.sym = p.symmetric ? 2 : 0;

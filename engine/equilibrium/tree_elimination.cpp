@@ -294,8 +294,6 @@ void TreeElimination::direction_of(const Flat& flat, Eigen::VectorXd& x) {
 }
 
 double TreeElimination::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
-  product.resize(x.size());
-  double square = 0;
   for (Node& n : nodes_) {
     n.motion.setZero();
     if (n.parent >= 0) n.motion = carried(nodes_[static_cast<std::size_t>(n.parent)].motion, n.arm);
@@ -304,6 +302,13 @@ double TreeElimination::metric(const Eigen::VectorXd& x, Eigen::VectorXd& produc
     else if (n.ball >= 0)
       n.motion += balls_[static_cast<std::size_t>(n.ball)].s * x.segment<3>(n.v);
   }
+  return metric_of_solution(x, product);
+}
+
+// Everything moves as the solution says.
+double TreeElimination::metric_of_solution(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
+  product.resize(x.size());
+  double square = 0;
   inwards(wrench_branches_, [&](Node& n, Vec6& g) {
     const Vec6 own = times_inertia(n, n.motion);
     square += n.motion.dot(own);

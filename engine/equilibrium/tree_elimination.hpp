@@ -44,6 +44,7 @@ class TreeElimination final : public Eliminator {
   void solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
              Eigen::VectorXd& lambda) override;
   double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
+  double metric_of_solution(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
   void direction_of(const Flat& flat, Eigen::VectorXd& x) override;
 
  private:

@@ -167,7 +167,7 @@ class TrustRegion {
     shift_ = shift;
     rhs_ = -gradient_;
     e_.solve(rhs_, step_);
-    length_ = std::sqrt(e_.metric(step_, metric_step_));
+    length_ = std::sqrt(e_.metric_of_solution(step_, metric_step_));
     predicted_ = (-gradient_.dot(step_) + shift * length_ * length_) / 2;
     return std::isfinite(length_);
   }
@@ -275,7 +275,7 @@ class TrustRegion {
       other_ = way_ / std::sqrt(e_.metric(way_, way_image_));
       e_.metric(other_, way_image_);
       e_.solve(way_image_, way_);
-      size = std::sqrt(e_.metric(way_, other_));
+      size = std::sqrt(e_.metric_of_solution(way_, other_));
       way_ /= size;
     }
     way_image_ /= size;

@@ -24,6 +24,23 @@ void coordinate_forces(const Link& link, const LinkParameters& p, const Configur
     add(link.v + i, torque[i]);
 }
 
+// What a link's inertia and weight ask for, about its origin.
+template <class S>
+void add_inertia_force(const LinkParameters& lp, const LinkState<S>& x, bool moving, Vec3T<S>& force,
+                       Vec3T<S>& moment) {
+  if (lp.mass == 0 && !lp.has_inertia) return;
+  const Vec3T<S> c = x.R * lp.com.cast<S>();
+  Vec3T<S> f = S(lp.mass) * x.dv;
+  if (moving) f += S(lp.mass) * (x.dw.cross(c) + x.w.cross(x.w.cross(c)));
+  force += f;
+  moment += c.cross(f);
+  if (!moving || !lp.has_inertia) return;
+  const auto times_inertia = [&](const Vec3T<S>& a) -> Vec3T<S> {
+    return x.R * (lp.inertia.cast<S>() * (x.R.transpose() * a));
+  };
+  moment += times_inertia(x.dw) + x.w.cross(times_inertia(x.w));
+}
+
 } // namespace
 
 template <class S>
@@ -75,27 +92,8 @@ void evaluate_residual(const System& system, const Parameters& p, const Configur
   out.force.resize(n);
   out.moment.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const LinkParameters& lp = p.links[i];
-    const LinkState<S>& x = k.links[i];
-    if (lp.mass == 0 && !lp.has_inertia) {
-      out.force[i].setZero();
-      out.moment[i].setZero();
-      continue;
-    }
-    const Vec3T<S> c = x.R * lp.com.cast<S>();
-    if (!p.moving) {
-      out.force[i] = S(lp.mass) * x.dv;
-      out.moment[i] = c.cross(out.force[i]);
-      continue;
-    }
-    out.force[i] = S(lp.mass) * (x.dv + x.dw.cross(c) + x.w.cross(x.w.cross(c)));
-    out.moment[i] = c.cross(out.force[i]);
-    if (lp.has_inertia) {
-      const auto times_inertia = [&](const Vec3T<S>& a) -> Vec3T<S> {
-        return x.R * (lp.inertia.cast<S>() * (x.R.transpose() * a));
-      };
-      out.moment[i] += times_inertia(x.dw) + x.w.cross(times_inertia(x.w));
-    }
+    out.force[i].setZero();
+    out.moment[i].setZero();
   }
   for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
     const BodyForceElement& e = system.body_forces[i];
@@ -107,19 +105,22 @@ void evaluate_residual(const System& system, const Parameters& p, const Configur
   }
   for (std::size_t i = n; i-- > 0;) {
     const Link& link = system.links[i];
+    const LinkParameters& lp = p.links[i];
+    const LinkState<S>& x = k.links[i];
+    Vec3T<S>&force = out.force[i], &moment = out.moment[i];
+    add_inertia_force(lp, x, p.moving, force, moment);
     if (link.v >= 0) {
       if (link.type == LinkType::spherical)
         for (int j = 0; j < 3; ++j)
-          out.f[link.v + j] = k.columns[static_cast<std::size_t>(link.v + j)].axis.dot(out.moment[i]);
+          out.f[link.v + j] = k.columns[static_cast<std::size_t>(link.v + j)].axis.dot(moment);
       else
-        out.f[link.v] = k.links[i].axis.dot(link.type == LinkType::revolute ? out.moment[i] : out.force[i]);
-      if (p.links[i].elastic)
-        coordinate_forces<S>(link, p.links[i], q, [&](int v, S value) { out.f[v] += value; });
+        out.f[link.v] = x.axis.dot(link.type == LinkType::revolute ? moment : force);
+      if (lp.elastic) coordinate_forces<S>(link, lp, q, [&](int v, S value) { out.f[v] += value; });
     }
     if (link.parent >= 0) {
       const auto j = static_cast<std::size_t>(link.parent);
-      out.force[j] += out.force[i];
-      out.moment[j] += out.moment[i] + (k.links[i].o - k.links[j].o).cross(out.force[i]);
+      out.force[j] += force;
+      out.moment[j] += moment + (x.o - k.links[j].o).cross(force);
     }
   }
   for (std::size_t i = 0; i < system.springs.size(); ++i) {
@@ -164,16 +165,8 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
   out.link_force.resize(n);
   out.link_moment.resize(n);
   const double weight = p.gravity.norm();
-  for (std::size_t i = 0; i < n; ++i) {
-    const LinkParameters& lp = p.links[i];
-    const LinkState<double>& x = k.links[i];
-    out.link_force[i] = out.link_moment[i] = 0;
-    if (lp.mass == 0 && !lp.has_inertia) continue;
-    const double c = lp.com.norm(), w2 = x.w.squaredNorm();
-    out.link_force[i] = lp.mass * (weight + (x.dv - k.ground.dv).norm() + (x.dw.norm() + w2) * c);
-    out.link_moment[i] = c * out.link_force[i];
-    if (lp.has_inertia && p.moving) out.link_moment[i] += lp.inertia.norm() * (x.dw.norm() + w2);
-  }
+  std::ranges::fill(out.link_force, 0);
+  std::ranges::fill(out.link_moment, 0);
   for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
     const BodyForceElement& e = system.body_forces[i];
     if (e.link < 0) continue;
@@ -184,19 +177,28 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
   }
   for (std::size_t i = n; i-- > 0;) {
     const Link& link = system.links[i];
+    const LinkParameters& lp = p.links[i];
+    const LinkState<double>& x = k.links[i];
+    if (lp.mass != 0 || lp.has_inertia) {
+      const double c = lp.com.norm(), w2 = x.w.squaredNorm(), turn = x.dw.norm() + w2;
+      const double force = lp.mass * (weight + (x.dv - k.ground.dv).norm() + turn * c);
+      out.link_force[i] += force;
+      out.link_moment[i] += c * force;
+      if (lp.has_inertia && p.moving) out.link_moment[i] += lp.inertia.norm() * turn;
+    }
     if (link.v >= 0) {
       if (link.type == LinkType::spherical)
         out.force.segment<3>(link.v).setConstant(out.link_moment[i]);
       else
         out.force[link.v] = link.type == LinkType::revolute ? out.link_moment[i] : out.link_force[i];
-      if (p.links[i].elastic && link.type != LinkType::spherical) {
-        const CoordinateForce& c = p.links[i].force[0];
+      if (lp.elastic && link.type != LinkType::spherical) {
+        const CoordinateForce& c = lp.force[0];
         out.force[link.v] += std::abs(c.stiffness) * (std::abs(q[link.q]) + std::abs(c.free)) +
                              (c.curvature(q[link.q]) - c.stiffness) *
                                  (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
-      } else if (p.links[i].elastic) {
+      } else if (lp.elastic) {
         for (int j = 0; j < 3; ++j)
-          for (const CoordinateForce& c : p.links[i].force)
+          for (const CoordinateForce& c : lp.force)
             out.force[link.v + j] += (std::abs(c.stiffness) + c.stop_stiffness) * (4 + std::abs(c.free));
       }
     }
