@@ -263,7 +263,7 @@ class TrustRegion {
   }
 
   // The way of lowest curvature, of metric length 1, by inverse iteration with the factor at hand, which is
-  // positive definite and nearly singular.
+  // nearly singular.
   void find_lowest_way() {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> any(-1, 1);
@@ -284,7 +284,7 @@ class TrustRegion {
   // Away from balance curvatures of the size of the forces come and go with the choice of coordinates, as
   // along turns that nothing resists: bent coordinates q = r + C(r, r) / 2 add C of the gradient to them.
   bool falls_by_coordinates() const {
-    const double fall = shift_ - way_image_.dot(way_);
+    const double fall = e_.shift() - way_image_.dot(way_);
     return fall < 2 * gradient_.norm() * way_.squaredNorm();
   }
 
@@ -323,7 +323,7 @@ class TrustRegion {
   Eliminator& e_;
   std::vector<double>* history_;
   Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
-  Eigen::VectorXd way_, way_image_; // of lowest curvature, and (K + shift W) times it
+  Eigen::VectorXd way_, way_image_; // of lowest curvature, and what was factored times it
   Potential potential_;
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
   double shift_ = 0, last_shift_ = 0;

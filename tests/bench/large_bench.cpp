@@ -114,4 +114,6 @@ int main(int argc, char** argv) {
   family("tree", largest, [](int n) { return bench::binary_tree(n, 3); });
   family("net of springs", largest, [](int n) { return bench::spring_net(side_of(n), 3); });
   family("net of cables", largest, [](int n) { return bench::cable_net(side_of(n), 3); });
+  // Knots and about two rods each. Ten thousand bodies would take longer than all the rest.
+  family("net of rods", std::min(largest, 1000), [](int n) { return bench::rod_net(side_of(n / 3), 3); });
 }

@@ -151,4 +151,27 @@ Mechanism cable_net(int side, double speed) {
   return m;
 }
 
+Mechanism rod_net(int side, double speed) {
+  const Mechanism cables = cable_net(side, speed);
+  Mechanism m = cables;
+  m.name = "Rods of " + std::to_string(side) + " x " + std::to_string(side);
+  std::erase_if(m.joints, [](const Joint& j) { return j.type == JointType::distance; });
+  for (Body& knot : m.bodies)
+    if (knot.name != "hub") knot.mass *= 0.1;
+  for (const Joint& cable : cables.joints) {
+    if (cable.type != JointType::distance) continue;
+    m.bodies.push_back(rod(cable.name, 0.45 / (side * side), cable.points[0], cable.points[1]));
+    for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
+      Joint ball;
+      ball.name = cable.name + (end == 0 ? "a" : "b");
+      ball.type = JointType::spherical;
+      ball.bodies = {cable.bodies[end], cable.name};
+      ball.at = cable.points[end];
+      ball.coordinates.resize(3);
+      m.joints.push_back(ball);
+    }
+  }
+  return m;
+}
+
 } // namespace flyball::bench

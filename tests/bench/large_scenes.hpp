@@ -21,4 +21,7 @@ Mechanism spring_net(int side, double speed);
 // every cell closes a loop.
 Mechanism cable_net(int side, double speed);
 
+// The same net of rods on ball joints at knots that weigh a tenth.
+Mechanism rod_net(int side, double speed);
+
 } // namespace flyball::bench
