@@ -72,7 +72,7 @@ void BodyEntries::hold_all_by_metric() {
 
 // Of bodies that loops hold at their mass centres.
 void BodyEntries::take_turns_apart() {
-  apart_.assign(static_cast<std::size_t>(bodies_), true);
+  apart_.assign(static_cast<std::size_t>(bodies_), 0);
   const auto turning = [&](int place) { // the body, if it is a turn
     const int u = place - 1;
     return u < 6 * bodies_ && u % 6 < 3 ? u / 6 : -1;
@@ -80,21 +80,21 @@ void BodyEntries::take_turns_apart() {
   for (std::size_t e = 0; e < values_.size(); ++e) {
     const int a = turning(pattern_.rows[e]), b = turning(pattern_.columns[e]);
     if (a == b) continue;
-    if (a >= 0) apart_[static_cast<std::size_t>(a)] = false;
-    if (b >= 0) apart_[static_cast<std::size_t>(b)] = false;
+    for (const int n : {a, b})
+      if (n >= 0) apart_[static_cast<std::size_t>(n)] = -1;
   }
-  place_.assign(static_cast<std::size_t>(bodies_), -1);
-  for (int n = 0; n < bodies_; ++n)
-    if (apart_[static_cast<std::size_t>(n)]) {
-      place_[static_cast<std::size_t>(n)] = static_cast<int>(turns_apart_.size());
-      turns_apart_.emplace_back(6 * n, Mat3::Zero());
-    }
+  for (std::size_t n = 0; n < apart_.size(); ++n) {
+    if (apart_[n] < 0) continue;
+    apart_[n] = static_cast<int>(turns_apart_.size());
+    turns_apart_.emplace_back(static_cast<int>(6 * n), Mat3::Zero());
+  }
   if (turns_apart_.empty()) return;
   drop([&](std::size_t e) {
     const int n = turning(pattern_.rows[e]);
-    if (n < 0 || !apart_[static_cast<std::size_t>(n)]) return false;
+    const int at = n < 0 ? -1 : apart_[static_cast<std::size_t>(n)];
+    if (at < 0) return false;
     const int i = pattern_.rows[e] - 1 - 6 * n, j = pattern_.columns[e] - 1 - 6 * n;
-    Mat3& block = turns_apart_[static_cast<std::size_t>(place_[static_cast<std::size_t>(n)])].second;
+    Mat3& block = turns_apart_[static_cast<std::size_t>(at)].second;
     block(i, j) = block(j, i) = values_[e].stiffness;
     return true;
   });

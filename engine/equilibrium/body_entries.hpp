@@ -66,7 +66,7 @@ class BodyEntries {
   std::vector<double> sum_, largest_;
   std::vector<bool> loose_;
   int bodies_ = 0;
-  std::vector<bool> apart_;                       // by body, whether its turns meet nothing else
+  std::vector<int> apart_; // by body: in turns_apart_; -1: its turns meet something else
   std::vector<std::pair<int, Mat3>> turns_apart_; // the first of them, and the inverse of their block
   std::vector<int> place_;                        // by unknown: among those held; -1: loose, or apart
 };

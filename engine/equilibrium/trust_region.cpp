@@ -270,14 +270,13 @@ class TrustRegion {
     way_.resize(step_.size());
     for (double& x : way_)
       x = any(random);
-    double size = 1;
+    double size = std::sqrt(e_.metric(way_, other_));
     for (int i = 0; i < 6; ++i) {
-      other_ = way_ / std::sqrt(e_.metric(way_, way_image_));
-      e_.metric(other_, way_image_);
+      way_image_ = other_ / size;
       e_.solve(way_image_, way_);
       size = std::sqrt(e_.metric_of_solution(way_, other_));
-      way_ /= size;
     }
+    way_ /= size;
     way_image_ /= size;
   }
 

@@ -1,5 +1,6 @@
 // The sparse equations of all bodies: the same steps as the dense equations, for loops and whatever hangs on
 // springs.
+#include "tests/bench/large_scenes.hpp"
 #include "tests/engine/equilibrium_mechanisms.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 
@@ -285,33 +286,8 @@ TEST_CASE("without compression a net of cables is stiffer, and in nothing else d
   CHECK(fewer > 10);
 }
 
-// The cables of above with a mass of their own, on ball joints at knots that weigh next to nothing.
-static Mechanism rod_net(int side) {
-  const Mechanism cables = cable_net(side, 3);
-  Mechanism m = cables;
-  std::erase_if(m.joints, [](const Joint& j) { return j.type == JointType::distance; });
-  for (const Joint& cable : cables.joints) {
-    if (cable.type != JointType::distance) continue;
-    const Vec3 a = cable.points[0], b = cable.points[1], d = b - a;
-    Body rod = body(cable.name, 0.02, (a + b) / 2);
-    const Mat3 i = rod.mass / 12 * (1.001 * d.squaredNorm() * Mat3::Identity() - d * d.transpose());
-    rod.inertia = {i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)};
-    m.bodies.push_back(rod);
-    for (const int end : {0, 1}) {
-      Joint ball;
-      ball.name = cable.name + (end == 0 ? "a" : "b");
-      ball.type = JointType::spherical;
-      ball.bodies = {cable.bodies[static_cast<std::size_t>(end)], cable.name};
-      ball.at = end == 0 ? a : b;
-      ball.coordinates.resize(3);
-      m.joints.push_back(ball);
-    }
-  }
-  return m;
-}
-
 TEST_CASE("a net of rods comes to rest although every rod may spin") {
-  const Mechanism m = rod_net(6);
+  const Mechanism m = bench::rod_net(6, 3);
   Analysis analysis(m);
   const Solution s = analysis.solve(), again = analysis.solve();
   REQUIRE(s.status == Status::converged);
@@ -328,7 +304,7 @@ TEST_CASE("a net of rods comes to rest although every rod may spin") {
 }
 
 TEST_CASE("all rods of a small net are told to spin freely") {
-  const Mechanism m = rod_net(2);
+  const Mechanism m = bench::rod_net(2, 3);
   const Solution s = solve(m);
   REQUIRE(s.status == Status::converged);
   CHECK(s.stability_reason == StabilityReason::neutral);
