@@ -73,6 +73,23 @@ inline void set_speed_in(const fs::path& file, double value) {
   save_scene(mechanism, file);
 }
 
+// The governor, opened from a folder of its own.
+struct OpenGovernor {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  FileRobot robot{folder};
+  App& app = robot.app;
+  OpenGovernor() { robot.open(file); }
+};
+
+// Unsaved work on a file, by a program that then crashed.
+inline void crash_at_speed(const TemporaryFolder& folder, const fs::path& file, double value) {
+  FileRobot robot(folder, crashed);
+  robot.open(file);
+  robot.set_speed(value);
+  robot.pass(2);
+}
+
 // Of hidden files in the folder, those that end so.
 inline std::size_t hidden(const TemporaryFolder& folder, const std::string& end) {
   std::size_t count = 0;

@@ -7,12 +7,7 @@
 using namespace flyball;
 using namespace flyball::test;
 
-TEST_CASE("unsaved work is kept beside the file while it lasts") {
-  const TemporaryFolder folder;
-  const fs::path file = governor_in(folder);
-  FileRobot robot(folder);
-  App& app = robot.app;
-  robot.open(file);
+TEST_CASE_METHOD(OpenGovernor, "unsaved work is kept beside the file while it lasts") {
   robot.pass(3);
   CHECK(hidden(folder, "-autosave") == 0);
   robot.set_speed(5);
@@ -39,11 +34,7 @@ TEST_CASE("unsaved work is kept beside the file while it lasts") {
   CHECK(hidden(folder, "-autosave") == 0);
 }
 
-TEST_CASE("an opening that fails keeps the work and its autosave") {
-  const TemporaryFolder folder;
-  const fs::path file = governor_in(folder);
-  FileRobot robot(folder);
-  robot.open(file);
+TEST_CASE_METHOD(OpenGovernor, "an opening that fails keeps the work and its autosave") {
   robot.set_speed(5);
   robot.pass(2);
   write_bytes(folder / "broken.json", "no scene");
@@ -60,12 +51,7 @@ TEST_CASE("an opening that fails keeps the work and its autosave") {
 TEST_CASE("work that a crash has left is offered when its file is opened") {
   const TemporaryFolder folder;
   const fs::path file = governor_in(folder);
-  {
-    FileRobot robot(folder, crashed);
-    robot.open(file);
-    robot.set_speed(5);
-    robot.pass(2);
-  }
+  crash_at_speed(folder, file, 5);
   REQUIRE(hidden(folder, "-autosave") == 1);
   // Also when the program starts, because the file was used lately.
   FileRobot robot(folder);
@@ -132,12 +118,7 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
 TEST_CASE("recovering over a file that has changed since, or is gone") {
   const TemporaryFolder folder;
   const fs::path file = governor_in(folder);
-  {
-    FileRobot robot(folder, crashed);
-    robot.open(file);
-    robot.set_speed(5);
-    robot.pass(2);
-  }
+  crash_at_speed(folder, file, 5);
   const bool gone = GENERATE(false, true);
   if (gone)
     fs::remove(file);

@@ -5,12 +5,7 @@
 using namespace flyball;
 using namespace flyball::test;
 
-TEST_CASE("a file that changes on disk is read again where nothing is unsaved") {
-  const TemporaryFolder folder;
-  const fs::path file = governor_in(folder);
-  FileRobot robot(folder);
-  App& app = robot.app;
-  robot.open(file);
+TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk is read again where nothing is unsaved") {
   robot.pass(3);
   select(app, {{{PartKind::body, "ball1"}}});
   const ViewCamera camera = app.view.camera;
@@ -48,12 +43,7 @@ TEST_CASE("a file that changes on disk is read again where nothing is unsaved") 
   }
 }
 
-TEST_CASE("a file that changes on disk while there are unsaved edits is asked about") {
-  const TemporaryFolder folder;
-  const fs::path file = governor_in(folder);
-  FileRobot robot(folder);
-  App& app = robot.app;
-  robot.open(file);
+TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk while there are unsaved edits is asked about") {
   robot.set_speed(5);
   set_speed_in(file, 8);
 
@@ -96,12 +86,7 @@ TEST_CASE("a file that changes on disk while there are unsaved edits is asked ab
   }
 }
 
-TEST_CASE("a file that vanishes is told once, and its document is not lost") {
-  const TemporaryFolder folder;
-  const fs::path file = governor_in(folder);
-  FileRobot robot(folder);
-  App& app = robot.app;
-  robot.open(file);
+TEST_CASE_METHOD(OpenGovernor, "a file that vanishes is told once, and its document is not lost") {
   robot.pass(3);
   fs::remove(file);
   robot.pass(3);
@@ -117,11 +102,7 @@ TEST_CASE("a file that vanishes is told once, and its document is not lost") {
   CHECK(speed_in(file) == 11.0174);
 }
 
-TEST_CASE("reloading by hand can be undone") {
-  const TemporaryFolder folder;
-  const fs::path file = governor_in(folder);
-  FileRobot robot(folder);
-  robot.open(file);
+TEST_CASE_METHOD(OpenGovernor, "reloading by hand can be undone") {
   robot.set_speed(5);
   robot.key('R', true);
   CHECK(robot.speed_now() == 11.0174);
