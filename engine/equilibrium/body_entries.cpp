@@ -12,7 +12,9 @@ void BodyEntries::clear(int unknowns, bool symmetric) {
   values_.clear();
   bodies_ = 0;
   loose_.assign(static_cast<std::size_t>(unknowns), false);
-  turns_apart_.clear();
+  alone_.clear();
+  first_line_.clear();
+  lines_.clear();
 }
 
 void BodyEntries::add(int row, int column, const Value& value) {
@@ -66,40 +68,77 @@ void BodyEntries::add_row(int row, int node, const Vec6& gradient) {
 void BodyEntries::hold_all_by_metric() {
   for (Value& value : values_)
     std::swap(value.stiffness, value.metric);
-  take_turns_apart();
+  take_bodies_apart();
   number();
 }
 
-// Of bodies that loops hold at their mass centres.
-void BodyEntries::take_turns_apart() {
-  apart_.assign(static_cast<std::size_t>(bodies_), 0);
-  const auto turning = [&](int place) { // the body, if it is a turn
-    const int u = place - 1;
-    return u < 6 * bodies_ && u % 6 < 3 ? u / 6 : -1;
+// Bodies that meet no other but by rows. Much lighter ones than the rest stay: they would leave of their rows
+// what they do themselves, and nothing of the others.
+void BodyEntries::take_bodies_apart() {
+  constexpr double light = 1e-3;   // beside the heaviest
+  constexpr std::size_t many = 24; // lines of one body, which all would meet
+  const auto body = [&](int place) { return place <= 6 * bodies_ ? (place - 1) / 6 : -1; };
+  const auto count = static_cast<std::size_t>(bodies_);
+  alone_.assign(count, true);
+  blocks_.assign(count, Mat6::Zero());
+  first_line_.assign(count + 1, 0);
+  int line = -1, line_body = -1; // the row of the entry before, and its body
+  const auto begins = [&](std::size_t e, int n) {
+    const bool same = pattern_.rows[e] == line && n == line_body;
+    line = pattern_.rows[e];
+    line_body = n;
+    return !same;
   };
   for (std::size_t e = 0; e < values_.size(); ++e) {
-    const int a = turning(pattern_.rows[e]), b = turning(pattern_.columns[e]);
-    if (a == b) continue;
-    for (const int n : {a, b})
-      if (n >= 0) apart_[static_cast<std::size_t>(n)] = -1;
+    const int a = body(pattern_.rows[e]), b = body(pattern_.columns[e]);
+    const auto at = static_cast<std::size_t>(b);
+    if (a < 0) {
+      if (begins(e, b)) ++first_line_[at + 1];
+    } else if (a == b) {
+      const int i = pattern_.rows[e] - 1 - 6 * a, j = pattern_.columns[e] - 1 - 6 * a;
+      blocks_[at](i, j) = blocks_[at](j, i) = values_[e].stiffness;
+    } else {
+      alone_[static_cast<std::size_t>(a)] = alone_[at] = false;
+    }
   }
-  for (std::size_t n = 0; n < apart_.size(); ++n) {
-    if (apart_[n] < 0) continue;
-    apart_[n] = static_cast<int>(turns_apart_.size());
-    turns_apart_.emplace_back(static_cast<int>(6 * n), Mat3::Zero());
+  double heaviest = 0;
+  for (const Mat6& block : blocks_)
+    heaviest = std::max(heaviest, block.diagonal().minCoeff());
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto own = static_cast<std::size_t>(first_line_[n + 1]);
+    if (own > many || !(blocks_[n].diagonal().minCoeff() > light * heaviest)) alone_[n] = false;
+    first_line_[n + 1] = first_line_[n] + (alone_[n] ? first_line_[n + 1] : 0);
   }
-  if (turns_apart_.empty()) return;
+  lines_.resize(static_cast<std::size_t>(first_line_.back()));
+  next_line_.assign(first_line_.begin(), first_line_.end() - 1);
+  line = -1;
   drop([&](std::size_t e) {
-    const int n = turning(pattern_.rows[e]);
-    const int at = n < 0 ? -1 : apart_[static_cast<std::size_t>(n)];
-    if (at < 0) return false;
-    const int i = pattern_.rows[e] - 1 - 6 * n, j = pattern_.columns[e] - 1 - 6 * n;
-    Mat3& block = turns_apart_[static_cast<std::size_t>(at)].second;
-    block(i, j) = block(j, i) = values_[e].stiffness;
+    const int b = body(pattern_.columns[e]);
+    const auto at = static_cast<std::size_t>(b);
+    if (b < 0 || !alone_[at]) return false;
+    if (body(pattern_.rows[e]) >= 0) return true;
+    if (begins(e, b))
+      lines_[static_cast<std::size_t>(next_line_[at]++)] = {pattern_.rows[e] - 1, Vec6::Zero()};
+    Line& own = lines_[static_cast<std::size_t>(next_line_[at] - 1)];
+    own.gradient[pattern_.columns[e] - 1 - 6 * b] += values_[e].fixed;
     return true;
   });
-  for (auto& [u, block] : turns_apart_)
-    block = block.inverse().eval();
+  for (std::size_t n = 0; n < count; ++n)
+    if (alone_[n]) leave_rows_of(n);
+}
+
+// What is left of a body's rows when its motion is eliminated: - G B^-1 G^T.
+void BodyEntries::leave_rows_of(std::size_t n) {
+  blocks_[n] = blocks_[n].inverse().eval();
+  for (int i = first_line_[n]; i < first_line_[n + 1]; ++i) {
+    const Line& a = lines_[static_cast<std::size_t>(i)];
+    const Vec6 moved = blocks_[n] * a.gradient;
+    for (int j = first_line_[n]; j <= i; ++j) {
+      const Line& b = lines_[static_cast<std::size_t>(j)];
+      const double twice = a.row == b.row && i != j ? 2 : 1;
+      add(std::max(a.row, b.row), std::min(a.row, b.row), {-twice * moved.dot(b.gradient), 0, 0});
+    }
+  }
 }
 
 void BodyEntries::hold_above(const std::vector<double>& noise) {
@@ -139,8 +178,8 @@ void BodyEntries::drop(Drops drops) {
 // Numbers what is solved for.
 void BodyEntries::number() {
   place_.assign(loose_.size(), 0);
-  for (const auto& [u, block] : turns_apart_)
-    std::fill_n(place_.begin() + u, 3, -1);
+  for (std::size_t n = 0; n < alone_.size(); ++n)
+    if (alone_[n]) std::fill_n(place_.begin() + static_cast<std::ptrdiff_t>(6 * n), 6, -1);
   int next = 0;
   for (std::size_t u = 0; u < loose_.size(); ++u)
     place_[u] = loose_[u] || place_[u] < 0 ? -1 : next++;
@@ -158,11 +197,18 @@ const std::vector<double>& BodyEntries::sum(double stiffness, double metric) {
 }
 
 void BodyEntries::gather(Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const {
+  for (std::size_t n = 0; n < alone_.size(); ++n) {
+    if (!alone_[n]) continue;
+    auto motion = unknowns.segment<6>(static_cast<Eigen::Index>(6 * n));
+    motion = blocks_[n] * motion.eval();
+    for (int i = first_line_[n]; i < first_line_[n + 1]; ++i) {
+      const Line& line = lines_[static_cast<std::size_t>(i)];
+      unknowns[line.row] -= line.gradient.dot(motion);
+    }
+  }
   held.resize(pattern_.size);
   for (std::size_t u = 0; u < place_.size(); ++u)
     if (const int at = place_[u]; at >= 0) held[at] = unknowns[static_cast<Eigen::Index>(u)];
-  for (const auto& [u, inverse] : turns_apart_)
-    unknowns.segment<3>(u) = inverse * unknowns.segment<3>(u).eval();
 }
 
 void BodyEntries::spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::VectorXd& unknowns) const {
@@ -173,6 +219,15 @@ void BodyEntries::spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::V
       unknowns[at] = held[place_[u]];
     else if (loose_[u])
       unknowns[at] = 0;
+  }
+  for (std::size_t n = 0; n < alone_.size(); ++n) {
+    if (!alone_[n]) continue;
+    Vec6 wrench = Vec6::Zero();
+    for (int i = first_line_[n]; i < first_line_[n + 1]; ++i) {
+      const Line& line = lines_[static_cast<std::size_t>(i)];
+      wrench += unknowns[line.row] * line.gradient;
+    }
+    unknowns.segment<6>(static_cast<Eigen::Index>(6 * n)) -= blocks_[n] * wrench;
   }
 }
 

@@ -2,8 +2,8 @@
 // (the constraints), so that a multiple of the metric can be added without assembling anything again.
 //
 // Of the unknowns the first are six for each body. Those that nothing holds, the loose ones, are left out,
-// and turns that meet nothing but themselves are solved for apart; the others are numbered anew: they are the
-// ones held.
+// and in the metric bodies that meet others by rows alone are solved for apart, which leaves their rows; the
+// others are numbered anew: they are the ones held.
 #pragma once
 
 #include "engine/equilibrium/body_stiffness.hpp"
@@ -42,8 +42,8 @@ class BodyEntries {
   // The pattern's values: multiples of stiffness and metric, and what is fixed. Valid until the next call.
   const std::vector<double>& sum(double stiffness, double metric);
 
-  // From all unknowns to those held, where turns apart become their solution; and back from what is held,
-  // where what is loose gets nothing.
+  // From all unknowns to those held, where bodies apart get what they would do without rows; and from there
+  // back, where what is loose gets nothing.
   void gather(Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const;
   void spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::VectorXd& unknowns) const;
 
@@ -56,7 +56,8 @@ class BodyEntries {
   void add(int row, int column, const Value& value);
   void add_block(int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
                  const Mat6& metric_ab);
-  void take_turns_apart();
+  void take_bodies_apart();
+  void leave_rows_of(std::size_t body);
   template <class Drops>
   void drop(Drops drops); // the entries of which drops(e) is true
   void number();
@@ -66,9 +67,17 @@ class BodyEntries {
   std::vector<double> sum_, largest_;
   std::vector<bool> loose_;
   int bodies_ = 0;
-  std::vector<int> apart_; // by body: in turns_apart_; -1: its turns meet something else
-  std::vector<std::pair<int, Mat3>> turns_apart_; // the first of them, and the inverse of their block
-  std::vector<int> place_;                        // by unknown: among those held; -1: loose, or apart
+  std::vector<int> place_; // by unknown: among those held; -1: loose, or apart
+
+  // Of bodies apart, by body: whether one is, the inverse of its metric, and its rows' gradients.
+  struct Line {
+    int row = 0;
+    Vec6 gradient;
+  };
+  std::vector<bool> alone_;
+  std::vector<Mat6> blocks_;
+  std::vector<int> first_line_, next_line_;
+  std::vector<Line> lines_;
 };
 
 } // namespace flyball

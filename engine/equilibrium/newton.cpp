@@ -5,7 +5,7 @@
 namespace flyball {
 namespace {
 
-// Dependent rows have pivots of the size by which the loops are open; closed, of rounding.
+// Dependent rows have singular values of the size by which the loops are open; closed, of rounding.
 double rank_tolerance(const Problem& problem, const Eigen::VectorXd& phi) {
   const double open = phi.size() > 0 ? phi.cwiseProduct(problem.scaling.row).lpNorm<Eigen::Infinity>() : 0;
   return std::clamp(10 * open, 1e-10, 1e-3);
@@ -122,7 +122,8 @@ double scaled_residual(const Problem& problem, const Workspace& w) {
 
 void factor_constraints(const Problem& problem, Workspace& w) {
   if (problem.system.rows > 0 && !problem.is_dense()) {
-    w.loops.linearize_metric(problem, w.kinematics, rank_tolerance(problem, w.residual.phi));
+    const double tolerance = rank_tolerance(problem, w.residual.phi); // pivots are singular values squared
+    w.loops.linearize_metric(problem, w.kinematics, std::max(tolerance * tolerance, 1e-10));
     w.loops.factor();
     return;
   }
