@@ -50,6 +50,10 @@ class Eliminator {
     solve(rhs, none_, x, multipliers_);
   }
 
+  // Shortens what solve() has just given so that no body turns further than `most` (rad) altogether; what
+  // hangs on it follows as solved for. False where none does, or nothing is known of it.
+  virtual bool hold_turns(double, Eigen::VectorXd&) { return false; }
+
   // W x, and x^T W x.
   virtual double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) = 0;
 

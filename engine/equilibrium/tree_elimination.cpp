@@ -3,6 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace flyball {
 namespace {
 
@@ -256,11 +260,12 @@ void TreeElimination::solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd&, 
       g += b.u * b.e;
     }
   });
-  outwards(x);
+  outwards(std::numeric_limits<double>::infinity(), x);
 }
 
-// From e, what each coordinate would do were its parent held, to the motion of all.
-void TreeElimination::outwards(Eigen::VectorXd& x) {
+// From e, what each coordinate would do were its parent held, to the motion of all, none turning further than
+// `most`.
+void TreeElimination::outwards(double most, Eigen::VectorXd& x) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     Node& n = nodes_[i];
     if (n.parent >= 0)
@@ -268,16 +273,30 @@ void TreeElimination::outwards(Eigen::VectorXd& x) {
     else
       n.motion.setZero();
     if (n.one()) {
-      n.e -= n.inverse * (symmetric_ ? n.u : rows_[i]).dot(n.motion);
-      x[n.v] = n.e;
-      n.motion.segment<3>(n.at()) += n.axis * n.e;
+      double own = n.e - n.inverse * (symmetric_ ? n.u : rows_[i]).dot(n.motion);
+      if (n.angular) {
+        const double before = n.axis.dot(n.motion.head<3>());
+        if (std::abs(before + own) > most) own = std::copysign(most, before + own) - before;
+      }
+      x[n.v] = own;
+      n.motion.segment<3>(n.at()) += n.axis * own;
     } else if (n.ball >= 0) {
-      Ball& b = balls_[static_cast<std::size_t>(n.ball)];
-      b.e -= b.inverse * (b.r.transpose() * n.motion);
-      x.segment<3>(n.v) = b.e;
-      n.motion += b.s * b.e;
+      const Ball& b = balls_[static_cast<std::size_t>(n.ball)];
+      Vec3 own = b.e - b.inverse * (b.r.transpose() * n.motion);
+      const Vec3 whole = n.motion.head<3>() + b.s.topRows<3>() * own;
+      if (const double turn = whole.norm(); turn > most)
+        own -= b.s.topRows<3>().transpose() * whole * (1 - most / turn);
+      x.segment<3>(n.v) = own;
+      n.motion += b.s * own;
     }
   }
+}
+
+bool TreeElimination::hold_turns(double most, Eigen::VectorXd& x) {
+  const bool far = std::ranges::any_of(
+      nodes_, [&](const Node& n) { return n.motion.head<3>().squaredNorm() > most * most; });
+  if (far) outwards(most, x);
+  return far;
 }
 
 void TreeElimination::direction_of(const Flat& flat, Eigen::VectorXd& x) {
@@ -290,7 +309,7 @@ void TreeElimination::direction_of(const Flat& flat, Eigen::VectorXd& x) {
     else if (n.ball >= 0)
       balls_[static_cast<std::size_t>(n.ball)].e = x.segment<3>(n.v);
   }
-  outwards(x);
+  outwards(std::numeric_limits<double>::infinity(), x);
 }
 
 double TreeElimination::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {

@@ -43,6 +43,7 @@ class TreeElimination final : public Eliminator {
   using Eliminator::solve;
   void solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
              Eigen::VectorXd& lambda) override;
+  bool hold_turns(double most, Eigen::VectorXd& x) override;
   double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
   double metric_of_solution(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
   void direction_of(const Flat& flat, Eigen::VectorXd& x) override;
@@ -82,7 +83,7 @@ class TreeElimination final : public Eliminator {
                  const Magnitudes& magnitudes, const SubtreeSizes& sizes, double least, Node& n);
   void eliminate_one(Node& n, double shift, Mat6& h);
   void eliminate_three(Node& n, double shift, Mat6& h);
-  void outwards(Eigen::VectorXd& x);
+  void outwards(double most, Eigen::VectorXd& x);
 
   bool symmetric_ = true;
   std::vector<Node> nodes_;       // of mobile links, parents before children
