@@ -4,6 +4,19 @@
 #include <Eigen/QR>
 
 namespace flyball {
+namespace {
+
+// Of a free body's directions, as a rule three along axes and three about them.
+Mat6 inverse_transposed(const Mat6& s) {
+  const Mat6 gram = s.transpose() * s;
+  const Eigen::Matrix<double, 6, 1> squares = gram.diagonal();
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < j; ++i)
+      if (gram(i, j) * gram(i, j) > 1e-31 * squares[i] * squares[j]) return s.transpose().inverse();
+  return s * squares.cwiseInverse().asDiagonal();
+}
+
+} // namespace
 
 // Massless links of a joint belong to the one link that they carry.
 void BodyNodes::join_links(const System& system) {
@@ -76,7 +89,7 @@ void BodyNodes::place_node(int i, const Problem& problem, const Kinematics<doubl
   x.n.resize(6, 6 - x.columns);
   switch (x.columns) {
   case 0: x.n = Mat6::Identity(); return;
-  case 6: x.d = x.s.transpose().inverse(); return;
+  case 6: x.d = inverse_transposed(x.s); return;
   default: break;
   }
   const BodyColumns s = x.s.leftCols(x.columns);
