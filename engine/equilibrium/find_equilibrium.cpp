@@ -32,6 +32,8 @@ class Search {
     }
     NewtonSettings plain;
     plain.trusting = warm_;
+    // Where the way downhill comes next it leads to a minimum with fewer steps.
+    plain.to_minimum = has_descent() && !p_.is_dense() && !warm_;
     if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, plain, &history_); }))
       return;
     if (p_.cancelled()) return cancelled();

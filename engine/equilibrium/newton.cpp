@@ -275,6 +275,9 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, z.lambda);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > farthest) break;
+    // At an unstable equilibrium it stays, to say so.
+    constexpr double there = 1e-6;
+    if (settings.to_minimum && size > there && w.eliminator(problem).negative_count() > 0) break;
     // In large mechanisms steps that stay long lead nowhere and cost much.
     if (!problem.is_dense() && !settings.damped && i >= 3 && size > 1 && size > 0.5 * previous_step) break;
     double fraction = 1;

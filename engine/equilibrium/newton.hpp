@@ -53,7 +53,8 @@ struct NewtonSettings {
   // (regularised Newton method; Li, Fukushima, Qi, Yamashita, Regularized Newton methods for convex
   // minimization problems with singular solutions, 2004).
   double proximal = 0;
-  bool trusting = false; // stop where the next step would be within the tolerance by the last two's ratio
+  bool trusting = false;   // stop where the next step would be within the tolerance by the last two's ratio
+  bool to_minimum = false; // of a large mechanism: give up where the potential falls some way
 };
 
 struct NewtonOutcome {
