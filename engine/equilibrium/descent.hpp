@@ -16,6 +16,7 @@ enum class DescentEnd {
 struct DescentOutcome {
   DescentEnd end = DescentEnd::stalled;
   int iterations = 0;
+  bool factored = false; // the balance at z, by the problem's elimination
 };
 
 // From z.q, whose loops must be closed; never raises the potential. Appends the scaled residual to `history`.

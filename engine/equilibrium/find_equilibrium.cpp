@@ -104,7 +104,7 @@ class Search {
   // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems
   // without a potential have no such order; their eigenvalues judge.
   bool acceptable(const NewtonOutcome& outcome) {
-    judge(still_factored(outcome));
+    judge(!found_.net && still_factored(outcome));
     if (nearest_ || !potential_) return true;
     if (unstable_ || outcome.largest_step > 1) return false;
     return !begin_ || below(*begin_);
@@ -113,8 +113,8 @@ class Search {
   // Whether Newton-Raphson's last step was rounding, and taken from a balance with these multipliers: then
   // the factors that it used are those of the state found.
   bool still_factored(const NewtonOutcome& outcome) const {
-    constexpr double rounding = 1e-14;
-    return !found_.net && p_.is_dense() && outcome.last_step < rounding && history_.size() >= 2 &&
+    const double rounding = p_.is_dense() ? 1e-14 : 1e-13; // more bodies, more of it
+    return !outcome.linear && outcome.last_step < rounding && history_.size() >= 2 &&
            history_[history_.size() - 2] < rounding;
   }
 
@@ -168,9 +168,11 @@ class Search {
   }
 
   // Newton-Raphson from where the descent ended, at last with neutral directions held still.
-  NewtonOutcome finish() {
+  NewtonOutcome finish(bool factored) {
     const Eigen::VectorXd bottom = found_.z.q;
-    const NewtonOutcome plain = newton(p_, found_.z, w_, {}, &history_);
+    NewtonSettings free;
+    free.factored = factored;
+    const NewtonOutcome plain = newton(p_, found_.z, w_, free, &history_);
     found_.iterations += plain.iterations;
     if (p_.is_dense() || fell_ || p_.cancelled() || (plain.converged && plain.largest_step <= 0.2))
       return plain;
@@ -240,14 +242,14 @@ class Search {
     // A soft spring may hold a long way down: Newton's method takes that in a stride.
     fell_ = descent.end == DescentEnd::unbounded;
     if (descent.end != DescentEnd::minimum && !fell_) return false;
-    const NewtonOutcome outcome = finish();
+    const NewtonOutcome outcome = finish(descent.factored);
     if (!outcome.converged || (outcome.largest_step > 0.2 && !fell_) ||
         !closed_the_right_way(p_, w_.kinematics) || (fell_ && !below(begin)))
       return false;
     fell_ = false;
     found_.newton = outcome;
     const bool left_unstable = arrived_ && unstable_;
-    judge();
+    judge(!p_.is_dense() && w_.eliminator(p_).shift() == 0 && still_factored(outcome));
     if (potential_ && unstable_) return false;
     // Newton may have been right all along, by a way that had to be checked.
     if (arrived_ && !left_unstable && candidate_.q.size() > 0 && same(candidate_.q, found_.z.q)) {

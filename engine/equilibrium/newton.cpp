@@ -265,7 +265,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     outcome.iterations = i;
     if (outcome.converged || i >= settings.max_iterations || !std::isfinite(residual) || problem.cancelled())
       break;
-    factor(problem, z, w);
+    if (i > 0 || !settings.factored) factor(problem, z, w);
     if (settings.proximal > 0) w.eliminator(problem).factor(settings.proximal);
     if (!w.hessian.known()) break;
     // The multipliers are solved for whole at every step, so the step needs the balance without them.

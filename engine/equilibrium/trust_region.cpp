@@ -30,7 +30,8 @@ class TrustRegion {
       else
         shorten_step(0.25);
       const double size = step_.lpNorm<Eigen::Infinity>();
-      if (shortened == 0 && (shift_ == 0 || shy_) && size < 1e-8) return {DescentEnd::minimum, i};
+      if (shortened == 0 && (shift_ == 0 || shy_) && size < 1e-8)
+        return {DescentEnd::minimum, i, !p_.is_dense() && e_.shift() == 0 && !convex_};
       if (!(predicted_ > 0) || !std::isfinite(size))
         return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
       Trial trial = move(1);
