@@ -72,28 +72,49 @@ void BodyEntries::hold_all_by_metric() {
   number();
 }
 
-// Bodies that meet no other but by rows. Much lighter ones than the rest stay: they would leave of their rows
-// what they do themselves, and nothing of the others.
+// The body of a motion, by its place in the pattern; -1: a multiplier.
+int BodyEntries::body_at(int place) const {
+  return place <= 6 * bodies_ ? (place - 1) / 6 : -1;
+}
+
+// Bodies that meet no other but by rows.
 void BodyEntries::take_bodies_apart() {
-  constexpr double light = 1e-3;   // beside the heaviest
-  constexpr std::size_t many = 24; // lines of one body, which all would meet
-  const auto body = [&](int place) { return place <= 6 * bodies_ ? (place - 1) / 6 : -1; };
+  find_bodies_apart();
+  take_lines();
+  for (std::size_t n = 0; n < alone_.size(); ++n)
+    if (alone_[n]) leave_rows_of(n);
+}
+
+namespace {
+
+// Entries of one row by one body's motion come one after the other.
+struct LineReader {
+  int row = -1, body = -1;
+  bool begins(int next_row, int next_body) {
+    const bool same = row == next_row && body == next_body;
+    row = next_row;
+    body = next_body;
+    return !same;
+  }
+};
+
+} // namespace
+
+// Which they are, their metric, and how many lines they have. Much lighter ones than the rest stay: they
+// would leave of their rows what they do themselves, and nothing of the others.
+void BodyEntries::find_bodies_apart() {
+  constexpr double light = 1e-3; // beside the heaviest
+  constexpr int many = 24;       // lines of one body, which all would meet
   const auto count = static_cast<std::size_t>(bodies_);
   alone_.assign(count, true);
   blocks_.assign(count, Mat6::Zero());
   first_line_.assign(count + 1, 0);
-  int line = -1, line_body = -1; // the row of the entry before, and its body
-  const auto begins = [&](std::size_t e, int n) {
-    const bool same = pattern_.rows[e] == line && n == line_body;
-    line = pattern_.rows[e];
-    line_body = n;
-    return !same;
-  };
+  LineReader reader;
   for (std::size_t e = 0; e < values_.size(); ++e) {
-    const int a = body(pattern_.rows[e]), b = body(pattern_.columns[e]);
+    const int a = body_at(pattern_.rows[e]), b = body_at(pattern_.columns[e]);
     const auto at = static_cast<std::size_t>(b);
     if (a < 0) {
-      if (begins(e, b)) ++first_line_[at + 1];
+      if (reader.begins(pattern_.rows[e], b)) ++first_line_[at + 1];
     } else if (a == b) {
       const int i = pattern_.rows[e] - 1 - 6 * a, j = pattern_.columns[e] - 1 - 6 * a;
       blocks_[at](i, j) = blocks_[at](j, i) = values_[e].stiffness;
@@ -105,26 +126,28 @@ void BodyEntries::take_bodies_apart() {
   for (const Mat6& block : blocks_)
     heaviest = std::max(heaviest, block.diagonal().minCoeff());
   for (std::size_t n = 0; n < count; ++n) {
-    const auto own = static_cast<std::size_t>(first_line_[n + 1]);
+    const int own = first_line_[n + 1];
     if (own > many || !(blocks_[n].diagonal().minCoeff() > light * heaviest)) alone_[n] = false;
-    first_line_[n + 1] = first_line_[n] + (alone_[n] ? first_line_[n + 1] : 0);
+    first_line_[n + 1] = first_line_[n] + (alone_[n] ? own : 0);
   }
+}
+
+// From the entries to lists of their own.
+void BodyEntries::take_lines() {
   lines_.resize(static_cast<std::size_t>(first_line_.back()));
   next_line_.assign(first_line_.begin(), first_line_.end() - 1);
-  line = -1;
+  LineReader reader;
   drop([&](std::size_t e) {
-    const int b = body(pattern_.columns[e]);
+    const int b = body_at(pattern_.columns[e]);
     const auto at = static_cast<std::size_t>(b);
     if (b < 0 || !alone_[at]) return false;
-    if (body(pattern_.rows[e]) >= 0) return true;
-    if (begins(e, b))
+    if (body_at(pattern_.rows[e]) >= 0) return true;
+    if (reader.begins(pattern_.rows[e], b))
       lines_[static_cast<std::size_t>(next_line_[at]++)] = {pattern_.rows[e] - 1, Vec6::Zero()};
     Line& own = lines_[static_cast<std::size_t>(next_line_[at] - 1)];
     own.gradient[pattern_.columns[e] - 1 - 6 * b] += values_[e].fixed;
     return true;
   });
-  for (std::size_t n = 0; n < count; ++n)
-    if (alone_[n]) leave_rows_of(n);
 }
 
 // What is left of a body's rows when its motion is eliminated: - G B^-1 G^T.

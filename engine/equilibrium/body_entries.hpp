@@ -56,7 +56,10 @@ class BodyEntries {
   void add(int row, int column, const Value& value);
   void add_block(int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
                  const Mat6& metric_ab);
+  int body_at(int place) const;
   void take_bodies_apart();
+  void find_bodies_apart();
+  void take_lines();
   void leave_rows_of(std::size_t body);
   template <class Drops>
   void drop(Drops drops); // the entries of which drops(e) is true
