@@ -159,6 +159,17 @@ Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
   return tried;
 }
 
+// [W, J^T; J, 0] [y; lambda] = [force; closing]: J y closes, and constraint forces do the rest of W y.
+void check_metric(Case& x, const Eigen::VectorXd& force) {
+  factor_constraints(x.problem(true), x.sparse);
+  const Eigen::VectorXd closing = Eigen::VectorXd::LinSpaced(x.system.rows, -1, 2);
+  Eigen::VectorXd y, lambda, product;
+  x.sparse.loops.solve(force, closing, y, lambda);
+  CHECK((x.dense.scaled_jacobian * y - closing).norm() < 1e-8 * closing.norm());
+  x.sparse.loops.metric(y, product);
+  CHECK((product + x.dense.scaled_jacobian.transpose() * lambda - force).norm() < 1e-8 * product.norm());
+}
+
 } // namespace
 
 TEST_CASE("a step by the bodies' equations solves those of the coordinates") {
@@ -176,17 +187,6 @@ TEST_CASE("a step by the bodies' equations solves those of the coordinates") {
     CHECK(tried.symmetric > 80);
     CHECK(tried.unsymmetric > 10);
   }
-}
-
-// [W, J^T; J, 0] [y; lambda] = [force; closing]: J y closes, and constraint forces do the rest of W y.
-void check_metric(Case& x, const Eigen::VectorXd& force) {
-  factor_constraints(x.problem(true), x.sparse);
-  const Eigen::VectorXd closing = Eigen::VectorXd::LinSpaced(x.system.rows, -1, 2);
-  Eigen::VectorXd y, lambda, product;
-  x.sparse.loops.solve(force, closing, y, lambda);
-  CHECK((x.dense.scaled_jacobian * y - closing).norm() < 1e-8 * closing.norm());
-  x.sparse.loops.metric(y, product);
-  CHECK((product + x.dense.scaled_jacobian.transpose() * lambda - force).norm() < 1e-8 * product.norm());
 }
 
 TEST_CASE("the metric of the bodies' equations is that of the motion") {
