@@ -131,7 +131,7 @@ double BodyElimination::metric(const Eigen::VectorXd& x, Eigen::VectorXd& produc
     const BodyNode& n = nodes[static_cast<int>(i)];
     Vec6& motion = motion_[i];
     motion.setZero();
-    if (n.parent >= 0) motion = n.shift * motion_[static_cast<std::size_t>(n.parent)];
+    if (n.parent >= 0) motion = carried(motion_[static_cast<std::size_t>(n.parent)], n.lever);
     for (int c = 0; c < n.columns; ++c) {
       const int v = n.v[static_cast<std::size_t>(c)];
       motion += n.s.col(c) * x[v];
@@ -145,7 +145,7 @@ double BodyElimination::metric(const Eigen::VectorXd& x, Eigen::VectorXd& produc
     const BodyNode& n = nodes[static_cast<int>(i)];
     for (int c = 0; c < n.columns; ++c)
       product[n.v[static_cast<std::size_t>(c)]] += n.s.col(c).dot(wrench_[i]);
-    if (n.parent >= 0) wrench_[static_cast<std::size_t>(n.parent)] += n.shift.transpose() * wrench_[i];
+    if (n.parent >= 0) wrench_[static_cast<std::size_t>(n.parent)] += about(wrench_[i], n.lever);
   }
   return square;
 }

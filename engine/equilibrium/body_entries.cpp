@@ -2,15 +2,28 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace flyball {
+namespace {
+
+// Of a body's metric, where as a rule turns about its mass centre and shifts have nothing to do with each
+// other.
+Mat6 inverse(const Mat6& metric) {
+  if (!metric.bottomLeftCorner<3, 3>().isZero(0)) return metric.inverse();
+  Mat6 x = Mat6::Zero();
+  x.topLeftCorner<3, 3>() = metric.topLeftCorner<3, 3>().inverse();
+  x.bottomRightCorner<3, 3>() = metric.bottomRightCorner<3, 3>().inverse();
+  return x;
+}
+
+} // namespace
 
 void BodyEntries::clear(int unknowns, bool symmetric) {
   pattern_.clear(unknowns, symmetric);
   values_.clear();
-  bodies_ = 0;
   loose_.assign(static_cast<std::size_t>(unknowns), false);
   alone_.clear();
   first_line_.clear();
@@ -23,10 +36,25 @@ void BodyEntries::add(int row, int column, const Value& value) {
   values_.push_back(value);
 }
 
+void BodyEntries::set_apart(const std::vector<int>& lines) {
+  alone_.resize(lines.size());
+  blocks_.resize(lines.size());
+  first_line_.assign(lines.size() + 1, 0);
+  for (std::size_t n = 0; n < lines.size(); ++n) {
+    alone_[n] = lines[n] >= 0;
+    first_line_[n + 1] = first_line_[n] + std::max(lines[n], 0);
+  }
+  next_line_.assign(first_line_.begin(), first_line_.end() - 1);
+  lines_.resize(static_cast<std::size_t>(first_line_.back()));
+}
+
 void BodyEntries::add_body(int node, const Mat6& stiffness, const Mat6& metric) {
+  if (apart(node)) {
+    blocks_[static_cast<std::size_t>(node)] = inverse(metric);
+    return;
+  }
   const bool symmetric = pattern_.symmetric;
   const int at = 6 * node;
-  bodies_ = std::max(bodies_, node + 1);
   for (int j = 0; j < 6; ++j)
     for (int i = symmetric ? j : 0; i < 6; ++i)
       add(at + i, at + j,
@@ -59,6 +87,10 @@ void BodyEntries::add_block(int a, int first_i, int b, int first_j, const Mat6& 
 
 void BodyEntries::add_row(int row, int node, const Vec6& gradient) {
   if (node < 0) return;
+  if (apart(node)) {
+    lines_[static_cast<std::size_t>(next_line_[static_cast<std::size_t>(node)]++)] = {row, gradient};
+    return;
+  }
   for (int i = gradient.head<3>().isZero(0) ? 3 : 0; i < 6; ++i) {
     add(row, 6 * node + i, {0, 0, gradient[i]});
     if (!pattern_.symmetric) add(6 * node + i, row, {0, 0, gradient[i]});
@@ -68,91 +100,13 @@ void BodyEntries::add_row(int row, int node, const Vec6& gradient) {
 void BodyEntries::hold_all_by_metric() {
   for (Value& value : values_)
     std::swap(value.stiffness, value.metric);
-  take_bodies_apart();
-  number();
-}
-
-// The body of a motion, by its place in the pattern; -1: a multiplier.
-int BodyEntries::body_at(int place) const {
-  return place <= 6 * bodies_ ? (place - 1) / 6 : -1;
-}
-
-// Bodies that meet no other but by rows.
-void BodyEntries::take_bodies_apart() {
-  find_bodies_apart();
-  take_lines();
   for (std::size_t n = 0; n < alone_.size(); ++n)
     if (alone_[n]) leave_rows_of(n);
-}
-
-namespace {
-
-// Entries of one row by one body's motion come one after the other.
-struct LineReader {
-  int row = -1, body = -1;
-  bool begins(int next_row, int next_body) {
-    const bool same = row == next_row && body == next_body;
-    row = next_row;
-    body = next_body;
-    return !same;
-  }
-};
-
-} // namespace
-
-// Which they are, their metric, and how many lines they have. Much lighter ones than the rest stay: they
-// would leave of their rows what they do themselves, and nothing of the others.
-void BodyEntries::find_bodies_apart() {
-  constexpr double light = 1e-3; // beside the heaviest
-  constexpr int many = 24;       // lines of one body, which all would meet
-  const auto count = static_cast<std::size_t>(bodies_);
-  alone_.assign(count, true);
-  blocks_.assign(count, Mat6::Zero());
-  first_line_.assign(count + 1, 0);
-  LineReader reader;
-  for (std::size_t e = 0; e < values_.size(); ++e) {
-    const int a = body_at(pattern_.rows[e]), b = body_at(pattern_.columns[e]);
-    const auto at = static_cast<std::size_t>(b);
-    if (a < 0) {
-      if (reader.begins(pattern_.rows[e], b)) ++first_line_[at + 1];
-    } else if (a == b) {
-      const int i = pattern_.rows[e] - 1 - 6 * a, j = pattern_.columns[e] - 1 - 6 * a;
-      blocks_[at](i, j) = blocks_[at](j, i) = values_[e].stiffness;
-    } else {
-      alone_[static_cast<std::size_t>(a)] = alone_[at] = false;
-    }
-  }
-  double heaviest = 0;
-  for (const Mat6& block : blocks_)
-    heaviest = std::max(heaviest, block.diagonal().minCoeff());
-  for (std::size_t n = 0; n < count; ++n) {
-    const int own = first_line_[n + 1];
-    if (own > many || !(blocks_[n].diagonal().minCoeff() > light * heaviest)) alone_[n] = false;
-    first_line_[n + 1] = first_line_[n] + (alone_[n] ? own : 0);
-  }
-}
-
-// From the entries to lists of their own.
-void BodyEntries::take_lines() {
-  lines_.resize(static_cast<std::size_t>(first_line_.back()));
-  next_line_.assign(first_line_.begin(), first_line_.end() - 1);
-  LineReader reader;
-  drop([&](std::size_t e) {
-    const int b = body_at(pattern_.columns[e]);
-    const auto at = static_cast<std::size_t>(b);
-    if (b < 0 || !alone_[at]) return false;
-    if (body_at(pattern_.rows[e]) >= 0) return true;
-    if (reader.begins(pattern_.rows[e], b))
-      lines_[static_cast<std::size_t>(next_line_[at]++)] = {pattern_.rows[e] - 1, Vec6::Zero()};
-    Line& own = lines_[static_cast<std::size_t>(next_line_[at] - 1)];
-    own.gradient[pattern_.columns[e] - 1 - 6 * b] += values_[e].fixed;
-    return true;
-  });
+  number();
 }
 
 // What is left of a body's rows when its motion is eliminated: - G B^-1 G^T.
 void BodyEntries::leave_rows_of(std::size_t n) {
-  blocks_[n] = blocks_[n].inverse().eval();
   for (int i = first_line_[n]; i < first_line_[n + 1]; ++i) {
     const Line& a = lines_[static_cast<std::size_t>(i)];
     const Vec6 moved = blocks_[n] * a.gradient;

@@ -18,6 +18,10 @@ class BodyEntries {
   // Starts anew. Of a symmetric matrix one triangle is kept.
   void clear(int unknowns, bool symmetric);
 
+  // Before the first entry: the bodies to be solved for by hand, by node with the number of their lines; -1 is
+  // one that stays. They must meet others by rows alone, and the metric must be what is solved for.
+  void set_apart(const std::vector<int>& lines);
+
   // A body's own six equations.
   void add_body(int node, const Mat6& stiffness, const Mat6& metric);
 
@@ -56,10 +60,7 @@ class BodyEntries {
   void add(int row, int column, const Value& value);
   void add_block(int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
                  const Mat6& metric_ab);
-  int body_at(int place) const;
-  void take_bodies_apart();
-  void find_bodies_apart();
-  void take_lines();
+  bool apart(int node) const { return !alone_.empty() && alone_[static_cast<std::size_t>(node)]; }
   void leave_rows_of(std::size_t body);
   template <class Drops>
   void drop(Drops drops); // the entries of which drops(e) is true
@@ -69,7 +70,6 @@ class BodyEntries {
   std::vector<Value> values_;
   std::vector<double> sum_, largest_;
   std::vector<bool> loose_;
-  int bodies_ = 0;
   std::vector<int> place_; // by unknown: among those held; -1: loose, or apart
 
   // Of bodies apart, by body: whether one is, the inverse of its metric, and its rows' gradients.

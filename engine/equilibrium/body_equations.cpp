@@ -11,7 +11,7 @@ struct JointTerms {
   Mat6 stiffness = Mat6::Zero(), turns = Mat6::Zero();
 };
 
-JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Eigen::VectorXd& q) {
+JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Vec6& load, const Eigen::VectorXd& q) {
   const int k = x.columns;
   const double length = problem.parameters.length;
   JointTerms terms;
@@ -19,7 +19,7 @@ JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Eigen::V
   for (int c = 0; c < k; ++c) {
     Vec6 s = x.s.col(c);
     s.tail<3>() *= length;
-    turns.col(c) = turned(s, x.load.head<3>(), x.load.tail<3>());
+    turns.col(c) = turned(s, load.head<3>(), load.tail<3>());
     turns.col(c).tail<3>() *= length;
   }
   for (int c = 0; c < k; ++c) {
@@ -42,6 +42,13 @@ JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Eigen::V
   return terms;
 }
 
+// Of the parent's motion to that of a body by itself.
+Mat6 carrying(const BodyNode& x) {
+  Mat6 m = Mat6::Identity();
+  m.bottomLeftCorner<3, 3>() = -skew(x.lever);
+  return m;
+}
+
 } // namespace
 
 void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
@@ -52,7 +59,7 @@ void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Ki
   add_pairs(problem, z, k, lines);
   noise_.resize(static_cast<std::size_t>(nodes_.size()));
   for (int i = nodes_.size(); i-- > 0;) {
-    sum_up_load(nodes_[i], residual);
+    sum_up_load(i, residual);
     add_joint(problem, i, &z.q);
     noise_[static_cast<std::size_t>(i)] = noise_of(problem, nodes_[i], magnitudes);
   }
@@ -63,6 +70,7 @@ void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Ki
 void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<double>& k) {
   lay_out(problem, true);
   add_bodies(problem, k, false);
+  set_bodies_apart(problem);
   for (int i = nodes_.size(); i-- > 0;)
     add_joint(problem, i, nullptr);
   add_rows(problem, k);
@@ -89,47 +97,80 @@ void BodyEquations::lay_out(const Problem& problem, bool symmetric) {
 void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>& k, bool stiff) {
   const double reach = nodes_.length() * nodes_.length();
   const double least = Eliminator::own_share * Eliminator::own_share * std::max(mass_, 1e-300) * reach;
+  sums_.resize(static_cast<std::size_t>(nodes_.size()));
   for (int i = 0; i < nodes_.size(); ++i) {
     BodyNode& x = nodes_[i];
+    Sums& sums = sums_[static_cast<std::size_t>(i)];
     nodes_.place_node(i, problem, k);
-    x.load.setZero();
     if (stiff) {
-      set_body_stiffness(problem.parameters, static_cast<std::size_t>(x.link), k, x);
-      x.stiffness = nodes_.scaled(x.own);
+      sums.load.setZero();
+      set_body_stiffness(problem.parameters, static_cast<std::size_t>(x.link), k, x, sums.stiffness);
     } else {
       set_body_inertia(problem.parameters, static_cast<std::size_t>(x.link), k, x);
-      x.stiffness.setZero();
     }
-    x.inertial = nodes_.scaled(inertia_matrix(x));
+    const Mat6 inertia = nodes_.scaled(inertia_matrix(x));
     x.weight.setZero();
     for (int c = 0; c < x.columns; ++c)
-      x.weight[c] = std::max(Eliminator::own_share * x.s.col(c).dot(x.inertial * x.s.col(c)), least);
+      x.weight[c] = std::max(Eliminator::own_share * x.s.col(c).dot(inertia * x.s.col(c)), least);
+    sums.metric = inertia + x.d * x.weight.asDiagonal() * x.d.transpose();
   }
   if (!stiff) return;
   for (std::size_t i = 0; i < problem.system.body_forces.size(); ++i) {
     const BodyForceElement& e = problem.system.body_forces[i];
-    const int n = nodes_.at(e.link);
-    if (n < 0) continue;
-    Mat6 own = Mat6::Zero();
-    add_body_force(e, problem.parameters.body_forces[i], k, own);
-    nodes_[n].stiffness += nodes_.scaled(own);
+    if (const int n = nodes_.at(e.link); n >= 0)
+      add_body_force(e, problem.parameters.body_forces[i], k, sums_[static_cast<std::size_t>(n)].stiffness);
   }
+}
+
+// Bodies that hang from no other, and none from them, meet others by rows alone: with few lines they are
+// solved for by hand. Much lighter ones than the rest stay: they would leave of their rows what they do
+// themselves, and nothing of the others.
+void BodyEquations::set_bodies_apart(const Problem& problem) {
+  constexpr double light = 1e-3; // beside the heaviest
+  constexpr int many = 24;       // lines of one body, which all would meet
+  constexpr int stays = -1;
+  const auto least = [](const Sums& sums) { return sums.metric.diagonal().minCoeff(); };
+  double heaviest = 0;
+  for (const Sums& sums : sums_)
+    heaviest = std::max(heaviest, least(sums));
+  lines_.resize(sums_.size());
+  for (int i = 0; i < nodes_.size(); ++i)
+    lines_[static_cast<std::size_t>(i)] = 6 - nodes_[i].columns;
+  const auto count = [&](int node, int rows) {
+    if (node >= 0) lines_[static_cast<std::size_t>(node)] += rows;
+  };
+  for (const CutJoint& cut : problem.system.cuts) {
+    if (cut.type == JointType::gear) {
+      count(nodes_.place(cut.gear_va).first, 1);
+      count(nodes_.place(cut.gear_vb).first, 1);
+      continue;
+    }
+    count(nodes_.at(cut.ends.a), static_cast<int>(cut.rows.size()));
+    count(nodes_.at(cut.ends.b), static_cast<int>(cut.rows.size()));
+  }
+  for (int i = 0; i < nodes_.size(); ++i) {
+    int& lines = lines_[static_cast<std::size_t>(i)];
+    if (nodes_[i].parent >= 0 || nodes_[i].bears || lines > many ||
+        !(least(sums_[static_cast<std::size_t>(i)]) > light * heaviest))
+      lines = stays;
+  }
+  entries_.set_apart(lines_);
 }
 
 void BodyEquations::add_pair(int a, int b, const PairBlocks& x) {
   compressed_ |= x.compressed;
   const int na = nodes_.at(a), nb = nodes_.at(b);
   if (na >= 0) {
-    nodes_[na].stiffness += nodes_.scaled(x.aa);
-    nodes_[na].load += x.on_a;
+    sums_[static_cast<std::size_t>(na)].stiffness += x.aa;
+    sums_[static_cast<std::size_t>(na)].load += x.on_a;
   }
   if (nb >= 0) {
-    nodes_[nb].stiffness += nodes_.scaled(x.bb);
-    nodes_[nb].load += x.on_b;
+    sums_[static_cast<std::size_t>(nb)].stiffness += x.bb;
+    sums_[static_cast<std::size_t>(nb)].load += x.on_b;
   }
   if (na < 0 || nb < 0) return;
   if (na == nb)
-    nodes_[na].stiffness += nodes_.scaled(x.ab) + nodes_.scaled(x.ba);
+    sums_[static_cast<std::size_t>(na)].stiffness += x.ab + x.ba;
   else
     entries_.add_between(na, nb, nodes_.scaled(x.ab), nodes_.scaled(x.ba), Mat6::Zero());
 }
@@ -166,37 +207,43 @@ void BodyEquations::add_pairs(const Problem& problem, const Unknowns& z, const K
 }
 
 // Of a body with all beyond it, whose own loads were summed up before.
-void BodyEquations::sum_up_load(BodyNode& x, const Residual<double>& residual) {
-  if (x.parent >= 0) nodes_[x.parent].load += about(x.load, x.arm);
-  x.load.head<3>() += residual.moment[static_cast<std::size_t>(x.link)];
-  x.load.tail<3>() += residual.force[static_cast<std::size_t>(x.link)];
+void BodyEquations::sum_up_load(int i, const Residual<double>& residual) {
+  const BodyNode& x = nodes_[i];
+  Vec6& load = sums_[static_cast<std::size_t>(i)].load;
+  if (x.parent >= 0) sums_[static_cast<std::size_t>(x.parent)].load += about(load, x.arm);
+  load.head<3>() += residual.moment[static_cast<std::size_t>(x.link)];
+  load.tail<3>() += residual.force[static_cast<std::size_t>(x.link)];
 }
 
-// What a tree joint transmits, and what it holds; after those beyond it, so that then nothing is missing of
-// its body. Without q the metric alone.
+// A body with what its tree joint transmits, and what that holds; after those beyond it, so that then nothing
+// is missing. Without q the metric alone.
 void BodyEquations::add_joint(const Problem& problem, int i, const Eigen::VectorXd* q) {
-  BodyNode& x = nodes_[i];
-  const Mat6 w = x.d * x.weight.asDiagonal() * x.d.transpose();
-  x.inertial += w;
+  const BodyNode& x = nodes_[i];
+  Sums& sums = sums_[static_cast<std::size_t>(i)];
   Mat6 p = Mat6::Zero(), t = Mat6::Zero();
   if (q) {
-    const JointTerms terms = joint_terms(problem, x, *q);
+    const JointTerms terms = joint_terms(problem, x, sums.load, *q);
     p = x.d * terms.stiffness * x.d.transpose();
-    x.stiffness += p;
+    sums.stiffness = nodes_.scaled(sums.stiffness) + p;
     if (x.parent >= 0) t = terms.turns * x.d.transpose();
+  } else {
+    sums.stiffness.setZero();
   }
-  entries_.add_body(i, x.stiffness, x.inertial);
-  const int held = 6 - x.columns;
-  for (int r = 0; r < held; ++r)
-    entries_.add_row(x.multipliers + r, i, x.n.col(r));
+  entries_.add_body(i, sums.stiffness, sums.metric);
+  if (x.columns == 6 && x.parent < 0) return;
+  const BodyColumns held = forbidden_motions(x);
+  for (int r = 0; r < held.cols(); ++r)
+    entries_.add_row(x.multipliers + r, i, held.col(r));
   if (x.parent < 0) return;
-  BodyNode& parent = nodes_[x.parent];
-  const Mat6 by_parent = -p * x.shift, on_parent = x.shift.transpose() * (t - p);
-  parent.stiffness -= on_parent * x.shift;
-  parent.inertial += x.shift.transpose() * w * x.shift;
-  entries_.add_between(i, x.parent, by_parent, on_parent, -w * x.shift);
-  for (int r = 0; r < held; ++r)
-    entries_.add_row(x.multipliers + r, x.parent, -x.shift.transpose() * x.n.col(r));
+  Sums& parent = sums_[static_cast<std::size_t>(x.parent)];
+  const Mat6 shift = carrying(x), w = x.d * x.weight.asDiagonal() * x.d.transpose();
+  const Mat6 by_parent = -p * shift, on_parent = shift.transpose() * (t - p);
+  // The parent's sums are in units of its own as yet.
+  if (q) parent.stiffness -= nodes_.unscaled(on_parent * shift);
+  parent.metric += shift.transpose() * w * shift;
+  entries_.add_between(i, x.parent, by_parent, on_parent, -w * shift);
+  for (int r = 0; r < held.cols(); ++r)
+    entries_.add_row(x.multipliers + r, x.parent, -shift.transpose() * held.col(r));
 }
 
 void BodyEquations::add_rows(const Problem& problem, const Kinematics<double>& k) {
@@ -226,7 +273,7 @@ void BodyEquations::add_coordinate(int row, int coordinate, double gradient) {
   const BodyNode& x = nodes_[n];
   const Vec6 g = gradient * x.d.col(column);
   entries_.add_row(row, n, g);
-  entries_.add_row(row, x.parent, -x.shift.transpose() * g);
+  entries_.add_row(row, x.parent, -about(g, x.lever));
 }
 
 // The turns of a point mass feel nothing, but the terms of their balance cancel with rounding only.
@@ -249,7 +296,7 @@ void BodyEquations::put(const Eigen::VectorXd& force, const Eigen::VectorXd& clo
     for (int c = 0; c < n.columns; ++c)
       g += n.d.col(c) * force[n.v[static_cast<std::size_t>(c)]];
     work_.segment<6>(6 * i) += g;
-    if (n.parent >= 0) work_.segment<6>(6 * n.parent) -= n.shift.transpose() * g;
+    if (n.parent >= 0) work_.segment<6>(6 * n.parent) -= about(g, n.lever);
   }
   entries_.gather(work_, held);
 }
@@ -259,7 +306,7 @@ void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::R
   for (int i = 0; i < nodes_.size(); ++i) {
     const BodyNode& n = nodes_[i];
     Vec6 m = work_.segment<6>(6 * i);
-    if (n.parent >= 0) m -= n.shift * work_.segment<6>(6 * n.parent);
+    if (n.parent >= 0) m -= carried(work_.segment<6>(6 * n.parent), n.lever);
     for (int c = 0; c < n.columns; ++c)
       x[n.v[static_cast<std::size_t>(c)]] = n.d.col(c).dot(m);
   }

@@ -56,18 +56,28 @@ class BodyEquations {
   void add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                  Lines lines);
   void add_pair(int a, int b, const PairBlocks& blocks);
-  void sum_up_load(BodyNode& node, const Residual<double>& residual);
+  void set_bodies_apart(const Problem& problem);
+  void sum_up_load(int node, const Residual<double>& residual);
   void add_joint(const Problem& problem, int node, const Eigen::VectorXd* q);
   void add_rows(const Problem& problem, const Kinematics<double>& kinematics);
   void add_coordinate(int row, int coordinate, double gradient);
   double noise_of(const Problem& problem, const BodyNode& node, const Magnitudes& magnitudes) const;
 
+  // Of a body and all that meets it.
+  struct Sums {
+    Vec6 load;      // N m, N, about the link's origin; of all beyond it
+    Mat6 stiffness; // of motions in rad and m; scaled in the end
+    Mat6 metric;    // scaled
+  };
+
   bool compressed_ = false;
   int coordinates_ = 0, rows_ = 0, first_row_ = 0, unknowns_ = 0;
   double mass_ = 0;
   BodyNodes nodes_;
+  std::vector<Sums> sums_; // by node
   BodyEntries entries_;
   std::vector<double> noise_; // by node: stiffness that rounding makes
+  std::vector<int> lines_;    // see BodyEntries::set_apart()
   Eigen::VectorXd work_;
 };
 

@@ -42,10 +42,13 @@ void BodyNodes::lay_out(const Problem& problem) {
   join_links(system);
   node_of_link_.assign(count, -1);
   place_.resize(static_cast<std::size_t>(system.nv));
+  std::size_t bodies = 0;
+  for (std::size_t l = 0; l < count; ++l)
+    bodies += system.links[l].mobile && next_[l] < 0;
+  nodes_.resize(bodies);
   std::size_t n = 0;
   for (std::size_t l = 0; l < count; ++l) {
     if (!system.links[l].mobile || next_[l] >= 0) continue;
-    if (nodes_.size() <= n) nodes_.emplace_back();
     BodyNode& x = nodes_[n];
     node_of_link_[l] = static_cast<int>(n++);
     x.link = static_cast<int>(l);
@@ -54,6 +57,8 @@ void BodyNodes::lay_out(const Problem& problem) {
     while (parent_of(head) >= 0 && next_[static_cast<std::size_t>(parent_of(head))] == head)
       head = parent_of(head);
     x.parent = at(parent_of(head));
+    if (x.parent >= 0) nodes_[static_cast<std::size_t>(x.parent)].bears = true;
+    x.bears = false;
     x.columns = 0;
     for (int i = head; i >= 0; i = i == x.link ? -1 : next_[static_cast<std::size_t>(i)]) {
       const Link& link = system.links[static_cast<std::size_t>(i)];
@@ -66,38 +71,40 @@ void BodyNodes::lay_out(const Problem& problem) {
       }
     }
   }
-  nodes_.resize(n);
 }
 
 void BodyNodes::place_node(int i, const Problem& problem, const Kinematics<double>& k) {
   BodyNode& x = nodes_[static_cast<std::size_t>(i)];
   const Vec3& o = k.links[static_cast<std::size_t>(x.link)].o;
   x.arm.setZero();
-  if (x.parent >= 0) {
+  if (x.parent >= 0)
     x.arm = o - k.links[static_cast<std::size_t>(nodes_[static_cast<std::size_t>(x.parent)].link)].o;
-    x.shift.setIdentity();
-    x.shift.bottomLeftCorner<3, 3>() = -skew(x.arm) / length_;
-  }
+  x.lever = x.arm / length_;
   x.s.setZero();
-  x.d.setZero();
   for (int c = 0; c < x.columns; ++c) {
     const int v = x.v[static_cast<std::size_t>(c)];
     const Column<double>& column = k.columns[static_cast<std::size_t>(v)];
     const double unit = problem.scaling.column[v];
     x.s.col(c) << unit * column.turn(), unit / length_ * column.at(o);
   }
-  x.n.resize(6, 6 - x.columns);
-  switch (x.columns) {
-  case 0: x.n = Mat6::Identity(); return;
-  case 6: x.d = inverse_transposed(x.s); return;
-  default: break;
+  if (x.columns == 6) {
+    x.d = inverse_transposed(x.s);
+    return;
   }
+  x.d.setZero();
+  if (x.columns == 0) return;
   const BodyColumns s = x.s.leftCols(x.columns);
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> gram = s.transpose() * s;
   x.d.leftCols(x.columns) = s * gram.inverse();
+}
+
+BodyColumns forbidden_motions(const BodyNode& x) {
+  if (x.columns == 0) return Mat6::Identity();
+  if (x.columns == 6) return BodyColumns(6, 0);
+  const BodyColumns s = x.s.leftCols(x.columns);
   const Eigen::HouseholderQR<BodyColumns> qr(s);
   const Mat6 q = qr.householderQ() * Mat6::Identity();
-  x.n = q.rightCols(6 - x.columns);
+  return q.rightCols(6 - x.columns);
 }
 
 } // namespace flyball

@@ -17,24 +17,22 @@ namespace flyball {
 using BodyColumns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
 
 // A link with the massless ones of its tree joint before it. Scaled but where units are given.
-struct BodyNode : BodyStiffness {
+struct BodyNode : BodyInertia {
   int parent = -1; // node; -1: stands still
   int link = -1;
   int columns = 0;
+  int multipliers = 0;            // first of those of its joint among the unknowns (body_equations.hpp)
   std::array<int, 6> v{}, stage{}; // coordinates, the root's first, and the link of each
-  Vec3 arm;                        // m, from the parent's origin to this one's
-  Mat6 shift;                      // of the parent's motion to this one's, where there is one
-  // Motion by a unit of each coordinate; D^T S = I, N^T S = 0: what a motion is in coordinates, and what of
-  // it the joint forbids. S and D are zero beyond their columns.
+  bool bears = false;              // other nodes hang from it
+  Vec3 arm, lever;                 // from the parent's origin to this one's: m; scaled
+  // Motion by a unit of each coordinate; D^T S = I: what of a motion between parent and body is in
+  // coordinates. Zero beyond their columns.
   Mat6 s, d;
-  BodyColumns n;
-
-  // Of the equations (body_equations.hpp).
-  int multipliers = 0;      // first of its own among the unknowns
-  Vec6 load;                // N m, N, about the link's origin; of all beyond it
-  Vec6 weight;              // metric of the coordinates themselves, zero beyond them
-  Mat6 stiffness, inertial; // of the body and all that meets it
+  Vec6 weight; // metric of the coordinates themselves, zero beyond them
 };
+
+// What a joint forbids, orthonormal: N^T S = 0.
+BodyColumns forbidden_motions(const BodyNode& node);
 
 class BodyNodes {
  public:
@@ -60,15 +58,17 @@ class BodyNodes {
 
   double length() const { return length_; } // m, the mechanism's reach
 
-  // A map of motions (rad, m) to wrenches (N m, N) in units of energy.
-  Mat6 scaled(const Mat6& m) const {
-    Mat6 x = m;
-    x.rightCols<3>() *= length_;
-    x.bottomRows<3>() *= length_;
-    return x;
-  }
+  // A map of motions (rad, m) to wrenches (N m, N) in units of energy, and back.
+  Mat6 scaled(const Mat6& m) const { return in_units(m, length_); }
+  Mat6 unscaled(const Mat6& m) const { return in_units(m, 1 / length_); }
 
  private:
+  static Mat6 in_units(const Mat6& m, double length) {
+    Mat6 x = m;
+    x.rightCols<3>() *= length;
+    x.bottomRows<3>() *= length;
+    return x;
+  }
   void join_links(const System& system);
   double length_ = 1;
   std::vector<BodyNode> nodes_;

@@ -4,9 +4,9 @@ namespace flyball {
 
 namespace {
 
-// Sets all but `own`, and returns the inertia about the mass centre.
+// Returns the inertia about the mass centre.
 Mat3 set_inertia(const Parameters& p, const LinkParameters& lp, const LinkState<double>& x,
-                 BodyStiffness& n) {
+                 BodyInertia& n) {
   n.mass = lp.mass;
   n.turning = lp.mass * p.length * p.length / 4;
   const Vec3 c = x.R * lp.com;
@@ -20,23 +20,24 @@ Mat3 set_inertia(const Parameters& p, const LinkParameters& lp, const LinkState<
 
 } // namespace
 
-void set_body_inertia(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyStiffness& n) {
+void set_body_inertia(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyInertia& n) {
   set_inertia(p, p.links[l], k.links[l], n);
 }
 
-void set_body_stiffness(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyStiffness& n) {
+void set_body_stiffness(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyInertia& n,
+                        Mat6& own) {
   const LinkParameters& lp = p.links[l];
   const LinkState<double>& x = k.links[l];
   const Mat3 central = set_inertia(p, lp, x, n);
   if (lp.mass == 0 && !lp.has_inertia) {
-    n.own.setZero();
+    own.setZero();
     return;
   }
   const Vec3& h = n.first_moment;
   if (!p.moving) {
-    n.own.setZero();
-    n.own.topLeftCorner<3, 3>() = skew_product(h, x.dv);
-    n.own.bottomLeftCorner<3, 3>() = lp.mass * skew(x.dv);
+    own.setZero();
+    own.topLeftCorner<3, 3>() = skew_product(h, x.dv);
+    own.bottomLeftCorner<3, 3>() = lp.mass * skew(x.dv);
     return;
   }
   // See linearization.hpp: Psi'' = A x X + V x (V x X), and B on Psi' = V x X.
@@ -46,11 +47,11 @@ void set_body_stiffness(const Parameters& p, std::size_t l, const Kinematics<dou
   const Mat3 turn = skew(x.dw) + skew_product(x.w, x.w);
   const Mat3 shift = skew<double>(x.dv - x.w.cross(x.v)) + skew_product(x.w, x.v) + skew_product(x.v, x.w);
   const Mat3 moved = skew_times(h, turn);
-  n.own.topLeftCorner<3, 3>().noalias() = n.inertia * turn;
-  n.own.topLeftCorner<3, 3>() += skew_times(h, shift) + times_skew(b, x.w);
-  n.own.topRightCorner<3, 3>() = moved;
-  n.own.bottomLeftCorner<3, 3>() = lp.mass * shift - moved - 2 * skew_product(momentum, x.w);
-  n.own.bottomRightCorner<3, 3>() = lp.mass * turn;
+  own.topLeftCorner<3, 3>().noalias() = n.inertia * turn;
+  own.topLeftCorner<3, 3>() += skew_times(h, shift) + times_skew(b, x.w);
+  own.topRightCorner<3, 3>() = moved;
+  own.bottomLeftCorner<3, 3>() = lp.mass * shift - moved - 2 * skew_product(momentum, x.w);
+  own.bottomRightCorner<3, 3>() = lp.mass * turn;
 }
 
 void add_body_force(const BodyForceElement& e, const BodyForceParameters& f, const Kinematics<double>& k,
@@ -80,7 +81,7 @@ void add_body_force(const BodyForceElement& e, const BodyForceParameters& f, con
   own.bottomRightCorner<3, 3>() += by_shift;
 }
 
-Mat6 inertia_matrix(const BodyStiffness& b) {
+Mat6 inertia_matrix(const BodyInertia& b) {
   Mat6 m;
   const Mat3 hx = skew(b.first_moment);
   m.topLeftCorner<3, 3>() = b.inertia;
@@ -91,7 +92,7 @@ Mat6 inertia_matrix(const BodyStiffness& b) {
   return m;
 }
 
-Vec6 times_inertia(const BodyStiffness& b, const Vec6& x) {
+Vec6 times_inertia(const BodyInertia& b, const Vec6& x) {
   Vec6 y;
   y.head<3>() = b.inertia * x.head<3>() + b.turning * x.head<3>() + b.first_moment.cross(x.tail<3>());
   y.tail<3>() = b.mass * x.tail<3>() - b.first_moment.cross(x.head<3>());

@@ -12,8 +12,7 @@ namespace flyball {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-struct BodyStiffness {
-  Mat6 own;           // K_b
+struct BodyInertia {
   double mass = 0;    // kg
   double turning = 0; // kg m^2, what the metric adds to the inertia: turning counts as if the body were large
   Vec3 first_moment;  // kg m, about the link's origin
@@ -21,21 +20,20 @@ struct BodyStiffness {
   bool massless() const { return mass == 0 && inertia.isZero(0); }
 };
 
-// All but `own`.
 void set_body_inertia(const Parameters& parameters, std::size_t link, const Kinematics<double>& kinematics,
-                      BodyStiffness& out);
+                      BodyInertia& out);
 
-// All, `own` of inertia forces and weight.
+// The same with K_b of inertia forces and weight.
 void set_body_stiffness(const Parameters& parameters, std::size_t link, const Kinematics<double>& kinematics,
-                        BodyStiffness& out);
+                        BodyInertia& out, Mat6& own);
 
 // Adds a force, torque or drag on the body.
 void add_body_force(const BodyForceElement& element, const BodyForceParameters& force,
                     const Kinematics<double>& kinematics, Mat6& own);
 
 // The metric as a matrix; and applied to a motion.
-Mat6 inertia_matrix(const BodyStiffness& body);
-Vec6 times_inertia(const BodyStiffness& body, const Vec6& motion);
+Mat6 inertia_matrix(const BodyInertia& body);
+Vec6 times_inertia(const BodyInertia& body, const Vec6& motion);
 
 // S x* F: how a wrench changes that is turned and shifted along `s`.
 inline Vec6 turned(const Vec6& s, const Vec3& moment, const Vec3& force) {

@@ -140,7 +140,7 @@ void TreeElimination::linearize(const Problem& problem, const Unknowns& z, const
     n.arm = k.links[l].o - k.at(system.links[l].parent).o;
     n.force = residual.force[l];
     n.moment = residual.moment[l];
-    set_body_stiffness(problem.parameters, l, k, n);
+    set_body_stiffness(problem.parameters, l, k, n, n.own);
     mass_ += n.mass;
   }
   for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
