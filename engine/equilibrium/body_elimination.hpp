@@ -45,7 +45,6 @@ class BodyElimination final : public Eliminator {
   SparseFactorization factors_, constraints_;
   bool solved_ = false, metric_alone_ = false;
   int redundant_ = 0;
-  std::size_t loose_ = 0; // of flat_, those that nothing holds
   double tolerance_ = zero;
   Eigen::VectorXd held_;
   std::vector<Vec6> motion_, wrench_; // by node

@@ -69,12 +69,14 @@ class Eliminator {
   // constraints leave free (Sylvester).
   int negative_count() const { return negative_; }
   const std::vector<Flat>& flat() const { return flat_; }
+  std::size_t loose() const { return loose_; } // of flat(), the first: what feels nothing at all
   bool positive_definite() const { return negative_ == 0 && flat_.empty(); }
   double shift() const { return shift_; } // of the last factor()
   double mass() const { return mass_; }   // kg, of what moves
 
  protected:
   std::vector<Flat> flat_;
+  std::size_t loose_ = 0;
   int negative_ = 0, rows_ = 0;
   double mass_ = 0, shift_ = 0;
 

@@ -113,7 +113,7 @@ class Search {
   // Whether Newton-Raphson's last step was rounding, and taken from a balance with these multipliers: then
   // the factors that it used are those of the state found.
   bool still_factored(const NewtonOutcome& outcome) const {
-    const double rounding = p_.is_dense() ? 1e-14 : 1e-13; // more bodies, more of it
+    const double rounding = p_.is_dense() ? 1e-14 : 1e-12; // more bodies, more of it
     return !outcome.linear && outcome.last_step < rounding && history_.size() >= 2 &&
            history_[history_.size() - 2] < rounding;
   }
@@ -158,13 +158,25 @@ class Search {
     Eliminator& e = w_.eliminator(p_);
     const int negative = e.negative_count();
     const std::size_t flat = e.flat().size();
-    if (negative == 0 && p_.system.rows == 0) return true;
+    if (negative == 0 && (p_.system.rows == 0 || flat == e.loose())) return true;
     constexpr double rounding = 1e-5;
     e.factor(rounding * curvature());
     const bool none_falls = e.negative_count() == 0;
     const bool to_be_held = negative > 0 || e.flat().size() < flat; // the rest feels nothing at all
     e.factor(none_falls && to_be_held ? still * curvature() : 0);
     return none_falls;
+  }
+
+  // Newton-Raphson from near a minimum. False, and back there, where it goes off.
+  bool arrive(NewtonOutcome& outcome) {
+    const Eigen::VectorXd near = found_.z.q;
+    NewtonSettings few;
+    few.max_iterations = 10;
+    outcome = newton(p_, found_.z, w_, few, &history_);
+    found_.iterations += outcome.iterations;
+    if (outcome.converged && outcome.largest_step < 0.01) return true;
+    found_.z.q = near;
+    return false;
   }
 
   // Newton-Raphson from where the descent ended, at last with neutral directions held still.
@@ -227,22 +239,33 @@ class Search {
 
   // Small trees are solved densely, but go down by what they trust, too: it takes far fewer iterations.
   bool go_downhill() {
+    const auto trusting = [&](bool all_the_way) {
+      return descend_by_trust(p_, found_.z, w_, &history_, all_the_way);
+    };
     const bool trusted = !p_.is_dense() || (p_.symmetric() && is_plain_tree(p_.system));
-    if (trusted && go_downhill(descend_by_trust)) return true;
-    return p_.is_dense() && !p_.cancelled() && go_downhill(descend);
+    if (trusted && go_downhill(trusting)) return true;
+    return p_.is_dense() && !p_.cancelled() &&
+           go_downhill([&](bool) { return descend(p_, found_.z, w_, &history_); });
   }
 
   template <class Descent>
-  bool go_downhill(Descent descend_from) {
+  bool go_downhill(Descent descend_from_here) {
     found_.net = Net::descent;
     found_.z.q = w_.assembled;
     const Potential begin = energy_at(w_.assembled);
-    const DescentOutcome descent = descend_from(p_, found_.z, w_, &history_);
+    DescentOutcome descent = descend_from_here(false);
     found_.iterations += descent.iterations;
+    NewtonOutcome outcome;
+    if (descent.end == DescentEnd::near && !arrive(outcome)) {
+      descent = descend_from_here(true);
+      found_.iterations += descent.iterations;
+    }
     // A soft spring may hold a long way down: Newton's method takes that in a stride.
     fell_ = descent.end == DescentEnd::unbounded;
-    if (descent.end != DescentEnd::minimum && !fell_) return false;
-    const NewtonOutcome outcome = finish(descent.factored);
+    if (descent.end == DescentEnd::minimum || fell_)
+      outcome = finish(descent.factored);
+    else if (descent.end != DescentEnd::near)
+      return false;
     if (!outcome.converged || (outcome.largest_step > 0.2 && !fell_) ||
         !closed_the_right_way(p_, w_.kinematics) || (fell_ && !below(begin)))
       return false;

@@ -257,7 +257,11 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
                      std::vector<double>* history) {
   NewtonOutcome outcome;
   w.zero_lambda.setZero(problem.system.rows);
-  evaluate(problem, z, 0, w);
+  // What loops carry decides whether the potential falls.
+  if (settings.to_minimum)
+    evaluate_with_multipliers(problem, z, w);
+  else
+    evaluate(problem, z, 0, w);
   double previous_step = 0;
   for (int i = 0;; ++i) {
     const double residual = scaled_residual(problem, w);

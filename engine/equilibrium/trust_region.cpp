@@ -17,7 +17,7 @@ class TrustRegion {
         e_(problem.is_dense() ? static_cast<Eliminator&>(w.tree) : w.eliminator(problem)), history_(history) {
   }
 
-  DescentOutcome run() {
+  DescentOutcome run(bool all_the_way) {
     linearize_here();
     unit_ = std::sqrt(e_.mass()) * p_.parameters.length;
     radius_ = 0.5 * unit_;
@@ -51,6 +51,10 @@ class TrustRegion {
         z_.q = moved_;
         travelled += length_;
         if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
+        compression_tells_ = convex_ && !(ratio > 0.8 && ratio < 1.25);
+        const bool model_serves = shift_ == 0 && !convex_ && std::abs(ratio - 1) < 0.1;
+        if (!all_the_way && p_.system.rows > 0 && model_serves && size < 1e-3)
+          return {DescentEnd::near, i + 1};
         arrive(trial.potential);
         shortened = 0;
       } else {
@@ -195,7 +199,10 @@ class TrustRegion {
     double low = least_shift_, high = 0; // the shift sought lies between, once high is known
     bool low_definite = false, sought = false;
     shy_ = false;
-    if (low == 0 && solve_with(0)) {
+    // Where the convex model was far off the exact one still is not convex, as a rule.
+    const bool in_vain = compression_tells_ && passed_over_ < 2;
+    passed_over_ = in_vain ? passed_over_ + 1 : 0;
+    if (low == 0 && !in_vain && solve_with(0)) {
       if (length_ <= 1.25 * radius_) return;
       low_definite = true;
     } else if (!convex_ && e_.linearize_convex(p_, z_, w_.kinematics, w_.residual, w_.magnitudes)) {
@@ -336,14 +343,16 @@ class TrustRegion {
   double shift_ = 0, last_shift_ = 0;
   double least_shift_ = 0; // below this K + shift W is known not to be positive definite
   bool convex_ = false;    // the convex model was tried here
+  bool compression_tells_ = false; // in the last step, by the convex model, which leaves it out
+  int passed_over_ = 0;            // times in a row that the exact model was not tried
   bool shy_ = false;       // of a longer step along a fall that coordinates make
 };
 
 } // namespace
 
 DescentOutcome descend_by_trust(const Problem& problem, Unknowns& z, Workspace& w,
-                                std::vector<double>* history) {
-  return TrustRegion(problem, z, w, history).run();
+                                std::vector<double>* history, bool all_the_way) {
+  return TrustRegion(problem, z, w, history).run(all_the_way);
 }
 
 } // namespace flyball
