@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <mutex>
 
 namespace flyball {
 namespace {
@@ -28,7 +29,10 @@ struct SparseFactorization::State {
   // Settings by their numbers in the MUMPS users' guide, counted from 1.
   MUMPS_INT& setting(int i) { return mumps.icntl[i - 1]; }
 
+  // One at a time: MUMPS keeps some of its state in global variables while it runs.
   void run(int job) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
     mumps.job = job;
     dmumps_c(&mumps);
   }

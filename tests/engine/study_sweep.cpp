@@ -1,8 +1,10 @@
 // Sweeps: rows equal single solves, whatever the threads.
+#include "tests/bench/large_scenes.hpp"
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/mechanism/error.hpp"
 #include "engine/study/sweep.hpp"
+#include "engine/system/system.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -79,6 +81,22 @@ TEST_CASE("the number of threads changes nothing") {
     for (std::size_t i = 0; i < one.size(); ++i) {
       CAPTURE(threads, i);
       CHECK(many[i].parameters == one[i].parameters);
+      check_same(many[i].solution, one[i].solution);
+    }
+  }
+}
+
+// The sparse solver behind them is not made for several threads.
+TEST_CASE("large nets are swept on several threads, too") {
+  for (const Mechanism& m : {bench::spring_net(8, 3), bench::cable_net(8, 3)}) {
+    REQUIRE(compile(m).elimination == Elimination::bodies);
+    const Variation speed{"joints.spin.drive.speed", 2, 4, 8};
+    const std::vector<SweepPoint> one = sweep(m, std::span(&speed, 1), 1);
+    const std::vector<SweepPoint> many = sweep(m, std::span(&speed, 1), 4);
+    REQUIRE(many.size() == one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      CAPTURE(m.name, i);
+      CHECK(one[i].solution.status == Status::converged);
       check_same(many[i].solution, one[i].solution);
     }
   }
