@@ -73,6 +73,7 @@ class Search {
     found_.z.lambda.setZero(p_.system.rows);
     const NewtonOutcome outcome = solver(found_.z);
     found_.iterations += outcome.iterations;
+    falls_at_start_ = outcome.falls && outcome.iterations == 0;
     if (!outcome.converged || !closed_the_right_way(p_, w_.kinematics)) return false;
     arrived_ = true;
     found_.newton = outcome;
@@ -99,6 +100,12 @@ class Search {
   bool below(const Potential& begin) const {
     const Potential end = amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics);
     return end.value <= begin.value + 1e-12 * (begin.magnitude + end.magnitude);
+  }
+
+  bool fell_below_assembled() {
+    const Potential begin = energy_at(w_.assembled);
+    evaluate(p_, found_.z, 0, w_);
+    return below(begin);
   }
 
   // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems
@@ -240,7 +247,8 @@ class Search {
   // Small trees are solved densely, but go down by what they trust, too: it takes far fewer iterations.
   bool go_downhill() {
     const auto trusting = [&](bool all_the_way) {
-      return descend_by_trust(p_, found_.z, w_, &history_, all_the_way);
+      const bool falls = falls_at_start_ && !all_the_way && w_.assembled == start_;
+      return descend_by_trust(p_, found_.z, w_, &history_, all_the_way, falls);
     };
     const bool trusted = !p_.is_dense() || (p_.symmetric() && is_plain_tree(p_.system));
     if (trusted && go_downhill(trusting)) return true;
@@ -252,7 +260,6 @@ class Search {
   bool go_downhill(Descent descend_from_here) {
     found_.net = Net::descent;
     found_.z.q = w_.assembled;
-    const Potential begin = energy_at(w_.assembled);
     DescentOutcome descent = descend_from_here(false);
     found_.iterations += descent.iterations;
     NewtonOutcome outcome;
@@ -267,7 +274,7 @@ class Search {
     else if (descent.end != DescentEnd::near)
       return false;
     if (!outcome.converged || (outcome.largest_step > 0.2 && !fell_) ||
-        !closed_the_right_way(p_, w_.kinematics) || (fell_ && !below(begin)))
+        !closed_the_right_way(p_, w_.kinematics) || (fell_ && !fell_below_assembled()))
       return false;
     fell_ = false;
     found_.newton = outcome;
@@ -339,6 +346,7 @@ class Search {
   NewtonOutcome candidate_outcome_;
   std::optional<Net> candidate_net_;
   bool arrived_ = false, potential_ = false, unstable_ = false, fell_ = false;
+  bool falls_at_start_ = false; // says Newton-Raphson, which leaves the balance linearised there
 };
 
 } // namespace

@@ -272,6 +272,12 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     if (i > 0 || !settings.factored) factor(problem, z, w);
     if (settings.proximal > 0) w.eliminator(problem).factor(settings.proximal);
     if (!w.hessian.known()) break;
+    // At an unstable equilibrium it stays, to say so.
+    constexpr double there = 1e-6;
+    if (settings.to_minimum && residual > there && w.eliminator(problem).negative_count() > 0) {
+      outcome.falls = true;
+      break;
+    }
     // The multipliers are solved for whole at every step, so the step needs the balance without them.
     w.trial.q = z.q;
     w.trial.lambda = z.lambda;
@@ -279,8 +285,6 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, z.lambda);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > farthest) break;
-    // At an unstable equilibrium it stays, to say so.
-    constexpr double there = 1e-6;
     if (settings.to_minimum && size > there && w.eliminator(problem).negative_count() > 0) break;
     // In large mechanisms steps that stay long lead nowhere and cost much.
     if (!problem.is_dense() && !settings.damped && i >= 3 && size > 1 && size > 0.5 * previous_step) break;

@@ -61,6 +61,7 @@ struct NewtonSettings {
 struct NewtonOutcome {
   bool converged = false;
   bool linear = false; // converged in the residual while steps still shrank slowly: a singular state
+  bool falls = false;  // gave up for settings.to_minimum at z, where the balance is factored
   int iterations = 0;
   double largest_step = 0; // scaled
   double last_step = 0;    // scaled

@@ -17,8 +17,14 @@ class TrustRegion {
         e_(problem.is_dense() ? static_cast<Eliminator&>(w.tree) : w.eliminator(problem)), history_(history) {
   }
 
-  DescentOutcome run(bool all_the_way) {
-    linearize_here();
+  DescentOutcome run(bool all_the_way, bool falls) {
+    falls_ = falls;
+    if (falls) {
+      potential_ = lagrangian(z_.q);
+      take_in();
+    } else {
+      linearize_here();
+    }
     unit_ = std::sqrt(e_.mass()) * p_.parameters.length;
     radius_ = 0.5 * unit_;
     double travelled = 0;
@@ -155,11 +161,16 @@ class TrustRegion {
   }
 
   void linearize_evaluated() {
+    take_in();
+    e_.linearize(p_, z_, w_.kinematics, w_.residual, w_.magnitudes);
+  }
+
+  // What has been evaluated at z_.
+  void take_in() {
     if (history_) history_->push_back(scaled_residual(p_, w_));
     gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
     force_ = w_.magnitudes.force.cwiseProduct(p_.scaling.column).maxCoeff();
     convex_ = false;
-    e_.linearize(p_, z_, w_.kinematics, w_.residual, w_.magnitudes);
     least_shift_ = 0;
   }
 
@@ -200,8 +211,9 @@ class TrustRegion {
     bool low_definite = false, sought = false;
     shy_ = false;
     // Where the convex model was far off the exact one still is not convex, as a rule.
-    const bool in_vain = compression_tells_ && passed_over_ < 2;
+    const bool in_vain = falls_ || (compression_tells_ && passed_over_ < 2);
     passed_over_ = in_vain ? passed_over_ + 1 : 0;
+    falls_ = false;
     if (low == 0 && !in_vain && solve_with(0)) {
       if (length_ <= 1.25 * radius_) return;
       low_definite = true;
@@ -343,6 +355,7 @@ class TrustRegion {
   double shift_ = 0, last_shift_ = 0;
   double least_shift_ = 0; // below this K + shift W is known not to be positive definite
   bool convex_ = false;    // the convex model was tried here
+  bool falls_ = false;             // the exact model is known not to be convex here
   bool compression_tells_ = false; // in the last step, by the convex model, which leaves it out
   int passed_over_ = 0;            // times in a row that the exact model was not tried
   bool shy_ = false;       // of a longer step along a fall that coordinates make
@@ -351,8 +364,8 @@ class TrustRegion {
 } // namespace
 
 DescentOutcome descend_by_trust(const Problem& problem, Unknowns& z, Workspace& w,
-                                std::vector<double>* history, bool all_the_way) {
-  return TrustRegion(problem, z, w, history).run(all_the_way);
+                                std::vector<double>* history, bool all_the_way, bool falls) {
+  return TrustRegion(problem, z, w, history).run(all_the_way, falls);
 }
 
 } // namespace flyball

@@ -15,8 +15,8 @@ namespace flyball {
 
 // As descend(), for a problem that is the gradient of the potential and either is not dense or has
 // is_plain_tree(). Ends near a minimum where Newton-Raphson leads on at less cost, as with loops it does,
-// unless `all_the_way`.
+// unless `all_the_way`. `falls`: the balance has been linearised at z and is known to be no minimum's.
 DescentOutcome descend_by_trust(const Problem& problem, Unknowns& z, Workspace& w,
-                                std::vector<double>* history, bool all_the_way);
+                                std::vector<double>* history, bool all_the_way, bool falls);
 
 } // namespace flyball
