@@ -2,56 +2,43 @@
 
 namespace flyball {
 
-namespace {
-
-// Returns the inertia about the mass centre.
-Mat3 set_inertia(const Parameters& p, const LinkParameters& lp, const LinkState<double>& x,
-                 BodyInertia& n) {
+void set_body_inertia(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyInertia& n) {
+  const LinkParameters& lp = p.links[l];
+  const Mat3& r = k.links[l].R;
   n.mass = lp.mass;
   n.turning = lp.mass * p.length * p.length / 4;
-  const Vec3 c = x.R * lp.com;
+  const Vec3 c = r * lp.com;
   n.first_moment = lp.mass * c;
   n.inertia = -lp.mass * skew_product(c, c);
-  if (!lp.has_inertia) return Mat3::Zero();
-  const Mat3 central = x.R * lp.inertia * x.R.transpose();
-  n.inertia += central;
-  return central;
+  if (lp.has_inertia) n.inertia += r * lp.inertia * r.transpose();
 }
 
-} // namespace
-
-void set_body_inertia(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyInertia& n) {
-  set_inertia(p, p.links[l], k.links[l], n);
-}
-
+// The acceleration of the body's frame is a field that stands still while the body moves in it: at r from the
+// origin dv + T r. A particle at r feels it by its mass, moved it feels T (shift + turn x r) more, and its
+// wrench is r x that. Summed over the body with S the sum of r r^T by mass, since [r][b] = b r^T - r.b and
+// [r][w w^T][r] = [w] r r^T [w]; less the turn of the whole wrench.
 void set_body_stiffness(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyInertia& n,
                         Mat6& own) {
-  const LinkParameters& lp = p.links[l];
+  set_body_inertia(p, l, k, n);
   const LinkState<double>& x = k.links[l];
-  const Mat3 central = set_inertia(p, lp, x, n);
-  if (lp.mass == 0 && !lp.has_inertia) {
-    own.setZero();
-    return;
-  }
   const Vec3& h = n.first_moment;
+  own.setZero();
+  if (n.massless()) return;
+  own.topLeftCorner<3, 3>() = skew_product(h, x.dv);
   if (!p.moving) {
-    own.setZero();
-    own.topLeftCorner<3, 3>() = skew_product(h, x.dv);
-    own.bottomLeftCorner<3, 3>() = lp.mass * skew(x.dv);
+    own.bottomLeftCorner<3, 3>() = n.mass * skew(x.dv);
     return;
   }
-  // See linearization.hpp: Psi'' = A x X + V x (V x X), and B on Psi' = V x X.
-  const Vec3 c = x.R * lp.com, momentum = lp.mass * (x.v + x.w.cross(c));
-  const Mat3 swept = skew_times(x.w, central);
-  const Mat3 b = swept + swept.transpose() - skew<double>(central * x.w) - 2 * skew_product(c, momentum);
-  const Mat3 turn = skew(x.dw) + skew_product(x.w, x.w);
-  const Mat3 shift = skew<double>(x.dv - x.w.cross(x.v)) + skew_product(x.w, x.v) + skew_product(x.v, x.w);
-  const Mat3 moved = skew_times(h, turn);
-  own.topLeftCorner<3, 3>().noalias() = n.inertia * turn;
-  own.topLeftCorner<3, 3>() += skew_times(h, shift) + times_skew(b, x.w);
-  own.topRightCorner<3, 3>() = moved;
-  own.bottomLeftCorner<3, 3>() = lp.mass * shift - moved - 2 * skew_product(momentum, x.w);
-  own.bottomRightCorner<3, 3>() = lp.mass * turn;
+  const Mat3 t = skew(x.dw) + skew_product(x.w, x.w);
+  Mat3 s = -n.inertia;
+  s.diagonal().array() += n.inertia.trace() / 2;
+  const Mat3 ts = t * s;
+  own.topLeftCorner<3, 3>() += ts - skew_times(x.w, times_skew(s, x.w)) - x.w.squaredNorm() * n.inertia +
+                               skew<double>(s * x.dw);
+  own.topLeftCorner<3, 3>().diagonal().array() -= ts.trace();
+  own.topRightCorner<3, 3>() = skew_times(h, t);
+  own.bottomLeftCorner<3, 3>() = skew<double>(n.mass * x.dv + t * h) - times_skew(t, h);
+  own.bottomRightCorner<3, 3>() = n.mass * t;
 }
 
 void add_body_force(const BodyForceElement& e, const BodyForceParameters& f, const Kinematics<double>& k,

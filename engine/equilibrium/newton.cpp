@@ -257,10 +257,9 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
                      std::vector<double>* history) {
   NewtonOutcome outcome;
   w.zero_lambda.setZero(problem.system.rows);
-  // What loops carry decides whether the potential falls.
-  if (settings.to_minimum)
+  if (settings.to_minimum) // what loops carry decides whether the potential falls
     evaluate_with_multipliers(problem, z, w);
-  else
+  else if (!settings.factored)
     evaluate(problem, z, 0, w);
   double previous_step = 0;
   for (int i = 0;; ++i) {

@@ -55,7 +55,7 @@ struct NewtonSettings {
   double proximal = 0;
   bool trusting = false;   // stop where the next step would be within the tolerance by the last two's ratio
   bool to_minimum = false; // of a large mechanism: give up where the potential falls some way
-  bool factored = false;   // the balance at z is, and the first step takes its factors
+  bool factored = false;   // the balance at z is evaluated and factored, and the first step takes that
 };
 
 struct NewtonOutcome {
