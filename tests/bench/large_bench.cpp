@@ -60,7 +60,7 @@ Cost measure(const std::string& family, const Mechanism& mechanism, const Cost& 
   double reading = unlimited, checking = unlimited, compiling = unlimited, whole = unlimited,
          accepted = unlimited;
   double total = 0;
-  for (int run = 0; run < 9 && total < 2; ++run) {
+  for (int run = 0; run < 9 && total < 8; ++run) {
     const auto least = [&](double& time, const std::function<void()>& work) {
       const double once = seconds(work);
       time = std::min(time, 1e3 * once);
