@@ -18,8 +18,8 @@ class BodyEntries {
   // Starts anew. Of a symmetric matrix one triangle is kept.
   void clear(int unknowns, bool symmetric);
 
-  // Before the first entry: the bodies to be solved for by hand, by node with the number of their lines; -1 is
-  // one that stays. They must meet others by rows alone, and the metric must be what is solved for.
+  // Before the first entry: the bodies to be solved for by hand, by node with the number of their lines; -1
+  // is one that stays. They must meet others by rows alone, and the metric must be what is solved for.
   void set_apart(const std::vector<int>& lines);
 
   // A body's own six equations.

@@ -11,7 +11,8 @@ struct JointTerms {
   Mat6 stiffness = Mat6::Zero(), turns = Mat6::Zero();
 };
 
-JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Vec6& load, const Eigen::VectorXd& q) {
+JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Vec6& load,
+                       const Eigen::VectorXd& q) {
   const int k = x.columns;
   const double length = problem.parameters.length;
   JointTerms terms;

@@ -21,7 +21,7 @@ struct BodyNode : BodyInertia {
   int parent = -1; // node; -1: stands still
   int link = -1;
   int columns = 0;
-  int multipliers = 0;            // first of those of its joint among the unknowns (body_equations.hpp)
+  int multipliers = 0;             // first of those of its joint among the unknowns (body_equations.hpp)
   std::array<int, 6> v{}, stage{}; // coordinates, the root's first, and the link of each
   bool bears = false;              // other nodes hang from it
   Vec3 arm, lever;                 // from the parent's origin to this one's: m; scaled

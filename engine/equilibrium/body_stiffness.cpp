@@ -33,8 +33,8 @@ void set_body_stiffness(const Parameters& p, std::size_t l, const Kinematics<dou
   Mat3 s = -n.inertia;
   s.diagonal().array() += n.inertia.trace() / 2;
   const Mat3 ts = t * s;
-  own.topLeftCorner<3, 3>() += ts - skew_times(x.w, times_skew(s, x.w)) - x.w.squaredNorm() * n.inertia +
-                               skew<double>(s * x.dw);
+  own.topLeftCorner<3, 3>() +=
+      ts - skew_times(x.w, times_skew(s, x.w)) - x.w.squaredNorm() * n.inertia + skew<double>(s * x.dw);
   own.topLeftCorner<3, 3>().diagonal().array() -= ts.trace();
   own.topRightCorner<3, 3>() = skew_times(h, t);
   own.bottomLeftCorner<3, 3>() = skew<double>(n.mass * x.dv + t * h) - times_skew(t, h);

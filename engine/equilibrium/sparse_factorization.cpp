@@ -62,8 +62,9 @@ class Mumps {
 
 // Minimum fill would begin with the multipliers, which meet few. But these have nothing on the diagonal, are
 // no pivots until something that they meet has been one, and to wait costs much. So they are left out of the
-// graph, where what they tie meets instead, and each follows the first that it meets: a body, as a rule, whose
-// motions come one after the other. By unknown its place in the order, from 1; empty where there are none.
+// graph, where what they tie meets instead, and each follows the first that it meets: a body, as a rule,
+// whose motions come one after the other. By unknown its place in the order, from 1; empty where there are
+// none.
 std::vector<int> order_multipliers_behind(const SparsePattern& pattern) {
   const auto count = static_cast<std::size_t>(pattern.size), entries = pattern.rows.size();
   const auto row = [&](std::size_t e) { return static_cast<std::size_t>(pattern.rows[e] - 1); };

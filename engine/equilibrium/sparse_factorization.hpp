@@ -1,7 +1,7 @@
 // A sparse matrix factored with pivoting as L D L^T or L U, by MUMPS (Amestoy, Duff, L'Excellent, Koster, A
 // fully asynchronous multifrontal solver using distributed dynamic scheduling, 2001). Tells the signs of the
-// eigenvalues (Sylvester) and what the matrix maps to zero but for rounding. Each thread may have its own; while
-// one factors or solves the others wait.
+// eigenvalues (Sylvester) and what the matrix maps to zero but for rounding. Each thread may have its own;
+// while one factors or solves the others wait.
 #pragma once
 
 #include <Eigen/Core>

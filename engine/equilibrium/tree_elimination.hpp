@@ -58,7 +58,7 @@ class TreeElimination final : public Eliminator {
 
   // What sweeps read together lies together: caches end before large trees do.
   struct Node : BodyInertia {
-    Mat6 own; // K_b
+    Mat6 own;           // K_b
     Vec3 force, moment; // F_l about the link's origin
     int link = -1, parent = -1, v = -1;
     int ball = -1;     // in balls_

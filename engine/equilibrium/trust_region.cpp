@@ -353,12 +353,12 @@ class TrustRegion {
   Potential potential_;
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
   double shift_ = 0, last_shift_ = 0;
-  double least_shift_ = 0; // below this K + shift W is known not to be positive definite
-  bool convex_ = false;    // the convex model was tried here
+  double least_shift_ = 0;         // below this K + shift W is known not to be positive definite
+  bool convex_ = false;            // the convex model was tried here
   bool falls_ = false;             // the exact model is known not to be convex here
   bool compression_tells_ = false; // in the last step, by the convex model, which leaves it out
   int passed_over_ = 0;            // times in a row that the exact model was not tried
-  bool shy_ = false;       // of a longer step along a fall that coordinates make
+  bool shy_ = false;               // of a longer step along a fall that coordinates make
 };
 
 } // namespace
