@@ -3,6 +3,19 @@
 #include "engine/system/rotation_vector.hpp"
 
 namespace flyball {
+namespace {
+
+// Axes of double precision are of unit length to double precision only. Wider numbers would see that turning
+// about one stretches what it turns, and loops held by large forces feel it.
+template <class S>
+Vec3T<S> unit_axis(const LinkParameters& p) {
+  if constexpr (std::is_same_v<S, double>)
+    return p.axis;
+  else
+    return p.axis.cast<S>().normalized();
+}
+
+} // namespace
 
 template <class S>
 void forward(const System& system, const Parameters& p, const Configuration<S>& q, double t,
@@ -30,15 +43,17 @@ void forward(const System& system, const Parameters& p, const Configuration<S>& 
     x.o = parent.o + parent.R * lp.offset.cast<S>();
     switch (link.type) {
     case LinkType::fixed: x.R = parent.R; break;
-    case LinkType::revolute:
-      x.axis = parent.R * lp.axis.cast<S>();
+    case LinkType::revolute: {
+      const Vec3T<S> axis = unit_axis<S>(lp);
+      x.axis = parent.R * axis;
       if (link.drive >= 0 && displacement == S(0)) // at the drawn phase
         x.R = parent.R;
       else
-        x.R = parent.R * rotation_about<S>(lp.axis.cast<S>(), displacement);
+        x.R = parent.R * rotation_about<S>(axis, displacement);
       break;
+    }
     case LinkType::prismatic:
-      x.axis = parent.R * lp.axis.cast<S>();
+      x.axis = parent.R * unit_axis<S>(lp);
       x.R = parent.R;
       x.o += x.axis * displacement;
       break;
