@@ -35,7 +35,8 @@ void add_noise(const Problem& problem, double left, double opening, Workspace& w
       w.residual.f[i] =
           sign(i) * (8 * long_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
     for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
-      w.residual.phi[i] = sign(i) * (8 * long_rounding + opening) / problem.scaling.row[i];
+      w.residual.phi[i] =
+          sign(i) * (8 * long_rounding * w.magnitudes.phi[i] + opening / problem.scaling.row[i]);
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
     error += w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs();
   }

@@ -244,23 +244,20 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
     const CutJoint& cut = system.cuts[i];
     for (std::size_t r = 0; r < cut.rows.size(); ++r) {
       const int row = cut.first_row + static_cast<int>(r);
-      switch (cut.rows[r].type) {
-      case RowType::gear:
-        out.phi[row] = std::abs(q[cut.gear_b]) + std::abs(p.cuts[i].ratio * q[cut.gear_a]) +
-                       std::abs(p.cuts[i].offset) + 1;
-        break;
-      case RowType::direction: out.phi[row] = 1; break;
-      case RowType::point:
-      case RowType::distance: out.phi[row] = p.length; break;
-      }
       const double size = largest * arm(cut, cut.rows[r]);
       if (cut.rows[r].type == RowType::gear) {
+        out.phi[row] = std::abs(q[cut.gear_b]) + std::abs(p.cuts[i].ratio * q[cut.gear_a]) +
+                       std::abs(p.cuts[i].offset) + 1;
         out.force[cut.gear_va] += size * std::abs(p.cuts[i].ratio);
         out.force[cut.gear_vb] += size;
         continue;
       }
-      // By the whole lever, as for springs.
+      // Positions are subtracted that may be far from the drawn pose.
       const Vec3 at = k.point(cut.ends.b, p.cuts[i].b);
+      out.phi[row] = cut.rows[r].type == RowType::direction
+                         ? 1
+                         : std::max({p.length, k.point(cut.ends.a, p.cuts[i].a).norm(), at.norm()});
+      // By the whole lever, as for springs.
       for (const SupportColumn& s : cut.ends.support) {
         const Column<double>& c = k.columns[static_cast<std::size_t>(s.v)];
         if (cut.rows[r].type == RowType::direction)
