@@ -21,22 +21,28 @@ void evaluate_long(const Problem& problem, const Unknowns& z, Workspace& w) {
   w.residual.phi = w.residual_long.phi.cast<double>();
 }
 
+// Of noise in four patterns: no two of eight neighbours have the same signs in all of them, nor opposite
+// ones, so that what they do together does not cancel throughout.
+double noise_sign(unsigned pattern, Eigen::Index i) {
+  const auto place = static_cast<unsigned>(i), eight = place / 8;
+  const unsigned mixed = (place + 5 * eight) % 8;
+  const unsigned turned = pattern == 0 ? 0 : mixed >> (pattern - 1);
+  return ((turned ^ static_cast<unsigned>(std::popcount(eight))) & 1U) == 0 ? 1 : -1;
+}
+
 // What the rounding of the residual and of the solution for the step, and equations of redundant loops that
 // disagree, do to each coordinate: the step that noise of this size with arbitrary signs asks for, four times
 // over. `left` (scaled) is the largest force that the step had to balance: a stiff spring's, by its rounded
 // length. Loops mix it with the softest.
 void add_noise(const Problem& problem, double left, double opening, Workspace& w, Eigen::VectorXd& error) {
   const double mixed = problem.system.rows > 0 ? std::numeric_limits<double>::epsilon() * left : 0;
-  for (unsigned pattern : {1U, 5U, 11U, 23U}) {
-    const auto sign = [&](Eigen::Index i) {
-      return std::popcount((static_cast<unsigned>(i) + 1) * pattern) % 2 == 0 ? 1. : -1.;
-    };
+  for (unsigned pattern = 0; pattern < 4; ++pattern) {
     for (Eigen::Index i = 0; i < w.residual.f.size(); ++i)
-      w.residual.f[i] =
-          sign(i) * (8 * long_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
+      w.residual.f[i] = noise_sign(pattern, i) *
+                        (8 * long_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
     for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
-      w.residual.phi[i] =
-          sign(i) * (8 * long_rounding * w.magnitudes.phi[i] + opening / problem.scaling.row[i]);
+      w.residual.phi[i] = noise_sign(pattern, i) *
+                          (8 * long_rounding * w.magnitudes.phi[i] + opening / problem.scaling.row[i]);
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
     error += w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs();
   }
