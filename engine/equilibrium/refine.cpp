@@ -1,5 +1,7 @@
 #include "engine/equilibrium/refine.hpp"
 
+#include "engine/equilibrium/eliminator.hpp"
+
 #include <bit>
 
 namespace flyball {
@@ -115,6 +117,17 @@ void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, 
   factor(problem, z, w);
 }
 
+// A metric that held what seemed to feel nothing shortens the steps along what feels a little: without it,
+// unless something is flat indeed.
+void let_go(const Problem& problem, Workspace& w) {
+  if (problem.is_dense()) return;
+  Eliminator& e = w.eliminator(problem);
+  const double shift = e.shift();
+  if (shift == 0) return;
+  e.factor();
+  if (e.flat().size() > e.loose()) e.factor(shift);
+}
+
 } // namespace
 
 void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, Workspace& w,
@@ -123,6 +136,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   error.setZero(system.nv);
   w.unheld.setZero(system.nv);
   if (system.nv == 0) return;
+  let_go(problem, w);
   double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
   constexpr int last_round = 4;
   for (int round = 0; round <= last_round; ++round) {
