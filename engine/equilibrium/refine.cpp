@@ -97,19 +97,36 @@ bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) 
   return more;
 }
 
+// How far (scaled) the force along a soft direction, which the steps left alone, asks the state to move by
+// the stiffness there; none where that is no more than rounding.
+double asked_for(const Problem& problem, const Eigen::VectorXd& direction, const Workspace& w) {
+  const Eigen::VectorXd size = direction.cwiseAbs();
+  const double force = std::abs(direction.dot(w.residual.f.cwiseProduct(problem.scaling.column))) +
+                       8 * long_rounding * size.dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+  const double stiffness = std::abs(direction.dot(w.scaled_stiffness * direction));
+  const double noise =
+      8 * std::numeric_limits<double>::epsilon() * size.dot(w.scaled_stiffness.cwiseAbs() * size);
+  return stiffness > noise ? force / stiffness : 0;
+}
+
 void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, Eigen::VectorXd& error) {
-  const Eigen::MatrixXd flat = w.constraints.basis() * w.hessian.null_basis();
+  Eigen::MatrixXd flat = w.constraints.basis() * w.hessian.null_basis();
+  Eigen::VectorXd asked = Eigen::VectorXd::Zero(flat.cols());
+  evaluate_long(problem, z, w);
+  for (Eigen::Index c = 0; c < flat.cols(); ++c) {
+    const double size = flat.col(c).lpNorm<Eigen::Infinity>();
+    if (!(size > 0)) continue;
+    flat.col(c) /= size;
+    asked[c] = asked_for(problem, flat.col(c), w);
+  }
   // What is never decided along a mixture of many is not along any of them.
   const bool none = flat.cols() > few_flat && !std::isfinite(undecided(problem, z, mixture_of(flat), w));
   for (Eigen::Index c = 0; c < flat.cols(); ++c) {
-    Eigen::VectorXd direction = flat.col(c);
-    const double size = direction.lpNorm<Eigen::Infinity>();
-    if (!(size > 0)) continue;
-    direction /= size;
-    const double way = none ? std::numeric_limits<double>::infinity() : undecided(problem, z, direction, w);
-    const Eigen::VectorXd moved = direction.cwiseProduct(problem.scaling.column).cwiseAbs();
+    if (flat.col(c).isZero(0)) continue;
+    const double way = none ? std::numeric_limits<double>::infinity() : undecided(problem, z, flat.col(c), w);
+    const Eigen::VectorXd moved = flat.col(c).cwiseProduct(problem.scaling.column).cwiseAbs();
     if (std::isfinite(way))
-      error = error.cwiseMax(way * moved);
+      error = error.cwiseMax(std::max(way, 4 * asked[c]) * moved);
     else // neutral, or lost in rounding: stability tells which
       w.unheld = w.unheld.cwiseMax(moved);
   }
