@@ -178,7 +178,7 @@ ReferenceState Reference::settle(const Solution& solution) const {
       }
       Eigen::ColPivHouseholderQR<MatrixW> qr(rows.transpose());
       qr.setThreshold(Wide(std::clamp(10 * open, rounding, 1e-3)));
-      const Eigen::Index rank = qr.rank();
+      const Eigen::Index rank = most > Wide(rounding) ? qr.rank() : 0;
       const MatrixW all = qr.householderQ();
       range = all.leftCols(rank);
       basis = all.rightCols(system.nv - rank);
