@@ -41,10 +41,10 @@ void add_noise(const Problem& problem, double left, double opening, Workspace& w
   for (unsigned pattern = 0; pattern < 4; ++pattern) {
     for (Eigen::Index i = 0; i < w.residual.f.size(); ++i)
       w.residual.f[i] = noise_sign(pattern, i) *
-                        (8 * long_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
+                        (2 * long_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
     for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
       w.residual.phi[i] = noise_sign(pattern, i) *
-                          (8 * long_rounding * w.magnitudes.phi[i] + opening / problem.scaling.row[i]);
+                          (2 * long_rounding * w.magnitudes.phi[i] + opening / problem.scaling.row[i]);
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
     error += w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs();
   }

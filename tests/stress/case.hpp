@@ -24,7 +24,8 @@ struct Verdict {
   int judged = 0, bounded = 0; // coordinates; of these, estimates that bound the error and one unit in the
                                // last place
   double worst = 0;            // largest true error / estimate
-  std::vector<double> caution; // estimate / max(true error, unit in the last place), by coordinate
+  // By coordinate: estimate / max(true error, unit in the last place of the value and of 1 rad or the reach).
+  std::vector<double> caution;
   int iterations = 0;
   std::string net;   // "" for plain Newton-Raphson
   double time_s = 0; // of the solve

@@ -243,6 +243,7 @@ ReferenceState Reference::settle(const Solution& solution) const {
     if (link.type != LinkType::spherical) {
       x.away = static_cast<double>(abs(value - q[link.q].v));
       x.uncertainty = static_cast<double>(4 * abs(step[link.v]) * s.column[link.v]);
+      x.unit = static_cast<double>(s.column[link.v]);
       continue;
     }
     const Vec3T<Dual> r =

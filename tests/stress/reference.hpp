@@ -13,6 +13,7 @@ namespace flyball::stress {
 struct ReferenceCoordinate {
   double away = 0;        // rad or m: the engine's value from the reference
   double uncertainty = 0; // rad or m, of the reference itself
+  double unit = 1;        // 1 rad, or the mechanism's reach in m
 };
 
 struct ReferenceState {

@@ -10,7 +10,8 @@ struct Summary {
   int judged = 0, bounded = 0; // coordinates
   double true_error = 0;       // the largest; rad or m, of the coordinates that Verdict tells
   double worst = 0;            // true error / estimate
-  double caution = 0;          // median of estimate / max(true error, unit in the last place)
+  double caution = 0;          // median of Verdict::caution
+  double cautious = 0;         // share of those over 100
   double slowest = 0;          // s, of a solve
   double share() const { return judged == 0 ? 1 : static_cast<double>(bounded) / judged; }
 };

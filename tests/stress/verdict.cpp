@@ -106,7 +106,8 @@ Verdict judge(const Mechanism& mechanism, const SolveOptions& options, const Exp
     if (known) {
       const auto at = std::ranges::find(expected.known, label(c), &std::pair<std::string, double>::first);
       if (at == expected.known.end()) continue;
-      r = {std::abs(c.value - at->second), 0};
+      r.away = std::abs(c.value - at->second);
+      r.uncertainty = 0;
     }
     if (r.uncertainty > 0.1 * std::max(c.error, r.away)) {
       unclear = true;
@@ -115,7 +116,7 @@ Verdict judge(const Mechanism& mechanism, const SolveOptions& options, const Exp
     const double least = std::max(r.away, last_place(c.value));
     ++out.judged;
     out.bounded += c.error >= least;
-    if (c.value != 0) out.caution.push_back(c.error / least);
+    out.caution.push_back(c.error / std::max(least, last_place(r.unit)));
     const double ratio = r.away > 0 ? r.away / c.error : 0;
     if (out.judged == 1 || ratio > out.worst) {
       out.worst = ratio;
