@@ -6,18 +6,12 @@
 #include "tests/engine/mechanism_parts.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 
-#include <numeric>
-
 namespace flyball::stress {
 
 void add_random_cases(const CaseChoice& choice, Cases& cases) {
-  std::vector<int> seeds(static_cast<std::size_t>(12 * choice.seeds));
-  std::iota(seeds.begin(), seeds.end(), 0);
   // Estimates once fell short here: by axes not quite of unit length, by loops far away, by a metric that
   // held a soft direction, and along one that double precision hardly tells from none.
-  for (const int once : {37, 89, 165, 414})
-    if (once >= 12 * choice.seeds) seeds.push_back(once);
-  for (const int i : seeds) {
+  for (const int i : seeds(12 * choice.seeds, {37, 89, 165, 414})) {
     const auto seed = static_cast<std::uint32_t>(9000 + i);
     reference::RandomOptions options;
     options.loops = i % 3;

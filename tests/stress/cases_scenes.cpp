@@ -3,8 +3,6 @@
 #include "tests/stress/scenes.hpp"
 #include "tests/stress/verdict.hpp"
 
-#include <numeric>
-
 namespace flyball::stress {
 
 void add_scene_cases(const CaseChoice&, Cases& cases) {
@@ -19,11 +17,8 @@ void add_scene_cases(const CaseChoice&, Cases& cases) {
 void add_far_start_cases(const CaseChoice& choice, Cases& cases) {
   for (const NamedScene& scene : shipped_scenes()) {
     const Analysis analysis(scene.mechanism);
-    std::vector<int> seeds(static_cast<std::size_t>(2 * choice.seeds));
-    std::iota(seeds.begin(), seeds.end(), 0);
     // Where the governor's arm ends at a dead centre, and two rows once cancelled in the estimate.
-    if (constexpr int once = 61; once >= 2 * choice.seeds) seeds.push_back(once);
-    for (const int seed : seeds) {
+    for (const int seed : seeds(2 * choice.seeds, {61})) {
       Dice dice(static_cast<std::uint32_t>(100 + seed));
       SolveOptions options;
       options.start = random_start(analysis, scene.mechanism, dice);

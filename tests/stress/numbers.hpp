@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <numbers>
 #include <random>
 #include <string>
@@ -37,6 +38,16 @@ inline std::vector<double> decades(int from, int to, int step, bool thinned) {
   std::vector<double> out;
   for (int e = from; e <= to; e += thinned ? 3 * step : step)
     out.push_back(std::pow(10., e));
+  return out;
+}
+
+// Seeds 0 ... count - 1, and beyond them those at which something once went wrong.
+inline std::vector<int> seeds(int count, std::initializer_list<int> kept) {
+  std::vector<int> out;
+  for (int seed = 0; seed < count; ++seed)
+    out.push_back(seed);
+  for (const int seed : kept)
+    if (seed >= count) out.push_back(seed);
   return out;
 }
 
