@@ -12,16 +12,23 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
   Unknowns moved = z;
   Eigen::VectorXd step = way, multipliers;
   const double shift = w.eliminator(problem).shift();
-  for (int i = 0; i < 8; ++i) {
-    w.step = step.cwiseProduct(problem.scaling.column);
-    retract<double>(problem.system, w.step, moved.q);
-    evaluate_with_multipliers(problem, moved, w);
+  const auto balanced = [&] {
     const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
     const double left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
     const double open = problem.system.rows > 0
                             ? w.residual.phi.cwiseProduct(problem.scaling.row).lpNorm<Eigen::Infinity>()
                             : 0;
-    if (left <= rounding * force && open <= rounding) return true;
+    return left <= rounding * force && open <= rounding;
+  };
+  for (int i = 0; i < 8; ++i) {
+    w.step = step.cwiseProduct(problem.scaling.column);
+    retract<double>(problem.system, w.step, moved.q);
+    evaluate(problem, moved, 0, w); // as a rule loops carry on as they did
+    if (balanced()) return true;
+    if (problem.system.rows > 0) {
+      evaluate_with_multipliers(problem, moved, w);
+      if (balanced()) return true;
+    }
     factor(problem, moved, w);
     if (shift > 0) w.eliminator(problem).factor(shift);
     newton_step(problem, w.residual.f, w.residual.phi, w, step, multipliers);

@@ -45,50 +45,48 @@ Frames frames_of(const System& system, const Kinematics<double>& k, const TreeJo
   return {r(t.parent_body), r(t.child_body)};
 }
 
-// At a state evaluated without multipliers. Where loops are redundant those of least norm, or in large
-// mechanisms with none on rows that follow from others.
-Eigen::VectorXd reported_multipliers(const Problem& problem, Workspace& w) {
+// Evaluates the state found at phase t without multipliers, and finds them. Where loops are redundant those
+// of least norm, or in large mechanisms with none on rows that follow from others.
+Unknowns with_reported_multipliers(const ReportInput& in, double t, Workspace& w) {
+  const Problem& problem = in.problem;
+  Unknowns z{in.found.z.q, Eigen::VectorXd::Zero(problem.system.rows)};
+  forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
+  evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
+  if (problem.system.rows == 0) return z;
   factor_constraints(problem, w);
-  Eigen::VectorXd lambda;
-  best_multipliers(problem, w, lambda);
-  if (problem.is_dense() && problem.system.rows > 0)
-    lambda = w.constraints.least_norm_multipliers(w.target).cwiseProduct(problem.scaling.row);
-  return lambda;
+  best_multipliers(problem, w, z.lambda);
+  if (problem.is_dense())
+    z.lambda = w.constraints.least_norm_multipliers(w.target).cwiseProduct(problem.scaling.row);
+  return z;
 }
 
-void report_forces(const ReportInput& in, Workspace& w, Solution& out) {
+// The first of the states is `z`, which is evaluated.
+void report_forces(const ReportInput& in, const Unknowns& z, Workspace& w, Solution& out) {
   const System& system = in.problem.system;
   const Parameters& p = in.problem.parameters;
-  const bool redundant = independent_rows(in.problem, w) < system.rows;
-  out.reactions_nonunique = redundant;
   struct Snapshot {
     TransmittedForces forces;
     std::vector<Frames> tree, cuts;
   };
-  const auto at_phase = [&](double t) {
-    w.zero_lambda.setZero(system.rows);
-    Unknowns z{in.found.z.q, w.zero_lambda};
-    evaluate(in.problem, z, t, w);
-    z.lambda = reported_multipliers(in.problem, w);
-    Snapshot s{transmitted_forces(system, p, z.lambda, w.kinematics, w.residual), {}, {}};
+  const auto snapshot = [&](const Eigen::VectorXd& lambda) {
+    Snapshot s{transmitted_forces(system, p, lambda, w.kinematics, w.residual), {}, {}};
     for (const TreeJoint& tree : system.tree_joints)
       s.tree.push_back(frames_of(system, w.kinematics, tree));
     for (const CutJoint& cut : system.cuts)
       s.cuts.push_back({w.kinematics.at(cut.ends.a).R, w.kinematics.at(cut.ends.b).R});
-    if (t == 0)
-      for (const CutJoint& cut : system.cuts) {
-        JointMultipliers m;
-        m.joint = in.mechanism.joints[static_cast<std::size_t>(cut.joint)].name;
-        for (std::size_t r = 0; r < cut.rows.size(); ++r)
-          m.values.push_back(z.lambda[cut.first_row + static_cast<int>(r)]);
-        out.multipliers.push_back(std::move(m));
-      }
     return s;
   };
-  const Snapshot drawn = at_phase(0);
+  const Snapshot drawn = snapshot(z.lambda);
   std::vector<Snapshot> others;
   for (double t : sample_phases(system, p))
-    others.push_back(at_phase(t));
+    others.push_back(snapshot(with_reported_multipliers(in, t, w).lambda));
+  for (const CutJoint& cut : system.cuts) {
+    JointMultipliers m;
+    m.joint = in.mechanism.joints[static_cast<std::size_t>(cut.joint)].name;
+    for (std::size_t r = 0; r < cut.rows.size(); ++r)
+      m.values.push_back(z.lambda[cut.first_row + static_cast<int>(r)]);
+    out.multipliers.push_back(std::move(m));
+  }
   double size = 0;
   for (const JointWrench& x : drawn.forces.tree)
     size = std::max({size, x.force.norm(), x.torque.norm() / p.length});
@@ -214,7 +212,8 @@ bool is_finite(const Solution& s) {
 
 void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, Workspace& w, Solution& out) {
   const System& system = in.problem.system;
-  out.coordinates = coordinate_solutions(in.problem.system, in.problem.parameters, in.found.z.q, error);
+  const Parameters& p = in.problem.parameters;
+  out.coordinates = coordinate_solutions(system, p, in.found.z.q, error);
   out.stable = in.stability.stable;
   out.stability_reason = in.stability.reason;
   out.eigenvalues = in.stability.eigenvalues;
@@ -230,17 +229,15 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
         out.neutral.push_back(system.tree_joints[t].name);
       }
   }
-  if (details) report_forces(in, w, out);
   // The balance with its multipliers, as solved.
-  w.zero_lambda.setZero(system.rows);
-  Unknowns z{in.found.z.q, w.zero_lambda};
-  evaluate(in.problem, z, 0, w);
-  z.lambda = reported_multipliers(in.problem, w);
-  evaluate(in.problem, z, 0, w);
+  const Unknowns z = with_reported_multipliers(in, 0, w);
+  if (system.rows > 0) evaluate_residual<double>(system, p, z.q, z.lambda, w.kinematics, w.residual);
+  evaluate_magnitudes(system, p, z.q, z.lambda, w.kinematics, w.magnitudes);
+  const int rank = independent_rows(in.problem, w);
   out.residual = scaled_residual(in.problem, w);
-  body_poses(system, in.mechanism, in.problem.parameters, w.kinematics, out.poses);
+  body_poses(system, in.mechanism, p, w.kinematics, out.poses);
   if (details && system.nv > 0 && system.nv <= largest_for_eigenvalues) {
-    const Problem whole{system, in.problem.parameters, in.problem.scaling, in.problem.cancel};
+    const Problem whole{system, p, in.problem.scaling, in.problem.cancel};
     factor(whole, z, w);
     // Of the balance on the null space and the constraints on the range, both in scaled units and
     // equilibrated.
@@ -253,9 +250,13 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
       if (low > 0) out.condition = values.maxCoeff() / low;
     }
   }
+  if (details) {
+    out.reactions_nonunique = rank < system.rows;
+    report_forces(in, z, w, out);
+  }
   out.message = in.found.message;
   if (out.message.empty()) out.message = "Converged.";
-  if (const int rank = independent_rows(in.problem, w); rank < system.rows)
+  if (rank < system.rows)
     out.message += " The loops are redundant: " + std::to_string(rank) + " of " +
                    std::to_string(system.rows) + " constraint equations are independent.";
   if (!out.neutral.empty()) {

@@ -146,11 +146,18 @@ class TrustRegion {
     return false;
   }
 
-  // At z_, where the kinematics are those of the step taken there; with its potential.
+  // At z_, where the kinematics are those of the step taken there; with its potential. Multipliers by the
+  // factors at hand, of places about as far as the loops opened: they bend the model by as little, and each
+  // step finds their forces anew.
   void arrive(const Potential& here) {
-    if (p_.system.rows > 0) return linearize_here();
-    evaluate_forces(p_, z_, w_);
     potential_ = here;
+    if (p_.system.rows > 0) {
+      z_.lambda.setZero();
+      evaluate_residual<double>(p_.system, p_.parameters, z_.q, z_.lambda, w_.kinematics, w_.residual);
+      best_multipliers(p_, w_, z_.lambda);
+      potential_ = lagrangian(z_.q);
+    }
+    evaluate_forces(p_, z_, w_);
     linearize_evaluated();
   }
 
