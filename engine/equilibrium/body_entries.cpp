@@ -1,5 +1,7 @@
 #include "engine/equilibrium/body_entries.hpp"
 
+#include "engine/system/side_by_side.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -19,21 +21,34 @@ Mat6 inverse(const Mat6& metric) {
   return x;
 }
 
+// Calls work(list) for each, side by side.
+template <class Lists, class Work>
+void for_lists(Lists& lists, Work work) {
+  if (lists.size() == 1) return work(lists[0]);
+  const auto each = [&](std::size_t i) { work(lists[i]); };
+  side_by_side(lists.size(), std::ref(each));
+}
+
 } // namespace
 
-void BodyEntries::clear(int unknowns, bool symmetric) {
+void BodyEntries::clear(int unknowns, bool symmetric, std::size_t lists) {
   pattern_.clear(unknowns, symmetric);
-  values_.clear();
+  lists_.resize(lists);
+  for (List& list : lists_) {
+    list.rows.clear();
+    list.columns.clear();
+    list.values.clear();
+  }
   loose_.assign(static_cast<std::size_t>(unknowns), false);
   alone_.clear();
   first_line_.clear();
   lines_.clear();
 }
 
-void BodyEntries::add(int row, int column, const Value& value) {
-  pattern_.rows.push_back(row + 1);
-  pattern_.columns.push_back(column + 1);
-  values_.push_back(value);
+void BodyEntries::List::add(int row, int column, const Value& value) {
+  rows.push_back(row);
+  columns.push_back(column);
+  values.push_back(value);
 }
 
 void BodyEntries::set_apart(const std::vector<int>& lines) {
@@ -48,7 +63,7 @@ void BodyEntries::set_apart(const std::vector<int>& lines) {
   lines_.resize(static_cast<std::size_t>(first_line_.back()));
 }
 
-void BodyEntries::add_body(int node, const Mat6& stiffness, const Mat6& metric) {
+void BodyEntries::add_body(std::size_t list, int node, const Mat6& stiffness, const Mat6& metric) {
   if (apart(node)) {
     blocks_[static_cast<std::size_t>(node)] = inverse(metric);
     return;
@@ -57,102 +72,114 @@ void BodyEntries::add_body(int node, const Mat6& stiffness, const Mat6& metric) 
   const int at = 6 * node;
   for (int j = 0; j < 6; ++j)
     for (int i = symmetric ? j : 0; i < 6; ++i)
-      add(at + i, at + j,
+      lists_[list].add(
+          at + i, at + j,
           {symmetric ? (stiffness(i, j) + stiffness(j, i)) / 2 : stiffness(i, j), metric(i, j), 0});
 }
 
 // Point masses feel no turns, neither their own nor each other's.
-void BodyEntries::add_between(int a, int b, const Mat6& ab, const Mat6& ba, const Mat6& metric_ab) {
+void BodyEntries::add_between(std::size_t list, int a, int b, const Mat6& ab, const Mat6& ba,
+                              const Mat6& metric_ab) {
   for (const int i : {0, 3})
     for (const int j : {0, 3}) {
       const bool shifts = i == 3 && j == 3;
       if (shifts || !ab.block<3, 3>(i, j).isZero(0) || !ba.block<3, 3>(j, i).isZero(0) ||
           !metric_ab.block<3, 3>(i, j).isZero(0))
-        add_block(a, i, b, j, ab, ba, metric_ab);
+        add_block(lists_[list], a, i, b, j, ab, ba, metric_ab);
     }
 }
 
-void BodyEntries::add_block(int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
-                            const Mat6& metric_ab) {
+void BodyEntries::add_block(List& list, int a, int first_i, int b, int first_j, const Mat6& ab,
+                            const Mat6& ba, const Mat6& metric_ab) {
   for (int j = first_j; j < first_j + 3; ++j)
     for (int i = first_i; i < first_i + 3; ++i) {
       if (pattern_.symmetric) {
-        add(6 * a + i, 6 * b + j, {(ab(i, j) + ba(j, i)) / 2, metric_ab(i, j), 0});
+        list.add(6 * a + i, 6 * b + j, {(ab(i, j) + ba(j, i)) / 2, metric_ab(i, j), 0});
       } else {
-        add(6 * a + i, 6 * b + j, {ab(i, j), metric_ab(i, j), 0});
-        add(6 * b + j, 6 * a + i, {ba(j, i), metric_ab(i, j), 0});
+        list.add(6 * a + i, 6 * b + j, {ab(i, j), metric_ab(i, j), 0});
+        list.add(6 * b + j, 6 * a + i, {ba(j, i), metric_ab(i, j), 0});
       }
     }
 }
 
-void BodyEntries::add_row(int row, int node, const Vec6& gradient) {
+void BodyEntries::add_row(std::size_t list, int row, int node, const Vec6& gradient) {
   if (node < 0) return;
   if (apart(node)) {
     lines_[static_cast<std::size_t>(next_line_[static_cast<std::size_t>(node)]++)] = {row, gradient};
     return;
   }
   for (int i = gradient.head<3>().isZero(0) ? 3 : 0; i < 6; ++i) {
-    add(row, 6 * node + i, {0, 0, gradient[i]});
-    if (!pattern_.symmetric) add(6 * node + i, row, {0, 0, gradient[i]});
+    lists_[list].add(row, 6 * node + i, {0, 0, gradient[i]});
+    if (!pattern_.symmetric) lists_[list].add(6 * node + i, row, {0, 0, gradient[i]});
   }
 }
 
 void BodyEntries::hold_all_by_metric() {
-  for (Value& value : values_)
-    std::swap(value.stiffness, value.metric);
-  for (std::size_t n = 0; n < alone_.size(); ++n)
-    if (alone_[n]) leave_rows_of(n);
+  for_lists(lists_, [&](List& list) {
+    for (Value& value : list.values)
+      std::swap(value.stiffness, value.metric);
+    const auto i = static_cast<std::size_t>(&list - lists_.data()), bodies = alone_.size();
+    for (std::size_t n = bodies * i / lists_.size(); n < bodies * (i + 1) / lists_.size(); ++n)
+      if (alone_[n]) leave_rows_of(n, list);
+  });
   number();
 }
 
 // What is left of a body's rows when its motion is eliminated: - G B^-1 G^T.
-void BodyEntries::leave_rows_of(std::size_t n) {
+void BodyEntries::leave_rows_of(std::size_t n, List& list) const {
   for (int i = first_line_[n]; i < first_line_[n + 1]; ++i) {
     const Line& a = lines_[static_cast<std::size_t>(i)];
     const Vec6 moved = blocks_[n] * a.gradient;
     for (int j = first_line_[n]; j <= i; ++j) {
       const Line& b = lines_[static_cast<std::size_t>(j)];
       const double twice = a.row == b.row && i != j ? 2 : 1;
-      add(std::max(a.row, b.row), std::min(a.row, b.row), {-twice * moved.dot(b.gradient), 0, 0});
+      list.add(std::max(a.row, b.row), std::min(a.row, b.row), {-twice * moved.dot(b.gradient), 0, 0});
     }
   }
 }
 
 void BodyEntries::hold_above(const std::vector<double>& noise) {
-  largest_.assign(loose_.size(), 0);
-  for (std::size_t e = 0; e < values_.size(); ++e) {
-    const double size =
-        values_[e].fixed != 0 ? std::numeric_limits<double>::infinity() : std::abs(values_[e].stiffness);
-    for (int at : {pattern_.rows[e] - 1, pattern_.columns[e] - 1})
-      largest_[static_cast<std::size_t>(at)] = std::max(largest_[static_cast<std::size_t>(at)], size);
+  const std::size_t motions = 6 * noise.size();
+  largest_.assign(motions, 0);
+  const auto measure = [&](const List& list) {
+    for (std::size_t e = 0; e < list.values.size(); ++e) {
+      const Value& value = list.values[e];
+      const double size =
+          value.fixed != 0 ? std::numeric_limits<double>::infinity() : std::abs(value.stiffness);
+      for (const int at : {list.rows[e], list.columns[e]})
+        if (const auto u = static_cast<std::size_t>(at); u < motions)
+          largest_[u] = std::max(largest_[u], size);
+    }
+  };
+  // Each its own motions; the last, of what is between the others, theirs.
+  const std::span<const List> all = lists_;
+  if (all.size() > 1) {
+    const std::span<const List> apart = all.first(all.size() - 1);
+    for_lists(apart, measure);
   }
+  measure(all.back());
   bool any = false;
-  for (std::size_t n = 0; n < noise.size(); ++n)
-    for (std::size_t u = 6 * n; u < 6 * n + 6; ++u)
-      if (largest_[u] <= noise[n]) loose_[u] = any = true;
-  if (any)
-    drop([&](std::size_t e) {
-      return loose_[static_cast<std::size_t>(pattern_.rows[e] - 1)] ||
-             loose_[static_cast<std::size_t>(pattern_.columns[e] - 1)];
-    });
+  for (std::size_t u = 0; u < motions; ++u)
+    if (largest_[u] <= noise[u / 6]) loose_[u] = any = true;
+  if (any) for_lists(lists_, [&](List& list) { drop_loose(list); });
   number();
 }
 
-template <class Drops>
-void BodyEntries::drop(Drops drops) {
+void BodyEntries::drop_loose(List& list) const {
   std::size_t kept = 0;
-  for (std::size_t e = 0; e < values_.size(); ++e) {
-    if (drops(e)) continue;
-    pattern_.rows[kept] = pattern_.rows[e];
-    pattern_.columns[kept] = pattern_.columns[e];
-    values_[kept++] = values_[e];
+  for (std::size_t e = 0; e < list.values.size(); ++e) {
+    const int row = list.rows[e], column = list.columns[e];
+    if (loose_[static_cast<std::size_t>(row)] || loose_[static_cast<std::size_t>(column)]) continue;
+    list.rows[kept] = row;
+    list.columns[kept] = column;
+    list.values[kept++] = list.values[e];
   }
-  pattern_.rows.resize(kept);
-  pattern_.columns.resize(kept);
-  values_.resize(kept);
+  list.rows.resize(kept);
+  list.columns.resize(kept);
+  list.values.resize(kept);
 }
 
-// Numbers what is solved for.
+// Numbers what is solved for, and tells the matrix.
 void BodyEntries::number() {
   place_.assign(loose_.size(), 0);
   for (std::size_t n = 0; n < alone_.size(); ++n)
@@ -161,15 +188,28 @@ void BodyEntries::number() {
   for (std::size_t u = 0; u < loose_.size(); ++u)
     place_[u] = loose_[u] || place_[u] < 0 ? -1 : next++;
   pattern_.size = next;
-  for (std::vector<int>* list : {&pattern_.rows, &pattern_.columns})
-    for (int& i : *list)
-      i = place_[static_cast<std::size_t>(i - 1)] + 1;
+  std::size_t entries = 0;
+  for (List& list : lists_) {
+    list.begin = entries;
+    entries += list.values.size();
+  }
+  pattern_.rows.resize(entries);
+  pattern_.columns.resize(entries);
+  sum_.resize(entries);
+  for_lists(lists_, [&](const List& list) {
+    for (std::size_t e = 0; e < list.values.size(); ++e) {
+      pattern_.rows[list.begin + e] = place_[static_cast<std::size_t>(list.rows[e])] + 1;
+      pattern_.columns[list.begin + e] = place_[static_cast<std::size_t>(list.columns[e])] + 1;
+    }
+  });
 }
 
 const std::vector<double>& BodyEntries::sum(double stiffness, double metric) {
-  sum_.resize(values_.size());
-  for (std::size_t e = 0; e < values_.size(); ++e)
-    sum_[e] = stiffness * values_[e].stiffness + metric * values_[e].metric + values_[e].fixed;
+  for_lists(lists_, [&](const List& list) {
+    double* out = sum_.data() + list.begin;
+    for (const Value& value : list.values)
+      *out++ = stiffness * value.stiffness + metric * value.metric + value.fixed;
+  });
   return sum_;
 }
 

@@ -9,27 +9,29 @@
 #include "engine/equilibrium/body_stiffness.hpp"
 #include "engine/equilibrium/sparse_factorization.hpp"
 
+#include <span>
 #include <vector>
 
 namespace flyball {
 
 class BodyEntries {
  public:
-  // Starts anew. Of a symmetric matrix one triangle is kept.
-  void clear(int unknowns, bool symmetric);
+  // Starts anew, with as many lists as can be added to side by side. Of a symmetric matrix one triangle is
+  // kept.
+  void clear(int unknowns, bool symmetric, std::size_t lists);
 
   // Before the first entry: the bodies to be solved for by hand, by node with the number of their lines; -1
   // is one that stays. They must meet others by rows alone, and the metric must be what is solved for.
   void set_apart(const std::vector<int>& lines);
 
   // A body's own six equations.
-  void add_body(int node, const Mat6& stiffness, const Mat6& metric);
+  void add_body(std::size_t list, int node, const Mat6& stiffness, const Mat6& metric);
 
   // Between two bodies: ab of a's equations by b's motion, ba of b's by a's; the metric is symmetric.
-  void add_between(int a, int b, const Mat6& ab, const Mat6& ba, const Mat6& metric_ab);
+  void add_between(std::size_t list, int a, int b, const Mat6& ab, const Mat6& ba, const Mat6& metric_ab);
 
   // A constraint's row, and its column, by a body's motion. Node -1 stands still.
-  void add_row(int row, int node, const Vec6& gradient);
+  void add_row(std::size_t list, int row, int node, const Vec6& gradient);
 
   // After the last entry, one of these. What is solved for are all unknowns, with the metric in the place of
   // the stiffness; or all but the motions of bodies that meet no constraint and no stiffness above `noise`,
@@ -57,17 +59,23 @@ class BodyEntries {
     double stiffness = 0, metric = 0, fixed = 0;
   };
 
-  void add(int row, int column, const Value& value);
-  void add_block(int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
+  // Rows and columns count all unknowns, from 0.
+  struct List {
+    std::vector<int> rows, columns;
+    std::vector<Value> values;
+    std::size_t begin = 0; // among all entries, in the end
+    void add(int row, int column, const Value& value);
+  };
+
+  void add_block(List& list, int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
                  const Mat6& metric_ab);
   bool apart(int node) const { return !alone_.empty() && alone_[static_cast<std::size_t>(node)]; }
-  void leave_rows_of(std::size_t body);
-  template <class Drops>
-  void drop(Drops drops); // the entries of which drops(e) is true
+  void leave_rows_of(std::size_t body, List& list) const;
+  void drop_loose(List& list) const;
   void number();
 
   SparsePattern pattern_;
-  std::vector<Value> values_;
+  std::vector<List> lists_;
   std::vector<double> sum_, largest_;
   std::vector<bool> loose_;
   std::vector<int> place_; // by unknown: among those held; -1: loose, or apart

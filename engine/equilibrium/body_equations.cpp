@@ -2,6 +2,8 @@
 
 #include "engine/equilibrium/eliminator.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 namespace {
 
@@ -54,28 +56,45 @@ Mat6 carrying(const BodyNode& x) {
 
 void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                              const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines) {
+  const Division& division = problem.system.division;
   lay_out(problem, problem.symmetric());
-  compressed_ = false;
-  add_bodies(problem, k, true);
-  add_pairs(problem, z, k, lines);
+  const std::size_t between = compressed_.size() - 1;
   noise_.resize(static_cast<std::size_t>(nodes_.size()));
-  for (int i = nodes_.size(); i-- > 0;) {
-    sum_up_load(i, residual);
-    add_joint(problem, i, &z.q);
-    noise_[static_cast<std::size_t>(i)] = noise_of(problem, nodes_[i], magnitudes);
-  }
-  add_rows(problem, k);
+  for_parts(division, [&](const SystemPart& part, std::size_t n) {
+    add_bodies(problem, k, n, true);
+    add_pairs(problem, z, k, lines, part, n);
+  });
+  add_body_forces(problem, k);
+  add_pairs(problem, z, k, lines, division.between, between);
+  if (problem.parameters.moving) add_dampers(problem, k, between);
+  for_parts(division, [&](const SystemPart& part, std::size_t n) {
+    for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];) {
+      sum_up_load(i, residual);
+      add_joint(problem, n, i, &z.q);
+      noise_[static_cast<std::size_t>(i)] = noise_of(problem, nodes_[i], magnitudes);
+    }
+    add_rows(problem, k, part, n);
+  });
+  add_rows(problem, k, division.between, between);
   entries_.hold_above(noise_);
 }
 
 void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<double>& k) {
+  const Division& division = problem.system.division;
   lay_out(problem, true);
-  add_bodies(problem, k, false);
+  for_parts(division, [&](const SystemPart&, std::size_t n) { add_bodies(problem, k, n, false); });
   set_bodies_apart(problem);
-  for (int i = nodes_.size(); i-- > 0;)
-    add_joint(problem, i, nullptr);
-  add_rows(problem, k);
+  for_parts(division, [&](const SystemPart& part, std::size_t n) {
+    for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];)
+      add_joint(problem, n, i, nullptr);
+    add_rows(problem, k, part, n);
+  });
+  add_rows(problem, k, division.between, compressed_.size() - 1);
   entries_.hold_all_by_metric();
+}
+
+bool BodyEquations::compressed() const {
+  return std::ranges::find(compressed_, true) != compressed_.end();
 }
 
 // Numbers the unknowns: motions, multipliers of tree joints, those of cut joints.
@@ -91,15 +110,18 @@ void BodyEquations::lay_out(const Problem& problem, bool symmetric) {
     mass_ += problem.parameters.links[static_cast<std::size_t>(x.link)].mass;
   }
   unknowns_ = first_row_ + rows_;
-  entries_.clear(unknowns_, symmetric);
+  const std::size_t parts = problem.system.division.parts.size(), lists = parts > 1 ? parts + 1 : 1;
+  entries_.clear(unknowns_, symmetric, lists);
+  compressed_.assign(lists, false);
+  sums_.resize(static_cast<std::size_t>(nodes_.size()));
 }
 
 // What each body does by itself. Bodies go through the cache one after the other, few times.
-void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>& k, bool stiff) {
+void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>& k, std::size_t part,
+                               bool stiff) {
   const double reach = nodes_.length() * nodes_.length();
   const double least = Eliminator::own_share * Eliminator::own_share * std::max(mass_, 1e-300) * reach;
-  sums_.resize(static_cast<std::size_t>(nodes_.size()));
-  for (int i = 0; i < nodes_.size(); ++i) {
+  for (int i = nodes_.first_of_part()[part]; i < nodes_.first_of_part()[part + 1]; ++i) {
     BodyNode& x = nodes_[i];
     Sums& sums = sums_[static_cast<std::size_t>(i)];
     nodes_.place_node(i, problem, k);
@@ -115,7 +137,9 @@ void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>&
       x.weight[c] = std::max(Eliminator::own_share * x.s.col(c).dot(inertia * x.s.col(c)), least);
     sums.metric = inertia + x.d * x.weight.asDiagonal() * x.d.transpose();
   }
-  if (!stiff) return;
+}
+
+void BodyEquations::add_body_forces(const Problem& problem, const Kinematics<double>& k) {
   for (std::size_t i = 0; i < problem.system.body_forces.size(); ++i) {
     const BodyForceElement& e = problem.system.body_forces[i];
     if (const int n = nodes_.at(e.link); n >= 0)
@@ -158,8 +182,8 @@ void BodyEquations::set_bodies_apart(const Problem& problem) {
   entries_.set_apart(lines_);
 }
 
-void BodyEquations::add_pair(int a, int b, const PairBlocks& x) {
-  compressed_ |= x.compressed;
+void BodyEquations::add_pair(std::size_t list, int a, int b, const PairBlocks& x) {
+  if (x.compressed) compressed_[list] = true;
   const int na = nodes_.at(a), nb = nodes_.at(b);
   if (na >= 0) {
     sums_[static_cast<std::size_t>(na)].stiffness += x.aa;
@@ -173,37 +197,42 @@ void BodyEquations::add_pair(int a, int b, const PairBlocks& x) {
   if (na == nb)
     sums_[static_cast<std::size_t>(na)].stiffness += x.ab + x.ba;
   else
-    entries_.add_between(na, nb, nodes_.scaled(x.ab), nodes_.scaled(x.ba), Mat6::Zero());
+    entries_.add_between(list, na, nb, nodes_.scaled(x.ab), nodes_.scaled(x.ba), Mat6::Zero());
 }
 
 void BodyEquations::add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
-                              Lines lines) {
+                              Lines lines, const SystemPart& part, std::size_t list) {
   const System& system = problem.system;
   const Parameters& p = problem.parameters;
-  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+  for (const int n : part.springs) {
+    const auto i = static_cast<std::size_t>(n);
     const PointSpringElement& e = system.springs[i];
-    add_pair(e.ends.a, e.ends.b, spring_blocks(e, p.springs[i], k, p.moving, lines));
+    add_pair(list, e.ends.a, e.ends.b, spring_blocks(e, p.springs[i], k, p.moving, lines));
   }
-  if (p.moving)
-    for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
-      const CutDamperElement& e = system.cut_dampers[i];
-      add_pair(e.ends.a, e.ends.b, damper_blocks(e, p.cut_dampers[i], k));
-    }
   PairBlocks sum;
-  for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+  for (const int n : part.cuts) {
+    const auto c = static_cast<std::size_t>(n);
     const CutJoint& cut = system.cuts[c];
     if (cut.type == JointType::gear) continue;
     const auto multiplier = [&](std::size_t r) {
       return z.lambda.size() > 0 ? z.lambda[cut.first_row + static_cast<int>(r)] : 0;
     };
     if (cut.rows.size() == 1 && multiplier(0) != 0) {
-      add_pair(cut.ends.a, cut.ends.b, row_blocks(cut, p.cuts[c], cut.rows[0], multiplier(0), k, lines));
+      add_pair(list, cut.ends.a, cut.ends.b,
+               row_blocks(cut, p.cuts[c], cut.rows[0], multiplier(0), k, lines));
       continue;
     }
     sum.set_zero();
     for (std::size_t r = 0; r < cut.rows.size(); ++r)
       if (const double m = multiplier(r); m != 0) sum += row_blocks(cut, p.cuts[c], cut.rows[r], m, k, lines);
-    add_pair(cut.ends.a, cut.ends.b, sum);
+    add_pair(list, cut.ends.a, cut.ends.b, sum);
+  }
+}
+
+void BodyEquations::add_dampers(const Problem& problem, const Kinematics<double>& k, std::size_t list) {
+  for (std::size_t i = 0; i < problem.system.cut_dampers.size(); ++i) {
+    const CutDamperElement& e = problem.system.cut_dampers[i];
+    add_pair(list, e.ends.a, e.ends.b, damper_blocks(e, problem.parameters.cut_dampers[i], k));
   }
 }
 
@@ -218,7 +247,7 @@ void BodyEquations::sum_up_load(int i, const Residual<double>& residual) {
 
 // A body with what its tree joint transmits, and what that holds; after those beyond it, so that then nothing
 // is missing. Without q the metric alone.
-void BodyEquations::add_joint(const Problem& problem, int i, const Eigen::VectorXd* q) {
+void BodyEquations::add_joint(const Problem& problem, std::size_t list, int i, const Eigen::VectorXd* q) {
   const BodyNode& x = nodes_[i];
   Sums& sums = sums_[static_cast<std::size_t>(i)];
   Mat6 p = Mat6::Zero(), t = Mat6::Zero();
@@ -230,11 +259,11 @@ void BodyEquations::add_joint(const Problem& problem, int i, const Eigen::Vector
   } else {
     sums.stiffness.setZero();
   }
-  entries_.add_body(i, sums.stiffness, sums.metric);
+  entries_.add_body(list, i, sums.stiffness, sums.metric);
   if (x.columns == 6 && x.parent < 0) return;
   const BodyColumns held = forbidden_motions(x);
   for (int r = 0; r < held.cols(); ++r)
-    entries_.add_row(x.multipliers + r, i, held.col(r));
+    entries_.add_row(list, x.multipliers + r, i, held.col(r));
   if (x.parent < 0) return;
   Sums& parent = sums_[static_cast<std::size_t>(x.parent)];
   const Mat6 shift = carrying(x), w = x.d * x.weight.asDiagonal() * x.d.transpose();
@@ -242,39 +271,42 @@ void BodyEquations::add_joint(const Problem& problem, int i, const Eigen::Vector
   // The parent's sums are in units of its own as yet.
   if (q) parent.stiffness -= nodes_.unscaled(on_parent * shift);
   parent.metric += shift.transpose() * w * shift;
-  entries_.add_between(i, x.parent, by_parent, on_parent, -w * shift);
+  entries_.add_between(list, i, x.parent, by_parent, on_parent, -w * shift);
   for (int r = 0; r < held.cols(); ++r)
-    entries_.add_row(x.multipliers + r, x.parent, -shift.transpose() * held.col(r));
+    entries_.add_row(list, x.multipliers + r, x.parent, -shift.transpose() * held.col(r));
 }
 
-void BodyEquations::add_rows(const Problem& problem, const Kinematics<double>& k) {
+void BodyEquations::add_rows(const Problem& problem, const Kinematics<double>& k, const SystemPart& part,
+                             std::size_t list) {
   const System& system = problem.system;
-  for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+  for (const int n : part.cuts) {
+    const auto c = static_cast<std::size_t>(n);
     const CutJoint& cut = system.cuts[c];
     const CutParameters& p = problem.parameters.cuts[c];
     for (std::size_t r = 0; r < cut.rows.size(); ++r) {
       const int row = cut.first_row + static_cast<int>(r);
       const double unit = problem.scaling.row[row];
       if (cut.type == JointType::gear) {
-        add_coordinate(first_row_ + row, cut.gear_va, -p.ratio * unit * problem.scaling.column[cut.gear_va]);
-        add_coordinate(first_row_ + row, cut.gear_vb, unit * problem.scaling.column[cut.gear_vb]);
+        add_coordinate(list, first_row_ + row, cut.gear_va,
+                       -p.ratio * unit * problem.scaling.column[cut.gear_va]);
+        add_coordinate(list, first_row_ + row, cut.gear_vb, unit * problem.scaling.column[cut.gear_vb]);
         continue;
       }
       RowGradient g = body_row_gradient(cut, p, cut.rows[r], k);
       g.a.tail<3>() *= nodes_.length();
       g.b.tail<3>() *= nodes_.length();
-      entries_.add_row(first_row_ + row, nodes_.at(cut.ends.a), unit * g.a);
-      entries_.add_row(first_row_ + row, nodes_.at(cut.ends.b), unit * g.b);
+      entries_.add_row(list, first_row_ + row, nodes_.at(cut.ends.a), unit * g.a);
+      entries_.add_row(list, first_row_ + row, nodes_.at(cut.ends.b), unit * g.b);
     }
   }
 }
 
-void BodyEquations::add_coordinate(int row, int coordinate, double gradient) {
+void BodyEquations::add_coordinate(std::size_t list, int row, int coordinate, double gradient) {
   const auto [n, column] = nodes_.place(coordinate);
   const BodyNode& x = nodes_[n];
   const Vec6 g = gradient * x.d.col(column);
-  entries_.add_row(row, n, g);
-  entries_.add_row(row, x.parent, -about(g, x.lever));
+  entries_.add_row(list, row, n, g);
+  entries_.add_row(list, row, x.parent, -about(g, x.lever));
 }
 
 // The turns of a point mass feel nothing, but the terms of their balance cancel with rounding only.
@@ -291,26 +323,26 @@ double BodyEquations::noise_of(const Problem& problem, const BodyNode& x,
 void BodyEquations::put(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& held) {
   work_.setZero(unknowns_);
   work_.tail(rows_) = closing;
-  for (int i = 0; i < nodes_.size(); ++i) {
+  nodes_.for_each([&](int i) {
     const BodyNode& n = nodes_[i];
     Vec6 g = Vec6::Zero();
     for (int c = 0; c < n.columns; ++c)
       g += n.d.col(c) * force[n.v[static_cast<std::size_t>(c)]];
     work_.segment<6>(6 * i) += g;
     if (n.parent >= 0) work_.segment<6>(6 * n.parent) -= about(g, n.lever);
-  }
+  });
   entries_.gather(work_, held);
 }
 
 void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x) {
   entries_.spread(held, work_);
-  for (int i = 0; i < nodes_.size(); ++i) {
+  nodes_.for_each([&](int i) {
     const BodyNode& n = nodes_[i];
     Vec6 m = work_.segment<6>(6 * i);
     if (n.parent >= 0) m -= carried(work_.segment<6>(6 * n.parent), n.lever);
     for (int c = 0; c < n.columns; ++c)
       x[n.v[static_cast<std::size_t>(c)]] = n.d.col(c).dot(m);
-  }
+  });
 }
 
 void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x,

@@ -29,7 +29,7 @@ class BodyEquations {
 
   const BodyNodes& nodes() const { return nodes_; }
   bool symmetric() const { return pattern().symmetric; }
-  bool compressed() const { return compressed_; } // a line under compression, of the last assemble()
+  bool compressed() const; // a line under compression, of the last assemble()
   int coordinates() const { return coordinates_; }
   int rows() const { return rows_; } // of cut joints
   int multipliers() const { return unknowns_ - 6 * nodes_.size(); }
@@ -52,15 +52,19 @@ class BodyEquations {
 
  private:
   void lay_out(const Problem& problem, bool symmetric);
-  void add_bodies(const Problem& problem, const Kinematics<double>& kinematics, bool stiff);
-  void add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
-                 Lines lines);
-  void add_pair(int a, int b, const PairBlocks& blocks);
+  // Of the bodies of one part, and of its elements; of the elements between parts.
+  void add_bodies(const Problem& problem, const Kinematics<double>& kinematics, std::size_t part, bool stiff);
+  void add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics, Lines lines,
+                 const SystemPart& part, std::size_t list);
+  void add_body_forces(const Problem& problem, const Kinematics<double>& kinematics);
+  void add_dampers(const Problem& problem, const Kinematics<double>& kinematics, std::size_t list);
+  void add_pair(std::size_t list, int a, int b, const PairBlocks& blocks);
   void set_bodies_apart(const Problem& problem);
   void sum_up_load(int node, const Residual<double>& residual);
-  void add_joint(const Problem& problem, int node, const Eigen::VectorXd* q);
-  void add_rows(const Problem& problem, const Kinematics<double>& kinematics);
-  void add_coordinate(int row, int coordinate, double gradient);
+  void add_joint(const Problem& problem, std::size_t list, int node, const Eigen::VectorXd* q);
+  void add_rows(const Problem& problem, const Kinematics<double>& kinematics, const SystemPart& part,
+                std::size_t list);
+  void add_coordinate(std::size_t list, int row, int coordinate, double gradient);
   double noise_of(const Problem& problem, const BodyNode& node, const Magnitudes& magnitudes) const;
 
   // Of a body and all that meets it.
@@ -70,12 +74,12 @@ class BodyEquations {
     Mat6 metric;    // scaled
   };
 
-  bool compressed_ = false;
+  std::vector<char> compressed_; // by list of entries: some line is
   int coordinates_ = 0, rows_ = 0, first_row_ = 0, unknowns_ = 0;
   double mass_ = 0;
   BodyNodes nodes_;
-  std::vector<Sums> sums_; // by node
-  BodyEntries entries_;
+  std::vector<Sums> sums_;    // by node
+  BodyEntries entries_;       // a list for each part of the system, and one for what is between them
   std::vector<double> noise_; // by node: stiffness that rounding makes
   std::vector<int> lines_;    // see BodyEntries::set_apart()
   Eigen::VectorXd work_;

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
+#include <algorithm>
+
 namespace flyball {
 namespace {
 
@@ -71,6 +73,12 @@ void BodyNodes::lay_out(const Problem& problem) {
       }
     }
   }
+  first_of_part_.clear();
+  for (const SystemPart& part : system.division.parts)
+    first_of_part_.push_back(
+        static_cast<int>(std::ranges::lower_bound(nodes_, static_cast<int>(part.first), {}, &BodyNode::link) -
+                         nodes_.begin()));
+  first_of_part_.push_back(size());
 }
 
 void BodyNodes::place_node(int i, const Problem& problem, const Kinematics<double>& k) {

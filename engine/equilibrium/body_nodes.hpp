@@ -42,6 +42,20 @@ class BodyNodes {
   // Where a node is and moves; its parent first. Kinematics at the problem's state.
   void place_node(int i, const Problem& problem, const Kinematics<double>& kinematics);
 
+  // The first node of each part of the system, and the count of all.
+  const std::vector<int>& first_of_part() const { return first_of_part_; }
+
+  // Calls work(i) for every node, parents before children, parts of the system side by side.
+  template <class Work>
+  void for_each(Work work) const {
+    const auto run = [&](std::size_t part) {
+      for (int i = first_of_part_[part]; i < first_of_part_[part + 1]; ++i)
+        work(i);
+    };
+    if (first_of_part_.size() == 2) return run(0);
+    side_by_side(first_of_part_.size() - 1, std::ref(run));
+  }
+
   int size() const { return static_cast<int>(nodes_.size()); }
   BodyNode& operator[](int i) { return nodes_[static_cast<std::size_t>(i)]; }
   const BodyNode& operator[](int i) const { return nodes_[static_cast<std::size_t>(i)]; }
@@ -72,6 +86,7 @@ class BodyNodes {
   void join_links(const System& system);
   double length_ = 1;
   std::vector<BodyNode> nodes_;
+  std::vector<int> first_of_part_;
   std::vector<int> node_of_link_; // -1: stands still, or part of a later link's node
   std::vector<int> next_;         // by link: what it is part of a node with
   std::vector<int> children_;

@@ -89,13 +89,18 @@ void take_off_multipliers(const Problem& problem, const Eigen::VectorXd& lambda,
     w.residual.f.noalias() -= w.linearization.constraint.transpose() * lambda;
     return;
   }
-  for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
-    const CutJoint& cut = problem.system.cuts[c];
-    for (std::size_t r = 0; r < cut.rows.size(); ++r)
-      row_gradient(cut, problem.parameters.cuts[c], cut.rows[r], w.kinematics, [&](int v, double g) {
-        w.residual.f[v] -= g * lambda[cut.first_row + static_cast<int>(r)];
-      });
-  }
+  const auto take_off = [&](const SystemPart& part, std::size_t) {
+    for (const int n : part.cuts) {
+      const auto c = static_cast<std::size_t>(n);
+      const CutJoint& cut = problem.system.cuts[c];
+      for (std::size_t r = 0; r < cut.rows.size(); ++r)
+        row_gradient(cut, problem.parameters.cuts[c], cut.rows[r], w.kinematics, [&](int v, double g) {
+          w.residual.f[v] -= g * lambda[cut.first_row + static_cast<int>(r)];
+        });
+    }
+  };
+  for_parts(problem.system.division, take_off);
+  take_off(problem.system.division.between, 0);
 }
 
 } // namespace

@@ -127,6 +127,7 @@ class TrustRegion {
   bool close_loops() {
     if (p_.system.rows == 0) return true;
     double before = std::numeric_limits<double>::infinity();
+    almost_there_ = false;
     int slow = 0;
     const double enough = 0.01 * predicted_;
     for (int i = 0; i < 30; ++i) {
@@ -135,7 +136,10 @@ class TrustRegion {
       if (open < 1e-13) return true;
       if (open < 1e-6 && w_.residual.phi.cwiseAbs().dot(z_.lambda.cwiseAbs()) < enough) return true;
       if (!(open < 2 * before) || (!(open < 0.5 * before) && ++slow > 3)) return open < 1e-11;
-      if (!(open < 0.1 * before) && i > 0) factor_constraints(p_, w_);
+      if (!(open < 0.1 * before) && i > 0) {
+        factor_constraints(p_, w_);
+        almost_there_ = true;
+      }
       before = open;
       close(p_, w_, w_.scaled_step);
       if (!(w_.scaled_step.lpNorm<Eigen::Infinity>() < 1)) return false;
@@ -146,14 +150,15 @@ class TrustRegion {
     return false;
   }
 
-  // At z_, where the kinematics are those of the step taken there; with its potential. Multipliers by the
-  // factors at hand, of places about as far as the loops opened: they bend the model by as little, and each
-  // step finds their forces anew.
+  // At z_, where the kinematics are those of the step taken there; with its potential. Constraints factored
+  // to close the loops serve once more where they were of almost there: they are off by what the loops were
+  // open, and the multipliers bend the model by as little. Each step finds their forces anew.
   void arrive(const Potential& here) {
     potential_ = here;
     if (p_.system.rows > 0) {
       z_.lambda.setZero();
       evaluate_residual<double>(p_.system, p_.parameters, z_.q, z_.lambda, w_.kinematics, w_.residual);
+      if (!almost_there_) factor_constraints(p_, w_);
       best_multipliers(p_, w_, z_.lambda);
       potential_ = lagrangian(z_.q);
     }
@@ -365,7 +370,8 @@ class TrustRegion {
   bool falls_ = false;             // the exact model is known not to be convex here
   bool compression_tells_ = false; // in the last step, by the convex model, which leaves it out
   int passed_over_ = 0;            // times in a row that the exact model was not tried
-  bool shy_ = false;               // of a longer step along a fall that coordinates make
+  bool almost_there_ = false; // the constraints were factored on the way of closing the last step's loops
+  bool shy_ = false;          // of a longer step along a fall that coordinates make
 };
 
 } // namespace

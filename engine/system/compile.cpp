@@ -56,6 +56,7 @@ class Compiler {
     list_coordinates();
     classify();
     choose_elimination();
+    s_.division = divide(s_);
     return std::move(s_);
   }
 

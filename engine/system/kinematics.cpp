@@ -15,22 +15,11 @@ Vec3T<S> unit_axis(const LinkParameters& p) {
     return p.axis.cast<S>().normalized();
 }
 
-} // namespace
-
+// Some links, in order, after those that they hang from.
 template <class S>
-void forward(const System& system, const Parameters& p, const Configuration<S>& q, double t,
-             Kinematics<S>& out) {
-  const std::size_t n = system.links.size();
-  out.links.resize(n);
-  out.columns.resize(static_cast<std::size_t>(system.nv));
-  out.ground.R.setIdentity();
-  out.ground.o.setZero();
-  out.ground.axis.setZero();
-  out.ground.w.setZero();
-  out.ground.v.setZero();
-  out.ground.dw.setZero();
-  out.ground.dv = -p.gravity.cast<S>();
-  for (std::size_t i = 0; i < n; ++i) {
+void place_links(const System& system, const Parameters& p, const Configuration<S>& q, double t,
+                 std::size_t first, std::size_t last, Kinematics<S>& out) {
+  for (std::size_t i = first; i < last; ++i) {
     const Link& link = system.links[i];
     const LinkParameters& lp = p.links[i];
     const LinkState<S>& parent = out.at(link.parent);
@@ -95,6 +84,26 @@ void forward(const System& system, const Parameters& p, const Configuration<S>& 
       }
     }
   }
+}
+
+} // namespace
+
+template <class S>
+void forward(const System& system, const Parameters& p, const Configuration<S>& q, double t,
+             Kinematics<S>& out) {
+  out.links.resize(system.links.size());
+  out.columns.resize(static_cast<std::size_t>(system.nv));
+  out.ground.R.setIdentity();
+  out.ground.o.setZero();
+  out.ground.axis.setZero();
+  out.ground.w.setZero();
+  out.ground.v.setZero();
+  out.ground.dw.setZero();
+  out.ground.dv = -p.gravity.cast<S>();
+  place_links(system, p, q, t, 0, system.division.spine, out);
+  for_parts(system.division, [&](const SystemPart& part, std::size_t) {
+    place_links(system, p, q, t, part.first, part.last, out);
+  });
 }
 
 template <class S>

@@ -73,57 +73,56 @@ SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParame
   return s;
 }
 
-template <class S>
-void evaluate_constraints(const System& system, const Parameters& p, const Configuration<S>& q,
-                          const Kinematics<S>& k, Configuration<S>& phi) {
-  phi.resize(system.rows);
-  for (std::size_t i = 0; i < system.cuts.size(); ++i) {
-    const CutJoint& cut = system.cuts[i];
-    for (std::size_t r = 0; r < cut.rows.size(); ++r)
-      phi[cut.first_row + static_cast<int>(r)] = row_value(cut, p.cuts[i], cut.rows[r], q, k);
-  }
-}
+namespace {
 
+// A pass over the mechanism that adds up what acts on it. In parts side by side, and then what is between
+// them.
 template <class S>
-void evaluate_residual(const System& system, const Parameters& p, const Configuration<S>& q,
-                       const Configuration<S>& lambda, const Kinematics<S>& k, Residual<S>& out) {
-  const std::size_t n = system.links.size();
-  out.f.resize(system.nv);
-  out.force.resize(n);
-  out.moment.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    out.force[i].setZero();
-    out.moment[i].setZero();
-  }
-  for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
-    const BodyForceElement& e = system.body_forces[i];
-    if (e.link < 0) continue;
-    const auto l = static_cast<std::size_t>(e.link);
-    const AppliedForce<S> a = applied_force(e, p.body_forces[i], k);
-    out.force[l] -= a.force;
-    out.moment[l] -= a.torque + (a.point - k.links[l].o).cross(a.force);
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    const Link& link = system.links[i];
-    const LinkParameters& lp = p.links[i];
-    const LinkState<S>& x = k.links[i];
-    Vec3T<S>&force = out.force[i], &moment = out.moment[i];
-    add_inertia_force(lp, x, p.moving, force, moment);
-    if (link.v >= 0) {
-      if (link.type == LinkType::spherical)
-        for (int j = 0; j < 3; ++j)
-          out.f[link.v + j] = k.columns[static_cast<std::size_t>(link.v + j)].axis.dot(moment);
-      else
-        out.f[link.v] = x.axis.dot(link.type == LinkType::revolute ? moment : force);
-      if (lp.elastic) coordinate_forces<S>(link, lp, q, [&](int v, S value) { out.f[v] += value; });
+struct ResidualPass {
+  const System& system;
+  const Parameters& p;
+  const Configuration<S>&q, &lambda;
+  const Kinematics<S>& k;
+  Residual<S>& out;
+
+  // Forces on links [first, last), which have been cleared.
+  void add_body_forces(const std::vector<int>& elements) const {
+    for (const int n : elements) {
+      const auto i = static_cast<std::size_t>(n);
+      const BodyForceElement& e = system.body_forces[i];
+      if (e.link < 0) continue;
+      const auto l = static_cast<std::size_t>(e.link);
+      const AppliedForce<S> a = applied_force(e, p.body_forces[i], k);
+      out.force[l] -= a.force;
+      out.moment[l] -= a.torque + (a.point - k.links[l].o).cross(a.force);
     }
-    if (link.parent >= 0) {
+  }
+
+  // From the tips inwards. What links ask of those before the first goes to `spine`.
+  void add_links(std::size_t first, std::size_t last, std::size_t spine) const {
+    for (std::size_t i = last; i-- > first;) {
+      const Link& link = system.links[i];
+      const LinkParameters& lp = p.links[i];
+      const LinkState<S>& x = k.links[i];
+      Vec3T<S>&force = out.force[i], &moment = out.moment[i];
+      add_inertia_force(lp, x, p.moving, force, moment);
+      if (link.v >= 0) {
+        if (link.type == LinkType::spherical)
+          for (int j = 0; j < 3; ++j)
+            out.f[link.v + j] = k.columns[static_cast<std::size_t>(link.v + j)].axis.dot(moment);
+        else
+          out.f[link.v] = x.axis.dot(link.type == LinkType::revolute ? moment : force);
+        if (lp.elastic) coordinate_forces<S>(link, lp, q, [&](int v, S value) { out.f[v] += value; });
+      }
+      if (link.parent < 0) continue;
       const auto j = static_cast<std::size_t>(link.parent);
-      out.force[j] += force;
-      out.moment[j] += moment + (x.o - k.links[j].o).cross(force);
+      const bool here = j >= first;
+      (here ? out.force[j] : out.spine_force[spine + j]) += force;
+      (here ? out.moment[j] : out.spine_moment[spine + j]) += moment + (x.o - k.links[j].o).cross(force);
     }
   }
-  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+
+  void add_spring(std::size_t i) const {
     const PointSpringElement& e = system.springs[i];
     const SpringState<S> s = spring_state(e, p.springs[i], k);
     // With no free length the force is k d, well defined where the points meet.
@@ -135,7 +134,8 @@ void evaluate_residual(const System& system, const Parameters& p, const Configur
       out.f[c.v] += c.second ? g : -g;
     }
   }
-  for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
+
+  void add_cut_damper(std::size_t i) const {
     const CutDamperElement& e = system.cut_dampers[i];
     const CutDamperParameters& d = p.cut_dampers[i];
     const Vec3T<S> axis = k.at(e.ends.a).R * d.axis.cast<S>();
@@ -148,125 +148,267 @@ void evaluate_residual(const System& system, const Parameters& p, const Configur
       out.f[c.v] += c.second ? g : -g;
     }
   }
-  evaluate_constraints(system, p, q, k, out.phi);
-  for (std::size_t i = 0; i < system.cuts.size(); ++i) {
+
+  void add_cut(std::size_t i) const {
     const CutJoint& cut = system.cuts[i];
     for (std::size_t r = 0; r < cut.rows.size(); ++r)
       if (const S multiplier = lambda[cut.first_row + static_cast<int>(r)]; multiplier != S(0))
         row_gradient(cut, p.cuts[i], cut.rows[r], k, [&](int v, S g) { out.f[v] += multiplier * g; });
   }
+
+  void add_elements(const SystemPart& part) const {
+    for (const int i : part.springs)
+      add_spring(static_cast<std::size_t>(i));
+    for (const int i : part.cuts)
+      add_cut(static_cast<std::size_t>(i));
+  }
+
+  void clear(std::size_t first, std::size_t last) const {
+    for (std::size_t i = first; i < last; ++i) {
+      out.force[i].setZero();
+      out.moment[i].setZero();
+    }
+  }
+
+  void run() const {
+    const Division& division = system.division;
+    out.f.resize(system.nv);
+    out.force.resize(system.links.size());
+    out.moment.resize(system.links.size());
+    out.spine_force.assign(division.spine * division.parts.size(), Vec3T<S>::Zero());
+    out.spine_moment.assign(division.spine * division.parts.size(), Vec3T<S>::Zero());
+    for_parts(division, [&](const SystemPart& part, std::size_t n) {
+      clear(part.first, part.last);
+      add_body_forces(part.body_forces);
+      add_links(part.first, part.last, n * division.spine);
+      add_elements(part);
+    });
+    clear(0, division.spine);
+    for (std::size_t n = 0; n < out.spine_force.size(); ++n) {
+      out.force[n % division.spine] += out.spine_force[n];
+      out.moment[n % division.spine] += out.spine_moment[n];
+    }
+    add_body_forces(division.between.body_forces);
+    add_links(0, division.spine, 0);
+    add_elements(division.between);
+    for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
+      add_cut_damper(i);
+    evaluate_constraints(system, p, q, k, out.phi);
+  }
+};
+
+} // namespace
+
+template <class S>
+void evaluate_constraints(const System& system, const Parameters& p, const Configuration<S>& q,
+                          const Kinematics<S>& k, Configuration<S>& phi) {
+  phi.resize(system.rows);
+  for_runs(system.division, system.cuts.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const CutJoint& cut = system.cuts[i];
+      for (std::size_t r = 0; r < cut.rows.size(); ++r)
+        phi[cut.first_row + static_cast<int>(r)] = row_value(cut, p.cuts[i], cut.rows[r], q, k);
+    }
+  });
 }
+
+template <class S>
+void evaluate_residual(const System& system, const Parameters& p, const Configuration<S>& q,
+                       const Configuration<S>& lambda, const Kinematics<S>& k, Residual<S>& out) {
+  ResidualPass<S>{system, p, q, lambda, k, out}.run();
+}
+
+namespace {
+
+// The same for the sizes of the terms.
+struct MagnitudesPass {
+  const System& system;
+  const Parameters& p;
+  const Eigen::VectorXd &q, &lambda;
+  const Kinematics<double>& k;
+  Magnitudes& out;
+
+  void add_body_forces(const std::vector<int>& elements) const {
+    for (const int n : elements) {
+      const auto i = static_cast<std::size_t>(n);
+      const BodyForceElement& e = system.body_forces[i];
+      if (e.link < 0) continue;
+      const auto l = static_cast<std::size_t>(e.link);
+      const AppliedForce<double> a = applied_force(e, p.body_forces[i], k);
+      out.link_force[l] += a.force.norm();
+      out.link_moment[l] += a.torque.norm() + (a.point - k.links[l].o).norm() * a.force.norm();
+    }
+  }
+
+  void add_links(std::size_t first, std::size_t last, std::size_t spine) const {
+    const double weight = p.gravity.norm();
+    for (std::size_t i = last; i-- > first;) {
+      const Link& link = system.links[i];
+      const LinkParameters& lp = p.links[i];
+      const LinkState<double>& x = k.links[i];
+      if (lp.mass != 0 || lp.has_inertia) {
+        const double c = lp.com.norm(), w2 = x.w.squaredNorm(), turn = x.dw.norm() + w2;
+        const double force = lp.mass * (weight + (x.dv - k.ground.dv).norm() + turn * c);
+        out.link_force[i] += force;
+        out.link_moment[i] += c * force;
+        if (lp.has_inertia && p.moving) out.link_moment[i] += lp.inertia.norm() * turn;
+      }
+      if (link.v >= 0) {
+        if (link.type == LinkType::spherical)
+          out.force.segment<3>(link.v).setConstant(out.link_moment[i]);
+        else
+          out.force[link.v] = link.type == LinkType::revolute ? out.link_moment[i] : out.link_force[i];
+        if (lp.elastic && link.type != LinkType::spherical) {
+          const CoordinateForce& c = lp.force[0];
+          out.force[link.v] += std::abs(c.stiffness) * (std::abs(q[link.q]) + std::abs(c.free)) +
+                               (c.curvature(q[link.q]) - c.stiffness) *
+                                   (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
+        } else if (lp.elastic) {
+          for (int j = 0; j < 3; ++j)
+            for (const CoordinateForce& c : lp.force)
+              out.force[link.v + j] += (std::abs(c.stiffness) + c.stop_stiffness) * (4 + std::abs(c.free));
+        }
+      }
+      if (link.parent < 0) continue;
+      const auto j = static_cast<std::size_t>(link.parent);
+      const bool here = j >= first;
+      (here ? out.link_force[j] : out.spine_force[spine + j]) += out.link_force[i];
+      (here ? out.link_moment[j] : out.spine_moment[spine + j]) +=
+          out.link_moment[i] + (k.links[i].o - k.links[j].o).norm() * out.link_force[i];
+    }
+  }
+
+  void add_springs(const std::vector<int>& elements) const {
+    for (const int n : elements) {
+      const auto i = static_cast<std::size_t>(n);
+      const PointSpringElement& e = system.springs[i];
+      const SpringState<double> s = spring_state(e, p.springs[i], k);
+      const double size =
+          std::abs(p.springs[i].stiffness) * (s.a.norm() + s.b.norm() + s.length + p.springs[i].free_length) +
+          std::abs(s.tension);
+      // By the whole lever, which is rounded too where the axis points along it.
+      for (const SupportColumn& c : e.ends.support) {
+        const Column<double>& column = k.columns[static_cast<std::size_t>(c.v)];
+        out.force[c.v] += column.angular ? size * ((c.second ? s.b : s.a) - column.o).norm() : size;
+      }
+    }
+  }
+
+  // Multipliers are solved for together, so each carries the rounding of the largest and of what they
+  // balance: compared as forces, moments at the arm of the mechanism's reach.
+  double coordinate_arm(int v) const {
+    return k.columns[static_cast<std::size_t>(v)].angular ? p.length : 1.;
+  }
+  double arm(const CutJoint& cut, const ConstraintRow& row) const {
+    if (row.type == RowType::gear) return coordinate_arm(cut.gear_vb);
+    return row.type == RowType::direction ? p.length : 1.;
+  }
+
+  double largest_at(const std::vector<int>& cuts) const {
+    double largest = 0;
+    const auto count = [&](double force, double at) { largest = std::max(largest, std::abs(force) / at); };
+    for (const int n : cuts) {
+      const CutJoint& cut = system.cuts[static_cast<std::size_t>(n)];
+      for (const SupportColumn& c : cut.ends.support)
+        count(out.force[c.v], coordinate_arm(c.v));
+      if (cut.type == JointType::gear) // ties coordinates that need not lie between two bodies
+        for (int v : {cut.gear_va, cut.gear_vb})
+          count(out.force[v], coordinate_arm(v));
+      for (std::size_t r = 0; r < cut.rows.size(); ++r)
+        count(lambda[cut.first_row + static_cast<int>(r)], arm(cut, cut.rows[r]));
+    }
+    return largest;
+  }
+
+  void add_cuts(const std::vector<int>& cuts, double largest) const {
+    for (const int n : cuts) {
+      const auto i = static_cast<std::size_t>(n);
+      const CutJoint& cut = system.cuts[i];
+      for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+        const double size = largest * arm(cut, cut.rows[r]);
+        if (cut.rows[r].type == RowType::gear) {
+          out.force[cut.gear_va] += size * std::abs(p.cuts[i].ratio);
+          out.force[cut.gear_vb] += size;
+          continue;
+        }
+        const Vec3 at = k.point(cut.ends.b, p.cuts[i].b);
+        // By the whole lever, as for springs.
+        for (const SupportColumn& s : cut.ends.support) {
+          const Column<double>& c = k.columns[static_cast<std::size_t>(s.v)];
+          if (cut.rows[r].type == RowType::direction)
+            out.force[s.v] += c.angular ? size : 0;
+          else
+            out.force[s.v] += c.angular ? size * (at - c.o).norm() : size;
+        }
+      }
+    }
+  }
+
+  void set_phi(std::size_t first, std::size_t last) const {
+    for (std::size_t i = first; i < last; ++i) {
+      const CutJoint& cut = system.cuts[i];
+      const CutParameters& c = p.cuts[i];
+      for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+        double& phi = out.phi[cut.first_row + static_cast<int>(r)];
+        switch (cut.rows[r].type) {
+        case RowType::point:
+        case RowType::distance: // positions are subtracted that may be far from the drawn pose
+          phi = std::max({p.length, k.point(cut.ends.a, c.a).norm(), k.point(cut.ends.b, c.b).norm()});
+          break;
+        case RowType::direction: phi = 1; break;
+        case RowType::gear:
+          phi = std::abs(q[cut.gear_b]) + std::abs(c.ratio * q[cut.gear_a]) + std::abs(c.offset) + 1;
+          break;
+        }
+      }
+    }
+  }
+
+  void clear(std::size_t first, std::size_t last) const {
+    std::fill(out.link_force.data() + first, out.link_force.data() + last, 0);
+    std::fill(out.link_moment.data() + first, out.link_moment.data() + last, 0);
+  }
+
+  void run() const {
+    const Division& division = system.division;
+    out.force.resize(system.nv);
+    out.phi.resize(system.rows);
+    out.link_force.resize(system.links.size());
+    out.link_moment.resize(system.links.size());
+    out.spine_force.assign(division.spine * division.parts.size(), 0);
+    out.spine_moment.assign(division.spine * division.parts.size(), 0);
+    for_parts(division, [&](const SystemPart& part, std::size_t n) {
+      clear(part.first, part.last);
+      add_body_forces(part.body_forces);
+      add_links(part.first, part.last, n * division.spine);
+      add_springs(part.springs);
+    });
+    clear(0, division.spine);
+    for (std::size_t n = 0; n < out.spine_force.size(); ++n) {
+      out.link_force[n % division.spine] += out.spine_force[n];
+      out.link_moment[n % division.spine] += out.spine_moment[n];
+    }
+    add_body_forces(division.between.body_forces);
+    add_links(0, division.spine, 0);
+    add_springs(division.between.springs);
+    if (system.rows == 0) return;
+    out.largest.assign(division.parts.size(), 0);
+    for_parts(division,
+              [&](const SystemPart& part, std::size_t n) { out.largest[n] = largest_at(part.cuts); });
+    const double largest =
+        std::max(largest_at(division.between.cuts), *std::ranges::max_element(out.largest));
+    for_parts(division, [&](const SystemPart& part, std::size_t) { add_cuts(part.cuts, largest); });
+    add_cuts(division.between.cuts, largest);
+    for_runs(division, system.cuts.size(),
+             [&](std::size_t first, std::size_t last) { set_phi(first, last); });
+  }
+};
+
+} // namespace
 
 void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& lambda, const Kinematics<double>& k, Magnitudes& out) {
-  const std::size_t n = system.links.size();
-  out.force.resize(system.nv);
-  out.phi.resize(system.rows);
-  out.link_force.resize(n);
-  out.link_moment.resize(n);
-  const double weight = p.gravity.norm();
-  std::ranges::fill(out.link_force, 0);
-  std::ranges::fill(out.link_moment, 0);
-  for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
-    const BodyForceElement& e = system.body_forces[i];
-    if (e.link < 0) continue;
-    const auto l = static_cast<std::size_t>(e.link);
-    const AppliedForce<double> a = applied_force(e, p.body_forces[i], k);
-    out.link_force[l] += a.force.norm();
-    out.link_moment[l] += a.torque.norm() + (a.point - k.links[l].o).norm() * a.force.norm();
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    const Link& link = system.links[i];
-    const LinkParameters& lp = p.links[i];
-    const LinkState<double>& x = k.links[i];
-    if (lp.mass != 0 || lp.has_inertia) {
-      const double c = lp.com.norm(), w2 = x.w.squaredNorm(), turn = x.dw.norm() + w2;
-      const double force = lp.mass * (weight + (x.dv - k.ground.dv).norm() + turn * c);
-      out.link_force[i] += force;
-      out.link_moment[i] += c * force;
-      if (lp.has_inertia && p.moving) out.link_moment[i] += lp.inertia.norm() * turn;
-    }
-    if (link.v >= 0) {
-      if (link.type == LinkType::spherical)
-        out.force.segment<3>(link.v).setConstant(out.link_moment[i]);
-      else
-        out.force[link.v] = link.type == LinkType::revolute ? out.link_moment[i] : out.link_force[i];
-      if (lp.elastic && link.type != LinkType::spherical) {
-        const CoordinateForce& c = lp.force[0];
-        out.force[link.v] += std::abs(c.stiffness) * (std::abs(q[link.q]) + std::abs(c.free)) +
-                             (c.curvature(q[link.q]) - c.stiffness) *
-                                 (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
-      } else if (lp.elastic) {
-        for (int j = 0; j < 3; ++j)
-          for (const CoordinateForce& c : lp.force)
-            out.force[link.v + j] += (std::abs(c.stiffness) + c.stop_stiffness) * (4 + std::abs(c.free));
-      }
-    }
-    if (link.parent >= 0) {
-      const auto j = static_cast<std::size_t>(link.parent);
-      out.link_force[j] += out.link_force[i];
-      out.link_moment[j] += out.link_moment[i] + (k.links[i].o - k.links[j].o).norm() * out.link_force[i];
-    }
-  }
-  for (std::size_t i = 0; i < system.springs.size(); ++i) {
-    const PointSpringElement& e = system.springs[i];
-    const SpringState<double> s = spring_state(e, p.springs[i], k);
-    const double size =
-        std::abs(p.springs[i].stiffness) * (s.a.norm() + s.b.norm() + s.length + p.springs[i].free_length) +
-        std::abs(s.tension);
-    // By the whole lever, which is rounded too where the axis points along it.
-    for (const SupportColumn& c : e.ends.support) {
-      const Column<double>& column = k.columns[static_cast<std::size_t>(c.v)];
-      out.force[c.v] += column.angular ? size * ((c.second ? s.b : s.a) - column.o).norm() : size;
-    }
-  }
-  // Multipliers are solved for together, so each carries the rounding of the largest and of what they
-  // balance: compared as forces, moments at the arm of the mechanism's reach.
-  const auto coordinate_arm = [&](int v) {
-    return k.columns[static_cast<std::size_t>(v)].angular ? p.length : 1.;
-  };
-  const auto arm = [&](const CutJoint& cut, const ConstraintRow& row) {
-    if (row.type == RowType::gear) return coordinate_arm(cut.gear_vb);
-    return row.type == RowType::direction ? p.length : 1.;
-  };
-  double largest = 0;
-  const auto count = [&](double force, double at) { largest = std::max(largest, std::abs(force) / at); };
-  for (const CutJoint& cut : system.cuts) {
-    for (const SupportColumn& c : cut.ends.support)
-      count(out.force[c.v], coordinate_arm(c.v));
-    if (cut.type == JointType::gear) // ties coordinates that need not lie between two bodies
-      for (int v : {cut.gear_va, cut.gear_vb})
-        count(out.force[v], coordinate_arm(v));
-    for (std::size_t r = 0; r < cut.rows.size(); ++r)
-      count(lambda[cut.first_row + static_cast<int>(r)], arm(cut, cut.rows[r]));
-  }
-  for (std::size_t i = 0; i < system.cuts.size(); ++i) {
-    const CutJoint& cut = system.cuts[i];
-    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
-      const int row = cut.first_row + static_cast<int>(r);
-      const double size = largest * arm(cut, cut.rows[r]);
-      if (cut.rows[r].type == RowType::gear) {
-        out.phi[row] = std::abs(q[cut.gear_b]) + std::abs(p.cuts[i].ratio * q[cut.gear_a]) +
-                       std::abs(p.cuts[i].offset) + 1;
-        out.force[cut.gear_va] += size * std::abs(p.cuts[i].ratio);
-        out.force[cut.gear_vb] += size;
-        continue;
-      }
-      // Positions are subtracted that may be far from the drawn pose.
-      const Vec3 at = k.point(cut.ends.b, p.cuts[i].b);
-      out.phi[row] = cut.rows[r].type == RowType::direction
-                         ? 1
-                         : std::max({p.length, k.point(cut.ends.a, p.cuts[i].a).norm(), at.norm()});
-      // By the whole lever, as for springs.
-      for (const SupportColumn& s : cut.ends.support) {
-        const Column<double>& c = k.columns[static_cast<std::size_t>(s.v)];
-        if (cut.rows[r].type == RowType::direction)
-          out.force[s.v] += c.angular ? size : 0;
-        else
-          out.force[s.v] += c.angular ? size * (at - c.o).norm() : size;
-      }
-    }
-  }
+  MagnitudesPass{system, p, q, lambda, k, out}.run();
 }
 
 template AppliedForce<double> applied_force(const BodyForceElement&, const BodyForceParameters&,

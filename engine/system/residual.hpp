@@ -16,6 +16,7 @@ struct Residual {
   // Force and moment about the link's origin that its subtree's inertia, weight and single-body forces ask
   // for.
   std::vector<Vec3T<S>> force, moment;
+  std::vector<Vec3T<S>> spine_force, spine_moment; // workspace: of each part on each link of the spine
 };
 
 // `kinematics` must be at (q, t). Instantiated for double and long double.
@@ -33,6 +34,7 @@ void evaluate_constraints(const System& system, const Parameters& parameters, co
 struct Magnitudes {
   Eigen::VectorXd force, phi;
   std::vector<double> link_force, link_moment; // workspace
+  std::vector<double> spine_force, spine_moment, largest;
 };
 void evaluate_magnitudes(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& lambda, const Kinematics<double>& kinematics,

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/system/division.hpp"
 
 #include <memory>
 #include <string>
@@ -149,6 +150,7 @@ struct System {
   // potential.hpp).
   bool single_drives = true;
   Elimination elimination = Elimination::dense;
+  Division division;
 };
 
 // Compiles. Throws SceneError where a mechanism has no meaning (validate() finds the same and more).

@@ -114,10 +114,11 @@ struct Case {
 };
 
 struct Tried {
-  int symmetric = 0, unsymmetric = 0;
+  int symmetric = 0, unsymmetric = 0, divided = 0;
 };
 
 // Solves for random right-hand sides at random states with random multipliers, by both.
+// In parts where that can be done, as a rule.
 Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
   Tried tried;
   for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
@@ -126,6 +127,7 @@ Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
     options.drives = seed % 3 == 0 ? ref::RandomDrives::several : ref::RandomDrives::root;
     Case x(ref::random_mechanism(seed, options));
     if (x.system.nv == 0 || !no_drive_rides(x.system)) continue;
+    if (seed / 2 % 4 != 0) x.system.division = divide(x.system, 2);
     CAPTURE(seed, x.system.nv, x.system.rows);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> any(-0.3, 0.3);
@@ -155,6 +157,7 @@ Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
       CHECK(x.sparse.bodies.negative_count() == (eigen.eigenvalues().array() < 0).count() - x.system.rows);
     }
     ++(potential ? tried.symmetric : tried.unsymmetric);
+    tried.divided += x.system.division.parts.size() > 1;
   }
   return tried;
 }
@@ -180,12 +183,14 @@ TEST_CASE("a step by the bodies' equations solves those of the coordinates") {
     const Tried tried = try_random(options, 200);
     CHECK(tried.symmetric > 25);
     CHECK(tried.unsymmetric > 25);
+    CHECK(tried.divided > 6);
   }
   SECTION("loops") {
     options.loops = 3;
     const Tried tried = try_random(options, 1000);
     CHECK(tried.symmetric > 80);
     CHECK(tried.unsymmetric > 10);
+    CHECK(tried.divided > 6);
   }
 }
 
@@ -208,9 +213,10 @@ TEST_CASE("the metric of the bodies' equations is that of the motion") {
 }
 
 // Knots meet each other by cables alone; where one carries a rod, or is light, it is not solved for apart.
-TEST_CASE("the metric of a net is that of the motion, whatever hangs on its knots") {
-  for (const bool laden : {false, true}) {
-    CAPTURE(laden);
+TEST_CASE("the metric of a net is that of the motion, whatever hangs on its knots, in parts or not") {
+  for (const auto& [laden, divided] :
+       {std::pair(false, false), std::pair(true, false), std::pair(false, true), std::pair(true, true)}) {
+    CAPTURE(laden, divided);
     Mechanism m = cable_net(4, 2);
     if (laden) {
       m.bodies[6].mass = 1e-7;
@@ -228,6 +234,7 @@ TEST_CASE("the metric of a net is that of the motion, whatever hangs on its knot
       m.bodies.push_back(rod);
     }
     Case x(m);
+    if (divided) x.system.division = divide(x.system, 2);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> any(-0.3, 0.3);
     Eigen::VectorXd step(x.system.nv), force(x.system.nv);
@@ -350,4 +357,26 @@ TEST_CASE("all rods of a small net are told to spin freely") {
     if (b.name.starts_with("cable"))
       CHECK(std::ranges::any_of(s.neutral,
                                 [&](const std::string& joint) { return joint.starts_with(b.name); }));
+}
+
+// Large enough for threads; against the same with all in one part, by the search for an equilibrium alone.
+TEST_CASE("a large net is solved in parts as it is as a whole, and to the same bits every time") {
+  const auto found_in = [](const Mechanism& mechanism, bool whole) {
+    Case x(mechanism);
+    REQUIRE(x.system.division.parts.size() > 1);
+    if (whole) x.system.division = divide(x.system, x.system.links.size());
+    Found found;
+    std::vector<double> history;
+    const Eigen::VectorXd drawn = x.z.q;
+    find_equilibrium(x.problem(true), drawn, false, false, x.sparse, history, found);
+    REQUIRE(found.status == Status::converged);
+    return found.z.q;
+  };
+  for (const bool cables : {false, true}) {
+    CAPTURE(cables);
+    const Mechanism m = cables ? bench::cable_net(46, 3) : bench::spring_net(46, 3);
+    const Eigen::VectorXd parts = found_in(m, false);
+    CHECK((parts - found_in(m, true)).lpNorm<Eigen::Infinity>() < 1e-11);
+    CHECK(parts == found_in(m, false));
+  }
 }
