@@ -103,6 +103,16 @@ void take_off_multipliers(const Problem& problem, const Eigen::VectorXd& lambda,
   take_off(problem.system.division.between, 0);
 }
 
+// After a short step of this size another with the same factors: of sparse equations it costs a fifth of one
+// with new factors, and takes an error e^2 on to e^3 (Shamanskii, A modification of Newton's method, 1967).
+void step_again(const Problem& problem, double size, Unknowns& z, Workspace& w) {
+  newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+  if (!(w.scaled_step.lpNorm<Eigen::Infinity>() < 0.1 * size)) return;
+  apply_step(problem, w.scaled_step, 1, z.q, w);
+  z.lambda += w.trial.lambda;
+  evaluate(problem, z, 0, w);
+}
+
 } // namespace
 
 void evaluate(const Problem& problem, const Unknowns& z, double t, Workspace& w) {
@@ -312,6 +322,12 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     outcome.largest_step = std::max(outcome.largest_step, fraction * size);
     outcome.last_step = size;
     evaluate(problem, z, 0, w);
+    // From below that the next step is the last, and at rounding.
+    constexpr double almost_there = 1e-8;
+    const bool contracts = size < 1e-4 && size > almost_there;
+    if (contracts && problem.elimination() == Elimination::bodies && !settings.damped &&
+        settings.proximal == 0)
+      step_again(problem, size, z, w);
     // So far away only a balance that is as good as linear leads.
     if (size > far && !(scaled_residual(problem, w) < 1e-6)) break;
     const double tolerance =
