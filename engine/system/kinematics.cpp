@@ -100,7 +100,7 @@ void forward(const System& system, const Parameters& p, const Configuration<S>& 
   out.ground.v.setZero();
   out.ground.dw.setZero();
   out.ground.dv = -p.gravity.cast<S>();
-  place_links(system, p, q, t, 0, system.division.spine, out);
+  if (system.division.spine > 0) place_links(system, p, q, t, 0, system.division.spine, out);
   for_parts(system.division, [&](const SystemPart& part, std::size_t) {
     place_links(system, p, q, t, part.first, part.last, out);
   });

@@ -116,9 +116,14 @@ struct ResidualPass {
       }
       if (link.parent < 0) continue;
       const auto j = static_cast<std::size_t>(link.parent);
-      const bool here = j >= first;
-      (here ? out.force[j] : out.spine_force[spine + j]) += force;
-      (here ? out.moment[j] : out.spine_moment[spine + j]) += moment + (x.o - k.links[j].o).cross(force);
+      const Vec3T<S> carried = moment + (x.o - k.links[j].o).cross(force);
+      if (j >= first) {
+        out.force[j] += force;
+        out.moment[j] += carried;
+      } else {
+        out.spine_force[spine + j] += force;
+        out.spine_moment[spine + j] += carried;
+      }
     }
   }
 
@@ -183,14 +188,16 @@ struct ResidualPass {
       add_links(part.first, part.last, n * division.spine);
       add_elements(part);
     });
-    clear(0, division.spine);
-    for (std::size_t n = 0; n < out.spine_force.size(); ++n) {
-      out.force[n % division.spine] += out.spine_force[n];
-      out.moment[n % division.spine] += out.spine_moment[n];
+    if (division.parts.size() > 1) {
+      clear(0, division.spine);
+      for (std::size_t n = 0; n < out.spine_force.size(); ++n) {
+        out.force[n % division.spine] += out.spine_force[n];
+        out.moment[n % division.spine] += out.spine_moment[n];
+      }
+      add_body_forces(division.between.body_forces);
+      add_links(0, division.spine, 0);
+      add_elements(division.between);
     }
-    add_body_forces(division.between.body_forces);
-    add_links(0, division.spine, 0);
-    add_elements(division.between);
     for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
       add_cut_damper(i);
     evaluate_constraints(system, p, q, k, out.phi);
@@ -203,6 +210,7 @@ template <class S>
 void evaluate_constraints(const System& system, const Parameters& p, const Configuration<S>& q,
                           const Kinematics<S>& k, Configuration<S>& phi) {
   phi.resize(system.rows);
+  if (system.rows == 0) return;
   for_runs(system.division, system.cuts.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const CutJoint& cut = system.cuts[i];
