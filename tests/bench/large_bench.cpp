@@ -14,6 +14,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -31,7 +32,13 @@ double seconds(const std::function<void()>& work) {
 
 // What one scene costs.
 struct Cost {
-  double bodies = 0, solving = 0, memory = 0; // compiling and solving in ms; MB held
+  std::string text;
+  Solution solution;
+  double bodies = 0, reading = unlimited, checking = unlimited, compiling = unlimited, accepted = unlimited,
+         solving = unlimited; // ms
+  double memory = 0;          // MB held
+
+  static constexpr double unlimited = std::numeric_limits<double>::infinity();
 };
 
 double held() {
@@ -44,53 +51,61 @@ double held() {
 }
 
 std::string power(double now, double before, double ratio) {
-  if (!(before > 0) || !(now > 0)) return "";
+  if (!(before > 0) || !std::isfinite(before) || !(now > 0)) return "";
   char text[16];
   std::snprintf(text, sizeof text, "%.2f", std::log(now / before) / std::log(ratio));
   return text;
 }
 
-Cost measure(const std::string& family, const Mechanism& mechanism, const Cost& before) {
-  const std::string text = write_scene(mechanism);
+// Once more, for the least. Returns the seconds it took.
+double measure(Cost& cost) {
   const double start = held();
   Mechanism read;
-  Solution solution;
   std::optional<Analysis> analysis;
-  const auto unlimited = std::numeric_limits<double>::infinity();
-  double reading = unlimited, checking = unlimited, compiling = unlimited, whole = unlimited,
-         accepted = unlimited;
   double total = 0;
-  for (int run = 0; run < 9 && total < 8; ++run) {
-    const auto least = [&](double& time, const std::function<void()>& work) {
-      const double once = seconds(work);
-      time = std::min(time, 1e3 * once);
-      total += once;
-    };
-    least(reading, [&] { read = parse_scene(text); });
-    least(checking, [&] { validate(read); });
-    analysis.reset();
-    least(compiling, [&] { analysis.emplace(read); });
-    least(whole, [&] { solution = analysis->solve(); });
-    accepted = std::min(accepted, 1e3 * solution.run_time_s);
-  }
-  const Cost cost{static_cast<double>(read.bodies.size() - 1), compiling + whole, held() - start};
-  const double ratio = cost.bodies / before.bodies;
-  std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %.1f | %s | %d%s | %s | %.0e |\n",
-              family.c_str(), cost.bodies, reading, checking, compiling, accepted, whole,
-              power(cost.solving, before.solving, ratio).c_str(), cost.memory,
-              power(cost.memory, before.memory, ratio).c_str(), solution.iterations,
-              solution.net ? (" " + std::string(word(*solution.net))).c_str() : "",
-              solution.stability_reason ? std::string(word(*solution.stability_reason)).c_str()
-                                        : std::string(word(solution.status)).c_str(),
-              solution.residual);
-  std::fflush(stdout);
-  return cost;
+  const auto least = [&](double& time, const std::function<void()>& work) {
+    const double once = seconds(work);
+    time = std::min(time, 1e3 * once);
+    total += once;
+  };
+  least(cost.reading, [&] { read = parse_scene(cost.text); });
+  least(cost.checking, [&] { validate(read); });
+  least(cost.compiling, [&] { analysis.emplace(read); });
+  least(cost.solving, [&] { cost.solution = analysis->solve(); });
+  cost.accepted = std::min(cost.accepted, 1e3 * cost.solution.run_time_s);
+  cost.bodies = static_cast<double>(read.bodies.size() - 1);
+  cost.memory = std::max(cost.memory, held() - start);
+  return total;
 }
 
+void print(const std::string& family, const Cost& cost, const Cost& before) {
+  const double ratio = cost.bodies / before.bodies;
+  const Solution& s = cost.solution;
+  std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %.1f | %s | %d%s | %s | %.0e |\n",
+              family.c_str(), cost.bodies, cost.reading, cost.checking, cost.compiling, cost.accepted,
+              cost.solving,
+              power(cost.compiling + cost.solving, before.compiling + before.solving, ratio).c_str(),
+              cost.memory, power(cost.memory, before.memory, ratio).c_str(), s.iterations,
+              s.net ? (" " + std::string(word(*s.net))).c_str() : "",
+              s.stability_reason ? std::string(word(*s.stability_reason)).c_str()
+                                 : std::string(word(s.status)).c_str(),
+              s.residual);
+}
+
+// All sizes in turn, so that a machine that is faster at times is so for all.
 void family(const std::string& name, int largest, const std::function<Mechanism(int)>& make) {
-  Cost before;
-  for (int n = 10; n <= largest; n *= 10)
-    before = measure(name, make(n), before);
+  std::vector<Cost> costs;
+  for (int n = 10; n <= largest; n *= 10) {
+    costs.emplace_back();
+    costs.back().text = write_scene(make(n));
+  }
+  double total = 0;
+  for (int round = 0; round < 9 && total < 20; ++round)
+    for (Cost& cost : costs)
+      total += measure(cost);
+  for (std::size_t i = 0; i < costs.size(); ++i)
+    print(name, costs[i], i > 0 ? costs[i - 1] : Cost{});
+  std::fflush(stdout);
 }
 
 int side_of(int bodies) {
