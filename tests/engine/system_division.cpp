@@ -150,7 +150,7 @@ TEST_CASE("a mechanism in parts balances to the same bits every time") {
 }
 
 TEST_CASE("what work on a part throws arrives") {
-  for (const std::size_t thrower : {0, 3, 7})
+  for (const std::size_t thrower : {0U, 3U, 7U})
     CHECK_THROWS_AS(side_by_side(8,
                                  [&](std::size_t i) {
                                    if (i == thrower) throw std::runtime_error("here");
