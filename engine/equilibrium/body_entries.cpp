@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace flyball {
 namespace {
@@ -23,10 +24,8 @@ Mat6 inverse(const Mat6& metric) {
 
 // Calls work(list) for each, side by side.
 template <class Lists, class Work>
-void for_lists(Lists& lists, Work work) {
-  if (lists.size() == 1) return work(lists[0]);
-  const auto each = [&](std::size_t i) { work(lists[i]); };
-  side_by_side(lists.size(), std::ref(each));
+void for_lists(Lists& lists, const Work& work) {
+  side_by_side(lists.size(), [&](std::size_t i) { work(lists[i]); });
 }
 
 } // namespace

@@ -9,7 +9,6 @@
 #include "engine/equilibrium/body_stiffness.hpp"
 #include "engine/equilibrium/sparse_factorization.hpp"
 
-#include <span>
 #include <vector>
 
 namespace flyball {

@@ -58,15 +58,14 @@ void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Ki
                              const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines) {
   const Division& division = problem.system.division;
   lay_out(problem, problem.symmetric());
-  const std::size_t between = compressed_.size() - 1;
   noise_.resize(static_cast<std::size_t>(nodes_.size()));
   for_parts(division, [&](const SystemPart& part, std::size_t n) {
     add_bodies(problem, k, n, true);
     add_pairs(problem, z, k, lines, part, n);
   });
   add_body_forces(problem, k);
-  add_pairs(problem, z, k, lines, division.between, between);
-  if (problem.parameters.moving) add_dampers(problem, k, between);
+  add_pairs(problem, z, k, lines, division.between, between_);
+  if (problem.parameters.moving) add_dampers(problem, k, between_);
   for_parts(division, [&](const SystemPart& part, std::size_t n) {
     for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];) {
       sum_up_load(i, residual);
@@ -75,7 +74,7 @@ void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Ki
     }
     add_rows(problem, k, part, n);
   });
-  add_rows(problem, k, division.between, between);
+  add_rows(problem, k, division.between, between_);
   entries_.hold_above(noise_);
 }
 
@@ -89,7 +88,7 @@ void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<dou
       add_joint(problem, n, i, nullptr);
     add_rows(problem, k, part, n);
   });
-  add_rows(problem, k, division.between, compressed_.size() - 1);
+  add_rows(problem, k, division.between, between_);
   entries_.hold_all_by_metric();
 }
 
@@ -110,9 +109,10 @@ void BodyEquations::lay_out(const Problem& problem, bool symmetric) {
     mass_ += problem.parameters.links[static_cast<std::size_t>(x.link)].mass;
   }
   unknowns_ = first_row_ + rows_;
-  const std::size_t parts = problem.system.division.parts.size(), lists = parts > 1 ? parts + 1 : 1;
-  entries_.clear(unknowns_, symmetric, lists);
-  compressed_.assign(lists, false);
+  const std::size_t parts = problem.system.division.parts.size();
+  between_ = parts > 1 ? parts : 0;
+  entries_.clear(unknowns_, symmetric, between_ + 1);
+  compressed_.assign(between_ + 1, false);
   sums_.resize(static_cast<std::size_t>(nodes_.size()));
 }
 

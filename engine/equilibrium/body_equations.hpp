@@ -74,6 +74,7 @@ class BodyEquations {
     Mat6 metric;    // scaled
   };
 
+  std::size_t between_ = 0;      // the list of entries of what is between parts; of one part alone its own
   std::vector<char> compressed_; // by list of entries: some line is
   int coordinates_ = 0, rows_ = 0, first_row_ = 0, unknowns_ = 0;
   double mass_ = 0;

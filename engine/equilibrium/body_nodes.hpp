@@ -47,13 +47,11 @@ class BodyNodes {
 
   // Calls work(i) for every node, parents before children, parts of the system side by side.
   template <class Work>
-  void for_each(Work work) const {
-    const auto run = [&](std::size_t part) {
+  void for_each(const Work& work) const {
+    side_by_side(first_of_part_.size() - 1, [&](std::size_t part) {
       for (int i = first_of_part_[part]; i < first_of_part_[part + 1]; ++i)
         work(i);
-    };
-    if (first_of_part_.size() == 2) return run(0);
-    side_by_side(first_of_part_.size() - 1, std::ref(run));
+    });
   }
 
   int size() const { return static_cast<int>(nodes_.size()); }

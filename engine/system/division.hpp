@@ -31,22 +31,18 @@ constexpr std::size_t fewest_links = 4096;
 // and of no fewer than that.
 Division divide(const System& system, std::size_t fewest = fewest_links);
 
-// Calls work(part, its index) for every part: in this thread where there is only one.
+// Calls work(part, its index) for every part.
 template <class Work>
-void for_parts(const Division& division, Work work) {
-  if (division.parts.size() == 1) return work(division.parts[0], std::size_t{0});
-  const auto each = [&](std::size_t i) { work(division.parts[i], i); };
-  side_by_side(division.parts.size(), std::ref(each));
+void for_parts(const Division& division, const Work& work) {
+  side_by_side(division.parts.size(), [&](std::size_t i) { work(division.parts[i], i); });
 }
 
 // Calls work(first, last) for as many runs of [0, count): for what writes by itself in the order of elements,
 // which need not be that of the parts.
 template <class Work>
-void for_runs(const Division& division, std::size_t count, Work work) {
+void for_runs(const Division& division, std::size_t count, const Work& work) {
   const std::size_t runs = division.parts.size();
-  if (runs == 1) return work(std::size_t{0}, count);
-  const auto each = [&](std::size_t i) { work(count * i / runs, count * (i + 1) / runs); };
-  side_by_side(runs, std::ref(each));
+  side_by_side(runs, [&](std::size_t i) { work(count * i / runs, count * (i + 1) / runs); });
 }
 
 } // namespace flyball

@@ -75,8 +75,42 @@ SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParame
 
 namespace {
 
-// A pass over the mechanism that adds up what acts on it. In parts side by side, and then what is between
-// them.
+// Calls add(link, force) for those of a part that act on a link.
+template <class S, class Add>
+void for_applied_forces(const System& system, const Parameters& p, const Kinematics<S>& k,
+                        const SystemPart& part, const Add& add) {
+  for (const int n : part.body_forces) {
+    const auto i = static_cast<std::size_t>(n);
+    const BodyForceElement& e = system.body_forces[i];
+    if (e.link >= 0) add(static_cast<std::size_t>(e.link), applied_force(e, p.body_forces[i], k));
+  }
+}
+
+// Parts side by side, what each asks of the spine by itself; then the spine, and what is between the parts.
+template <class Pass>
+void add_in_parts(const Division& division, const Pass& pass) {
+  for_parts(division, [&](const SystemPart& part, std::size_t n) {
+    pass.clear(part.first, part.last);
+    pass.add_body_forces(part);
+    pass.add_links(part.first, part.last, n * division.spine);
+    pass.add_elements(part);
+  });
+  if (division.parts.size() == 1) return;
+  pass.clear(0, division.spine);
+  pass.add_up_spine();
+  pass.add_body_forces(division.between);
+  pass.add_links(0, division.spine, 0);
+  pass.add_elements(division.between);
+}
+
+// Of all parts on each link of the spine.
+template <class T>
+void add_up(const std::vector<T>& by_part, std::size_t spine, std::vector<T>& by_link) {
+  for (std::size_t n = 0; n < by_part.size(); ++n)
+    by_link[n % spine] += by_part[n];
+}
+
+// A pass over the mechanism that adds up what acts on it.
 template <class S>
 struct ResidualPass {
   const System& system;
@@ -85,20 +119,14 @@ struct ResidualPass {
   const Kinematics<S>& k;
   Residual<S>& out;
 
-  // Forces on links [first, last), which have been cleared.
-  void add_body_forces(const std::vector<int>& elements) const {
-    for (const int n : elements) {
-      const auto i = static_cast<std::size_t>(n);
-      const BodyForceElement& e = system.body_forces[i];
-      if (e.link < 0) continue;
-      const auto l = static_cast<std::size_t>(e.link);
-      const AppliedForce<S> a = applied_force(e, p.body_forces[i], k);
+  void add_body_forces(const SystemPart& part) const {
+    for_applied_forces(system, p, k, part, [&](std::size_t l, const AppliedForce<S>& a) {
       out.force[l] -= a.force;
       out.moment[l] -= a.torque + (a.point - k.links[l].o).cross(a.force);
-    }
+    });
   }
 
-  // From the tips inwards. What links ask of those before the first goes to `spine`.
+  // From the tips inwards. What links ask of those before the first goes to the spine's, from `spine` on.
   void add_links(std::size_t first, std::size_t last, std::size_t spine) const {
     for (std::size_t i = last; i-- > first;) {
       const Link& link = system.links[i];
@@ -175,6 +203,11 @@ struct ResidualPass {
     }
   }
 
+  void add_up_spine() const {
+    add_up(out.spine_force, system.division.spine, out.force);
+    add_up(out.spine_moment, system.division.spine, out.moment);
+  }
+
   void run() const {
     const Division& division = system.division;
     out.f.resize(system.nv);
@@ -182,22 +215,7 @@ struct ResidualPass {
     out.moment.resize(system.links.size());
     out.spine_force.assign(division.spine * division.parts.size(), Vec3T<S>::Zero());
     out.spine_moment.assign(division.spine * division.parts.size(), Vec3T<S>::Zero());
-    for_parts(division, [&](const SystemPart& part, std::size_t n) {
-      clear(part.first, part.last);
-      add_body_forces(part.body_forces);
-      add_links(part.first, part.last, n * division.spine);
-      add_elements(part);
-    });
-    if (division.parts.size() > 1) {
-      clear(0, division.spine);
-      for (std::size_t n = 0; n < out.spine_force.size(); ++n) {
-        out.force[n % division.spine] += out.spine_force[n];
-        out.moment[n % division.spine] += out.spine_moment[n];
-      }
-      add_body_forces(division.between.body_forces);
-      add_links(0, division.spine, 0);
-      add_elements(division.between);
-    }
+    add_in_parts(division, *this);
     for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
       add_cut_damper(i);
     evaluate_constraints(system, p, q, k, out.phi);
@@ -236,16 +254,11 @@ struct MagnitudesPass {
   const Kinematics<double>& k;
   Magnitudes& out;
 
-  void add_body_forces(const std::vector<int>& elements) const {
-    for (const int n : elements) {
-      const auto i = static_cast<std::size_t>(n);
-      const BodyForceElement& e = system.body_forces[i];
-      if (e.link < 0) continue;
-      const auto l = static_cast<std::size_t>(e.link);
-      const AppliedForce<double> a = applied_force(e, p.body_forces[i], k);
+  void add_body_forces(const SystemPart& part) const {
+    for_applied_forces(system, p, k, part, [&](std::size_t l, const AppliedForce<double>& a) {
       out.link_force[l] += a.force.norm();
       out.link_moment[l] += a.torque.norm() + (a.point - k.links[l].o).norm() * a.force.norm();
-    }
+    });
   }
 
   void add_links(std::size_t first, std::size_t last, std::size_t spine) const {
@@ -286,8 +299,8 @@ struct MagnitudesPass {
     }
   }
 
-  void add_springs(const std::vector<int>& elements) const {
-    for (const int n : elements) {
+  void add_elements(const SystemPart& part) const {
+    for (const int n : part.springs) {
       const auto i = static_cast<std::size_t>(n);
       const PointSpringElement& e = system.springs[i];
       const SpringState<double> s = spring_state(e, p.springs[i], k);
@@ -377,6 +390,11 @@ struct MagnitudesPass {
     std::fill(out.link_moment.data() + first, out.link_moment.data() + last, 0);
   }
 
+  void add_up_spine() const {
+    add_up(out.spine_force, system.division.spine, out.link_force);
+    add_up(out.spine_moment, system.division.spine, out.link_moment);
+  }
+
   void run() const {
     const Division& division = system.division;
     out.force.resize(system.nv);
@@ -385,20 +403,7 @@ struct MagnitudesPass {
     out.link_moment.resize(system.links.size());
     out.spine_force.assign(division.spine * division.parts.size(), 0);
     out.spine_moment.assign(division.spine * division.parts.size(), 0);
-    for_parts(division, [&](const SystemPart& part, std::size_t n) {
-      clear(part.first, part.last);
-      add_body_forces(part.body_forces);
-      add_links(part.first, part.last, n * division.spine);
-      add_springs(part.springs);
-    });
-    clear(0, division.spine);
-    for (std::size_t n = 0; n < out.spine_force.size(); ++n) {
-      out.link_force[n % division.spine] += out.spine_force[n];
-      out.link_moment[n % division.spine] += out.spine_moment[n];
-    }
-    add_body_forces(division.between.body_forces);
-    add_links(0, division.spine, 0);
-    add_springs(division.between.springs);
+    add_in_parts(division, *this);
     if (system.rows == 0) return;
     out.largest.assign(division.parts.size(), 0);
     for_parts(division,

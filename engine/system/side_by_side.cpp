@@ -9,7 +9,7 @@
 
 namespace flyball {
 
-void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work) {
+void run_on_all_cores(std::size_t count, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next = 0;
   const auto take = [&] {
     for (std::size_t i; (i = next++) < count;)
