@@ -1,7 +1,5 @@
 #include "engine/equilibrium/newton.hpp"
 
-#include "engine/system/constraint_row.hpp"
-
 namespace flyball {
 namespace {
 
@@ -82,25 +80,18 @@ double merit(const Problem& problem, Workspace& w) {
   return std::sqrt(sum);
 }
 
-// The balance with the multipliers' forces taken off again.
-void take_off_multipliers(const Problem& problem, const Eigen::VectorXd& lambda, Workspace& w) {
-  if (problem.system.rows == 0) return;
-  if (problem.is_dense()) {
+// The step from an evaluated and factored state, and the multipliers there. Of dense equations these are
+// solved for whole, from the balance without them, so that redundant ones stay as small as can be; of sparse
+// ones their change is, so that each step corrects what the one before left unsolved.
+void find_step(const Problem& problem, Workspace& w, Eigen::VectorXd& lambda) {
+  const bool whole = problem.is_dense();
+  if (whole && problem.system.rows > 0)
     w.residual.f.noalias() -= w.linearization.constraint.transpose() * lambda;
-    return;
-  }
-  const auto take_off = [&](const SystemPart& part, std::size_t) {
-    for (const int n : part.cuts) {
-      const auto c = static_cast<std::size_t>(n);
-      const CutJoint& cut = problem.system.cuts[c];
-      for (std::size_t r = 0; r < cut.rows.size(); ++r)
-        row_gradient(cut, problem.parameters.cuts[c], cut.rows[r], w.kinematics, [&](int v, double g) {
-          w.residual.f[v] -= g * lambda[cut.first_row + static_cast<int>(r)];
-        });
-    }
-  };
-  for_parts(problem.system.division, take_off);
-  take_off(problem.system.division.between, 0);
+  newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+  if (whole)
+    lambda = w.trial.lambda;
+  else
+    lambda += w.trial.lambda;
 }
 
 // After a short step of this size another with the same factors: of sparse equations it costs a fifth of one
@@ -292,11 +283,8 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
       outcome.falls = true;
       break;
     }
-    // The multipliers are solved for whole at every step, so the step needs the balance without them.
     w.trial.q = z.q;
-    w.trial.lambda = z.lambda;
-    take_off_multipliers(problem, z.lambda, w);
-    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, z.lambda);
+    find_step(problem, w, z.lambda);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > farthest) break;
     if (settings.to_minimum && size > there && w.eliminator(problem).negative_count() > 0) break;

@@ -238,12 +238,11 @@ bool SparseFactorization::factor(const SparsePattern& pattern, const std::vector
   return done;
 }
 
-void SparseFactorization::solve(Eigen::VectorXd& x) {
+void SparseFactorization::solve(Eigen::VectorXd& x, double enough) {
   State& s = *state_;
   x.array() *= s.scale.array();
   s.wanted = x;
   s.substitute(x);
-  constexpr double enough = 1e-11;
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 4; ++round) {
     const double error = s.leave(x);

@@ -37,8 +37,8 @@ class SparseFactorization {
   // False where memory runs out.
   bool factor(const SparsePattern& pattern, const std::vector<double>& values, double zero);
 
-  // In place, with corrections until it holds to 1e-11 of its terms. Zero pivots get no component.
-  void solve(Eigen::VectorXd& x);
+  // In place, with corrections until it holds to `enough` of its terms. Zero pivots get no component.
+  void solve(Eigen::VectorXd& x, double enough = 1e-11);
 
   int negative() const; // pivots; of a symmetric matrix
   int nullity() const;

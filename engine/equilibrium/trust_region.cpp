@@ -59,7 +59,7 @@ class TrustRegion {
         if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
         compression_tells_ = convex_ && !(ratio > 0.8 && ratio < 1.25);
         const bool model_serves = shift_ == 0 && !convex_ && std::abs(ratio - 1) < 0.1;
-        if (!all_the_way && p_.system.rows > 0 && model_serves && size < 1e-3)
+        if (!all_the_way && p_.system.rows > 0 && model_serves && size < 1e-3 && newton_leads())
           return {DescentEnd::near, i + 1};
         arrive(trial.potential);
         shortened = 0;
@@ -150,6 +150,18 @@ class TrustRegion {
     return false;
   }
 
+  // Whether the step left little of the forces with the multipliers that came with it, as Newton-Raphson's
+  // do near a solution. Then they are z_'s.
+  bool newton_leads() {
+    const Eigen::VectorXd before = z_.lambda;
+    z_.lambda += multipliers_.cwiseProduct(p_.scaling.row);
+    evaluate_forces(p_, z_, w_);
+    const double left = w_.residual.f.cwiseProduct(p_.scaling.column).lpNorm<Eigen::Infinity>();
+    if (left < 0.3 * gradient_.lpNorm<Eigen::Infinity>()) return true;
+    z_.lambda = before;
+    return false;
+  }
+
   // At z_, where the kinematics are those of the step taken there; with its potential. Constraints factored
   // to close the loops serve once more where they were of almost there: they are off by what the loops were
   // open, and the multipliers bend the model by as little. Each step finds their forces anew.
@@ -199,7 +211,8 @@ class TrustRegion {
     }
     shift_ = shift;
     rhs_ = -gradient_;
-    e_.solve(rhs_, step_);
+    closing_.setZero(p_.system.rows);
+    e_.solve(rhs_, closing_, step_, multipliers_);
     const bool held = e_.hold_turns(farthest_turn, step_);
     length_ = std::sqrt(e_.metric_of_solution(step_, metric_step_));
     // What is held promises more; along the rest the model has come to its end.
@@ -211,6 +224,7 @@ class TrustRegion {
   void shorten_step(double t) {
     const double slope = gradient_.dot(step_), curvature = -2 * (slope + predicted_);
     step_ *= t;
+    multipliers_ *= t;
     length_ *= t;
     predicted_ = -t * (slope + t * curvature / 2);
   }
@@ -360,7 +374,8 @@ class TrustRegion {
   Workspace& w_;
   Eliminator& e_;
   std::vector<double>* history_;
-  Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
+  Eigen::VectorXd gradient_, rhs_, closing_, step_, metric_step_, other_, moved_;
+  Eigen::VectorXd multipliers_;     // their change by the step, scaled
   Eigen::VectorXd way_, way_image_; // of lowest curvature, and what was factored times it
   Potential potential_;
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
