@@ -50,26 +50,87 @@ void add_noise(const Problem& problem, double left, double opening, Workspace& w
   }
 }
 
+// The force along a direction without stiffness, some way along it.
+class SoftDirection {
+ public:
+  SoftDirection(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction, Workspace& w)
+      : p_(problem), z_(z), direction_(direction), w_(w) {
+    move(0);
+    here_ = force_;
+  }
+
+  // Whether double precision can tell that there the state is no longer in balance.
+  bool decides(double way) {
+    move(way);
+    if (!tells(2)) return false;
+    // A straight way leaves a bent valley and climbs its walls: with what is stiff back in balance, too? That
+    // leaves some rounding of its own.
+    for (int i = 0; i < 10 && tells(8); ++i) {
+      const double before = force_;
+      if (!std::isfinite(before)) return true;
+      find_way_back();
+      if (w_.scaled_step.lpNorm<Eigen::Infinity>() < 1) take(1);
+      if (!(force_ < 0.5 * before)) return true;
+    }
+    return tells(8);
+  }
+
+ private:
+  bool tells(double times) const { return !(force_ <= times * (here_ + noise_)); }
+
+  void move(double way) {
+    moved_ = z_;
+    w_.scaled_step = direction_;
+    take(way);
+  }
+
+  void take(double way) {
+    w_.step = way * w_.scaled_step.cwiseProduct(p_.scaling.column);
+    retract<double>(p_.system, w_.step, moved_.q);
+    force_ = std::numeric_limits<double>::infinity();
+    if (way != 0 && !assemble(p_, moved_.q, 0, w_)) return;
+    evaluate_with_multipliers(p_, moved_, w_);
+    const Eigen::VectorXd terms = w_.magnitudes.force.cwiseProduct(p_.scaling.column);
+    noise_ = std::numeric_limits<double>::epsilon() * direction_.cwiseAbs().dot(terms);
+    force_ = std::abs(direction_.dot(w_.residual.f.cwiseProduct(p_.scaling.column)));
+  }
+
+  // The Newton step with a stiffness along the direction like those of the others.
+  void find_way_back() {
+    factor(p_, moved_, w_);
+    const Eigen::MatrixXd& basis = w_.constraints.basis();
+    // Where the scale is none nothing is felt at all.
+    const Eigen::ArrayXd unit = (w_.hessian.scale().array() > 0).select(1 / w_.hessian.scale().array(), 0);
+    const Eigen::VectorXd held = (basis.transpose() * direction_).cwiseProduct(unit.matrix()).normalized();
+    const Eigen::VectorXd by_coordinate = held.cwiseProduct(unit.matrix());
+    stiffness_ = w_.constraints.rank() == 0 ? w_.scaled_stiffness : w_.reduced;
+    stiffness_ += by_coordinate * by_coordinate.transpose();
+    hessian_.factor(stiffness_, w_.noise, p_.symmetric());
+    const Eigen::VectorXd rhs = -basis.transpose() * w_.residual.f.cwiseProduct(p_.scaling.column);
+    hessian_.solve(rhs, back_);
+    w_.scaled_step = basis * back_;
+  }
+
+  const Problem& p_;
+  const Unknowns& z_;
+  const Eigen::VectorXd direction_;
+  Workspace& w_;
+  Unknowns moved_;
+  ReducedHessian hessian_;
+  Eigen::MatrixXd stiffness_;
+  Eigen::VectorXd back_;
+  double force_ = 0, noise_ = 0, here_ = 0;
+};
+
 // How far (scaled) the state can be moved along a direction without stiffness before double precision can
 // tell that it is no longer in balance; not finite where that never happens.
 double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction, Workspace& w) {
-  const auto force_along = [&](double way, double& noise) {
-    Unknowns moved = z;
-    w.step = way * direction.cwiseProduct(problem.scaling.column);
-    retract<double>(problem.system, w.step, moved.q);
-    if (way != 0 && !assemble(problem, moved.q, 0, w)) return std::numeric_limits<double>::infinity();
-    evaluate_with_multipliers(problem, moved, w);
-    const Eigen::VectorXd terms = w.magnitudes.force.cwiseProduct(problem.scaling.column);
-    noise = std::numeric_limits<double>::epsilon() * direction.cwiseAbs().dot(terms);
-    return std::abs(direction.dot(w.residual.f.cwiseProduct(problem.scaling.column)));
-  };
-  double noise = 0;
-  const double here = force_along(0, noise);
+  SoftDirection soft(problem, z, direction, w);
   double farthest = 0;
   bool decided = false;
   for (const double side : {1., -1.}) {
     double way = 1e-10;
-    while (way < 0.1 && force_along(side * way, noise) <= 2 * (here + noise))
+    while (way < 0.1 && !soft.decides(side * way))
       way *= 2;
     if (!(way < 0.1)) continue;
     farthest = std::max(farthest, way);
