@@ -7,9 +7,6 @@ namespace {
 
 constexpr int most_null_directions = 200; // of which all that follows is told
 
-// Steps and changes of multipliers are corrected by the next, the multipliers of the metric are answers.
-constexpr double enough_of_steps = 1e-8, enough_of_answers = 1e-11;
-
 } // namespace
 
 void BodyElimination::linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
@@ -113,13 +110,13 @@ void BodyElimination::add_flat_directions() {
   }
 }
 
-void BodyElimination::solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
-                            Eigen::VectorXd& lambda) {
+void BodyElimination::solve_to(double enough, const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing,
+                               Eigen::VectorXd& x, Eigen::VectorXd& lambda) {
   x.setZero(equations_.coordinates());
   lambda.setZero(rows_);
   if (!solved_) return;
   equations_.put(rhs, closing, held_);
-  if (held_.size() > 0) factors_.solve(held_, metric_alone_ ? enough_of_answers : enough_of_steps);
+  if (held_.size() > 0) factors_.solve(held_, enough);
   equations_.take(held_, x, lambda);
 }
 

@@ -25,9 +25,6 @@ class BodyElimination final : public Eliminator {
   void linearize_metric(const Problem& problem, const Kinematics<double>& kinematics, double tolerance);
 
   void factor(double shift = 0) override;
-  using Eliminator::solve;
-  void solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
-             Eigen::VectorXd& lambda) override;
   double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
   void direction_of(const Flat& flat, Eigen::VectorXd& x) override;
 
@@ -35,6 +32,8 @@ class BodyElimination final : public Eliminator {
   int redundant() const { return redundant_; }
 
  private:
+  void solve_to(double enough, const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
+                Eigen::VectorXd& lambda) override;
   void take_in(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines);
   void start(double tolerance, bool metric_alone);

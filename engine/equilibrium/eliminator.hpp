@@ -42,13 +42,16 @@ class Eliminator {
 
   // Solves [K + shift W, J^T; J, 0] [x; lambda] = [rhs; closing], J the constraints' Jacobian. Directions
   // without stiffness and redundant constraints get no component.
-  virtual void solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
-                     Eigen::VectorXd& lambda) = 0;
-  // Of steps that leave the loops closed.
+  void solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
+             Eigen::VectorXd& lambda) {
+    solve_to(enough_of_answers, rhs, closing, x, lambda);
+  }
+  // Of steps that leave the loops closed; with fewer digits, since the next step corrects them.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
     none_.setZero(rows_);
-    solve(rhs, none_, x, multipliers_);
+    solve_to(enough_of_steps, rhs, none_, x, multipliers_);
   }
+  const Eigen::VectorXd& multipliers() const { return multipliers_; } // that came with the last of these
 
   // Shortens what solve() has just given so that no body turns further than `most` (rad) altogether; what
   // hangs on it follows as solved for. False where none does, or nothing is known of it.
@@ -75,6 +78,12 @@ class Eliminator {
   double mass() const { return mass_; }   // kg, of what moves
 
  protected:
+  static constexpr double enough_of_answers = 1e-11, enough_of_steps = 1e-8;
+
+  // solve(), to `enough` of the terms of each equation where elimination alone leaves more.
+  virtual void solve_to(double enough, const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing,
+                        Eigen::VectorXd& x, Eigen::VectorXd& lambda) = 0;
+
   std::vector<Flat> flat_;
   std::size_t loose_ = 0;
   int negative_ = 0, rows_ = 0;

@@ -1,5 +1,7 @@
 #include "engine/equilibrium/newton.hpp"
 
+#include "engine/system/constraint_row.hpp"
+
 namespace flyball {
 namespace {
 
@@ -80,18 +82,36 @@ double merit(const Problem& problem, Workspace& w) {
   return std::sqrt(sum);
 }
 
-// The step from an evaluated and factored state, and the multipliers there. Of dense equations these are
-// solved for whole, from the balance without them, so that redundant ones stay as small as can be; of sparse
-// ones their change is, so that each step corrects what the one before left unsolved.
-void find_step(const Problem& problem, Workspace& w, Eigen::VectorXd& lambda) {
-  const bool whole = problem.is_dense();
-  if (whole && problem.system.rows > 0)
+// The balance with the multipliers' forces taken off again.
+void take_off_multipliers(const Problem& problem, const Eigen::VectorXd& lambda, Workspace& w) {
+  if (problem.system.rows == 0) return;
+  if (problem.is_dense()) {
     w.residual.f.noalias() -= w.linearization.constraint.transpose() * lambda;
+    return;
+  }
+  const auto take_off = [&](const SystemPart& part, std::size_t) {
+    for (const int n : part.cuts) {
+      const auto c = static_cast<std::size_t>(n);
+      const CutJoint& cut = problem.system.cuts[c];
+      for (std::size_t r = 0; r < cut.rows.size(); ++r)
+        row_gradient(cut, problem.parameters.cuts[c], cut.rows[r], w.kinematics, [&](int v, double g) {
+          w.residual.f[v] -= g * lambda[cut.first_row + static_cast<int>(r)];
+        });
+    }
+  };
+  for_parts(problem.system.division, take_off);
+  take_off(problem.system.division.between, 0);
+}
+
+// The step from an evaluated and factored state, and the multipliers there: solved for whole, so that nothing
+// stays of those of worse places, or corrected, so that nothing stays of the rounding of the last solve.
+void find_step(const Problem& problem, bool whole, Unknowns& z, Workspace& w) {
+  if (whole) take_off_multipliers(problem, z.lambda, w);
   newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
   if (whole)
-    lambda = w.trial.lambda;
+    z.lambda = w.trial.lambda;
   else
-    lambda += w.trial.lambda;
+    z.lambda += w.trial.lambda;
 }
 
 // After a short step of this size another with the same factors: of sparse equations it costs a fifth of one
@@ -268,6 +288,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
   else if (!settings.factored)
     evaluate(problem, z, 0, w);
   double previous_step = 0;
+  bool contracts = false;
   for (int i = 0;; ++i) {
     const double residual = scaled_residual(problem, w);
     if (history) history->push_back(residual);
@@ -284,7 +305,8 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
       break;
     }
     w.trial.q = z.q;
-    find_step(problem, w, z.lambda);
+    const bool corrects = !problem.is_dense() && contracts;
+    find_step(problem, !corrects, z, w);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > farthest) break;
     if (settings.to_minimum && size > there && w.eliminator(problem).negative_count() > 0) break;
@@ -312,8 +334,8 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     evaluate(problem, z, 0, w);
     // From below that the next step is the last, and at rounding.
     constexpr double almost_there = 1e-8;
-    const bool contracts = size < 1e-4 && size > almost_there;
-    if (contracts && problem.elimination() == Elimination::bodies && !settings.damped &&
+    const bool short_step = size < 1e-4 && size > almost_there;
+    if (short_step && problem.elimination() == Elimination::bodies && !settings.damped &&
         settings.proximal == 0)
       step_again(problem, size, z, w);
     // So far away only a balance that is as good as linear leads.
@@ -336,6 +358,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {
       outcome.converged = outcome.linear = true;
     }
+    contracts = size < 1e-4 && size < 0.1 * previous_step;
     previous_step = size;
   }
   return outcome;

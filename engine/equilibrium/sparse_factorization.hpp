@@ -38,7 +38,7 @@ class SparseFactorization {
   bool factor(const SparsePattern& pattern, const std::vector<double>& values, double zero);
 
   // In place, with corrections until it holds to `enough` of its terms. Zero pivots get no component.
-  void solve(Eigen::VectorXd& x, double enough = 1e-11);
+  void solve(Eigen::VectorXd& x, double enough);
 
   int negative() const; // pivots; of a symmetric matrix
   int nullity() const;

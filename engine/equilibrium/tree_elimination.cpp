@@ -246,8 +246,8 @@ void TreeElimination::factor(double shift) {
   });
 }
 
-void TreeElimination::solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd&, Eigen::VectorXd& x,
-                            Eigen::VectorXd& lambda) {
+void TreeElimination::solve_to(double, const Eigen::VectorXd& rhs, const Eigen::VectorXd&, Eigen::VectorXd& x,
+                               Eigen::VectorXd& lambda) {
   lambda.resize(0);
   x.resize(rhs.size());
   inwards(wrench_branches_, [&](Node& n, Vec6& g) {

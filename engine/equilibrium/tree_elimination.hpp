@@ -40,15 +40,14 @@ class TreeElimination final : public Eliminator {
   void linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                  const Residual<double>& residual, const Magnitudes& magnitudes) override;
   void factor(double shift = 0) override;
-  using Eliminator::solve;
-  void solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
-             Eigen::VectorXd& lambda) override;
   bool hold_turns(double most, Eigen::VectorXd& x) override;
   double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
   double metric_of_solution(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
   void direction_of(const Flat& flat, Eigen::VectorXd& x) override;
 
  private:
+  void solve_to(double enough, const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
+                Eigen::VectorXd& lambda) override;
   // What a rotation of three coordinates has in the place of a node's one. Scaled.
   struct Ball {
     Eigen::Matrix<double, 6, 3> s, u, r; // r transposed

@@ -211,8 +211,8 @@ class TrustRegion {
     }
     shift_ = shift;
     rhs_ = -gradient_;
-    closing_.setZero(p_.system.rows);
-    e_.solve(rhs_, closing_, step_, multipliers_);
+    e_.solve(rhs_, step_);
+    multipliers_ = e_.multipliers();
     const bool held = e_.hold_turns(farthest_turn, step_);
     length_ = std::sqrt(e_.metric_of_solution(step_, metric_step_));
     // What is held promises more; along the rest the model has come to its end.
@@ -374,7 +374,7 @@ class TrustRegion {
   Workspace& w_;
   Eliminator& e_;
   std::vector<double>* history_;
-  Eigen::VectorXd gradient_, rhs_, closing_, step_, metric_step_, other_, moved_;
+  Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
   Eigen::VectorXd multipliers_;     // their change by the step, scaled
   Eigen::VectorXd way_, way_image_; // of lowest curvature, and what was factored times it
   Potential potential_;
