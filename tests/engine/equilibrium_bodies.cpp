@@ -359,8 +359,7 @@ TEST_CASE("all rods of a small net are told to spin freely") {
                                 [&](const std::string& joint) { return joint.starts_with(b.name); }));
 }
 
-// Each step changes the multipliers: solved for whole every time, they would carry its rounding along for
-// good.
+// Multipliers solved for whole every time would carry the rounding of the last solve along for good.
 TEST_CASE("nets of cables end at rounding and no factorisation later") {
   const Solution s = solve(bench::cable_net(32, GENERATE(3., 4.)));
   REQUIRE(s.status == Status::converged);
