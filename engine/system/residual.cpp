@@ -3,6 +3,9 @@
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/rotation_vector.hpp"
 
+#include <algorithm>
+#include <type_traits>
+
 namespace flyball {
 namespace {
 
@@ -86,28 +89,43 @@ void for_applied_forces(const System& system, const Parameters& p, const Kinemat
   }
 }
 
+template <class T>
+T nothing() {
+  if constexpr (std::is_arithmetic_v<T>)
+    return 0;
+  else
+    return T::Zero();
+}
+
 // Parts side by side, what each asks of the spine by itself; then the spine, and what is between the parts.
+// A pass has sums by link, each with those of all parts on each link of the spine.
 template <class Pass>
-void add_in_parts(const Division& division, const Pass& pass) {
+void add_in_parts(const System& system, const Pass& pass) {
+  const Division& division = system.division;
+  pass.for_sums([&]<class T>(std::vector<T>& by_link, std::vector<T>& by_part) {
+    by_link.resize(system.links.size());
+    by_part.assign(division.spine * division.parts.size(), nothing<T>());
+  });
+  const auto clear = [&](std::size_t first, std::size_t last) {
+    pass.for_sums([&]<class T>(std::vector<T>& by_link, std::vector<T>&) {
+      std::fill(by_link.data() + first, by_link.data() + last, nothing<T>());
+    });
+  };
   for_parts(division, [&](const SystemPart& part, std::size_t n) {
-    pass.clear(part.first, part.last);
+    clear(part.first, part.last);
     pass.add_body_forces(part);
     pass.add_links(part.first, part.last, n * division.spine);
     pass.add_elements(part);
   });
   if (division.parts.size() == 1) return;
-  pass.clear(0, division.spine);
-  pass.add_up_spine();
+  clear(0, division.spine);
+  pass.for_sums([&]<class T>(std::vector<T>& by_link, const std::vector<T>& by_part) {
+    for (std::size_t n = 0; n < by_part.size(); ++n)
+      by_link[n % division.spine] += by_part[n];
+  });
   pass.add_body_forces(division.between);
   pass.add_links(0, division.spine, 0);
   pass.add_elements(division.between);
-}
-
-// Of all parts on each link of the spine.
-template <class T>
-void add_up(const std::vector<T>& by_part, std::size_t spine, std::vector<T>& by_link) {
-  for (std::size_t n = 0; n < by_part.size(); ++n)
-    by_link[n % spine] += by_part[n];
 }
 
 // A pass over the mechanism that adds up what acts on it.
@@ -196,26 +214,15 @@ struct ResidualPass {
       add_cut(static_cast<std::size_t>(i));
   }
 
-  void clear(std::size_t first, std::size_t last) const {
-    for (std::size_t i = first; i < last; ++i) {
-      out.force[i].setZero();
-      out.moment[i].setZero();
-    }
-  }
-
-  void add_up_spine() const {
-    add_up(out.spine_force, system.division.spine, out.force);
-    add_up(out.spine_moment, system.division.spine, out.moment);
+  template <class Act>
+  void for_sums(const Act& act) const {
+    act(out.force, out.spine_force);
+    act(out.moment, out.spine_moment);
   }
 
   void run() const {
-    const Division& division = system.division;
     out.f.resize(system.nv);
-    out.force.resize(system.links.size());
-    out.moment.resize(system.links.size());
-    out.spine_force.assign(division.spine * division.parts.size(), Vec3T<S>::Zero());
-    out.spine_moment.assign(division.spine * division.parts.size(), Vec3T<S>::Zero());
-    add_in_parts(division, *this);
+    add_in_parts(system, *this);
     for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
       add_cut_damper(i);
     evaluate_constraints(system, p, q, k, out.phi);
@@ -385,25 +392,17 @@ struct MagnitudesPass {
     }
   }
 
-  void clear(std::size_t first, std::size_t last) const {
-    std::fill(out.link_force.data() + first, out.link_force.data() + last, 0);
-    std::fill(out.link_moment.data() + first, out.link_moment.data() + last, 0);
-  }
-
-  void add_up_spine() const {
-    add_up(out.spine_force, system.division.spine, out.link_force);
-    add_up(out.spine_moment, system.division.spine, out.link_moment);
+  template <class Act>
+  void for_sums(const Act& act) const {
+    act(out.link_force, out.spine_force);
+    act(out.link_moment, out.spine_moment);
   }
 
   void run() const {
     const Division& division = system.division;
     out.force.resize(system.nv);
     out.phi.resize(system.rows);
-    out.link_force.resize(system.links.size());
-    out.link_moment.resize(system.links.size());
-    out.spine_force.assign(division.spine * division.parts.size(), 0);
-    out.spine_moment.assign(division.spine * division.parts.size(), 0);
-    add_in_parts(division, *this);
+    add_in_parts(system, *this);
     if (system.rows == 0) return;
     out.largest.assign(division.parts.size(), 0);
     for_parts(division,
