@@ -1,8 +1,10 @@
 // A sparse matrix factored with pivoting as L D L^T or L U, by MUMPS (Amestoy, Duff, L'Excellent, Koster, A
 // fully asynchronous multifrontal solver using distributed dynamic scheduling, 2001). Tells the signs of the
-// eigenvalues (Sylvester) and what the matrix maps to zero but for rounding. Each thread may have its own;
-// while one factors or solves the others wait.
+// eigenvalues (Sylvester) and what the matrix maps to zero but for rounding. Large ones are factored in two
+// halves at once. Each thread may have its own; while one factors or solves the others wait.
 #pragma once
+
+#include "engine/equilibrium/sparse_pattern.hpp"
 
 #include <Eigen/Core>
 
@@ -10,20 +12,6 @@
 #include <vector>
 
 namespace flyball {
-
-// Entries by row and column, counted from 1; repeated ones add up. Of a symmetric matrix one triangle.
-struct SparsePattern {
-  int size = 0;
-  bool symmetric = true;
-  std::vector<int> rows, columns;
-  void clear(int n, bool is_symmetric) {
-    size = n;
-    symmetric = is_symmetric;
-    rows.clear();
-    columns.clear();
-  }
-  bool operator==(const SparsePattern&) const = default;
-};
 
 class SparseFactorization {
  public:

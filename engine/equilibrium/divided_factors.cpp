@@ -1,0 +1,156 @@
+#include "engine/equilibrium/divided_factors.hpp"
+
+#include "engine/equilibrium/elimination_order.hpp"
+#include "engine/system/side_by_side.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace flyball {
+namespace {
+
+constexpr int many = 10000; // unknowns; fewer are factored in no time, while other threads solve others
+
+} // namespace
+
+bool DividedFactors::begin(const SparsePattern& pattern) {
+  for (Half& half : halves_)
+    half.mumps.close();
+  root_.close();
+  if (!pattern.symmetric || pattern.size < many) return false;
+  const std::vector<Side> side = halve(pattern);
+  const auto count = static_cast<std::size_t>(std::ranges::count(side, Side::between));
+  // What is between is full. It should be no more than a part of what there is anyway.
+  if (count == 0 || count * (count + 1) / 2 > pattern.rows.size() / 2) return false;
+  distribute(pattern, side);
+  if (halves_[0].unknowns.empty() || halves_[1].unknowns.empty()) return false;
+  std::atomic<bool> failed = false;
+  side_by_side(halves_.size(), [&](std::size_t i) {
+    Half& half = halves_[i];
+    half.order = elimination_order(half.pattern, half.last, half.copy);
+    half.mumps.open(half.pattern);
+    half.mumps.prepare(half.order);
+    half.left.assign(count * count, 0);
+    half.mumps.leave(half.last, half.left.data());
+    half.mumps.data.a = half.values.data();
+    half.mumps.run(Mumps::analyse);
+    if (half.mumps.failed()) failed = true;
+  });
+  root_.open(root_pattern_);
+  root_.prepare(any_order_);
+  root_.data.a = root_values_.data();
+  root_.run(Mumps::analyse);
+  return !failed && !root_.failed();
+}
+
+void DividedFactors::distribute(const SparsePattern& pattern, const std::vector<Side>& side) {
+  between_.clear();
+  of_root_.clear();
+  for (Half& half : halves_) {
+    half.unknowns.clear();
+    half.entries.clear();
+    half.pattern.clear(0, true);
+  }
+  const auto half_of = [&](Side s) -> Half& { return halves_[s == Side::first ? 0 : 1]; };
+  std::vector<int> number(side.size()); // from 1, in its half or between
+  for (std::size_t u = 0; u < side.size(); ++u) {
+    std::vector<int>& all = side[u] == Side::between ? between_ : half_of(side[u]).unknowns;
+    all.push_back(static_cast<int>(u));
+    number[u] = static_cast<int>(all.size());
+  }
+  for (std::size_t e = 0; e < pattern.rows.size(); ++e) {
+    const auto i = static_cast<std::size_t>(pattern.rows[e] - 1),
+               j = static_cast<std::size_t>(pattern.columns[e] - 1);
+    const auto [a, b] = std::minmax({number[i] - 1, number[j] - 1});
+    if (side[i] == Side::between && side[j] == Side::between) {
+      of_root_.push_back({e, place(static_cast<std::size_t>(b), static_cast<std::size_t>(a))});
+      continue;
+    }
+    Half& half = half_of(std::min(side[i], side[j]));
+    const int own = static_cast<int>(half.unknowns.size());
+    half.pattern.rows.push_back(number[i] + (side[i] == Side::between ? own : 0));
+    half.pattern.columns.push_back(number[j] + (side[j] == Side::between ? own : 0));
+    half.entries.push_back(e);
+  }
+  for (Half& half : halves_) {
+    const int own = static_cast<int>(half.unknowns.size());
+    half.pattern.size = own + static_cast<int>(between_.size());
+    half.values.resize(half.entries.size());
+    half.x.resize(half.pattern.size);
+    half.last.clear();
+    for (int u = own + 1; u <= half.pattern.size; ++u)
+      half.last.push_back(u);
+  }
+  root_pattern_.clear(static_cast<int>(between_.size()), true);
+  for (int j = 1; j <= root_pattern_.size; ++j)
+    for (int i = j; i <= root_pattern_.size; ++i) {
+      root_pattern_.rows.push_back(i);
+      root_pattern_.columns.push_back(j);
+    }
+  root_values_.resize(root_pattern_.rows.size());
+}
+
+std::size_t DividedFactors::place(std::size_t i, std::size_t j) const {
+  return j * between_.size() - j * (j + 1) / 2 + i;
+}
+
+bool DividedFactors::factor(const std::vector<double>& values, double zero) {
+  // A half that is nearly singular by itself leaves large differences of what was not larger than one. So do
+  // small pivots in the whole, where as much is put up with.
+  constexpr double most = 1 / Mumps::least_pivot;
+  std::atomic<bool> regular = true;
+  side_by_side(halves_.size(), [&](std::size_t i) {
+    Half& half = halves_[i];
+    for (std::size_t e = 0; e < half.entries.size(); ++e)
+      half.values[e] = values[half.entries[e]];
+    half.mumps.set_zero(zero);
+    if (!half.mumps.run_factorise() || half.mumps.nullity() > 0) regular = false;
+  });
+  if (!regular) return false;
+  double largest = 0;
+  for (std::size_t i = 0; i < between_.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const std::size_t at = i * between_.size() + j;
+      const double a = halves_[0].left[at], b = halves_[1].left[at];
+      largest = std::max({largest, std::abs(a), std::abs(b)});
+      root_values_[place(i, j)] = a + b;
+    }
+  if (!(largest < most)) return false;
+  for (const OfRoot& of : of_root_)
+    root_values_[of.place] += values[of.entry];
+  constexpr double norm = 10; // of an equilibrated matrix, about
+  root_.set_zero(-norm * zero);
+  return root_.run_factorise() && root_.nullity() == 0;
+}
+
+// The halves one after the other: their steps are too small to be made at once.
+void DividedFactors::solve(Eigen::VectorXd& x) {
+  const auto count = static_cast<Eigen::Index>(between_.size());
+  root_x_.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    root_x_[i] = x[between_[static_cast<std::size_t>(i)]];
+  for (Half& half : halves_) {
+    half.x.tail(count).setZero();
+    for (std::size_t i = 0; i < half.unknowns.size(); ++i)
+      half.x[static_cast<Eigen::Index>(i)] = x[half.unknowns[i]];
+    half.reduced.resize(count);
+    half.mumps.reduce(half.x.data(), half.reduced.data());
+    root_x_ += half.reduced;
+  }
+  root_.run_substitute(root_x_.data());
+  for (Half& half : halves_) {
+    half.reduced = root_x_;
+    half.mumps.expand(half.x.data(), half.reduced.data());
+    for (std::size_t i = 0; i < half.unknowns.size(); ++i)
+      x[half.unknowns[i]] = half.x[static_cast<Eigen::Index>(i)];
+  }
+  for (Eigen::Index i = 0; i < count; ++i)
+    x[between_[static_cast<std::size_t>(i)]] = root_x_[i];
+}
+
+int DividedFactors::negative() const {
+  return halves_[0].mumps.negative() + halves_[1].mumps.negative() + root_.negative();
+}
+
+} // namespace flyball

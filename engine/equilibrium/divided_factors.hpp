@@ -1,0 +1,57 @@
+// A large symmetric matrix factored in two halves at once, and what these leave of the unknowns between them
+// (the Schur complement) after that. For regular matrices only: where anything comes near to a pivot of zero
+// it says no, and the whole has to be looked at.
+#pragma once
+
+#include "engine/equilibrium/halves.hpp"
+#include "engine/equilibrium/mumps.hpp"
+
+#include <array>
+#include <vector>
+
+namespace flyball {
+
+class DividedFactors {
+ public:
+  // False where the matrix is small, or does not fall in halves.
+  bool begin(const SparsePattern& pattern);
+
+  // Of an equilibrated matrix. False where it is not clearly regular, or memory runs out. Pivots below `zero`
+  // count as none.
+  bool factor(const std::vector<double>& values, double zero);
+
+  void solve(Eigen::VectorXd& x); // in place
+
+  int negative() const; // pivots
+
+ private:
+  struct Half {
+    explicit Half(int number) : mumps(number), copy(number) {}
+    Mumps mumps;
+    int copy;
+    SparsePattern pattern;
+    std::vector<std::size_t> entries; // of the whole
+    std::vector<int> unknowns;        // of the whole, of the half's own, which come first
+    std::vector<int> order, last;
+    std::vector<double> values, left; // left: what it leaves of those between, lower triangle by rows
+    Eigen::VectorXd x, reduced;
+  };
+  // Where entry e of the whole goes to in the root.
+  struct OfRoot {
+    std::size_t entry, place;
+  };
+
+  void distribute(const SparsePattern& pattern, const std::vector<Side>& side);
+  std::size_t place(std::size_t i, std::size_t j) const; // of the root's entries; i >= j
+
+  std::array<Half, 2> halves_{Half(0), Half(1)};
+  Mumps root_;
+  SparsePattern root_pattern_;
+  std::vector<int> between_; // unknowns of the whole
+  std::vector<double> root_values_;
+  std::vector<OfRoot> of_root_;
+  Eigen::VectorXd root_x_;
+  std::vector<int> any_order_;
+};
+
+} // namespace flyball

@@ -1,0 +1,64 @@
+// A sparse matrix in the hands of MUMPS, and how many of these may be at work at once.
+#pragma once
+
+#include "engine/equilibrium/sparse_pattern.hpp"
+
+#include <dmumps_c.h>
+#include <Eigen/Core>
+
+namespace flyball {
+
+class Mumps {
+ public:
+  static constexpr int analyse = 1, factorise = 2, substitute = 3;
+  // Settings by their numbers in the users' guide, counted from 1.
+  static constexpr int ordering = 7, scaling = 8, compressed_graph = 12, undivided_root = 13,
+                       more_memory = 14, schur = 19, find_null_pivots = 24, null_space = 25,
+                       reduced_solve = 26;
+
+  // A pivot may be this small beside its row: waiting for larger ones makes triple the work in nets of
+  // cables. What it costs in digits SparseFactorization::solve() gets back.
+  static constexpr double least_pivot = 1e-6;
+
+  // There are two copies of MUMPS where the build could make the second. Each keeps some of its state in
+  // global variables while it runs, so it works for one thread at a time.
+  explicit Mumps(int copy = 0) : copy_(copy) {}
+  ~Mumps() { close(); }
+  Mumps(const Mumps&) = delete;
+  Mumps& operator=(const Mumps&) = delete;
+
+  // The pattern must stay where it is.
+  void open(SparsePattern& pattern);
+  void close();
+  bool is_open() const { return open_; }
+
+  // Orders the unknowns in this way (empty: by approximate minimum fill) for a matrix that comes
+  // equilibrated. Pivots below `zero` count as none: of the matrix's norm, or where it is negative as it is.
+  void prepare(std::vector<int>& order);
+  void set_zero(double zero) { data.cntl[2] = zero; }
+
+  // Does not eliminate the last unknowns, but leaves of them, by rows and below the diagonal, what the others
+  // make of them: to `matrix` by the factorisation.
+  void leave(std::vector<int>& last, double* matrix);
+
+  void run(int job);
+  // With more memory, should it take more than was foreseen. False where it cannot be had.
+  bool run_factorise();
+  void run_substitute(double* x, Eigen::Index columns = 1);
+  // Where it leaves unknowns: what x asks of them; and x by the others' answers to that.
+  void reduce(double* x, double* reduced);
+  void expand(double* x, double* reduced);
+
+  MUMPS_INT& setting(int i) { return data.icntl[i - 1]; }
+  bool failed() const { return data.infog[0] < 0; }
+  int negative() const { return data.infog[11]; }
+  int nullity() const { return data.infog[27]; }
+
+  DMUMPS_STRUC_C data{};
+
+ private:
+  int copy_;
+  bool open_ = false;
+};
+
+} // namespace flyball
