@@ -10,7 +10,7 @@
 namespace flyball {
 namespace {
 
-constexpr int many = 10000; // unknowns; fewer are factored in no time, while other threads solve others
+constexpr int many = 15000; // unknowns; fewer are factored in no time, while other threads solve others
 
 } // namespace
 

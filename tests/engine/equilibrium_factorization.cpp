@@ -93,7 +93,7 @@ struct LargeMatrix {
 // Three membranes of a x b knots, each less a multiple of the identity, numbered in any order: eigenvalues
 // 4 - 2 cos(i pi / (a + 1)) - 2 cos(j pi / (b + 1)) - shift.
 struct Membranes {
-  static constexpr int across = 58, along = 64;
+  static constexpr int across = 72, along = 74;
   static constexpr std::array<double, 3> shift{0.3, 0.0123, 2.777};
   LargeMatrix matrix{3 * across * along};
   std::vector<int> place;
@@ -192,7 +192,7 @@ TEST_CASE("a large matrix in halves has the signs of its eigenvalues and solves 
 
 TEST_CASE("a large saddle point in halves has a negative pivot for each of its rows") {
   // A net of knots of three motions, with a row along each edge in a random direction.
-  constexpr int side = 45, knots = side * side, motions = 3 * knots;
+  constexpr int side = 60, knots = side * side, motions = 3 * knots;
   std::mt19937 random(4);
   std::uniform_real_distribution<double> any(-1, 1);
   std::vector<std::array<int, 2>> edges;
@@ -221,7 +221,7 @@ TEST_CASE("a large saddle point in halves has a negative pivot for each of its r
 TEST_CASE("halves that are singular by themselves are no obstacle") {
   // A string of an even number of beads falls in unequal halves. Each of these is singular at its own
   // eigenvalues, between which the whole's lie.
-  constexpr int beads = 12000;
+  constexpr int beads = 16000;
   const int half = GENERATE(beads / 2, beads / 2 - 1);
   using std::numbers::pi;
   const double shift = 2 - 2 * std::cos(GENERATE(0.25, 0.5) * pi * half / (half + 1.));
@@ -243,7 +243,7 @@ TEST_CASE("halves that are singular by themselves are no obstacle") {
 
 TEST_CASE("what a large matrix maps to zero is found") {
   // Three strings of beads with free ends, which move as they are.
-  constexpr int beads = 4000;
+  constexpr int beads = 5400;
   LargeMatrix a(3 * beads);
   for (int s = 0; s < 3; ++s)
     for (int i = 0; i < beads; ++i) {
