@@ -10,38 +10,48 @@
 namespace flyball {
 namespace {
 
-constexpr int many = 15000; // unknowns; fewer are factored in no time, while other threads solve others
+constexpr int many = 15000; // unknowns; fewer take some milliseconds, and sweeps keep all cores busy anyway
 
 } // namespace
 
-bool DividedFactors::begin(const SparsePattern& pattern) {
-  for (Half& half : halves_)
-    half.mumps.close();
-  root_.close();
-  if (!pattern.symmetric || pattern.size < many) return false;
+void DividedFactors::begin(const SparsePattern& pattern) {
+  close();
+  if (!pattern.symmetric || pattern.size < many) return;
   const std::vector<Side> side = halve(pattern);
   const auto count = static_cast<std::size_t>(std::ranges::count(side, Side::between));
   // What is between is full. It should be no more than a part of what there is anyway.
-  if (count == 0 || count * (count + 1) / 2 > pattern.rows.size() / 2) return false;
+  if (count == 0 || count * (count + 1) / 2 > pattern.rows.size() / 2) return;
   distribute(pattern, side);
-  if (halves_[0].unknowns.empty() || halves_[1].unknowns.empty()) return false;
-  std::atomic<bool> failed = false;
+  if (halves_[0].unknowns.empty() || halves_[1].unknowns.empty()) return;
+  open_ = analyse();
+  if (!open_) close();
+}
+
+bool DividedFactors::analyse() {
+  std::atomic<bool> done = true;
   side_by_side(halves_.size(), [&](std::size_t i) {
     Half& half = halves_[i];
-    half.order = elimination_order(half.pattern, half.last, half.copy);
+    half.order = elimination_order(half.pattern, half.last, half.mumps.copy());
     half.mumps.open(half.pattern);
     half.mumps.prepare(half.order);
-    half.left.assign(count * count, 0);
+    half.left.assign(half.last.size() * half.last.size(), 0);
     half.mumps.leave(half.last, half.left.data());
     half.mumps.data.a = half.values.data();
     half.mumps.run(Mumps::analyse);
-    if (half.mumps.failed()) failed = true;
+    if (half.mumps.failed()) done = false;
   });
   root_.open(root_pattern_);
-  root_.prepare(any_order_);
+  root_.prepare(root_order_);
   root_.data.a = root_values_.data();
   root_.run(Mumps::analyse);
-  return !failed && !root_.failed();
+  return done && !root_.failed();
+}
+
+void DividedFactors::close() {
+  for (Half& half : halves_)
+    half.mumps.close();
+  root_.close();
+  open_ = false;
 }
 
 void DividedFactors::distribute(const SparsePattern& pattern, const std::vector<Side>& side) {
@@ -96,32 +106,38 @@ std::size_t DividedFactors::place(std::size_t i, std::size_t j) const {
 }
 
 bool DividedFactors::factor(const std::vector<double>& values, double zero) {
-  // A half that is nearly singular by itself leaves large differences of what was not larger than one. So do
-  // small pivots in the whole, where as much is put up with.
-  constexpr double most = 1 / Mumps::least_pivot;
-  std::atomic<bool> regular = true;
+  std::atomic<bool> done = true;
   side_by_side(halves_.size(), [&](std::size_t i) {
     Half& half = halves_[i];
     for (std::size_t e = 0; e < half.entries.size(); ++e)
       half.values[e] = values[half.entries[e]];
-    half.mumps.set_zero(zero);
-    if (!half.mumps.run_factorise() || half.mumps.nullity() > 0) regular = false;
+    half.mumps.set_zero(-zero);
+    if (!half.mumps.run_factorise()) done = false;
   });
-  if (!regular) return false;
-  double largest = 0;
+  if (!done) { // the whole may need what they hold
+    close();
+    return false;
+  }
+  if (halves_[0].mumps.nullity() + halves_[1].mumps.nullity() > 0 || !add_up(values)) return false;
+  root_.set_zero(-zero);
+  return root_.run_factorise() && root_.nullity() == 0;
+}
+
+// What the halves leave of the unknowns between them, and what these are by themselves. False where a half is
+// nearly singular: it leaves large numbers, in which as many digits are lost as by the smallest pivots that
+// the whole puts up with.
+bool DividedFactors::add_up(const std::vector<double>& values) {
+  constexpr double most = 1 / Mumps::least_pivot;
   for (std::size_t i = 0; i < between_.size(); ++i)
     for (std::size_t j = 0; j <= i; ++j) {
       const std::size_t at = i * between_.size() + j;
       const double a = halves_[0].left[at], b = halves_[1].left[at];
-      largest = std::max({largest, std::abs(a), std::abs(b)});
+      if (!(std::abs(a) < most && std::abs(b) < most)) return false;
       root_values_[place(i, j)] = a + b;
     }
-  if (!(largest < most)) return false;
   for (const OfRoot& of : of_root_)
     root_values_[of.place] += values[of.entry];
-  constexpr double norm = 10; // of an equilibrated matrix, about
-  root_.set_zero(-norm * zero);
-  return root_.run_factorise() && root_.nullity() == 0;
+  return true;
 }
 
 // The halves one after the other: their steps are too small to be made at once.
@@ -134,7 +150,7 @@ void DividedFactors::solve(Eigen::VectorXd& x) {
     half.x.tail(count).setZero();
     for (std::size_t i = 0; i < half.unknowns.size(); ++i)
       half.x[static_cast<Eigen::Index>(i)] = x[half.unknowns[i]];
-    half.reduced.resize(count);
+    half.reduced.setZero(count);
     half.mumps.reduce(half.x.data(), half.reduced.data());
     root_x_ += half.reduced;
   }

@@ -13,11 +13,12 @@ namespace flyball {
 
 class DividedFactors {
  public:
-  // False where the matrix is small, or does not fall in halves.
-  bool begin(const SparsePattern& pattern);
+  // Small matrices, and those that do not fall in halves, it leaves alone.
+  void begin(const SparsePattern& pattern);
+  bool is_open() const { return open_; } // it was not
 
-  // Of an equilibrated matrix. False where it is not clearly regular, or memory runs out. Pivots below `zero`
-  // count as none.
+  // Of an equilibrated matrix that was not left alone. False where it is not clearly regular, or memory runs
+  // out. Pivots below `zero` count as none.
   bool factor(const std::vector<double>& values, double zero);
 
   void solve(Eigen::VectorXd& x); // in place
@@ -26,9 +27,8 @@ class DividedFactors {
 
  private:
   struct Half {
-    explicit Half(int number) : mumps(number), copy(number) {}
+    explicit Half(int copy) : mumps(copy) {}
     Mumps mumps;
-    int copy;
     SparsePattern pattern;
     std::vector<std::size_t> entries; // of the whole
     std::vector<int> unknowns;        // of the whole, of the half's own, which come first
@@ -41,7 +41,10 @@ class DividedFactors {
     std::size_t entry, place;
   };
 
+  bool analyse();
+  void close();
   void distribute(const SparsePattern& pattern, const std::vector<Side>& side);
+  bool add_up(const std::vector<double>& values);
   std::size_t place(std::size_t i, std::size_t j) const; // of the root's entries; i >= j
 
   std::array<Half, 2> halves_{Half(0), Half(1)};
@@ -50,8 +53,9 @@ class DividedFactors {
   std::vector<int> between_; // unknowns of the whole
   std::vector<double> root_values_;
   std::vector<OfRoot> of_root_;
+  std::vector<int> root_order_; // any
   Eigen::VectorXd root_x_;
-  std::vector<int> any_order_;
+  bool open_ = false;
 };
 
 } // namespace flyball

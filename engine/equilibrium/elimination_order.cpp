@@ -50,16 +50,17 @@ std::vector<int> elimination_order(const SparsePattern& pattern, const std::vect
   order.run(Mumps::analyse);
   if (order.failed()) return {};
 
-  // Multipliers by the place that they follow.
+  // Multipliers by the place that they follow, of those before the last.
   const auto place = [&](int n) { return order.data.sym_perm[n - 1]; };
+  const int before_last = graph.size - static_cast<int>(last.size());
   std::vector<std::vector<int>> next(static_cast<std::size_t>(graph.size) + 1);
   for (std::size_t u = 0; u < count; ++u) {
     if (held[u]) continue;
     std::vector<int>& all = met[u];
     std::ranges::sort(all, {}, place);
-    int at = all.empty() ? graph.size : place(all[0]);
+    int at = all.empty() ? before_last : std::min(place(all[0]), before_last);
     for (int n : all)
-      if (place(n) == at + 1) ++at;
+      if (place(n) == at + 1 && at < before_last) ++at;
     next[static_cast<std::size_t>(at)].push_back(static_cast<int>(u));
   }
   std::vector<std::size_t> unknown(static_cast<std::size_t>(graph.size) + 1);
@@ -67,8 +68,8 @@ std::vector<int> elimination_order(const SparsePattern& pattern, const std::vect
     if (held[u]) unknown[static_cast<std::size_t>(place(number[u]))] = u;
   std::vector<int> out(count);
   int at = 0;
-  for (std::size_t p = 1; p < unknown.size(); ++p) {
-    out[unknown[p]] = ++at;
+  for (std::size_t p = 0; p < unknown.size(); ++p) {
+    if (p > 0) out[unknown[p]] = ++at;
     for (int u : next[p])
       out[static_cast<std::size_t>(u)] = ++at;
   }

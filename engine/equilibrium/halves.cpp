@@ -125,10 +125,14 @@ std::vector<Side> halve(const SparsePattern& pattern) {
     side[u] = levels.level[u] < between   ? Side::first
               : levels.level[u] > between ? Side::second
                                           : Side::between;
+  // One stays, should the halves have nothing to do with each other.
+  int left = levels.count[static_cast<std::size_t>(between)];
   for (const int u : levels.order) {
     const auto second = [&](int other) { return side[static_cast<std::size_t>(other)] == Side::second; };
     Side& here = side[static_cast<std::size_t>(u)];
-    if (here == Side::between && std::ranges::none_of(graph.met_by(u), second)) here = Side::first;
+    if (here != Side::between || left == 1 || std::ranges::any_of(graph.met_by(u), second)) continue;
+    here = Side::first;
+    --left;
   }
   give_away_pieces(graph, side);
   return side;

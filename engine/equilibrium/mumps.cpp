@@ -2,6 +2,8 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <array>
 #include <mutex>
 
 #ifdef FLYBALL_SECOND_MUMPS
@@ -14,30 +16,36 @@ namespace {
 constexpr int initialise = -1, terminate = -2;
 constexpr int use_comm_world = -987654; // what MUMPS wants to be told where there is one process
 
-// OpenBLAS without threads has no locks either, and of another library nothing is known. Where it has threads
-// one of them is enough: on fronts as small as ours more only wait for each other.
-bool linear_algebra_is_safe() {
-  const auto parallel = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_parallel"));
-  const auto set_threads = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
-  if (set_threads) set_threads(1);
-  return parallel && parallel() != 0;
+// One thread for each matrix is enough: on fronts as small as ours more only wait for each other.
+void calm_linear_algebra() {
+  if (const auto set_threads =
+          reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads")))
+    set_threads(1);
 }
 
-void call(DMUMPS_STRUC_C& data, [[maybe_unused]] int copy) {
-  static std::mutex first;
-  static const bool side_by_side = linear_algebra_is_safe();
-#ifdef FLYBALL_SECOND_MUMPS
-  static std::mutex second;
-  if (copy == 1 && side_by_side) {
-    const std::lock_guard lock(second);
-    return dmumps_c_second(&data);
-  }
-#endif
-  const std::lock_guard lock(first);
-  dmumps_c(&data);
+// OpenBLAS without threads of its own has no locks either, and of another library nothing is known.
+bool linear_algebra_has_locks() {
+  constexpr int posix_threads = 1;
+  const auto parallel = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_parallel"));
+  return parallel && parallel() == posix_threads;
 }
+
+// The one that a copy is called under. Copies may be at work at once where nothing is shared.
+std::mutex& turn_of(int copy) {
+  static std::array<std::mutex, 2> turns;
+  static const bool apart = (calm_linear_algebra(), linear_algebra_has_locks());
+  return turns[apart ? static_cast<std::size_t>(copy) : 0];
+}
+
+#ifdef FLYBALL_SECOND_MUMPS
+constexpr std::array copies{dmumps_c, dmumps_c_second};
+#else
+constexpr std::array copies{dmumps_c};
+#endif
 
 } // namespace
+
+Mumps::Mumps(int copy) : copy_(std::min(copy, static_cast<int>(copies.size()) - 1)) {}
 
 void Mumps::open(SparsePattern& pattern) {
   close();
@@ -71,7 +79,6 @@ void Mumps::prepare(std::vector<int>& order) {
   }
   setting(scaling) = 0;
   setting(undivided_root) = 1; // factored like the rest, for its zero pivots to be found
-  setting(more_memory) = 100;  // per cent of what is estimated, for pivots that have to wait
   setting(find_null_pivots) = 1;
   data.cntl[0] = least_pivot;
 }
@@ -86,16 +93,16 @@ void Mumps::leave(std::vector<int>& last, double* matrix) {
 
 void Mumps::run(int job) {
   data.job = job;
-  call(data, copy_);
+  const std::lock_guard turn(turn_of(copy_));
+  copies[static_cast<std::size_t>(copy_)](&data);
 }
 
 bool Mumps::run_factorise() {
-  for (int tries = 0; !failed() && tries < 4; ++tries) {
+  constexpr int short_of_memory = -9, short_of_integers = -8;
+  for (const int percent : {100, 200, 400, 800}) { // of what is estimated, for pivots that have to wait
+    setting(extra_memory) = percent;
     run(factorise);
-    constexpr int short_of_memory = -9, short_of_integers = -8;
     if (data.infog[0] != short_of_memory && data.infog[0] != short_of_integers) break;
-    setting(more_memory) *= 2;
-    data.infog[0] = 0;
   }
   return !failed();
 }

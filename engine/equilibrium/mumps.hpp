@@ -13,7 +13,7 @@ class Mumps {
   static constexpr int analyse = 1, factorise = 2, substitute = 3;
   // Settings by their numbers in the users' guide, counted from 1.
   static constexpr int ordering = 7, scaling = 8, compressed_graph = 12, undivided_root = 13,
-                       more_memory = 14, schur = 19, find_null_pivots = 24, null_space = 25,
+                       extra_memory = 14, schur = 19, find_null_pivots = 24, null_space = 25,
                        reduced_solve = 26;
 
   // A pivot may be this small beside its row: waiting for larger ones makes triple the work in nets of
@@ -22,7 +22,7 @@ class Mumps {
 
   // There are two copies of MUMPS where the build could make the second. Each keeps some of its state in
   // global variables while it runs, so it works for one thread at a time.
-  explicit Mumps(int copy = 0) : copy_(copy) {}
+  explicit Mumps(int copy = 0);
   ~Mumps() { close(); }
   Mumps(const Mumps&) = delete;
   Mumps& operator=(const Mumps&) = delete;
@@ -32,9 +32,10 @@ class Mumps {
   void close();
   bool is_open() const { return open_; }
 
-  // Orders the unknowns in this way (empty: by approximate minimum fill) for a matrix that comes
-  // equilibrated. Pivots below `zero` count as none: of the matrix's norm, or where it is negative as it is.
+  // For a matrix that comes equilibrated, its unknowns ordered in this way (empty: by approximate minimum
+  // fill).
   void prepare(std::vector<int>& order);
+  // Pivots below this count as none: of the matrix's norm, or where it is negative as it is.
   void set_zero(double zero) { data.cntl[2] = zero; }
 
   // Does not eliminate the last unknowns, but leaves of them, by rows and below the diagonal, what the others
@@ -51,6 +52,7 @@ class Mumps {
 
   MUMPS_INT& setting(int i) { return data.icntl[i - 1]; }
   bool failed() const { return data.infog[0] < 0; }
+  int copy() const { return copy_; }
   int negative() const { return data.infog[11]; }
   int nullity() const { return data.infog[27]; }
 

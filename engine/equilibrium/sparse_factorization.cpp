@@ -12,7 +12,8 @@ namespace flyball {
 struct SparseFactorization::State {
   Mumps whole;
   DividedFactors halves;
-  bool begun = false, divisible = false, divided = false; // divided: the factors at hand are those of halves
+  bool begun = false, factored = false; // with this pattern; with these values
+  bool divided = false;                 // the factors at hand are those of halves
   SparsePattern pattern;
   std::vector<int> order;
   std::vector<double> given, scaled; // values of the matrix, and of the equilibrated one
@@ -74,11 +75,25 @@ struct SparseFactorization::State {
   }
 
   void begin(const SparsePattern& p) {
+    begun = false;
     pattern = p;
     whole.close();
-    divisible = halves.begin(pattern);
+    halves.begin(pattern);
     begun = true;
   }
+
+  // The largest sum of a row.
+  double norm() {
+    largest.setZero(pattern.size);
+    for (std::size_t e = 0; e < scaled.size(); ++e) {
+      const Eigen::Index i = pattern.rows[e] - 1, j = pattern.columns[e] - 1;
+      largest[i] += std::abs(scaled[e]);
+      if (pattern.symmetric && i != j) largest[j] += std::abs(scaled[e]);
+    }
+    return largest.maxCoeff();
+  }
+
+  bool factor_halves() { return halves.is_open() && halves.factor(scaled, zero * norm()); }
 
   bool factor_whole() {
     if (!whole.is_open()) {
@@ -105,16 +120,21 @@ bool SparseFactorization::factor(const SparsePattern& pattern, const std::vector
   if (!state_) state_ = std::make_unique<State>();
   State& s = *state_;
   const bool known = s.begun && s.pattern == pattern;
-  if (known && s.zero == zero && s.given == values) return true;
+  if (known && s.factored && s.zero == zero && s.given == values) return true;
+  s.factored = false;
   if (!known) s.begin(pattern);
   s.given = values;
   s.zero = zero;
   s.equilibrate();
   s.null_space.resize(0, 0);
-  s.divided = s.divisible && s.halves.factor(s.scaled, zero);
-  if (s.divided || s.factor_whole()) return true;
-  s.begun = false;
-  return false;
+  s.divided = s.factor_halves();
+  s.factored = s.divided || s.factor_whole();
+  s.begun = s.factored;
+  return s.factored;
+}
+
+bool SparseFactorization::divided() const {
+  return state_->divided;
 }
 
 void SparseFactorization::solve(Eigen::VectorXd& x, double enough) {

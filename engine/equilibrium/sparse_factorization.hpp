@@ -1,7 +1,7 @@
 // A sparse matrix factored with pivoting as L D L^T or L U, by MUMPS (Amestoy, Duff, L'Excellent, Koster, A
 // fully asynchronous multifrontal solver using distributed dynamic scheduling, 2001). Tells the signs of the
 // eigenvalues (Sylvester) and what the matrix maps to zero but for rounding. Large ones are factored in two
-// halves at once. Each thread may have its own; while one factors or solves the others wait.
+// halves at once. Each thread may have its own; they take turns where both copies of MUMPS are at work.
 #pragma once
 
 #include "engine/equilibrium/sparse_pattern.hpp"
@@ -27,6 +27,8 @@ class SparseFactorization {
 
   // In place, with corrections until it holds to `enough` of its terms. Zero pivots get no component.
   void solve(Eigen::VectorXd& x, double enough);
+
+  bool divided() const; // the factors at hand are those of two halves
 
   int negative() const; // pivots; of a symmetric matrix
   int nullity() const;

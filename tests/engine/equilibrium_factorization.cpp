@@ -1,6 +1,7 @@
 // Sparse matrices factored with pivoting, against dense ones.
 #include "tests/catch.hpp"
 
+#include "engine/equilibrium/elimination_order.hpp"
 #include "engine/equilibrium/sparse_factorization.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -8,7 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <iterator>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <thread>
 
@@ -182,6 +185,7 @@ TEST_CASE("a large matrix in halves has the signs of its eigenvalues and solves 
   const LargeMatrix& a = membranes.matrix;
   SparseFactorization factors;
   REQUIRE(factors.factor(a.pattern, a.values, 1e-12));
+  CHECK(factors.divided());
   CHECK(factors.nullity() == 0);
   CHECK(factors.negative() == membranes.negative);
   const Eigen::VectorXd b = random_vector(a.pattern.size, 3);
@@ -190,29 +194,116 @@ TEST_CASE("a large matrix in halves has the signs of its eigenvalues and solves 
   CHECK(a.backward_error(x, b) < 1e-13);
 }
 
+// Knots of some motions, with a row along each edge in a random direction.
+struct Net {
+  LargeMatrix matrix{0};
+  int rows = 0;
+
+  Net(int across, int along, int motions, bool backwards) {
+    const auto knot = [&](int i, int j) { return i * along + j; };
+    std::vector<std::array<int, 2>> edges;
+    for (int i = 0; i < across; ++i)
+      for (int j = 0; j < along; ++j) {
+        if (i > 0 && (across < 3 || j % 2 == 0)) edges.push_back({knot(i, j), knot(i - 1, j)});
+        if (j > 0) edges.push_back({knot(i, j), knot(i, j - 1)});
+      }
+    rows = static_cast<int>(edges.size());
+    const int all = motions * across * along, size = all + rows;
+    matrix = LargeMatrix(size);
+    const auto add = [&](int i, int j, double value) {
+      if (backwards)
+        matrix.add(size - 1 - i, size - 1 - j, value);
+      else
+        matrix.add(i, j, value);
+    };
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (int v = 0; v < all; ++v)
+      add(v, v, 2 + any(random));
+    for (int e = 0; e < rows; ++e)
+      for (const int k : edges[static_cast<std::size_t>(e)])
+        for (int c = 0; c < motions; ++c)
+          add(all + e, motions * k + c, any(random));
+  }
+};
+
 TEST_CASE("a large saddle point in halves has a negative pivot for each of its rows") {
-  // A net of knots of three motions, with a row along each edge in a random direction.
-  constexpr int side = 60, knots = side * side, motions = 3 * knots;
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> any(-1, 1);
-  std::vector<std::array<int, 2>> edges;
-  for (int i = 0; i < side; ++i)
-    for (int j = 0; j < side; ++j) {
-      if (i > 0) edges.push_back({i * side + j, (i - 1) * side + j});
-      if (j > 0 && i % 2 == 0) edges.push_back({i * side + j, i * side + j - 1});
-    }
-  LargeMatrix a(motions + static_cast<int>(edges.size()));
-  for (int v = 0; v < motions; ++v)
-    a.add(v, v, 2 + any(random));
-  for (std::size_t e = 0; e < edges.size(); ++e)
-    for (const int knot : edges[e])
-      for (int c = 0; c < 3; ++c)
-        a.add(motions + static_cast<int>(e), 3 * knot + c, any(random));
+  const bool backwards = GENERATE(false, true);
+  // Wide ones and ladders, where some multipliers meet little else than what is between the halves.
+  const auto [across, along, motions] =
+      GENERATE(std::array{60, 60, 3}, std::array{2, 2500, 2}, std::array{2, 2500, 3}, std::array{1, 6000, 2},
+               std::array{4, 1500, 3});
+  CAPTURE(backwards, across, along, motions);
+  const Net net(across, along, motions, backwards);
+  const LargeMatrix& a = net.matrix;
   SparseFactorization factors;
   REQUIRE(factors.factor(a.pattern, a.values, 1e-12));
+  CHECK(factors.divided());
   CHECK(factors.nullity() == 0);
-  CHECK(factors.negative() == static_cast<int>(edges.size()));
+  CHECK(factors.negative() == net.rows);
   const Eigen::VectorXd b = random_vector(a.pattern.size, 5);
+  Eigen::VectorXd x = b;
+  factors.solve(x, 1e-13);
+  CHECK(a.backward_error(x, b) < 1e-13);
+}
+
+TEST_CASE("in the order of elimination the last come last, as they are named, and the others once each") {
+  const auto [across, along, motions] =
+      GENERATE(std::array{9, 9, 3}, std::array{2, 40, 2}, std::array{2, 40, 1}, std::array{3, 30, 1});
+  const Net net(across, along, motions, false);
+  const SparsePattern& pattern = net.matrix.pattern;
+  std::mt19937 random(11);
+  for (const int count : {0, 1, 7, 40}) {
+    CAPTURE(across, along, motions, count);
+    std::vector<int> unknowns(static_cast<std::size_t>(motions * across * along));
+    std::iota(unknowns.begin(), unknowns.end(), 1);
+    std::vector<int> last;
+    std::ranges::sample(unknowns, std::back_inserter(last), count, random);
+    const std::vector<int> order = elimination_order(pattern, last, 0);
+    REQUIRE(order.size() == static_cast<std::size_t>(pattern.size));
+    for (int i = 0; i < count; ++i)
+      CHECK(order[static_cast<std::size_t>(last[static_cast<std::size_t>(i)] - 1)] ==
+            pattern.size - count + i + 1);
+    std::vector<int> places = order;
+    std::ranges::sort(places);
+    for (int place = 1; place <= pattern.size; ++place)
+      CHECK(places[static_cast<std::size_t>(place - 1)] == place);
+  }
+}
+
+TEST_CASE("what counts as zero is the same in halves as in the whole") {
+  // A wheel makes the norm large; a bead elsewhere carries nearly nothing beside it.
+  const auto nullity = [](int beads) {
+    LargeMatrix a(beads);
+    for (int i = 0; i < beads; ++i) {
+      a.add(i, i, i == beads - 1 ? 1 + 5e-10 : 2.5);
+      if (i > 0 && i < beads - 2) a.add(i, i - 1, -1);
+      if (i >= 2 && i < 1500) a.add(0, i, 0.01 * (i % 7 - 3));
+    }
+    a.add(beads - 2, beads - 2, -1.5);
+    a.add(beads - 1, beads - 2, 1);
+    for (int i = 2; i < 1500; ++i)
+      a.add(0, i, 1);
+    a.add(0, 0, 2000);
+    SparseFactorization factors;
+    REQUIRE(factors.factor(a.pattern, a.values, 1e-11));
+    return factors.nullity();
+  };
+  CHECK(nullity(16000) == nullity(14000));
+}
+
+TEST_CASE("halves may have nothing to do with each other") {
+  constexpr int beads = 8000;
+  LargeMatrix a(2 * beads);
+  for (int i = 0; i < 2 * beads; ++i) {
+    a.add(i, i, i < beads ? 2.5 : -2.5);
+    if (i % beads > 0) a.add(i, i - 1, -1);
+  }
+  SparseFactorization factors;
+  REQUIRE(factors.factor(a.pattern, a.values, 1e-12));
+  CHECK(factors.divided());
+  CHECK(factors.negative() == beads);
+  const Eigen::VectorXd b = random_vector(2 * beads, 7);
   Eigen::VectorXd x = b;
   factors.solve(x, 1e-13);
   CHECK(a.backward_error(x, b) < 1e-13);
@@ -235,6 +326,7 @@ TEST_CASE("halves that are singular by themselves are no obstacle") {
   SparseFactorization factors;
   REQUIRE(factors.factor(a.pattern, a.values, 1e-12));
   CHECK(factors.negative() == negative);
+  CHECK(factors.nullity() == 0);
   const Eigen::VectorXd b = random_vector(beads, 7);
   Eigen::VectorXd x = b;
   factors.solve(x, 1e-13);
