@@ -64,6 +64,7 @@ void DividedFactors::distribute(const SparsePattern& pattern, const std::vector<
   }
   const auto half_of = [&](Side s) -> Half& { return halves_[s == Side::first ? 0 : 1]; };
   std::vector<int> number(side.size()); // from 1, in its half or between
+  std::vector<int> entries(side.size(), 0);
   for (std::size_t u = 0; u < side.size(); ++u) {
     std::vector<int>& all = side[u] == Side::between ? between_ : half_of(side[u]).unknowns;
     all.push_back(static_cast<int>(u));
@@ -72,6 +73,8 @@ void DividedFactors::distribute(const SparsePattern& pattern, const std::vector<
   for (std::size_t e = 0; e < pattern.rows.size(); ++e) {
     const auto i = static_cast<std::size_t>(pattern.rows[e] - 1),
                j = static_cast<std::size_t>(pattern.columns[e] - 1);
+    ++entries[i];
+    if (i != j) ++entries[j];
     const auto [a, b] = std::minmax({number[i] - 1, number[j] - 1});
     if (side[i] == Side::between && side[j] == Side::between) {
       of_root_.push_back({e, place(static_cast<std::size_t>(b), static_cast<std::size_t>(a))});
@@ -83,6 +86,7 @@ void DividedFactors::distribute(const SparsePattern& pattern, const std::vector<
     half.pattern.columns.push_back(number[j] + (side[j] == Side::between ? own : 0));
     half.entries.push_back(e);
   }
+  norm_ = *std::ranges::max_element(entries);
   for (Half& half : halves_) {
     const int own = static_cast<int>(half.unknowns.size());
     half.pattern.size = own + static_cast<int>(between_.size());
@@ -111,7 +115,7 @@ bool DividedFactors::factor(const std::vector<double>& values, double zero) {
     Half& half = halves_[i];
     for (std::size_t e = 0; e < half.entries.size(); ++e)
       half.values[e] = values[half.entries[e]];
-    half.mumps.set_zero(-zero);
+    half.mumps.set_zero(-norm_ * zero);
     if (!half.mumps.run_factorise()) done = false;
   });
   if (!done) { // the whole may need what they hold
@@ -119,7 +123,7 @@ bool DividedFactors::factor(const std::vector<double>& values, double zero) {
     return false;
   }
   if (halves_[0].mumps.nullity() + halves_[1].mumps.nullity() > 0 || !add_up(values)) return false;
-  root_.set_zero(-zero);
+  root_.set_zero(-norm_ * zero);
   return root_.run_factorise() && root_.nullity() == 0;
 }
 

@@ -15,10 +15,10 @@ class DividedFactors {
  public:
   // Small matrices, and those that do not fall in halves, it leaves alone.
   void begin(const SparsePattern& pattern);
-  bool is_open() const { return open_; } // it was not
+  bool is_open() const { return open_; } // it has one to factor
 
   // Of an equilibrated matrix that was not left alone. False where it is not clearly regular, or memory runs
-  // out. Pivots below `zero` count as none.
+  // out. Pivots below `zero` times what its norm may be count as none.
   bool factor(const std::vector<double>& values, double zero);
 
   void solve(Eigen::VectorXd& x); // in place
@@ -30,13 +30,13 @@ class DividedFactors {
     explicit Half(int copy) : mumps(copy) {}
     Mumps mumps;
     SparsePattern pattern;
-    std::vector<std::size_t> entries; // of the whole
-    std::vector<int> unknowns;        // of the whole, of the half's own, which come first
+    std::vector<std::size_t> entries; // of the whole, that it takes
+    std::vector<int> unknowns;        // of the whole, that are its own; those between come after them
     std::vector<int> order, last;
-    std::vector<double> values, left; // left: what it leaves of those between, lower triangle by rows
+    std::vector<double> values, left; // left: of those between, the lower triangle by rows
     Eigen::VectorXd x, reduced;
   };
-  // Where entry e of the whole goes to in the root.
+  // An entry of the whole that belongs to the root, and where.
   struct OfRoot {
     std::size_t entry, place;
   };
@@ -55,6 +55,7 @@ class DividedFactors {
   std::vector<OfRoot> of_root_;
   std::vector<int> root_order_; // any
   Eigen::VectorXd root_x_;
+  double norm_ = 1; // at most: entries of a row, which are not above one
   bool open_ = false;
 };
 

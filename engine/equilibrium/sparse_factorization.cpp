@@ -82,19 +82,6 @@ struct SparseFactorization::State {
     begun = true;
   }
 
-  // The largest sum of a row.
-  double norm() {
-    largest.setZero(pattern.size);
-    for (std::size_t e = 0; e < scaled.size(); ++e) {
-      const Eigen::Index i = pattern.rows[e] - 1, j = pattern.columns[e] - 1;
-      largest[i] += std::abs(scaled[e]);
-      if (pattern.symmetric && i != j) largest[j] += std::abs(scaled[e]);
-    }
-    return largest.maxCoeff();
-  }
-
-  bool factor_halves() { return halves.is_open() && halves.factor(scaled, zero * norm()); }
-
   bool factor_whole() {
     if (!whole.is_open()) {
       order = pattern.symmetric ? elimination_order(pattern, {}, 0) : std::vector<int>{};
@@ -127,7 +114,7 @@ bool SparseFactorization::factor(const SparsePattern& pattern, const std::vector
   s.zero = zero;
   s.equilibrate();
   s.null_space.resize(0, 0);
-  s.divided = s.factor_halves();
+  s.divided = s.halves.is_open() && s.halves.factor(s.scaled, zero);
   s.factored = s.divided || s.factor_whole();
   s.begun = s.factored;
   return s.factored;
