@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 namespace flyball {
 namespace {
@@ -122,16 +123,16 @@ bool DividedFactors::factor(const std::vector<double>& values, double zero) {
     close();
     return false;
   }
-  if (halves_[0].mumps.nullity() + halves_[1].mumps.nullity() > 0 || !add_up(values)) return false;
+  if (halves_[0].mumps.nullity() + halves_[1].mumps.nullity() > 0 || !add_up(values, zero)) return false;
   root_.set_zero(-norm_ * zero);
   return root_.run_factorise() && root_.nullity() == 0;
 }
 
 // What the halves leave of the unknowns between them, and what these are by themselves. False where a half is
-// nearly singular: it leaves large numbers, in which as many digits are lost as by the smallest pivots that
-// the whole puts up with.
-bool DividedFactors::add_up(const std::vector<double>& values) {
-  constexpr double most = 1 / Mumps::least_pivot;
+// nearly singular: it leaves large numbers, and in their differences a pivot of `zero` may be rounding. (Nets
+// of rods, whose spins are pivots of zero, did not come to rest with twenty times as much.)
+bool DividedFactors::add_up(const std::vector<double>& values, double zero) {
+  const double most = zero / std::numeric_limits<double>::epsilon();
   for (std::size_t i = 0; i < between_.size(); ++i)
     for (std::size_t j = 0; j <= i; ++j) {
       const std::size_t at = i * between_.size() + j;

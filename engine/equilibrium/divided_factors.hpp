@@ -44,7 +44,7 @@ class DividedFactors {
   bool analyse();
   void close();
   void distribute(const SparsePattern& pattern, const std::vector<Side>& side);
-  bool add_up(const std::vector<double>& values);
+  bool add_up(const std::vector<double>& values, double zero);
   std::size_t place(std::size_t i, std::size_t j) const; // of the root's entries; i >= j
 
   std::array<Half, 2> halves_{Half(0), Half(1)};

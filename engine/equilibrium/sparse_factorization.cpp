@@ -115,6 +115,7 @@ bool SparseFactorization::factor(const SparsePattern& pattern, const std::vector
   s.equilibrate();
   s.null_space.resize(0, 0);
   s.divided = s.halves.is_open() && s.halves.factor(s.scaled, zero);
+  if (s.divided) s.whole.close(); // which holds as much again
   s.factored = s.divided || s.factor_whole();
   s.begun = s.factored;
   return s.factored;
