@@ -93,6 +93,13 @@ struct LargeMatrix {
   }
 };
 
+void check_solves(SparseFactorization& factors, const LargeMatrix& a) {
+  const Eigen::VectorXd b = random_vector(a.pattern.size, 7);
+  Eigen::VectorXd x = b;
+  factors.solve(x, 1e-13);
+  CHECK(a.backward_error(x, b) < 1e-13);
+}
+
 // Three membranes of a x b knots, each less a multiple of the identity, numbered in any order: eigenvalues
 // 4 - 2 cos(i pi / (a + 1)) - 2 cos(j pi / (b + 1)) - shift.
 struct Membranes {
@@ -188,10 +195,7 @@ TEST_CASE("a large matrix in halves has the signs of its eigenvalues and solves 
   CHECK(factors.divided());
   CHECK(factors.nullity() == 0);
   CHECK(factors.negative() == membranes.negative);
-  const Eigen::VectorXd b = random_vector(a.pattern.size, 3);
-  Eigen::VectorXd x = b;
-  factors.solve(x, 1e-13);
-  CHECK(a.backward_error(x, b) < 1e-13);
+  check_solves(factors, a);
 }
 
 // Knots of some motions, with a row along each edge in a random direction.
@@ -241,10 +245,7 @@ TEST_CASE("a large saddle point in halves has a negative pivot for each of its r
   CHECK(factors.divided());
   CHECK(factors.nullity() == 0);
   CHECK(factors.negative() == net.rows);
-  const Eigen::VectorXd b = random_vector(a.pattern.size, 5);
-  Eigen::VectorXd x = b;
-  factors.solve(x, 1e-13);
-  CHECK(a.backward_error(x, b) < 1e-13);
+  check_solves(factors, a);
 }
 
 TEST_CASE("in the order of elimination the last come last, as they are named, and the others once each") {
@@ -289,7 +290,8 @@ TEST_CASE("what counts as zero is the same in halves as in the whole") {
     REQUIRE(factors.factor(a.pattern, a.values, 1e-11));
     return factors.nullity();
   };
-  CHECK(nullity(16000) == nullity(14000));
+  CHECK(nullity(14000) == 1);
+  CHECK(nullity(16000) == 1);
 }
 
 TEST_CASE("halves may have nothing to do with each other") {
@@ -303,10 +305,7 @@ TEST_CASE("halves may have nothing to do with each other") {
   REQUIRE(factors.factor(a.pattern, a.values, 1e-12));
   CHECK(factors.divided());
   CHECK(factors.negative() == beads);
-  const Eigen::VectorXd b = random_vector(2 * beads, 7);
-  Eigen::VectorXd x = b;
-  factors.solve(x, 1e-13);
-  CHECK(a.backward_error(x, b) < 1e-13);
+  check_solves(factors, a);
 }
 
 TEST_CASE("halves that are singular by themselves are no obstacle") {
@@ -327,10 +326,7 @@ TEST_CASE("halves that are singular by themselves are no obstacle") {
   REQUIRE(factors.factor(a.pattern, a.values, 1e-12));
   CHECK(factors.negative() == negative);
   CHECK(factors.nullity() == 0);
-  const Eigen::VectorXd b = random_vector(beads, 7);
-  Eigen::VectorXd x = b;
-  factors.solve(x, 1e-13);
-  CHECK(a.backward_error(x, b) < 1e-13);
+  check_solves(factors, a);
 }
 
 TEST_CASE("what a large matrix maps to zero is found") {
