@@ -169,21 +169,20 @@ void add_branch(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
   command->footer("Example: flyball branch conical_pendulum.json --vary joints.spin.drive.speed=0:10 --json");
   command->callback([options, &exit_code] {
+    std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
     const Range range = parse_range("--vary", options->vary);
     if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
     ResponseDiagram diagram;
     try {
-      Progress progress("following");
       BranchOptions follow;
       follow.all = options->all;
-      follow.progress = [&](double part) {
-        progress.show(static_cast<std::size_t>(100 * std::max(0., part)), 100);
-      };
+      follow.progress = progress->reporter();
       diagram = follow_branches(mechanism, range.address, range.from, range.to, follow);
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
+    progress.reset();
     const bool any = diagram.status == Status::converged && !diagram.branches.empty();
     if ((!options->svg.empty() || !options->png.empty()) && any) {
       const Plot plot =

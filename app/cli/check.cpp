@@ -1,4 +1,5 @@
 #include "app/cli/command.hpp"
+#include "app/cli/progress.hpp"
 #include "app/cli/report_error.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "engine/equilibrium/analysis.hpp"
@@ -62,6 +63,7 @@ void add_check(CLI::App& app, int& exit_code) {
       return SceneError(options->file.string() + (error.where().empty() ? "" : ": " + error.where()),
                         error.expected());
     };
+    std::optional<ProgressBar> progress(std::in_place, "reading");
     Mechanism mechanism;
     const std::string text = read_bytes(options->file);
     try {
@@ -69,16 +71,20 @@ void add_check(CLI::App& app, int& exit_code) {
     } catch (const SceneError& error) {
       throw named(error);
     }
+    progress->show({"checking"});
     const std::vector<SceneError> mistakes = find_mistakes(mechanism);
+    if (!mistakes.empty()) progress.reset();
     for (const SceneError& mistake : mistakes)
       exit_code = report_error(named(mistake));
     if (!mistakes.empty()) return;
     SystemSummary summary;
     try {
+      progress->show({"compiling"});
       summary = Analysis(mechanism).summary();
     } catch (const SceneError& error) {
       throw named(error);
     }
+    progress.reset();
     if (options->json) {
       const nlohmann::ordered_json out = {{"valid", true},
                                           {"in", summary.in},

@@ -120,18 +120,22 @@ struct Options {
 };
 
 int run_compare(const Options& options) {
+  std::optional<ProgressBar> progress(std::in_place, "reading");
   const Mechanism mechanism = options.scene.load();
   Comparison comparison;
   try {
-    Progress progress("measuring");
+    progress->show({"solving"});
     CompareOptions wanted;
     wanted.repeats = options.repeats;
     wanted.durations = options.durations;
-    wanted.progress = [&](std::size_t done, std::size_t all) { progress.show(done, all); };
+    wanted.progress = [&](std::size_t done, std::size_t all) {
+      progress->show("measuring motions", done, all);
+    };
     comparison = compare(mechanism, wanted);
   } catch (const SceneError& error) {
     throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
   }
+  progress.reset();
   if (!options.svg.empty()) write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison)));
   if (!options.csv.empty()) write_bytes(options.csv, comparison_csv(comparison));
   if (options.json)

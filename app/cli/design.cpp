@@ -81,22 +81,21 @@ void add_design(CLI::App& app, int& exit_code) {
   command->footer(
       "Example: flyball design governor.json --vary joints.spin.drive.speed=0:30 --want slide=0.12");
   command->callback([options, &exit_code] {
+    std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
     const Range range = parse_range("--vary", options->vary);
     if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
     const auto [coordinate, value] = parse_assignment("--want", options->want);
     DesignAnswer answer;
     try {
-      Progress progress("following");
       DesignOptions ask;
       ask.all = !options->connected;
-      ask.progress = [&](double part) {
-        progress.show(static_cast<std::size_t>(100 * std::max(0., part)), 100);
-      };
+      ask.progress = progress->reporter();
       answer = design(mechanism, range.address, range.from, range.to, coordinate, value, ask);
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
+    progress.reset();
     if (options->json)
       fmt::print("{}\n", answer_json(range.address, coordinate, answer).dump(2));
     else

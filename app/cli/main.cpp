@@ -1,11 +1,13 @@
 #include "app/cli/command.hpp"
 #include "app/cli/editor.hpp"
 #include "app/cli/report_error.hpp"
+#include "app/live/worker.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 namespace flyball::cli {
 
@@ -76,7 +78,10 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   const int exit_code = flyball::cli::run(argc, argv);
   // A result that could not be written is no result.
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    return flyball::cli::report_error("cannot write to standard output");
-  return exit_code;
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  const int code = written ? exit_code : flyball::cli::report_error("cannot write to standard output");
+  // Computations that were given up end in a moment; the process does not wait longer for one.
+  constexpr double moment = 0.2; // s
+  if (!flyball::join_left_behind(moment)) std::_Exit(code);
+  return code;
 }

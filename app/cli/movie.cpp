@@ -80,11 +80,11 @@ void draw_movie(const Mechanism& mechanism, std::shared_ptr<const Run> run,
   ViewFrame look;
   look.camera = camera_for(mechanism, scene, times, options);
   const Signals signals;
-  Progress progress("drawing");
+  ProgressBar progress("drawing");
   RunMovie movie(std::move(scene), times, options.file, format_of(options, times.size()), look, 4);
   constexpr double between_signals = 0.1; // s
   while (!Signals::came_one() && !movie.step(renderer, between_signals))
-    progress.show(movie.drawn(), movie.frames());
+    progress.show("drawing", movie.drawn(), movie.frames());
 }
 
 } // namespace flyball::cli

@@ -2,24 +2,92 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+#include <string>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace flyball::cli {
 
-Progress::Progress(std::string what)
-    : what_(std::move(what)), start_(std::chrono::steady_clock::now()),
-      terminal_(isatty(STDERR_FILENO) == 1) {}
+namespace {
 
-Progress::~Progress() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+using Clock = std::chrono::steady_clock;
+
+// Whether standard error is a terminal on which a line can be drawn over.
+bool can_draw() {
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && !(terminal && std::strcmp(terminal, "dumb") == 0);
 }
 
-void Progress::show(std::size_t done, std::size_t all) {
-  if (!terminal_ || all == 0 || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(1)) return;
-  constexpr std::size_t width = 40;
-  const std::size_t filled = done * width / all;
-  fmt::print(stderr, "\r{} [{:=<{}}{:{}}] {} of {}", what_, "", filled, "", width - filled, done, all);
+int terminal_columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+} // namespace
+
+ProgressBar::ProgressBar(const char* phase) : phase_(phase) {
+  if (!can_draw()) return;
+  thread_ = std::jthread([this](const std::stop_token& stop) {
+    const auto begin = Clock::now();
+    std::mutex mutex;
+    std::condition_variable_any wake;
+    std::unique_lock lock(mutex);
+    auto wait = std::chrono::milliseconds(1000);
+    while (!wake.wait_for(lock, stop, wait, [&] { return stop.stop_requested(); })) {
+      draw(std::chrono::duration<double>(Clock::now() - begin).count());
+      wait = std::chrono::milliseconds(100);
+    }
+  });
+}
+
+ProgressBar::~ProgressBar() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  thread_.join();
+  if (!drawn_) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+}
+
+void ProgressBar::show(const Progress& now) {
+  phase_ = now.phase;
+  part_ = now.part;
+  all_ = 0;
+}
+
+void ProgressBar::show(const char* phase, std::size_t done, std::size_t all) {
+  phase_ = phase;
+  part_ = all > 0 ? static_cast<double>(done) / static_cast<double>(all) : -1;
+  done_ = done;
+  all_ = all;
+}
+
+void ProgressBar::draw(double seconds) {
+  const double part = part_;
+  const std::size_t all = all_;
+  std::string text;
+  if (all > 0)
+    text = fmt::format("{} of {}, ", std::min(done_.load(), all), all);
+  else if (part >= 0)
+    text = fmt::format("{:.0f} %, ", std::floor(100 * std::min(part, 1.)));
+  text += fmt::format("{:.0f} s", std::floor(seconds));
+  std::string line(phase_.load());
+  const int room = terminal_columns() - static_cast<int>(line.size() + text.size()) - 6;
+  if (part >= 0 && room >= 10) {
+    const int width = std::min(room, 40);
+    const int filled = std::clamp(static_cast<int>(part * width), 0, width);
+    line += fmt::format(" [{:=<{}}{:{}}]", "", filled, "", width - filled);
+  }
+  // One write, so that nothing else on the terminal comes between.
+  fmt::print(stderr, "{}", fmt::format("\r{} {}\033[K", line, text));
   std::fflush(stderr);
   drawn_ = true;
 }

@@ -1,5 +1,6 @@
 #include "app/cli/command.hpp"
 #include "app/cli/picture.hpp"
+#include "app/cli/progress.hpp"
 #include "app/cli/report_error.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +33,10 @@ int run_render(const RenderOptions& options) {
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (!ending.empty() && ending != ".png")
     return report_error(fmt::format("--out: pictures are PNG files, found {}", options.out.string()));
+  std::optional<ProgressBar> progress(std::in_place, "drawing");
   const Picture picture = draw_picture(options.scene, wanted);
   write_png(options.out, picture.image);
+  progress.reset();
   if (wanted.drawn_pose) return exit_done;
   if (picture.answer.error) return report_error(*picture.answer.error);
   if (picture.answer.solution.status == Status::converged) return exit_done;

@@ -235,6 +235,7 @@ MovieOptions movie_of(const Options& options, double duration) {
 
 int run_simulate(const Options& options) {
   if (options.csv == "-" && options.json) throw SceneError("--csv -", "expected no --json beside it");
+  std::optional<ProgressBar> progress(std::in_place, "reading");
   const Mechanism mechanism = options.scene.load();
   SimulationOptions wanted = simulation_of(options, mechanism);
   const MovieOptions movie = movie_of(options, wanted.duration);
@@ -242,14 +243,15 @@ int run_simulate(const Options& options) {
   std::optional<Solution> steady;
   std::optional<Settled> settled;
   try {
-    Progress progress("simulating");
+    progress->show({"finding the start"});
     const double begin = wanted.start == Start::state ? wanted.state.time : 0;
     wanted.progress = [&](double t) {
-      progress.show(static_cast<std::size_t>(1000 * std::clamp((t - begin) / wanted.duration, 0., 1.)), 1000);
+      progress->show({"simulating", std::clamp((t - begin) / wanted.duration, 0., 1.)});
     };
     run = simulate(mechanism, wanted);
     SolveOptions quick;
     quick.details = false;
+    quick.progress = progress->reporter();
     steady = Analysis(mechanism).solve(quick);
     if (steady->status == Status::converged)
       settled = find_settled(run, *steady);
@@ -258,6 +260,7 @@ int run_simulate(const Options& options) {
   } catch (const SceneError& error) {
     throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
   }
+  progress.reset();
   if (!options.save_state.empty())
     write_bytes(options.save_state, state_json(state_at(run, run.time.size() - 1)).dump(2) + "\n");
   if (!options.csv.empty()) write_bytes(options.csv, to_csv(run));

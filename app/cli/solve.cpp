@@ -1,4 +1,5 @@
 #include "app/cli/command.hpp"
+#include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
 #include "app/cli/solution_text.hpp"
@@ -39,16 +40,19 @@ void add_solve(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer("Example: flyball solve governor.json --set joints.spin.drive.speed=12 --json");
   command->callback([options, &exit_code] {
+    std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
     SolveOptions solve;
     solve.nearest = options->nearest;
     solve.modes = options->modes;
+    solve.progress = progress->reporter();
     for (const std::string& text : options->start)
       solve.start.push_back(parse_assignment("--start", text));
     Solution solution;
     try {
       if (options->all) {
         const AllSolutions all = Analysis(mechanism).solve_all(solve);
+        progress.reset();
         fmt::print("{}\n", options->json ? to_json(mechanism, all).dump(2) : to_text(mechanism, all));
         exit_code = all.equilibria.empty() ? exit_no_result : exit_done;
         return;
@@ -57,6 +61,7 @@ void add_solve(CLI::App& app, int& exit_code) {
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
+    progress.reset();
     if (options->json)
       fmt::print("{}\n", to_json(mechanism, solution).dump(2));
     else

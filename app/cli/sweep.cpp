@@ -155,9 +155,9 @@ void add_sweep(CLI::App& app, int& exit_code) {
     if (total > 1e7) throw SceneError("--vary", "expected at most 10000000 combinations");
     std::vector<SweepPoint> points;
     try {
-      Progress progress("solving");
+      ProgressBar progress("solving");
       points = sweep(mechanism, variations, 0,
-                     [&](std::size_t done, std::size_t all) { progress.show(done, all); });
+                     [&](std::size_t done, std::size_t all) { progress.show("solving", done, all); });
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }

@@ -1,10 +1,13 @@
 // One long computation at a time on a thread of its own, with progress, that can be cancelled. The newest
-// task wins.
+// task wins, and nobody waits for one that is no longer wanted.
 #pragma once
 
 #include "app/live/live_solver.hpp"
+#include "app/live/worker.hpp"
+#include "engine/task/progress.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -13,21 +16,23 @@ namespace flyball {
 template <class Result>
 class Background {
  public:
-  // What a task is given to look at and to tell: `cancel` becomes true when the result is not wanted any
-  // more; progress from 0 to 1.
+  // What a task is given to look at and to report to: `cancel` becomes true when the result is not wanted any
+  // more.
   struct Watch {
     const std::atomic<bool>& cancel;
-    std::function<void(double)> progress;
+    ReportProgress progress;
   };
+  // Must own what it uses: it goes on for a moment when this object is gone.
   using Task = std::function<Result(const Watch&)>;
 
   // As of a LiveSolver.
   explicit Background(LiveSolver::Mode mode, std::function<void()> on_news = {})
-      : mode_(mode), on_news_(std::move(on_news)) {}
+      : state_(std::make_shared<State>(mode, std::move(on_news))) {}
   ~Background() {
-    thread_.request_stop();
-    const std::lock_guard lock(mutex_);
-    cancel_ = true;
+    state_->on_news.silence();
+    const std::lock_guard lock(state_->mutex);
+    state_->cancel = state_->ended = true;
+    state_->next.reset();
   }
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
@@ -36,25 +41,28 @@ class Background {
   // cancelled and its result dropped, unless `after` it is wanted: then it is finished and taken first, so
   // that something new is seen however often a hand asks.
   void start(Task task, bool after = false) {
-    std::unique_lock lock(mutex_);
-    ++wanted_;
-    if (!after) dropped_ = wanted_ - 1;
-    if (mode_ == LiveSolver::Mode::immediate) {
+    State& s = *state_;
+    std::unique_lock lock(s.mutex);
+    ++s.wanted;
+    if (!after) s.dropped = s.wanted - 1;
+    if (s.mode == LiveSolver::Mode::immediate) {
+      const std::uint64_t ticket = s.wanted;
       lock.unlock();
-      run(task, wanted_);
+      s.run(task, ticket);
       return;
     }
-    if (!after) cancel_ = true;
-    next_ = std::move(task);
-    if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+    if (!after) s.cancel = true;
+    s.next = std::move(task);
+    if (!thread_.started())
+      thread_ = Worker([state = state_](const std::stop_token& stop) { state->work(stop); });
     lock.unlock();
-    wake_.notify_one();
+    s.wake.notify_one();
   }
   // The result comes all the same, of what was done until then, if the task gives one.
   void cancel() {
-    const std::lock_guard lock(mutex_);
-    cancel_ = true;
-    cancelled_ = wanted_; // also if it has not begun
+    const std::lock_guard lock(state_->mutex);
+    state_->cancel = true;
+    state_->cancelled = state_->wanted; // also if it has not begun
   }
 
   // The newest result or problem, once.
@@ -63,59 +71,81 @@ class Background {
     std::string problem;
   };
   std::optional<News> take() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(news_, std::nullopt);
+    const std::lock_guard lock(state_->mutex);
+    return std::exchange(state_->news, std::nullopt);
   }
   // Whether an answer to the newest task is still to come.
   bool running() const {
-    const std::lock_guard lock(mutex_);
-    return done_ < wanted_;
+    const std::lock_guard lock(state_->mutex);
+    return state_->done < state_->wanted;
   }
-  double progress() const { return progress_; }
+  // Of the task that runs, or ran last; `part` is 0 until something is reported.
+  Progress progress() const { return {state_->phase, state_->part}; }
+  // How long that has run, s.
+  double seconds() const {
+    return std::chrono::duration<double>(Clock::now() - state_->begun.load()).count();
+  }
 
  private:
-  void work(const std::stop_token& stop) {
-    std::unique_lock lock(mutex_);
-    while (wake_.wait(lock, stop, [this] { return next_.has_value(); })) {
-      if (stop.stop_requested()) return;
-      const Task task = *std::exchange(next_, std::nullopt);
-      const std::uint64_t ticket = wanted_;
-      cancel_ = stop.stop_requested() || ticket <= cancelled_;
-      lock.unlock();
-      run(task, ticket);
-      lock.lock();
+  using Clock = std::chrono::steady_clock;
+
+  // What the thread uses. It shares in owning it, and so may come to its end later than the rest.
+  struct State {
+    State(LiveSolver::Mode chosen, std::function<void()> news_callback)
+        : mode(chosen), on_news(std::move(news_callback)) {}
+
+    void work(const std::stop_token& stop) {
+      std::unique_lock lock(mutex);
+      while (wake.wait(lock, stop, [this] { return next.has_value(); })) {
+        if (stop.stop_requested()) return;
+        const Task task = *std::exchange(next, std::nullopt);
+        const std::uint64_t ticket = wanted;
+        cancel = ended || ticket <= cancelled;
+        lock.unlock();
+        run(task, ticket);
+        lock.lock();
+      }
     }
-  }
 
-  void run(const Task& task, std::uint64_t ticket) {
-    progress_ = 0;
-    News news;
-    try {
-      news.result = task(Watch{cancel_, [this](double part) { progress_ = std::clamp(part, 0., 1.); }});
-    } catch (const std::exception& error) {
-      news.problem = error.what();
+    void run(const Task& task, std::uint64_t ticket) {
+      part = 0;
+      phase = "";
+      begun = Clock::now();
+      News fresh;
+      try {
+        fresh.result = task(Watch{cancel, [this](const Progress& now) {
+                                    phase = now.phase;
+                                    if (now.part >= 0) part = std::min(now.part, 1.);
+                                  }});
+      } catch (const std::exception& error) {
+        fresh.problem = error.what();
+      }
+      {
+        const std::lock_guard lock(mutex);
+        if (ended || ticket <= dropped) return;
+        done = ticket;
+        news = std::move(fresh);
+      }
+      on_news();
     }
-    {
-      const std::lock_guard lock(mutex_);
-      if (ticket <= dropped_) return;
-      done_ = ticket;
-      news_ = std::move(news);
-    }
-    if (on_news_) on_news_();
-  }
 
-  std::atomic<bool> cancel_{false};
-  std::atomic<double> progress_{0};
-  const LiveSolver::Mode mode_;
-  const std::function<void()> on_news_;
+    std::atomic<bool> cancel{false};
+    std::atomic<double> part{0};
+    std::atomic<const char*> phase{""};
+    std::atomic<Clock::time_point> begun{Clock::now()};
+    const LiveSolver::Mode mode;
+    Callback on_news;
 
-  mutable std::mutex mutex_; // guards all below
-  std::condition_variable_any wake_;
-  std::uint64_t wanted_ = 0, done_ = 0, dropped_ = 0, cancelled_ = 0; // tasks, counted from 1
-  std::optional<Task> next_;
-  std::optional<News> news_;
+    std::mutex mutex; // guards all below
+    std::condition_variable_any wake;
+    std::uint64_t wanted = 0, done = 0, dropped = 0, cancelled = 0; // tasks, counted from 1
+    bool ended = false;                                             // nobody is there to take anything
+    std::optional<Task> next;
+    std::optional<News> news;
+  };
 
-  std::jthread thread_; // made with the first task; last, so that it ends before what it uses
+  std::shared_ptr<State> state_;
+  Worker thread_; // made with the first task
 };
 
 } // namespace flyball

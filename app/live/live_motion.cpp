@@ -25,88 +25,119 @@ double since(Clock::time_point start) {
 
 } // namespace
 
+struct LiveMotion::State {
+  struct Job {
+    std::uint64_t ticket = 0;
+    Mechanism mechanism;
+    SimulationOptions options;
+    std::shared_ptr<const Run> before; // to go on from; or null
+    double time = 0;
+  };
+
+  State(LiveSolver::Mode chosen, std::function<void()> callback)
+      : mode(chosen), on_news(std::move(callback)) {}
+
+  // Returns the ticket. In immediate mode it is computed before.
+  std::uint64_t ask(Job job);
+  void work(const std::stop_token& stop);
+  void compute(Job job);
+  void publish(MotionNews fresh);
+
+  std::atomic<bool> cancel{false};
+  const LiveSolver::Mode mode;
+  Callback on_news;
+
+  std::mutex mutex; // guards all below
+  std::condition_variable_any wake;
+  std::uint64_t tickets = 0, stopped = 0;
+  bool running = false;
+  std::optional<Job> next;
+  std::optional<MotionNews> news;
+};
+
 LiveMotion::LiveMotion(LiveSolver::Mode mode, std::function<void()> on_news)
-    : mode_(mode), on_news_(std::move(on_news)) {
-  if (mode_ == LiveSolver::Mode::background)
-    thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+    : state_(std::make_shared<State>(mode, std::move(on_news))) {
+  if (mode == LiveSolver::Mode::background)
+    thread_ = Worker([state = state_](const std::stop_token& stop) { state->work(stop); });
 }
 
 LiveMotion::~LiveMotion() {
-  thread_.request_stop();
-  const std::lock_guard lock(mutex_);
-  cancel_ = true;
+  state_->on_news.silence();
+  const std::lock_guard lock(state_->mutex);
+  state_->cancel = true;
+  state_->next.reset();
 }
 
 std::uint64_t LiveMotion::start(Mechanism mechanism, SimulationOptions options) {
-  return ask({0, std::move(mechanism), std::move(options), nullptr, 0});
+  return state_->ask({0, std::move(mechanism), std::move(options), nullptr, 0});
 }
 
 std::uint64_t LiveMotion::go_on(Mechanism mechanism, SimulationOptions options,
                                 std::shared_ptr<const Run> run, double time) {
-  return ask({0, std::move(mechanism), std::move(options), std::move(run), time});
+  return state_->ask({0, std::move(mechanism), std::move(options), std::move(run), time});
 }
 
-std::uint64_t LiveMotion::ask(Job job) {
-  std::unique_lock lock(mutex_);
-  const std::uint64_t ticket = job.ticket = ++tickets_;
-  news_.reset();
-  if (mode_ == LiveSolver::Mode::immediate) {
-    cancel_ = false;
+std::uint64_t LiveMotion::State::ask(Job job) {
+  std::unique_lock lock(mutex);
+  const std::uint64_t ticket = job.ticket = ++tickets;
+  news.reset();
+  if (mode == LiveSolver::Mode::immediate) {
+    cancel = false;
     lock.unlock();
     compute(std::move(job));
     return ticket;
   }
-  cancel_ = true;
-  next_ = std::move(job);
+  cancel = true;
+  next = std::move(job);
   lock.unlock();
-  wake_.notify_one();
+  wake.notify_one();
   return ticket;
 }
 
 void LiveMotion::stop() {
-  const std::lock_guard lock(mutex_);
-  cancel_ = true;
-  stopped_ = tickets_; // also if it has not begun
+  const std::lock_guard lock(state_->mutex);
+  state_->cancel = true;
+  state_->stopped = state_->tickets; // also if it has not begun
 }
 
 std::optional<MotionNews> LiveMotion::take() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(news_, std::nullopt);
+  const std::lock_guard lock(state_->mutex);
+  return std::exchange(state_->news, std::nullopt);
 }
 
 bool LiveMotion::running() const {
-  const std::lock_guard lock(mutex_);
-  return running_ || next_;
+  const std::lock_guard lock(state_->mutex);
+  return state_->running || state_->next;
 }
 
-void LiveMotion::work(const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  while (wake_.wait(lock, stop, [this] { return next_.has_value(); })) {
+void LiveMotion::State::work(const std::stop_token& stop) {
+  std::unique_lock lock(mutex);
+  while (wake.wait(lock, stop, [this] { return next.has_value(); })) {
     if (stop.stop_requested()) return;
-    Job job = *std::exchange(next_, std::nullopt);
-    cancel_ = stop.stop_requested() || job.ticket <= stopped_;
-    running_ = true;
+    Job job = *std::exchange(next, std::nullopt);
+    cancel = stop.stop_requested() || job.ticket <= stopped;
+    running = true;
     lock.unlock();
     compute(std::move(job));
     lock.lock();
-    running_ = false;
+    running = false;
   }
 }
 
 // News of a run that was replaced meanwhile are dropped.
-void LiveMotion::publish(MotionNews news) {
+void LiveMotion::State::publish(MotionNews fresh) {
   {
-    const std::lock_guard lock(mutex_);
-    if (news.ticket != tickets_) return;
-    if (news.finished) running_ = false;
-    news_ = std::move(news);
+    const std::lock_guard lock(mutex);
+    if (fresh.ticket != tickets) return;
+    if (fresh.finished) running = false;
+    news = std::move(fresh);
   }
-  if (on_news_) on_news_();
+  on_news();
 }
 
-void LiveMotion::compute(Job job) {
+void LiveMotion::State::compute(Job job) {
   SimulationOptions& options = job.options;
-  options.cancel = &cancel_;
+  options.cancel = &cancel;
   options.progress = {};
   std::size_t last = 0;
   double duration = options.duration;

@@ -1,5 +1,5 @@
 // The damped motion computed in the background while it plays: requests go in, the run comes out as a value
-// that grows, and whoever asks never waits.
+// that grows, and whoever asks or closes it never waits.
 #pragma once
 
 #include "app/live/live_solver.hpp"
@@ -36,30 +36,9 @@ class LiveMotion {
   bool running() const;
 
  private:
-  struct Job {
-    std::uint64_t ticket = 0;
-    Mechanism mechanism;
-    SimulationOptions options;
-    std::shared_ptr<const Run> before; // to go on from; or null
-    double time = 0;
-  };
-  std::uint64_t ask(Job job);
-  void work(const std::stop_token& stop);
-  void compute(Job job);
-  void publish(MotionNews news);
-
-  std::atomic<bool> cancel_{false};
-  const LiveSolver::Mode mode_;
-  const std::function<void()> on_news_;
-
-  mutable std::mutex mutex_; // guards all below
-  std::condition_variable_any wake_;
-  std::uint64_t tickets_ = 0, stopped_ = 0;
-  bool running_ = false;
-  std::optional<Job> next_;
-  std::optional<MotionNews> news_;
-
-  std::jthread thread_; // last, so that it ends before what it uses
+  struct State;
+  std::shared_ptr<State> state_; // shared with the thread, which may come to its end later
+  Worker thread_;
 };
 
 } // namespace flyball

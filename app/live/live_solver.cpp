@@ -24,154 +24,190 @@ bool moved_far(const std::vector<std::pair<std::string, double>>& start, const S
 
 } // namespace
 
-LiveSolver::LiveSolver(Mode mode, std::function<void()> on_news) : mode_(mode), on_news_(std::move(on_news)) {
-  if (mode_ == Mode::background) thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+struct LiveSolver::State {
+  struct Job {
+    std::uint64_t ticket = 0;
+    LiveRequest request;
+  };
+
+  State(Mode chosen, std::function<void()> news) : mode(chosen), on_news(std::move(news)) {}
+
+  void work(const std::stop_token& stop);
+  LiveAnswer solve(const Job& job);
+  LivePoses poses_at(double time) const;
+  Solution solve_nearest(const LiveRequest& request, bool& left_branch);
+
+  // Used by whoever solves: the background thread, or the caller in immediate mode.
+  std::optional<Analysis> analysis;
+  std::uint64_t analysed = 0; // ticket of the last answer with a solution; 0: no poses to be had
+  std::vector<std::pair<std::string, double>> last; // free coordinates of the last steady state
+  std::atomic<bool> cancel{false};
+
+  const Mode mode;
+  Callback on_news;
+
+  std::mutex mutex; // guards all below
+  std::condition_variable_any wake;
+  std::uint64_t tickets = 0, answered = 0;
+  bool running = false, spare = false; // spare: what runs follows a cancelled solve
+  std::optional<Job> next;
+  std::vector<std::pair<std::string, double>> running_start; // of what runs
+  std::optional<double> next_time;
+  std::optional<LiveAnswer> answer;
+  std::optional<LivePoses> poses;
+};
+
+LiveSolver::LiveSolver(Mode mode, std::function<void()> on_news)
+    : state_(std::make_shared<State>(mode, std::move(on_news))) {
+  if (mode == Mode::background)
+    thread_ = Worker([state = state_](const std::stop_token& stop) { state->work(stop); });
 }
 
 LiveSolver::~LiveSolver() {
-  thread_.request_stop();
-  const std::lock_guard lock(mutex_);
-  cancel_ = true;
+  state_->on_news.silence();
+  const std::lock_guard lock(state_->mutex);
+  state_->cancel = true;
+  state_->next.reset();
 }
 
 std::uint64_t LiveSolver::ask(LiveRequest request) {
-  std::unique_lock lock(mutex_);
-  Job job{++tickets_, std::move(request)};
-  if (mode_ == Mode::immediate) {
-    answer_ = solve(job);
-    answered_ = job.ticket;
+  State& s = *state_;
+  std::unique_lock lock(s.mutex);
+  State::Job job{++s.tickets, std::move(request)};
+  if (s.mode == Mode::immediate) {
+    s.answer = s.solve(job);
+    s.answered = job.ticket;
     return job.ticket;
   }
-  if (next_ && next_->request.another) job.request.another = true;
-  if (next_ && !next_->request.warm) job.request.warm = false;
+  if (s.next && s.next->request.another) job.request.another = true;
+  if (s.next && !s.next->request.warm) job.request.warm = false;
   // Where a hand has put it, it starts also when a slider moves before that was solved.
   LiveRequest& wanted = job.request;
   if (wanted.nearest && wanted.warm && wanted.start.empty()) {
-    if (next_ && next_->request.nearest)
-      wanted.start = next_->request.start;
-    else if (!next_ && running_ && !spare_) // it is cancelled below
-      wanted.start = running_start_;
+    if (s.next && s.next->request.nearest)
+      wanted.start = s.next->request.start;
+    else if (!s.next && s.running && !s.spare) // it is cancelled below
+      wanted.start = s.running_start;
   }
   if (job.request.another) {
-    answer_.reset();
-    poses_.reset();
-    next_time_.reset();
+    s.answer.reset();
+    s.poses.reset();
+    s.next_time.reset();
   }
-  if (running_ && (job.request.another || !spare_)) cancel_ = true;
+  if (s.running && (job.request.another || !s.spare)) s.cancel = true;
   const std::uint64_t ticket = job.ticket;
-  next_ = std::move(job);
+  s.next = std::move(job);
   lock.unlock();
-  wake_.notify_one();
+  s.wake.notify_one();
   return ticket;
 }
 
 void LiveSolver::ask_poses(double time) {
-  std::unique_lock lock(mutex_);
-  if (mode_ == Mode::immediate) {
-    if (analysed_) poses_ = poses_at(time);
+  State& s = *state_;
+  std::unique_lock lock(s.mutex);
+  if (s.mode == Mode::immediate) {
+    if (s.analysed) s.poses = s.poses_at(time);
     return;
   }
-  next_time_ = time;
+  s.next_time = time;
   lock.unlock();
-  wake_.notify_one();
+  s.wake.notify_one();
 }
 
 std::optional<LiveAnswer> LiveSolver::take_answer() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(answer_, std::nullopt);
+  const std::lock_guard lock(state_->mutex);
+  return std::exchange(state_->answer, std::nullopt);
 }
 
 std::optional<LivePoses> LiveSolver::take_poses() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(poses_, std::nullopt);
+  const std::lock_guard lock(state_->mutex);
+  return std::exchange(state_->poses, std::nullopt);
 }
 
 bool LiveSolver::busy() const {
-  const std::lock_guard lock(mutex_);
-  return answered_ < tickets_;
+  const std::lock_guard lock(state_->mutex);
+  return state_->answered < state_->tickets;
 }
 
-void LiveSolver::work(const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  while (wake_.wait(lock, stop, [this] { return next_ || next_time_; })) {
+void LiveSolver::State::work(const std::stop_token& stop) {
+  std::unique_lock lock(mutex);
+  while (wake.wait(lock, stop, [this] { return next || next_time; })) {
     if (stop.stop_requested()) return;
-    if (next_) {
-      const Job job = *std::exchange(next_, std::nullopt);
-      cancel_ = stop.stop_requested();
-      running_ = true;
-      running_start_ = job.request.start;
+    if (next) {
+      const Job job = *std::exchange(next, std::nullopt);
+      cancel = stop.stop_requested();
+      running = true;
+      running_start = job.request.start;
       lock.unlock();
-      LiveAnswer answer = solve(job);
+      LiveAnswer found = solve(job);
       lock.lock();
-      running_ = false;
-      spare_ = cancel_ && !stop.stop_requested();
-      if (cancel_) continue;
-      answered_ = job.ticket;
-      answer_ = std::move(answer);
+      running = false;
+      spare = cancel && !stop.stop_requested();
+      if (cancel) continue;
+      answered = job.ticket;
+      answer = std::move(found);
     } else {
-      const double time = *std::exchange(next_time_, std::nullopt);
-      if (!analysed_) continue;
+      const double time = *std::exchange(next_time, std::nullopt);
+      if (!analysed) continue;
       lock.unlock();
-      LivePoses poses = poses_at(time);
+      LivePoses found = poses_at(time);
       lock.lock();
-      poses_ = std::move(poses);
+      poses = std::move(found);
     }
-    if (on_news_) {
-      lock.unlock();
-      on_news_();
-      lock.lock();
-    }
+    lock.unlock();
+    on_news();
+    lock.lock();
   }
 }
 
-LiveAnswer LiveSolver::solve(const Job& job) {
-  LiveAnswer answer;
-  answer.ticket = job.ticket;
-  answer.mechanism = job.request.mechanism;
-  answer.time = job.request.time;
+LiveAnswer LiveSolver::State::solve(const Job& job) {
+  LiveAnswer out;
+  out.ticket = job.ticket;
+  out.mechanism = job.request.mechanism;
+  out.time = job.request.time;
   try {
     if (job.request.another) {
-      analysis_.reset();
-      analysed_ = 0;
-      last_.clear();
+      analysis.reset();
+      analysed = 0;
+      last.clear();
     }
-    if (analysis_)
-      analysis_->update(job.request.mechanism);
+    if (analysis)
+      analysis->update(job.request.mechanism);
     else
-      analysis_.emplace(job.request.mechanism);
-    answer.solution = solve_nearest(job.request, answer.left_branch);
-    if (answer.solution.status == Status::converged) last_ = start_values(answer.solution.coordinates);
-    answer.summary = analysis_->summary();
-    analysed_ = answer.solution.status == Status::converged ? job.ticket : 0;
-    if (analysed_) answer.poses = answer.time == 0 ? answer.solution.poses : analysis_->poses_at(answer.time);
+      analysis.emplace(job.request.mechanism);
+    out.solution = solve_nearest(job.request, out.left_branch);
+    if (out.solution.status == Status::converged) last = start_values(out.solution.coordinates);
+    out.summary = analysis->summary();
+    analysed = out.solution.status == Status::converged ? job.ticket : 0;
+    if (analysed) out.poses = out.time == 0 ? out.solution.poses : analysis->poses_at(out.time);
   } catch (const std::exception& error) { // SceneError, or no memory
-    answer.error = error.what();
-    answer.solution = {};
-    analysis_.reset();
-    analysed_ = 0;
+    out.error = error.what();
+    out.solution = {};
+    analysis.reset();
+    analysed = 0;
   }
-  return answer;
+  return out;
 }
 
-Solution LiveSolver::solve_nearest(const LiveRequest& request, bool& left_branch) {
+Solution LiveSolver::State::solve_nearest(const LiveRequest& request, bool& left_branch) {
   SolveOptions options;
-  options.cancel = &cancel_;
+  options.cancel = &cancel;
   options.warm = request.warm;
   options.nearest = request.nearest;
   options.start = request.start;
   // Analysis goes back to the drawn pose from a state that is no minimum; a branch is followed through those.
-  if (request.nearest && request.warm && request.start.empty()) options.start = last_;
-  Solution found = analysis_->solve(options);
-  left_branch = request.nearest && !options.start.empty() && !cancel_ &&
+  if (request.nearest && request.warm && request.start.empty()) options.start = last;
+  Solution found = analysis->solve(options);
+  left_branch = request.nearest && !options.start.empty() && !cancel &&
                 (found.status != Status::converged || found.net || moved_far(options.start, found));
   if (!left_branch) return found;
   options.nearest = options.warm = false;
   options.start.clear();
-  return analysis_->solve(options);
+  return analysis->solve(options);
 }
 
-LivePoses LiveSolver::poses_at(double time) const {
-  return {analysed_, time, analysis_->poses_at(time)};
+LivePoses LiveSolver::State::poses_at(double time) const {
+  return {analysed, time, analysis->poses_at(time)};
 }
 
 } // namespace flyball

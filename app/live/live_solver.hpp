@@ -1,11 +1,13 @@
 // Solving in the background while a person moves a slider: requests go in, answers come out as values, and
-// whoever asks never waits.
+// whoever asks never waits, nor does whoever closes it: a solve that nobody wants any more is cancelled and
+// left to come to its end by itself.
 //
 // The newest request wins. One that has not begun is replaced; one that runs is cancelled, unless the one
 // before it was cancelled too: a person who keeps dragging sees an answer every other solve, however long
 // a solve takes.
 #pragma once
 
+#include "app/live/worker.hpp"
 #include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
@@ -60,7 +62,8 @@ class LiveSolver {
     immediate,  // before ask() returns: for pictures and tests, which come out the same every time
   };
 
-  // `on_news` is called on the background thread whenever there is something to take.
+  // `on_news` is called on the background thread whenever there is something to take, and not after this
+  // object is gone.
   explicit LiveSolver(Mode mode, std::function<void()> on_news = {});
   ~LiveSolver();
   LiveSolver(const LiveSolver&) = delete;
@@ -76,35 +79,9 @@ class LiveSolver {
   bool busy() const;
 
  private:
-  struct Job {
-    std::uint64_t ticket = 0;
-    LiveRequest request;
-  };
-  void work(const std::stop_token& stop);
-  LiveAnswer solve(const Job& job);
-  LivePoses poses_at(double time) const;
-  Solution solve_nearest(const LiveRequest& request, bool& left_branch);
-
-  // Used by whoever solves: the background thread, or the caller in immediate mode.
-  std::optional<Analysis> analysis_;
-  std::uint64_t analysed_ = 0; // ticket of the last answer with a solution; 0: no poses to be had
-  std::vector<std::pair<std::string, double>> last_; // free coordinates of the last steady state
-  std::atomic<bool> cancel_{false};
-
-  const Mode mode_;
-  const std::function<void()> on_news_;
-
-  mutable std::mutex mutex_; // guards all below
-  std::condition_variable_any wake_;
-  std::uint64_t tickets_ = 0, answered_ = 0;
-  bool running_ = false, spare_ = false; // spare_: what runs follows a cancelled solve
-  std::optional<Job> next_;
-  std::vector<std::pair<std::string, double>> running_start_; // of what runs
-  std::optional<double> next_time_;
-  std::optional<LiveAnswer> answer_;
-  std::optional<LivePoses> poses_;
-
-  std::jthread thread_; // last, so that it ends before what it uses
+  struct State;
+  std::shared_ptr<State> state_; // shared with the thread, which may come to its end later
+  Worker thread_;
 };
 
 } // namespace flyball

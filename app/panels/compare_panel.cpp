@@ -4,6 +4,7 @@
 #include "app/panels/response_control.hpp"
 #include "app/panels/states_control.hpp"
 #include "app/panels/study_panels.hpp"
+#include "app/panels/task_bar.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/plot/comparison_plot.hpp"
 
@@ -27,7 +28,7 @@ void begin(App& app) {
         options.repeats = repeats;
         options.cancel = &watch.cancel;
         options.progress = [&](std::size_t done, std::size_t all) {
-          watch.progress(static_cast<double>(done) / static_cast<double>(all));
+          watch.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
         };
         return compare(mechanism, options);
       });
@@ -62,7 +63,7 @@ void words(App& app) {
   const UiColors& colors = colors_of(app);
   const bool running = state.task && state.task->running();
   if (running) {
-    ImGui::ProgressBar(static_cast<float>(state.task->progress()), {-1, 0});
+    task_bar(app, "compare/progress", state.task->progress(), state.task->seconds());
     if (text_button(app, "compare/cancel", "Cancel")) state.task->cancel();
     return;
   }

@@ -58,7 +58,7 @@ FoundCells find_cells(const Mechanism& mechanism, const MapChoice& choice,
   const std::vector<SweepPoint> points = sweep(
       mechanism, variations, 0,
       [&](std::size_t done, std::size_t all) {
-        watch.progress(static_cast<double>(done) / static_cast<double>(all));
+        watch.progress({"solving", static_cast<double>(done) / static_cast<double>(all)});
       },
       &watch.cancel);
   found.cancelled = watch.cancel;
@@ -79,9 +79,11 @@ FoundCurves find_curves(const Mechanism& mechanism, const MapChoice& choice,
   const double share = choice.folds && choice.level ? 0.5 : 1;
   PlaneOptions options;
   options.cancel = &watch.cancel;
-  options.progress = [&](double part) { watch.progress(share * part); };
+  options.progress = [&](const Progress& now) { watch.progress({now.phase, share * now.part}); };
   if (choice.folds) found.folds = fold_curves(mechanism, axes[0], axes[1], options);
-  options.progress = [&](double part) { watch.progress(1 - share + share * part); };
+  options.progress = [&](const Progress& now) {
+    watch.progress({now.phase, 1 - share + share * std::max(0., now.part)});
+  };
   if (choice.level)
     found.level = coordinate_curves(mechanism, axes[0], axes[1], choice.coordinate, *choice.level, options);
   found.cancelled = watch.cancel;
@@ -253,17 +255,31 @@ bool computing_map(const App& app) {
   return (map.cells_task && map.cells_task->running()) || (map.curves_task && map.curves_task->running());
 }
 
-double map_progress(const App& app) {
+Progress map_progress(const App& app) {
   const MapState& map = app.study.map;
   double all = 0, done = 0;
+  const char* phase = "";
   const auto add = [&](const auto& task) {
     if (!task) return;
+    const bool running = task->running();
     all += 1;
-    done += task->running() ? task->progress() : 1;
+    done += running ? task->progress().part : 1;
+    if (running) phase = task->progress().phase;
   };
-  add(map.cells_task);
   add(map.curves_task);
-  return all > 0 ? done / all : 1;
+  add(map.cells_task);
+  return {phase, all > 0 ? done / all : 1};
+}
+
+double map_seconds(const App& app) {
+  const MapState& map = app.study.map;
+  double longest = 0;
+  const auto add = [&](const auto& task) {
+    if (task && task->running()) longest = std::max(longest, task->seconds());
+  };
+  add(map.curves_task);
+  add(map.cells_task);
+  return longest;
 }
 
 void update_map(App& app) {

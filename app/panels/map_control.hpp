@@ -13,7 +13,8 @@ void cancel_map(App& app);
 // Everything goes but what was chosen.
 void close_map(App& app);
 bool computing_map(const App& app);
-double map_progress(const App& app); // 0 to 1
+Progress map_progress(const App& app);
+double map_seconds(const App& app); // since it was begun
 
 // Addresses of the numbers that may be varied: those with a slider first, then every other unless they are
 // very many.

@@ -2,6 +2,7 @@
 #include "app/panels/inspector_rows.hpp"
 #include "app/panels/map_control.hpp"
 #include "app/panels/study_panels.hpp"
+#include "app/panels/task_bar.hpp"
 #include "app/panels/typed_field.hpp"
 #include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
@@ -127,9 +128,8 @@ void words(App& app) {
   if (computing_map(app)) {
     if (text_button(app, "map/cancel", "Cancel")) cancel_map(app);
     ImGui::SameLine();
-    ImGui::ProgressBar(static_cast<float>(map_progress(app)),
-                       {std::max(ImGui::GetContentRegionAvail().x - margin_width(app), 20 * app.scale), 0},
-                       "");
+    task_bar(app, "map/progress", map_progress(app), map_seconds(app),
+             std::max(ImGui::GetContentRegionAvail().x - margin_width(app), 20 * app.scale));
   } else if (map.stale || !map.problem.empty()) {
     if (text_button(app, "map/again", "Compute again", true)) {
       map.stale = false;

@@ -17,7 +17,7 @@ constexpr int most_coordinates = 300;
 constexpr double turn = 2 * std::numbers::pi;
 
 FoundModes find(const Mechanism& mechanism, const std::vector<std::pair<std::string, double>>& start,
-                const std::atomic<bool>& cancel) {
+                const Background<FoundModes>::Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
   FoundModes found;
   found.analysis = std::make_unique<Analysis>(mechanism);
@@ -27,7 +27,8 @@ FoundModes find(const Mechanism& mechanism, const std::vector<std::pair<std::str
   SolveOptions options;
   options.nearest = true;
   options.start = start;
-  options.cancel = &cancel;
+  options.cancel = &watch.cancel;
+  options.progress = watch.progress;
   const Solution solution = found.analysis->solve(options);
   if (solution.status != Status::converged) throw std::runtime_error(solution.message);
   found.modes = found.analysis->modes();
@@ -66,7 +67,7 @@ void find_modes_again(App& app) {
   modes.problem.clear();
   modes.task->start(
       [mechanism = app.answer.mechanism, start = start_values(app.answer.solution.coordinates)](
-          const Background<FoundModes>::Watch& watch) { return find(mechanism, start, watch.cancel); });
+          const Background<FoundModes>::Watch& watch) { return find(mechanism, start, watch); });
 }
 
 void update_modes(App& app) {

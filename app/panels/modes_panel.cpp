@@ -4,6 +4,7 @@
 #include "app/panels/modes_control.hpp"
 #include "app/panels/state_words.hpp"
 #include "app/panels/study_panels.hpp"
+#include "app/panels/task_bar.hpp"
 #include "app/panels/typed_field.hpp"
 #include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
@@ -20,6 +21,7 @@ namespace flyball {
 namespace {
 
 constexpr float list_width = 400; // points
+constexpr double patience = 0.25; // s: a shorter wait is not worth a bar
 constexpr ImGuiTableFlags table_flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                                         ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;
 
@@ -190,8 +192,14 @@ void modes_list(App& app) {
   const UiColors& colors = colors_of(app);
   if (!modes.problem.empty()) return paragraph(modes.problem, colors.bad);
   if (!converged(app)) return paragraph("Modes are of a steady state, and there is none now.", colors.dim);
-  if (!modes.result) return paragraph("Computing…", colors.dim);
-  if (!modes_are_current(app) && !modes.task->running()) {
+  const bool finding = modes.task && modes.task->running();
+  if (finding && (!modes.result || modes.task->seconds() > patience)) {
+    if (text_button(app, "modes/cancel", "Cancel")) modes.task->cancel();
+    ImGui::SameLine();
+    task_bar(app, "modes/progress", modes.task->progress(), modes.task->seconds());
+  }
+  if (!modes.result) return;
+  if (!modes_are_current(app) && !finding) {
     paragraph("Of the state before the last changes.", colors.warn);
     if (text_button(app, "modes/again", "Find again", true)) find_modes_again(app);
   }
@@ -261,8 +269,8 @@ void campbell_choices(App& app, const std::string& drive) {
     ImGui::SameLine(0, 14 * s);
     if (text_button(app, "campbell/cancel", "Cancel")) campbell.task->cancel();
     ImGui::SameLine();
-    ImGui::ProgressBar(static_cast<float>(campbell.task->progress()),
-                       {std::max(ImGui::GetContentRegionAvail().x, 30 * s), 0}, "");
+    task_bar(app, "campbell/progress", campbell.task->progress(), campbell.task->seconds(),
+             std::max(ImGui::GetContentRegionAvail().x, 30 * s));
   } else if (!campbell.current || !campbell.on_branch) {
     ImGui::SameLine(0, 14 * s);
     if (text_button(app, "campbell/again", "Follow again", true)) follow_campbell(app);

@@ -21,6 +21,7 @@ class Gathering {
       : options_(options), follower_(mechanism, address, from, to, options), range_(std::abs(to - from)) {}
 
   bool through(const ResponsePoint& state) {
+    report_progress(options_.progress, "solving at the present state");
     const Problem problem = follower_.problem_at(state.parameter);
     Workspace& w = follower_.workspace();
     Unknowns z;

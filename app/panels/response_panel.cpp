@@ -2,6 +2,7 @@
 #include "app/panels/inspector_rows.hpp"
 #include "app/panels/response_control.hpp"
 #include "app/panels/study_panels.hpp"
+#include "app/panels/task_bar.hpp"
 #include "app/panels/typed_field.hpp"
 #include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
@@ -127,8 +128,9 @@ void progress(App& app) {
   }
   if (state.waiting_since < 0) state.waiting_since = ImGui::GetTime();
   if (ImGui::GetTime() - state.waiting_since < patience) return;
-  ImGui::ProgressBar(static_cast<float>(curve ? state.task->progress() : state.design.task->progress()),
-                     {ImGui::GetContentRegionAvail().x - 70 * app.scale, 0});
+  task_bar(app, "response/progress", curve ? state.task->progress() : state.design.task->progress(),
+           curve ? state.task->seconds() : state.design.task->seconds(),
+           ImGui::GetContentRegionAvail().x - 70 * app.scale);
   ImGui::SameLine();
   if (text_button(app, "response/cancel", "Cancel")) {
     if (curve) state.task->cancel();

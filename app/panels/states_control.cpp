@@ -10,15 +10,16 @@ namespace {
 
 constexpr double no_time = 0.3; // s
 
-FoundStates find_states(const Mechanism& mechanism, const std::atomic<bool>& cancel) {
+FoundStates find_states(const Mechanism& mechanism, const Background<FoundStates>::Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
   FoundStates found;
   Analysis analysis(mechanism);
   SolveOptions options;
   options.details = false;
-  options.cancel = &cancel;
+  options.cancel = &watch.cancel;
+  options.progress = watch.progress;
   found.all = analysis.solve_all(options);
-  found.cancelled = cancel;
+  found.cancelled = watch.cancel;
   found.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return found;
 }
@@ -33,7 +34,7 @@ void search_states(App& app) {
   states.asked = app.document.revision();
   states.problem.clear();
   states.task->start([mechanism = app.mechanism()](const Background<FoundStates>::Watch& watch) {
-    return find_states(mechanism, watch.cancel);
+    return find_states(mechanism, watch);
   });
 }
 

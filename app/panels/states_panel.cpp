@@ -2,6 +2,7 @@
 #include "app/panels/state_words.hpp"
 #include "app/panels/states_control.hpp"
 #include "app/panels/study_panels.hpp"
+#include "app/panels/task_bar.hpp"
 #include "app/panels/typed_field.hpp"
 #include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
@@ -72,7 +73,7 @@ void words(App& app) {
   StatesState& states = app.study.states;
   const UiColors& colors = colors_of(app);
   if (states.task && states.task->running()) {
-    paragraph("Searching…", colors.dim);
+    task_bar(app, "states/progress", states.task->progress(), states.task->seconds());
     if (text_button(app, "states/cancel", "Cancel")) states.task->cancel();
   } else {
     const bool refused = !app.mistakes.empty() || app.mechanism().bodies.empty();

@@ -115,6 +115,7 @@ Solution Analysis::solve(const SolveOptions& options) {
 
   s.settled = false;
 
+  report_progress(options.progress, "solving");
   const auto begin = std::chrono::steady_clock::now();
   find_equilibrium(problem, s.start, options.nearest, warm, s.workspace, s.history, s.found);
   // A neighbour's answer that had to be left goes back to the definition: what the drawn pose reaches.
@@ -161,6 +162,7 @@ Solution Analysis::solve(const SolveOptions& options) {
   s.answer = s.found.z.q;
   s.answered = s.settled = true;
   if (options.details && !pivots_decide(problem, options.modes)) {
+    report_progress(options.progress, "eigenvalues");
     stability = stability_of(problem, s.found.z, true, options.modes, s.workspace);
     if (options.modes > 0 && stability.eigenvalues &&
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
@@ -172,6 +174,7 @@ Solution Analysis::solve(const SolveOptions& options) {
     // Something may hold that is too soft to be seen beside what is stiff.
     s.error = s.error.cwiseMax(s.workspace.unheld);
   }
+  report_progress(options.progress, "reactions");
   const ReportInput input{s.mechanism, problem, s.found, existence, stability};
   report(input, s.error, options.details, s.workspace, out);
   if (!is_finite(out)) {
@@ -194,6 +197,7 @@ Solution Analysis::solve(const SolveOptions& options) {
 AllSolutions Analysis::solve_all(const SolveOptions& options) {
   State& s = *state_;
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
+  report_progress(options.progress, "searching");
   EquilibriumList list = find_all_equilibria(problem, s.drawn, 1, s.workspace);
   AllSolutions out;
   out.starts = list.report.starts;
@@ -214,6 +218,8 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
   std::vector<Entry> entries;
   const std::vector<double> phases = sample_phases(s.system, s.parameters);
   for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i) {
+    report_progress(options.progress, "judging what was found",
+                    static_cast<double>(i) / static_cast<double>(list.states.size()));
     Found found;
     found.status = Status::converged;
     found.z = list.states[i];

@@ -5,6 +5,7 @@
 #include "engine/equilibrium/modes.hpp"
 #include "engine/equilibrium/solution.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/task/progress.hpp"
 
 #include <atomic>
 #include <memory>
@@ -20,7 +21,8 @@ struct SolveOptions {
   bool details = true;  // eigenvalues, reactions and drive torques; not needed by a sweep
   int modes = 0;        // eigenvalues asked for where there are more than 200 coordinates
   std::vector<std::pair<std::string, double>> start; // "joint" or "joint.index" = value, over the drawn pose
-  const std::atomic<bool>* cancel = nullptr;         // polled between iterations; then not_converged
+  const std::atomic<bool>* cancel = nullptr;         // looked at all the time; then not_converged
+  ReportProgress progress{};
 };
 
 // What was compiled and what was left out, for `flyball check`.
@@ -60,7 +62,7 @@ class Analysis {
 
   Solution solve(const SolveOptions& options = {});
 
-  // `options`: details, modes and cancel count.
+  // `options`: details, modes, cancel and progress count.
   AllSolutions solve_all(const SolveOptions& options = {});
 
   SystemSummary summary() const;

@@ -225,7 +225,7 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
     find_specials(state, next, length, now, then, out);
     out.points.push_back(then.point);
     out.states.push_back(next);
-    if (tell_progress && options_.progress) options_.progress(p);
+    report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);
     if (i > 5 && std::abs(next.parameter - origin.parameter) < length * family_.scale() &&
         same_pose(family_.problem(), next.z.q, origin.z.q, length) &&
         next.tangent.dot(origin.tangent) > 0.9) {

@@ -41,6 +41,7 @@ class Diagram {
   bool going() const { return room() && !follower_.cancelled(); }
 
   void from_drawn_pose() {
+    report_progress(options_.progress, "solving at the start");
     const Problem problem = follower_.problem_at(from_);
     Workspace& w = follower_.workspace();
     Eigen::VectorXd start;
@@ -134,6 +135,7 @@ class Diagram {
 
   void from_all_equilibria(double value) {
     if (!going()) return;
+    report_progress(options_.progress, "looking for other branches");
     Workspace& w = follower_.workspace();
     const Problem problem = follower_.problem_at(value);
     Eigen::VectorXd drawn;

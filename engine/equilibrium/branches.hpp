@@ -4,9 +4,9 @@
 
 #include "engine/equilibrium/solution.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/task/progress.hpp"
 
 #include <atomic>
-#include <functional>
 
 namespace flyball {
 
@@ -65,7 +65,7 @@ struct BranchOptions {
   bool all = false;
   std::vector<double> all_at; // values of the parameter; empty: both ends, and the present one where between
   const std::atomic<bool>* cancel = nullptr;
-  std::function<void(double part)> progress; // of the range, along the first branch
+  ReportProgress progress; // `part` is of the range, along the first branch; else of what is searched
 };
 
 // Starts at `from`, solved nearest to the drawn pose, and where that is unstable also from the answer that

@@ -14,7 +14,7 @@ struct DesignOptions {
   bool all = true;            // on disconnected branches, too
   double largest_step = 0.02; // of the branches, scaled
   const std::atomic<bool>* cancel = nullptr;
-  std::function<void(double part)> progress; // along the first branch
+  ReportProgress progress; // as of following the branches
 };
 
 struct DesignSolution {

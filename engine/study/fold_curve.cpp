@@ -244,7 +244,8 @@ class Plane {
     return with_parameter(mechanism_, line.varied == 0 ? y_.address : x_.address, line.value);
   }
   void progress(std::size_t done) const {
-    if (options_.progress) options_.progress(static_cast<double>(done) / static_cast<double>(lines_.size()));
+    report_progress(options_.progress, "following folds",
+           static_cast<double>(done) / static_cast<double>(lines_.size()));
   }
 
   ExtendedBalance balance(std::vector<Condition> conditions, bool unfolded = false) const {

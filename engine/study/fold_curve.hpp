@@ -47,7 +47,7 @@ struct PlaneOptions {
   // into the range, and both ends.
   std::vector<double> at;
   const std::atomic<bool>* cancel = nullptr;
-  std::function<void(double part)> progress; // of the starts and curves known so far
+  ReportProgress progress; // of the lines on which starts are looked for
 };
 
 // Fold and branch-point curves through every fold and branch point found at the starting values. Points are

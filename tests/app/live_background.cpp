@@ -34,11 +34,12 @@ TEST_CASE("a task's result, problem and progress come back") {
     Numbers background(mode);
     CHECK_FALSE(background.running());
     background.start([](const Numbers::Watch& watch) {
-      watch.progress(0.5);
+      watch.progress({"counting", 0.5});
       return 7;
     });
     CHECK(wait_for(background).result == 7);
-    CHECK(background.progress() == 0.5);
+    CHECK(background.progress().part == 0.5);
+    CHECK(std::string(background.progress().phase) == "counting");
     CHECK_FALSE(background.running());
     CHECK_FALSE(background.take());
     background.start([](const Numbers::Watch&) -> int { throw std::runtime_error("no such thing"); });

@@ -204,13 +204,13 @@ TEST_CASE("a map in the background tells its progress, can be stopped, and goes 
   app.study.map.choice.folds = false;
   open_study(app, Study::map);
   wait([&] { return app.study.map.cells.has_value(); });
-  CHECK(map_progress(app) == 1);
+  CHECK(map_progress(app).part == 1);
   for (MapAxis& axis : app.study.map.choice.axes)
     axis.count = 401; // 160 801 solves: some seconds
   update(app, 0.01, {400, 300});
   CHECK(computing_map(app));
   CHECK(studying(app));
-  wait([&] { return map_progress(app) < 1; });
+  wait([&] { return map_progress(app).part < 1; });
   cancel_map(app);
   wait([&] { return !computing_map(app) && !app.study.map.problem.empty(); });
   CHECK(app.study.map.problem == "Computing the map was stopped.");
