@@ -1,8 +1,7 @@
 #include "app/viewport/body_form.hpp"
 
 #include "app/viewport/sketch.hpp"
-
-#include <Eigen/Eigenvalues>
+#include "engine/linear/spectral.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,9 +52,10 @@ void draw_inertia(Sketch& sketch, const Body& body, double unit) {
   const double trace = tensor.trace();
   if (!(body.mass > 0) || !(trace > 0) || !std::isfinite(trace))
     return sketch.sphere(body.position, (body.mass > 0 ? 1.5 : 0.8) * unit);
-  const Eigen::SelfAdjointEigenSolver<Mat3> principal(tensor);
-  const Vec3 m = principal.eigenvalues() / body.mass;
-  const Mat3 axes = body.rotation.normalized() * principal.eigenvectors();
+  const auto principal = principal_axes(tensor);
+  if (!principal) return sketch.sphere(body.position, 1.5 * unit);
+  const Vec3 m = principal->values / body.mass;
+  const Mat3 axes = body.rotation.normalized() * principal->vectors;
   const double close = 0.05 * m.sum();
   const bool low_pair = m[1] - m[0] < close, high_pair = m[2] - m[1] < close;
   const auto shrink = [unit](double largest) { return std::min(1.0, 6 * unit / largest); };

@@ -1,6 +1,6 @@
 #include "engine/dynamics/choose_method.hpp"
 
-#include "engine/equilibrium/stability.hpp"
+#include "engine/equilibrium/pencil.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ MethodChoice choose_method(Equations& equations, double duration, double toleran
   std::vector<std::complex<double>> rates;
   if (model.system.nv > 0 && model.system.nv <= 150) {
     const Equations::Pencil p = equations.pencil();
-    rates = pencil_eigenvalues(p.mass, p.velocity, p.stiffness);
+    rates = pencil_eigenvalues(p.mass, p.velocity, p.stiffness).value_or(rates);
   }
   double driven = 0;
   for (const DrivenCoordinate& d : model.system.drives) {

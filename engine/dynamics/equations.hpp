@@ -112,7 +112,7 @@ class Equations {
   bool find_standing_velocity();
   bool balanced_to_rounding();
   bool set_velocity();
-  void sort_kinds(const Eigen::MatrixXd& damping);
+  [[nodiscard]] bool sort_kinds(const Eigen::MatrixXd& damping);
   Eigen::VectorXd null_force() const;
   Eigen::VectorXd null_motion(const Eigen::VectorXd& idle) const;
   bool solve_motion(const Eigen::VectorXd& force, const Eigen::VectorXd& bias, Eigen::VectorXd& a);
@@ -121,7 +121,8 @@ class Equations {
   bool close_loops(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, double& shift);
   std::string motion_of(const Eigen::MatrixXd& kinds) const;
   [[noreturn]] void refuse(const std::string& what) const;
-  Eigen::VectorXd balancing_step() const;
+  [[noreturn]] void refuse_numbers() const;
+  std::optional<Eigen::VectorXd> balancing_step() const;
 
   const MotionModel& model_;
   const System& system_; // released

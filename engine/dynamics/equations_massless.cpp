@@ -2,8 +2,7 @@
 // gives them.
 #include "engine/dynamics/equations.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "engine/linear/spectral.hpp"
 
 #include <algorithm>
 
@@ -68,7 +67,7 @@ bool Equations::find_damped_velocity() {
     const auto& column = model_.scaling.column;
     null_damping_.noalias() = null_.transpose() * column.asDiagonal() * damping_.topLeftCorner(n_, n_) *
                               column.asDiagonal() * null_;
-    sort_kinds(null_damping_);
+    if (!sort_kinds(null_damping_)) return false;
     const auto kinds = kinds_.leftCols(damped_);
     const Eigen::VectorXd step =
         kinds * -(kinds.transpose() * null_force()).cwiseQuotient(kind_sizes_.head(damped_));
@@ -102,10 +101,12 @@ bool Equations::set_velocity() {
 }
 
 // Directions that are damped first, the most damped of all at the front.
-void Equations::sort_kinds(const Eigen::MatrixXd& damping) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen((damping + damping.transpose()) / 2);
-  kinds_ = eigen.eigenvectors().rowwise().reverse();
-  kind_sizes_ = eigen.eigenvalues().reverse();
+bool Equations::sort_kinds(const Eigen::MatrixXd& damping) {
+  SymmetricEigen eigen;
+  if (!eigen.compute((damping + damping.transpose()) / 2)) return false;
+  kinds_ = eigen.vectors().rowwise().reverse();
+  kind_sizes_ = eigen.values().reverse();
+  return true;
 }
 
 // What stands in balance keeps in balance: d/dt (Y^T F) = Y^T (F_q u + F_q_D q_D') = 0, F being the whole
@@ -127,21 +128,24 @@ bool Equations::find_standing_velocity() {
   const Eigen::MatrixXd rows = directions.transpose() * linearization_.stiffness.topRows(n_);
   if (standing_ < rest) { // tell them from those that feel nothing
     const Eigen::MatrixXd local = rows.leftCols(n_) * directions;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen((local + local.transpose()) / 2);
+    SymmetricEigen eigen;
+    if (!eigen.compute((local + local.transpose()) / 2)) return false;
     std::vector<Eigen::Index> order(static_cast<std::size_t>(rest));
     for (Eigen::Index i = 0; i < rest; ++i)
       order[static_cast<std::size_t>(i)] = i;
     std::ranges::sort(order, [&](Eigen::Index i, Eigen::Index j) {
-      return std::abs(eigen.eigenvalues()[i]) > std::abs(eigen.eigenvalues()[j]);
+      return std::abs(eigen.values()[i]) > std::abs(eigen.values()[j]);
     });
-    const Eigen::MatrixXd turned = kinds_.rightCols(rest) * eigen.eigenvectors()(Eigen::all, order);
+    const Eigen::MatrixXd turned = kinds_.rightCols(rest) * eigen.vectors()(Eigen::all, order);
     kinds_.rightCols(rest) = turned;
   }
   const auto kinds = kinds_.middleCols(damped_, standing_);
   const Eigen::MatrixXd standing = column.asDiagonal() * null_ * kinds;
   const Eigen::MatrixXd change = standing.transpose() * linearization_.stiffness.topRows(n_);
   standing_stiffness_ = change.leftCols(n_) * standing;
-  const Eigen::VectorXd step = standing_stiffness_.partialPivLu().solve(-change * u_);
+  Lu lu;
+  if (!lu.compute(standing_stiffness_)) return false;
+  const Eigen::VectorXd step = lu.solve(-change * u_);
   if (!step.allFinite()) return false;
   idle_velocity_ += kinds * step;
   return set_velocity();

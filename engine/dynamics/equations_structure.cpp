@@ -5,8 +5,7 @@
 #include "engine/equilibrium/constraint_space.hpp"
 #include "engine/mechanism/error.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "engine/linear/spectral.hpp"
 
 #include <algorithm>
 
@@ -40,16 +39,20 @@ void Equations::refuse(const std::string& what) const {
   throw SceneError("joints." + name_of_coordinate(model_, first), what);
 }
 
+void Equations::refuse_numbers() const {
+  throw SceneError("", "the forces are too large for the computer's numbers");
+}
+
 void Equations::choose_rows() {
   rows_.clear();
   if (system_.rows == 0) return;
   linearize_constraints(system_, parameters_, kinematics_, linearization_);
   const Eigen::MatrixXd scaled = model_.scaling.row.asDiagonal() * linearization_.constraint.leftCols(n_) *
                                  model_.scaling.column.asDiagonal();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled.transpose());
-  const auto pivots = qr.matrixQR().diagonal().cwiseAbs();
-  for (Eigen::Index i = 0; i < pivots.size() && pivots[i] > dependent * pivots[0] && pivots[i] > 0; ++i)
-    rows_.push_back(qr.colsPermutation().indices()[i]);
+  PivotedQr qr;
+  if (!qr.compute(scaled.transpose())) refuse_numbers();
+  for (Eigen::Index i = 0; i < qr.rank(dependent); ++i)
+    rows_.push_back(qr.permutation()[i]);
   std::ranges::sort(rows_);
 }
 
@@ -76,18 +79,19 @@ void Equations::choose_idle() {
   const Eigen::MatrixXd basis = unit.asDiagonal() * space.basis();
   const Eigen::MatrixXd reduced = basis.transpose() * mass_.mass.topLeftCorner(n_, n_) * basis;
   if (reduced.rows() > 0) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen((reduced + reduced.transpose()) / 2);
+    SymmetricEigen eigen;
+    if (!eigen.compute((reduced + reduced.transpose()) / 2)) refuse_numbers();
     Eigen::Index count = 0;
-    while (count < reduced.rows() && eigen.eigenvalues()[count] < no_mass)
+    while (count < reduced.rows() && eigen.values()[count] < no_mass)
       ++count;
     if (count > 0) {
       Eigen::MatrixXd directions =
-          model_.scaling.column.cwiseInverse().asDiagonal() * basis * eigen.eigenvectors().leftCols(count);
-      directions = Eigen::HouseholderQR<Eigen::MatrixXd>(directions).householderQ() *
-                   Eigen::MatrixXd::Identity(n_, count);
-      const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(directions.transpose());
+          model_.scaling.column.cwiseInverse().asDiagonal() * basis * eigen.vectors().leftCols(count);
+      const auto orthonormal = orthonormal_completion(directions);
+      PivotedQr pivots;
+      if (!orthonormal || !pivots.compute(orthonormal->leftCols(count).transpose())) refuse_numbers();
       for (Eigen::Index i = 0; i < count; ++i)
-        idle_.push_back(pivots.colsPermutation().indices()[i]);
+        idle_.push_back(pivots.permutation()[i]);
       std::ranges::sort(idle_);
     }
   }
@@ -112,7 +116,7 @@ void Equations::choose_kinds() {
   evaluate_damping(any_drag);
   parameters_.body_forces = std::move(drags);
   const Eigen::MatrixXd motion = model_.scaling.column.asDiagonal() * null_;
-  sort_kinds(motion.transpose() * damping_.topLeftCorner(n_, n_) * motion);
+  if (!sort_kinds(motion.transpose() * damping_.topLeftCorner(n_, n_) * motion)) refuse_numbers();
   while (damped_ < count && kind_sizes_[damped_] > 1e-12 * kind_sizes_[0] && kind_sizes_[damped_] > 0)
     ++damped_;
   least_damping_ = damped_ > 0 ? kind_sizes_[damped_ - 1] : 0;
@@ -160,22 +164,23 @@ void Equations::choose_structure(double t, Eigen::VectorXd& q, const Eigen::Vect
   const Eigen::MatrixXd scaled = column * linearization_.stiffness.topLeftCorner(n_, n_) * column;
   const double stiffest = scaled.cwiseAbs().maxCoeff();
   const Eigen::MatrixXd local = (standing_stiffness_ + standing_stiffness_.transpose()) / 2;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(local);
+  const auto stiffnesses = symmetric_eigenvalues(local);
+  if (!stiffnesses) refuse_numbers();
   standing_ = 0;
   for (Eigen::Index i = 0; i < rest; ++i)
-    standing_ += std::abs(eigen.eigenvalues()[i]) > no_stiffness * stiffest;
+    standing_ += std::abs((*stiffnesses)[i]) > no_stiffness * stiffest;
   if (!find_standing_balance(t, q, s, 200))
     refuse(motion_of(kinds_.middleCols(damped_, standing_)) + " comes to no balance of forces");
   if (const std::string what = trouble(); !what.empty()) refuse(what);
 }
 
 // Newton's step; where the balance would not be stable, one that goes downhill.
-Eigen::VectorXd Equations::balancing_step() const {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      (standing_stiffness_ + standing_stiffness_.transpose()) / 2);
-  if (eigen.eigenvalues()[0] > 0) return standing_stiffness_.partialPivLu().solve(-standing_force_);
-  const Eigen::VectorXd along = eigen.eigenvectors().transpose() * standing_force_;
-  return -eigen.eigenvectors() * along.cwiseQuotient(eigen.eigenvalues().cwiseAbs());
+std::optional<Eigen::VectorXd> Equations::balancing_step() const {
+  SymmetricEigen eigen;
+  if (!eigen.compute((standing_stiffness_ + standing_stiffness_.transpose()) / 2)) return {};
+  if (Lu lu; eigen.values()[0] > 0 && lu.compute(standing_stiffness_)) return lu.solve(-standing_force_);
+  const Eigen::VectorXd along = eigen.vectors().transpose() * standing_force_;
+  return Eigen::VectorXd(-eigen.vectors() * along.cwiseQuotient(eigen.values().cwiseAbs()));
 }
 
 bool Equations::find_standing_balance(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, int limit) {
@@ -183,7 +188,9 @@ bool Equations::find_standing_balance(double t, Eigen::VectorXd& q, const Eigen:
   for (int i = 0; i < limit; ++i) {
     if (!evaluate(t, q, s)) return false;
     if (standing_ == 0) return true;
-    const Eigen::VectorXd step = kinds_.middleCols(damped_, standing_) * balancing_step();
+    const auto balancing = balancing_step();
+    if (!balancing) return false;
+    const Eigen::VectorXd step = kinds_.middleCols(damped_, standing_) * *balancing;
     const Eigen::VectorXd scaled = null_ * step;
     const double size = scaled.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(size)) return false;
@@ -210,9 +217,9 @@ std::string Equations::trouble() const {
   if (damped_ > 0 && !(kind_sizes_[damped_ - 1] > 1e-9 * least_damping_))
     return motion_of(kinds_.middleCols(damped_ - 1, 1)) + " comes to a place where its dampers hold nothing";
   if (standing_ > 0) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        (standing_stiffness_ + standing_stiffness_.transpose()) / 2, Eigen::EigenvaluesOnly);
-    if (!(eigen.eigenvalues()[0] > 0))
+    const auto stiffnesses =
+        symmetric_eigenvalues((standing_stiffness_ + standing_stiffness_.transpose()) / 2);
+    if (!stiffnesses || !((*stiffnesses)[0] > 0))
       return motion_of(kinds_.middleCols(damped_, standing_)) + " stands in no stable balance: it would jump";
   }
   const Eigen::Index loose = null_.cols() - damped_ - standing_;

@@ -2,8 +2,7 @@
 // vanishes, so bodies without mass in loops do no harm.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include "engine/linear/spectral.hpp"
 
 namespace flyball {
 
@@ -25,8 +24,8 @@ class SaddlePoint {
   Eigen::Index n_ = 0, rows_ = 0;
   double independence_ = 1;
   Eigen::MatrixXd transposed_, turned_, free_;
-  Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+  HouseholderQr qr_;
+  Cholesky cholesky_;
   Eigen::VectorXd work_, first_, force_;
 };
 

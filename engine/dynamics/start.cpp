@@ -4,6 +4,7 @@
 #include "engine/equilibrium/find_equilibrium.hpp"
 #include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/report.hpp"
+#include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/system/motion.hpp"
 
@@ -43,7 +44,12 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
     open[rows + i] = 0;
   }
   Eigen::VectorXd range = Eigen::VectorXd::Zero(n);
-  if (c.size() > 0) range = c.completeOrthogonalDecomposition().solve(-open);
+  const auto refuse = [] { throw SceneError("", "the forces are too large for the computer's numbers"); };
+  if (c.size() > 0) {
+    const auto shortest = least_squares(c, -open);
+    if (!shortest) refuse();
+    range = *shortest;
+  }
   const double left = (c * range + open).lpNorm<Eigen::Infinity>();
   if (left > 1e-9 * (1 + open.lpNorm<Eigen::Infinity>())) {
     if (fixed > 0)
@@ -58,17 +64,17 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
   }
   if (n == 0) return;
   Eigen::VectorXd step = range;
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(c);
-  const Eigen::MatrixXd basis = rows + fixed > 0 && lu.rank() > 0
-                                    ? Eigen::MatrixXd(lu.kernel())
-                                    : Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n));
-  if (rows + fixed < n || lu.dimensionOfKernel() > 0) {
+  const auto kernel = null_space(c);
+  if (!kernel) refuse();
+  if (const Eigen::MatrixXd& basis = *kernel; basis.cols() > 0) {
     const Eigen::MatrixXd mass = column.asDiagonal() * m.mass.topLeftCorner(n, n) * column.asDiagonal();
     // From rest: the momentum of everything, the drives' motion included, is to vanish.
     Eigen::VectorXd momentum = mass * range;
     if (from_rest) momentum += column.cwiseProduct(m.mass.topRows(n) * all_u);
     const Eigen::MatrixXd reduced = basis.transpose() * mass * basis;
-    step -= basis * reduced.completeOrthogonalDecomposition().solve(basis.transpose() * momentum);
+    const auto along = least_squares(reduced, basis.transpose() * momentum);
+    if (!along) refuse();
+    step -= basis * *along;
   }
   u += step.cwiseProduct(column);
 }
@@ -147,7 +153,9 @@ void close_around(const SimulationOptions& options, const MotionModel& model, Ei
     for (const int v : placed)
       c.col(v).setZero();
     const Eigen::VectorXd phi = residual.phi.cwiseProduct(model.scaling.row);
-    Eigen::VectorXd step = c.completeOrthogonalDecomposition().solve(-phi);
+    const auto shortest = least_squares(c, -phi);
+    if (!shortest) break;
+    const Eigen::VectorXd& step = *shortest;
     const double size = step.lpNorm<Eigen::Infinity>();
     if (!(size > 1e-16)) break;
     Eigen::VectorXd moved;

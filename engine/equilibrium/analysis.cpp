@@ -4,6 +4,7 @@
 #include "engine/equilibrium/drive_cuts.hpp"
 #include "engine/equilibrium/existence.hpp"
 #include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/linear_motion.hpp"
 #include "engine/equilibrium/pivot_stability.hpp"
 #include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/report.hpp"
@@ -55,11 +56,23 @@ bool pivots_decide(const Problem& problem, int modes) {
 
 Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eigenvalues, int modes,
                        Workspace& w) {
-  if (pivots_decide(problem, modes)) return find_pivot_stability(problem, z, w);
+  if (pivots_decide(problem, modes)) {
+    if (const auto phases = sample_phases(problem.system, problem.parameters); !phases.empty()) {
+      if (!can_compare_phases(problem.system) || motion_varies(problem, z.q, phases, w)) {
+        Stability out;
+        out.reason = StabilityReason::varying;
+        out.floquet_failure = FloquetFailure::unresolved;
+        return out;
+      }
+      evaluate(problem, z, 0, w);
+      factor(problem, z, w);
+    }
+    return find_pivot_stability(problem, z, w);
+  }
   const bool many = problem.system.nv > largest_for_eigenvalues && modes == 0;
   const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
   Stability out = find_stability(whole, z, with_eigenvalues && !many, w);
-  if (many) out.eigenvalues.reset();
+  if (many && !out.floquet) out.eigenvalues.reset();
   return out;
 }
 
@@ -133,15 +146,19 @@ Solution Analysis::solve(const SolveOptions& options) {
   }
   if (s.found.status == Status::converged) refine(problem, s.found.z, s.found.newton, s.workspace, s.error);
   Existence existence;
+  const std::vector<double> phases = sample_phases(s.system, s.parameters);
   if (s.found.status == Status::converged)
-    existence = check_existence(problem, s.found.z.q, sample_phases(s.system, s.parameters), s.workspace);
+    existence = check_existence(problem, s.found.z.q, phases, s.workspace);
   const bool steady = s.found.status == Status::converged && existence.holds;
   Stability stability;
-  if (steady && s.found.minimum)
-    stability = {true, StabilityReason::minimum, {}, {}};
-  else if (steady)
+  if (steady && s.found.minimum && phases.empty()) {
+    stability.stable = true;
+    stability.reason = StabilityReason::minimum;
+  } else if (steady) {
     stability = stability_of(problem, s.found.z, false, 0, s.workspace);
-  const bool open = steady && stability.reason != StabilityReason::neutral &&
+  }
+  const bool varies = stability.floquet || stability.floquet_failure;
+  const bool open = steady && !varies && stability.reason != StabilityReason::neutral &&
                     sign_is_open(problem, s.found.z, s.error, s.found.minimum, s.workspace);
   const auto end = std::chrono::steady_clock::now();
 
@@ -161,7 +178,7 @@ Solution Analysis::solve(const SolveOptions& options) {
   }
   s.answer = s.found.z.q;
   s.answered = s.settled = true;
-  if (options.details && !pivots_decide(problem, options.modes)) {
+  if (options.details && !varies && !pivots_decide(problem, options.modes)) {
     report_progress(options.progress, "eigenvalues");
     stability = stability_of(problem, s.found.z, true, options.modes, s.workspace);
     if (options.modes > 0 && stability.eigenvalues &&

@@ -1,6 +1,6 @@
 #include "engine/equilibrium/body_elimination.hpp"
 
-#include <Eigen/QR>
+#include "engine/linear/spectral.hpp"
 
 namespace flyball {
 namespace {
@@ -99,9 +99,13 @@ void BodyElimination::add_flat_directions() {
   Eigen::VectorXd column;
   for (Eigen::Index i = 0; i < space.cols(); ++i)
     equations_.take(space.col(i), motions.col(i));
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> order(motions);
+  PivotedQr order;
+  if (!order.compute(motions)) {
+    flat_.resize(flat_.size() + static_cast<std::size_t>(count)); // counted, not named
+    return;
+  }
   for (int i = 0; i < count; ++i) {
-    column = motions.col(order.colsPermutation().indices()[i]);
+    column = motions.col(order.permutation()[i]);
     const double size = column.lpNorm<Eigen::Infinity>();
     Flat flat;
     for (int v = 0; v < coordinates; ++v)

@@ -1,7 +1,6 @@
 #include "engine/equilibrium/body_nodes.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
+#include "engine/linear/spectral.hpp"
 
 #include <algorithm>
 
@@ -110,8 +109,7 @@ BodyColumns forbidden_motions(const BodyNode& x) {
   if (x.columns == 0) return Mat6::Identity();
   if (x.columns == 6) return BodyColumns(6, 0);
   const BodyColumns s = x.s.leftCols(x.columns);
-  const Eigen::HouseholderQR<BodyColumns> qr(s);
-  const Mat6 q = qr.householderQ() * Mat6::Identity();
+  const Mat6 q = spatial_completion(s);
   return q.rightCols(6 - x.columns);
 }
 

@@ -13,17 +13,16 @@ void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance) 
     return;
   }
   transposed_ = jacobian.transpose();
-  qr_.compute(transposed_);
-  const auto diagonal = qr_.matrixQR().diagonal().cwiseAbs();
-  const double largest = diagonal.size() > 0 ? diagonal.maxCoeff() : 0;
-  const auto limit = std::min(n_, rows_);
-  while (rank_ < limit && diagonal[rank_] > tolerance * largest && diagonal[rank_] > 0)
-    ++rank_;
+  if (!qr_.compute(transposed_)) {
+    basis_.setIdentity(n_, n_);
+    return;
+  }
+  rank_ = static_cast<int>(qr_.rank(tolerance));
   basis_.setZero(n_, n_ - rank_);
   basis_.bottomRows(n_ - rank_).setIdentity();
   for (int k = rank_ - 1; k >= 0; --k)
-    basis_.bottomRows(n_ - k).applyHouseholderOnTheLeft(qr_.matrixQR().col(k).tail(n_ - k - 1),
-                                                        qr_.hCoeffs()[k], apply_work_.data());
+    basis_.bottomRows(n_ - k).applyHouseholderOnTheLeft(qr_.matrix().col(k).tail(n_ - k - 1),
+                                                        qr_.coefficient(k), apply_work_.data());
 }
 
 void ConstraintSpace::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& y) const {
@@ -31,15 +30,15 @@ void ConstraintSpace::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& y) cons
   if (rank_ == 0) return;
   // R_11^T c = (P^T rhs)_1, y = Q_1 c.
   for (int i = 0; i < rank_; ++i)
-    y[i] = rhs[qr_.colsPermutation().indices()[i]];
-  qr_.matrixQR()
+    y[i] = rhs[qr_.permutation()[i]];
+  qr_.matrix()
       .topLeftCorner(rank_, rank_)
       .triangularView<Eigen::Upper>()
       .transpose()
       .solveInPlace(y.head(rank_));
   double scratch = 0;
   for (int k = rank_ - 1; k >= 0; --k)
-    y.tail(n_ - k).applyHouseholderOnTheLeft(qr_.matrixQR().col(k).tail(n_ - k - 1), qr_.hCoeffs()[k],
+    y.tail(n_ - k).applyHouseholderOnTheLeft(qr_.matrix().col(k).tail(n_ - k - 1), qr_.coefficient(k),
                                              &scratch);
 }
 
@@ -49,11 +48,11 @@ void ConstraintSpace::multipliers(const Eigen::VectorXd& rhs, Eigen::VectorXd& l
   work_ = rhs;
   double scratch = 0;
   for (int k = 0; k < rank_; ++k)
-    work_.tail(n_ - k).applyHouseholderOnTheLeft(qr_.matrixQR().col(k).tail(n_ - k - 1), qr_.hCoeffs()[k],
+    work_.tail(n_ - k).applyHouseholderOnTheLeft(qr_.matrix().col(k).tail(n_ - k - 1), qr_.coefficient(k),
                                                  &scratch);
-  qr_.matrixQR().topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().solveInPlace(work_.head(rank_));
+  qr_.matrix().topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().solveInPlace(work_.head(rank_));
   for (int i = 0; i < rank_; ++i)
-    lambda[qr_.colsPermutation().indices()[i]] = work_[i];
+    lambda[qr_.permutation()[i]] = work_[i];
 }
 
 Eigen::VectorXd ConstraintSpace::least_norm_multipliers(const Eigen::VectorXd& rhs) const {
@@ -61,13 +60,13 @@ Eigen::VectorXd ConstraintSpace::least_norm_multipliers(const Eigen::VectorXd& r
   multipliers(rhs, lambda);
   if (rank_ == 0 || rank_ == rows_) return lambda;
   // Dependent rows: R = [R_11 R_12]; lambda is the least-norm solution of R P^T lambda = (Q^T rhs)_1.
-  const Eigen::MatrixXd r = qr_.matrixQR().topRows(rank_).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd r = qr_.matrix().topRows(rank_).triangularView<Eigen::Upper>();
   Eigen::VectorXd permuted(rows_);
   for (int i = 0; i < rows_; ++i)
-    permuted[i] = lambda[qr_.colsPermutation().indices()[i]];
-  const Eigen::VectorXd best = r.completeOrthogonalDecomposition().solve(r * permuted);
-  for (int i = 0; i < rows_; ++i)
-    lambda[qr_.colsPermutation().indices()[i]] = best[i];
+    permuted[i] = lambda[qr_.permutation()[i]];
+  const auto best = least_squares(r, r * permuted);
+  for (int i = 0; best && i < rows_; ++i)
+    lambda[qr_.permutation()[i]] = (*best)[i];
   return lambda;
 }
 

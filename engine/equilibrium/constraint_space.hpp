@@ -2,13 +2,14 @@
 // transpose. Loops are often redundantly constrained, so the rank is found, not assumed.
 #pragma once
 
-#include <Eigen/QR>
+#include "engine/linear/spectral.hpp"
 
 namespace flyball {
 
 class ConstraintSpace {
  public:
-  // `jacobian` is scaled: (rows, n). Pivots below `tolerance` times the largest count as zero.
+  // `jacobian` is scaled: (rows, n). Pivots below `tolerance` times the largest count as zero. Of a Jacobian
+  // with an entry that is not finite nothing is known: its rank counts as zero.
   void factor(const Eigen::MatrixXd& jacobian, double tolerance);
 
   int size() const { return n_; }
@@ -27,7 +28,7 @@ class ConstraintSpace {
  private:
   int n_ = 0, rows_ = 0, rank_ = 0;
   Eigen::MatrixXd transposed_;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  PivotedQr qr_;
   Eigen::MatrixXd basis_;
   mutable Eigen::VectorXd work_;
   Eigen::VectorXd apply_work_;

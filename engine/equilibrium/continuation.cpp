@@ -1,9 +1,7 @@
 #include "engine/equilibrium/continuation.hpp"
 
+#include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
-
-#include <Eigen/LU>
-#include <Eigen/SVD>
 
 namespace flyball {
 
@@ -109,7 +107,9 @@ bool Continuation::correct(const Unknowns& from, double parameter, const Eigen::
     Eigen::VectorXd rhs(k + 1);
     rhs.head(k) = -b.g;
     rhs[k] = -tangent.head(n).dot(b.r0) - tangent.dot(moved);
-    const Eigen::VectorXd step = b.expand(m.fullPivLu().solve(rhs), 1);
+    const auto solved = solve_square(m, rhs);
+    if (!solved) return false;
+    const Eigen::VectorXd step = b.expand(*solved, 1);
     const double size = step.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(size) || size > 1) return false;
     Eigen::VectorXd move = step.head(n).cwiseProduct(problem.scaling.column);
@@ -137,18 +137,22 @@ bool Continuation::find_tangent(BranchState& state, const Eigen::VectorXd& previ
   Eigen::MatrixXd m(k + 1, k + 1);
   m.topRows(k) = b.h;
   m.row(k) = b.row(previous);
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(m);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(k + 1);
   rhs[k] = 1;
-  state.tangent = b.expand(lu.solve(rhs), 0);
+  const auto solved = solve_square(m, rhs);
+  if (!solved) return false;
+  state.tangent = b.expand(*solved, 0);
   const double norm = state.tangent.norm();
   if (!std::isfinite(norm) || norm == 0) return false;
   state.tangent /= norm;
   state.turning = state.tangent[state.tangent.size() - 1];
   m.row(k) = b.row(state.tangent);
   // The determinant's sign with the size of its worst factor, so that it can be followed to zero.
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(m);
-  state.determinant = (m.determinant() < 0 ? -1 : 1) * svd.singularValues()[k] / svd.singularValues()[0];
+  const auto values = singular_values(m);
+  if (!values) return false;
+  Lu lu;
+  const bool regular = lu.compute(m) && (*values)[0] > 0;
+  state.determinant = regular ? lu.sign_of_determinant() * (*values)[k] / (*values)[0] : 0;
   return true;
 }
 
@@ -173,12 +177,13 @@ bool Continuation::switch_branch(const BranchState& at, double length, BranchSta
   assemble(at.z, at.parameter, b);
   const Eigen::Index k = b.basis.cols();
   if (k == 0) return false;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(b.h, Eigen::ComputeFullV);
+  const auto svd = singular_vectors(b.h);
+  if (!svd) return false;
   // The null space is spanned by the branch's own tangent and one more direction: take that orthogonal to the
   // tangent.
   Eigen::VectorXd other = Eigen::VectorXd::Zero(at.tangent.size());
   for (Eigen::Index i : {k - 1, k}) {
-    Eigen::VectorXd v = b.expand(svd.matrixV().col(i), 0);
+    Eigen::VectorXd v = b.expand(svd->right.col(i), 0);
     v -= at.tangent * at.tangent.dot(v);
     if (v.norm() > other.norm()) other = v;
   }

@@ -32,7 +32,7 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
       w.noise[k] =
           1e-15 * basis.col(k).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     hessian.factor(reduced, w.noise, true);
-    hessian.decompose();
+    if (!hessian.decompose()) return {DescentEnd::stalled, i};
 
     // In equilibrated coordinates: step along each eigenvector against the gradient, with |eigenvalue|.
     const Eigen::VectorXd g = gradient.cwiseProduct(hessian.scale());

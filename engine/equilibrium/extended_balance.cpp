@@ -1,10 +1,8 @@
 #include "engine/equilibrium/extended_balance.hpp"
 
 #include "engine/equilibrium/coordinate_gradient.hpp"
+#include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
-
-#include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <utility>
 
@@ -187,7 +185,9 @@ ExtendedOutcome ExtendedBalance::correct(ExtendedState& state, const Eigen::Vect
       rhs[a.rhs.size()] = -row.head(system_.nv).dot(a.r0) - row.dot(moved);
     }
     if (m.rows() != m.cols()) return outcome;
-    const Eigen::VectorXd u = m.fullPivLu().solve(rhs);
+    const auto solved = solve_square(m, rhs);
+    if (!solved) return outcome;
+    const Eigen::VectorXd& u = *solved;
     Eigen::VectorXd step = a.columns * u.head(a.columns.cols());
     step.head(system_.nv) += a.r0;
     const double length = step.lpNorm<Eigen::Infinity>();
@@ -224,7 +224,9 @@ Eigen::VectorXd ExtendedBalance::tangent(const ExtendedState& state, const Eigen
   if (m.rows() != m.cols()) return {};
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(m.rows());
   rhs[m.rows() - 1] = 1;
-  Eigen::VectorXd out = a.columns * m.fullPivLu().solve(rhs).head(a.columns.cols());
+  const auto solved = solve_square(m, rhs);
+  if (!solved) return {};
+  Eigen::VectorXd out = a.columns * solved->head(a.columns.cols());
   const double norm = out.norm();
   if (!std::isfinite(norm) || norm == 0) return {};
   return out / norm;
@@ -236,10 +238,10 @@ void ExtendedBalance::set_borders(const ExtendedState& state) {
   factor_with_multipliers(problem(), z, w_);
   const Eigen::MatrixXd& basis = w_.constraints.basis();
   if (basis.cols() == 0) return;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(basis.transpose() * w_.scaled_stiffness * basis,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  left_ = basis * svd.matrixU().rightCols(1);
-  right_ = basis * svd.matrixV().rightCols(1);
+  const auto svd = singular_vectors(basis.transpose() * w_.scaled_stiffness * basis);
+  if (!svd) return; // the borders of the state before do, too
+  left_ = basis * svd->left.rightCols(1);
+  right_ = basis * svd->right.rightCols(1);
   size_ = force_size(w_);
 }
 
@@ -257,14 +259,17 @@ double ExtendedBalance::singularity(Workspace& w) const {
   const Eigen::MatrixXd m = bordered(w);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(m.rows());
   rhs[m.rows() - 1] = 1;
-  return m.fullPivLu().solve(rhs)[m.rows() - 1];
+  const auto solved = solve_square(m, rhs);
+  return solved ? (*solved)[m.rows() - 1] : std::numeric_limits<double>::quiet_NaN();
 }
 
 double ExtendedBalance::transversality(const ExtendedState& state, std::size_t index, Workspace& w) const {
   const Eigen::MatrixXd m = bordered(w);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(m.rows());
   rhs[m.rows() - 1] = 1;
-  const Eigen::VectorXd across = m.transpose().fullPivLu().solve(rhs).head(m.rows() - 1);
+  const auto solved = solve_square(m.transpose(), rhs);
+  if (!solved) return std::numeric_limits<double>::quiet_NaN();
+  const Eigen::VectorXd across = solved->head(m.rows() - 1);
   Eigen::VectorXd force, phi, r1 = Eigen::VectorXd::Zero(system_.nv);
   rates(state, index, force, phi);
   if (w.constraints.rank() > 0) w.constraints.solve(-phi, r1);

@@ -3,8 +3,7 @@
 #include "engine/equilibrium/coordinate_gradient.hpp"
 #include "engine/equilibrium/newton.hpp"
 #include "engine/equilibrium/stability.hpp"
-
-#include <Eigen/LU>
+#include "engine/linear/spectral.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -45,9 +44,10 @@ struct Shapes {
   std::vector<double> residuals; // relative
 };
 
-// Five steps from random vectors.
-void iterate(const Eigen::MatrixXcd& beside, Eigen::MatrixXcd& x) {
-  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(beside), adjoint(beside.adjoint());
+// Five steps from random vectors; false where the matrix cannot be factored.
+bool iterate(const Eigen::MatrixXcd& beside, Eigen::MatrixXcd& x) {
+  ComplexLu lu, adjoint;
+  if (!lu.compute(beside) || !adjoint.compute(beside.adjoint())) return false;
   std::mt19937 random(1);
   for (Complex& entry : x.reshaped())
     entry = static_cast<double>(random()) / 2147483648. - 1;
@@ -62,6 +62,7 @@ void iterate(const Eigen::MatrixXcd& beside, Eigen::MatrixXcd& x) {
       x.col(j) /= x.col(j).norm();
     }
   }
+  return x.allFinite();
 }
 
 Shapes null_shapes(const ReducedMotion& motion, Complex s, Eigen::Index count) {
@@ -81,12 +82,13 @@ Shapes null_shapes(const ReducedMotion& motion, Complex s, Eigen::Index count) {
   // At the eigenvalue itself the matrix cannot be factored; a little beside it the vectors are the same. That
   // little may meet a zero pivot itself.
   double shift = std::numeric_limits<double>::epsilon();
-  for (int tries = 0; tries < 4; ++tries, shift *= 3) {
+  bool found = false;
+  for (int tries = 0; tries < 4 && !found; ++tries, shift *= 3) {
     Eigen::MatrixXcd beside = a;
     beside.diagonal().array() += shift;
-    iterate(beside, x);
-    if (x.allFinite()) break;
+    found = iterate(beside, x);
   }
+  if (!found) return {Eigen::MatrixXcd(n, 0), {}};
   Shapes out;
   for (Eigen::Index j = 0; j < count; ++j)
     out.residuals.push_back((a * x.col(j)).norm() / std::max(1., a.norm()));
@@ -137,6 +139,8 @@ double hertz(double angular_frequency) {
 std::vector<VibrationMode> find_modes(const Problem& problem, const Unknowns& z, Workspace& w) {
   const Stability stability = find_stability(problem, z, true, w);
   const ReducedMotion motion = reduced_motion(problem, z, w);
+  if (!stability.eigenvalues || stability.floquet)
+    return {};                                        // a motion that turns with the drives has no shapes
   std::vector<Complex> left = *stability.eigenvalues; // by size of the imaginary part
   double largest = 0;
   for (const Complex s : left)
@@ -158,7 +162,7 @@ std::vector<VibrationMode> find_modes(const Problem& problem, const Unknowns& z,
     });
     const auto count = std::min<Eigen::Index>(static_cast<Eigen::Index>(cluster.size()), motion.mass.rows());
     const Shapes shapes = null_shapes(motion, s / motion.rate, count);
-    for (Eigen::Index j = 0; j < count; ++j) {
+    for (Eigen::Index j = 0; j < shapes.vectors.cols(); ++j) {
       const double residual = shapes.residuals[static_cast<std::size_t>(j)];
       if (j > 0 && !(residual <= 1e-10)) break;
       modes.push_back(describe(problem, z, w.constraints.basis() * shapes.vectors.col(j),
@@ -201,8 +205,20 @@ StabilityEvidence stability_evidence(const Problem& problem, const Unknowns& z, 
   energy.factor(basis.transpose() * w.scaled_stiffness * basis, w.noise, out.potential);
   out.flat = energy.null_count();
   if (out.potential && !energy.positive_definite() && energy.size() > 0) {
-    energy.decompose();
-    out.downhill = static_cast<int>((energy.eigenvalues().array() < -ReducedHessian::zero).count());
+    if (energy.decompose())
+      out.downhill = static_cast<int>((energy.eigenvalues().array() < -ReducedHessian::zero).count());
+  }
+  if (verdict.floquet || verdict.floquet_failure) {
+    out.reason = verdict.floquet
+                     ? "The linearised motion turns with the drives: the multipliers of a period alone judge."
+                     : "The linearised motion turns with the drives, and no multipliers tell of it.";
+    out.agree = verdict.floquet.has_value();
+    return out;
+  }
+  if (!verdict.eigenvalues) {
+    out.agree = false;
+    out.reason = "The eigenvalues were not found: the iteration for them does not converge.";
+    return out;
   }
   std::vector<Complex> eigenvalues = *verdict.eigenvalues;
   double largest = 0;

@@ -30,32 +30,26 @@ void ReducedHessian::factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd
     return;
   }
   known_ = matrix_.allFinite();
-  if (!known_) {
-    matrix_.setZero();
-    if (symmetric) decompose();
-    null_ = static_cast<int>(n);
-    return;
-  }
-  if (symmetric) {
-    cholesky_.compute(matrix_);
+  if (known_ && symmetric) {
     // A pivot below the threshold bounds the smallest eigenvalue from above.
-    positive_ =
-        cholesky_.info() == Eigen::Success && cholesky_.matrixLLT().diagonal().cwiseAbs2().minCoeff() > zero;
-    if (!positive_) {
-      decompose();
-      null_ = static_cast<int>((eigen_.eigenvalues().array().abs() <= zero).count());
-    }
-    return;
+    positive_ = cholesky_.compute(matrix_) && cholesky_.smallest_pivot() > zero;
+    if (positive_) return;
+    known_ = decompose();
+    if (known_) null_ = static_cast<int>((eigen_.values().array().abs() <= zero).count());
+  } else if (known_) {
+    known_ = orthogonal_.compute(matrix_, zero);
+    if (known_) null_ = static_cast<int>(n - orthogonal_.rank());
   }
-  orthogonal_.setThreshold(zero);
-  orthogonal_.compute(matrix_);
-  null_ = static_cast<int>(n - orthogonal_.rank());
+  if (known_) return;
+  matrix_.setZero();
+  null_ = static_cast<int>(n);
+  if (symmetric) decomposed_ = eigen_.compute(matrix_); // zero has eigenvalues
 }
 
-void ReducedHessian::decompose() {
-  if (decomposed_ || scale_.size() == 0) return;
-  eigen_.compute(matrix_);
-  decomposed_ = true;
+bool ReducedHessian::decompose() {
+  if (decomposed_ || scale_.size() == 0) return true;
+  decomposed_ = eigen_.compute(matrix_);
+  return decomposed_;
 }
 
 void ReducedHessian::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
@@ -69,25 +63,23 @@ void ReducedHessian::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
     return;
   }
   if (!symmetric_) {
-    x = orthogonal_.solve(work_);
+    orthogonal_.solve(work_, x);
   } else if (positive_) {
     x = work_;
-    cholesky_.solveInPlace(x);
+    cholesky_.solve_in_place(x);
   } else {
     x.setZero();
     for (Eigen::Index k = 0; k < n; ++k)
-      if (const double mu = eigen_.eigenvalues()[k]; std::abs(mu) > zero)
-        x += eigen_.eigenvectors().col(k) * (eigen_.eigenvectors().col(k).dot(work_) / mu);
+      if (const double mu = eigen_.values()[k]; std::abs(mu) > zero)
+        x += eigen_.vectors().col(k) * (eigen_.vectors().col(k).dot(work_) / mu);
   }
   x.array() *= scale_.array();
 }
 
 Eigen::VectorXd ReducedHessian::singular_values() const {
   if (matrix_.rows() == 0 || !matrix_.allFinite()) return {};
-  if (!symmetric_) return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix_).singularValues();
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix_, Eigen::EigenvaluesOnly)
-      .eigenvalues()
-      .cwiseAbs();
+  if (!symmetric_) return flyball::singular_values(matrix_).value_or(Eigen::VectorXd());
+  return symmetric_eigenvalues(matrix_).value_or(Eigen::VectorXd()).cwiseAbs();
 }
 
 Eigen::MatrixXd ReducedHessian::null_basis() const {
@@ -100,13 +92,13 @@ Eigen::MatrixXd ReducedHessian::null_basis() const {
   if (symmetric_) {
     Eigen::Index c = 0;
     for (Eigen::Index k = 0; k < n; ++k)
-      if (std::abs(eigen_.eigenvalues()[k]) <= zero)
-        basis.col(c++) = scale.cwiseProduct(eigen_.eigenvectors().col(k));
+      if (std::abs(eigen_.values()[k]) <= zero) basis.col(c++) = scale.cwiseProduct(eigen_.vectors().col(k));
     return basis;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix_, Eigen::ComputeFullV);
+  const auto svd = singular_vectors(matrix_); // of finite entries, as factor() has seen to
+  if (!svd) return Eigen::MatrixXd::Identity(n, n).leftCols(null_);
   for (int k = 0; k < null_; ++k)
-    basis.col(k) = scale.cwiseProduct(svd.matrixV().col(n - null_ + k));
+    basis.col(k) = scale.cwiseProduct(svd->right.col(n - null_ + k));
   return basis;
 }
 

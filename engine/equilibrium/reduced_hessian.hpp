@@ -2,9 +2,7 @@
 // and positive definite (then the state is a strict minimum), else by what still works.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include "engine/linear/spectral.hpp"
 
 namespace flyball {
 
@@ -18,7 +16,7 @@ class ReducedHessian {
   // Directions without stiffness get no component.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x);
 
-  // False where an entry overflowed: then the matrix counts as zero.
+  // False where an entry overflowed or the matrix could not be decomposed: then it counts as zero.
   bool known() const { return known_; }
   int size() const { return static_cast<int>(scale_.size()); }
   // Symmetric: every eigenvalue well above zero.
@@ -27,13 +25,14 @@ class ReducedHessian {
   int null_count() const { return null_; }
   // Symmetric and not positive definite: eigenvalues (ascending) and vectors of the equilibrated matrix;
   // a direction of the original is scale() * vector.
-  const Eigen::VectorXd& eigenvalues() const { return eigen_.eigenvalues(); }
-  const Eigen::MatrixXd& eigenvectors() const { return eigen_.eigenvectors(); }
-  // Computes them for a positive definite matrix, too.
-  void decompose();
+  const Eigen::VectorXd& eigenvalues() const { return eigen_.values(); }
+  const Eigen::MatrixXd& eigenvectors() const { return eigen_.vectors(); }
+  // Computes them for a positive definite matrix, too; false where they are not found. Of size 0 there are
+  // none.
+  [[nodiscard]] bool decompose();
   const Eigen::VectorXd& scale() const { return scale_; }
   const Eigen::MatrixXd& equilibrated() const { return matrix_; }
-  // Of the equilibrated matrix.
+  // Of the equilibrated matrix; none where they are not found.
   Eigen::VectorXd singular_values() const;
   // Basis of the directions without stiffness, in the original's coordinates.
   Eigen::MatrixXd null_basis() const;
@@ -45,9 +44,9 @@ class ReducedHessian {
   int null_ = 0;
   Eigen::VectorXd scale_, work_;
   Eigen::MatrixXd matrix_;
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal_;
+  Cholesky cholesky_;
+  SymmetricEigen eigen_;
+  CompleteOrthogonal orthogonal_;
 };
 
 // A mixture of directions, one a column, with arbitrary shares; its largest entry is 1. What a polynomial in

@@ -141,6 +141,31 @@ void report_forces(const ReportInput& in, const Unknowns& z, Workspace& w, Solut
   }
 }
 
+std::string floquet_message(const Floquet& f, std::optional<bool> stable) {
+  std::string out = " The linearised motion turns with the drives: in a period of " +
+                    rounded_text(f.period, 4) + " s its largest multiplier is " +
+                    rounded_text(std::abs(f.multipliers.front()), 7) + " in size.";
+  if (stable == true && f.growth.front() > -1e-9 / f.period)
+    out += " Motions beside the state neither grow nor die out.";
+  else if (!stable)
+    out += " That is too close to 1 to tell.";
+  return out;
+}
+
+std::string floquet_message(FloquetFailure failure) {
+  const std::string begin =
+      " Whether it is stable is not known: the linearised motion turns with the drives, ";
+  switch (failure) {
+  case FloquetFailure::no_period: return begin + "and their speeds have no common period.";
+  case FloquetFailure::singular:
+    return begin +
+           "and a direction in which it moves has neither mass nor damping nor stiffness at some phase.";
+  case FloquetFailure::unresolved: return begin + "and is too large or too stiff to follow through a period.";
+  case FloquetFailure::cancelled: return begin + "and looking for its multipliers was cancelled.";
+  }
+  return "";
+}
+
 } // namespace
 
 bool turns_freely(const System& system, const Parameters& p, int l) {
@@ -217,6 +242,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   out.stable = in.stability.stable;
   out.stability_reason = in.stability.reason;
   out.eigenvalues = in.stability.eigenvalues;
+  out.floquet = in.stability.floquet;
   if (!in.stability.neutral.empty()) {
     std::vector<bool> takes_part(static_cast<std::size_t>(system.nv)), named(system.tree_joints.size());
     for (int v : in.stability.neutral)
@@ -268,9 +294,15 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
       out.message += " and " + std::to_string(out.neutral.size() - named) + " more";
     out.message += out.neutral.size() == 1 ? "; its value is arbitrary." : "; their values are arbitrary.";
   }
-  if (!out.stability_reason)
+  if (!out.stability_reason && !out.eigenvalues && system.nv <= largest_for_eigenvalues)
+    out.message +=
+        " Whether it is stable is not known: the eigenvalues were not found, the iteration for them does "
+        "not converge.";
+  else if (!out.stability_reason)
     out.message += " Whether it is stable was left out: that takes eigenvalues, and there are more than " +
                    std::to_string(largest_for_eigenvalues) + " coordinates.";
+  if (out.floquet) out.message += floquet_message(*out.floquet, out.stable);
+  if (in.stability.floquet_failure) out.message += floquet_message(*in.stability.floquet_failure);
   if (out.stable == false && in.found.message.empty()) out.message += " This state is unstable.";
 }
 

@@ -11,7 +11,7 @@ bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::Vector
   factor_with_multipliers(problem, here, w);
   if (w.hessian.singular()) return true;
   if (w.hessian.size() == 0) return false;
-  w.hessian.decompose();
+  if (!w.hessian.decompose()) return true;
   Eigen::Index softest = 0;
   w.hessian.eigenvalues().cwiseAbs().minCoeff(&softest);
   Eigen::VectorXd way = w.hessian.eigenvectors().col(softest).cwiseProduct(w.hessian.scale());

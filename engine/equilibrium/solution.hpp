@@ -31,6 +31,16 @@ enum class StabilityReason {
   neutral,         // stable but for directions that nothing resists
   marginal,        // eigenvalues too close to the axis to tell, or a singular state (a fold or branch point)
   unstable,
+  floquet, // the linearised motion turns with the drives: by its multipliers, whichever way they decide
+  varying, // it turns with the drives, and no multipliers tell of it: the drives have no common period
+};
+
+// Where the linearised motion turns with the drives: what a period makes of it.
+struct Floquet {
+  double period = 0;                             // s, common to the drives
+  std::vector<std::complex<double>> multipliers; // of the monodromy matrix, the largest first
+  std::vector<double> growth;                    // 1/s, ln|multiplier| / period; without those of rounding size
+  double error = 0;                              // estimated, absolute, of the largest multiplier
 };
 
 std::string_view word(Status status);
@@ -93,7 +103,9 @@ struct Solution {
   double run_time_s = 0; // from the start to the accepted answer
   std::optional<bool> stable;
   std::optional<StabilityReason> stability_reason;
-  std::optional<std::vector<std::complex<double>>> eigenvalues; // 1/s, of the linearised motion
+  // 1/s, of the linearised motion; with `floquet` its exponents ln(multiplier) / period.
+  std::optional<std::vector<std::complex<double>>> eigenvalues;
+  std::optional<Floquet> floquet; // where the linearised motion turns with the drives
   std::vector<std::string> neutral; // joints that take part in a direction nothing resists
   std::vector<DriveTorque> drive_torques;
   std::vector<Reaction> reactions;

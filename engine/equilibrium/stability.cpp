@@ -1,88 +1,16 @@
 #include "engine/equilibrium/stability.hpp"
 
+#include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/linear_motion.hpp"
+#include "engine/equilibrium/pencil.hpp"
+#include "engine/linear/spectral.hpp"
+
 #include <algorithm>
 
 namespace flyball {
 namespace {
 
 using Complex = std::complex<double>;
-
-void sort_eigenvalues(std::vector<Complex>& s) {
-  for (Complex& x : s)
-    x += Complex(0, 0); // no negative zeros
-  std::ranges::sort(s, [](Complex a, Complex b) {
-    if (std::abs(a.imag()) != std::abs(b.imag())) return std::abs(a.imag()) < std::abs(b.imag());
-    return a.real() != b.real() ? a.real() > b.real() : a.imag() > b.imag();
-  });
-}
-
-// Of s^2 + s d + k with d = L^-1 D L^-T, k = L^-1 K L^-T, M = L L^T.
-std::vector<Complex> regular_eigenvalues(const Eigen::LLT<Eigen::MatrixXd>& mass,
-                                         const Eigen::MatrixXd& velocity, const Eigen::MatrixXd& stiffness) {
-  const Eigen::Index n = velocity.rows();
-  const auto l = mass.matrixL();
-  const auto whiten = [&](const Eigen::MatrixXd& a) {
-    const Eigen::MatrixXd half = l.solve(a);
-    return Eigen::MatrixXd(l.solve(half.transpose()).transpose());
-  };
-  const Eigen::MatrixXd d = whiten(velocity), k = whiten(stiffness);
-  std::vector<Complex> s;
-  const double asymmetry = (k - k.transpose()).norm();
-  if (d.norm() == 0 && asymmetry <= 1e-12 * k.norm()) { // s^2 = -eigenvalue of k: exact on the axes
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k, Eigen::EigenvaluesOnly);
-    for (double mu : eigen.eigenvalues()) {
-      const Complex root = mu >= 0 ? Complex(0, std::sqrt(mu)) : Complex(std::sqrt(-mu), 0);
-      s.push_back(root);
-      s.push_back(-root);
-    }
-    return s;
-  }
-  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  companion.topRightCorner(n, n).setIdentity();
-  companion.bottomLeftCorner(n, n) = -k;
-  companion.bottomRightCorner(n, n) = -d;
-  const Eigen::EigenSolver<Eigen::MatrixXd> eigen(companion, false);
-  for (Eigen::Index i = 0; i < 2 * n; ++i)
-    s.push_back(eigen.eigenvalues()[i]);
-  return s;
-}
-
-std::vector<Complex> singular_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
-                                          const Eigen::MatrixXd& stiffness) {
-  const Eigen::Index n = mass.rows();
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * n, 2 * n), b = a;
-  a.topRightCorner(n, n).setIdentity();
-  a.bottomLeftCorner(n, n) = -stiffness;
-  a.bottomRightCorner(n, n) = -velocity;
-  b.topLeftCorner(n, n).setIdentity();
-  b.bottomRightCorner(n, n) = mass;
-  const Eigen::GeneralizedEigenSolver<Eigen::MatrixXd> eigen(a, b, false);
-  std::vector<Complex> s;
-  for (Eigen::Index i = 0; i < 2 * n; ++i)
-    if (std::abs(eigen.betas()[i]) > 1e-12 * std::abs(eigen.alphas()[i]))
-      s.push_back(eigen.alphas()[i] / eigen.betas()[i]);
-  return s;
-}
-
-Eigen::MatrixXd onto(const Eigen::MatrixXd& z, const Eigen::MatrixXd& a) {
-  return z.transpose() * a * z;
-}
-
-// Of massless directions z those that feel a spring or damper. The rest have no equation of motion, and would
-// make the pencil singular: then any number is an eigenvalue.
-Eigen::MatrixXd felt(const Eigen::MatrixXd& z, const Eigen::MatrixXd& velocity,
-                     const Eigen::MatrixXd& stiffness) {
-  Eigen::MatrixXd feels(z.cols(), 4 * z.rows());
-  feels << (stiffness * z).transpose(), z.transpose() * stiffness, (velocity * z).transpose(),
-      z.transpose() * velocity;
-  if (feels.isZero(0)) return Eigen::MatrixXd(z.rows(), 0);
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(feels);
-  const double rounding = 1e-13 * (stiffness.norm() + velocity.norm());
-  Eigen::Index rank = 0;
-  while (rank < z.cols() && std::abs(qr.matrixQR()(rank, rank)) > rounding)
-    ++rank;
-  return z * Eigen::MatrixXd(qr.householderQ()).leftCols(rank);
-}
 
 // Whether a way (scaled) along the directions without stiffness leads to another balanced state, the rest
 // giving way as it must: a bob that turns about the vertical goes along an arc.
@@ -100,60 +28,70 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Matr
     const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
     if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
     factor(problem, moved, w);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> across(basis.transpose() * flat);
-    const Eigen::MatrixXd all = across.householderQ();
-    const auto rest = all.rightCols(std::max<Eigen::Index>(0, all.cols() - flat.cols()));
-    if (rest.cols() == 0) return false;
-    const Eigen::MatrixXd stiffness = basis.transpose() * w.scaled_stiffness * basis * rest;
-    step = basis * (rest * stiffness.colPivHouseholderQr().solve(-left));
+    const auto all = orthonormal_completion(basis.transpose() * flat);
+    if (!all || all->cols() <= flat.cols()) return false;
+    const auto rest = all->rightCols(all->cols() - flat.cols());
+    const auto solved = least_squares(basis.transpose() * w.scaled_stiffness * basis * rest, -left);
+    if (!solved) return false;
+    step = basis * (rest * *solved);
     if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
   }
   return false;
 }
 
+// By the multipliers, of which those of `neutral` directions (a rotation or shift that nothing resists, and
+// its rate) lie at 1.
+void judge_by_multipliers(const Problem& problem, const Unknowns& z, int neutral, Workspace& w,
+                          Stability& out) {
+  FloquetOutcome outcome;
+  if (problem.system.nv <= largest_for_eigenvalues)
+    outcome = find_floquet(problem, z.q, w);
+  else
+    outcome.failure = FloquetFailure::unresolved;
+  if (!outcome.result) {
+    out.reason = StabilityReason::varying;
+    out.floquet_failure = outcome.failure;
+    return;
+  }
+  const Floquet& floquet = out.floquet.emplace(std::move(*outcome.result));
+  out.eigenvalues = floquet_exponents(floquet);
+  out.reason = StabilityReason::floquet;
+  std::vector<Complex> judged = floquet.multipliers;
+  std::ranges::sort(judged, {}, [](Complex mu) { return std::abs(mu - 1.); });
+  auto begin = judged.begin();
+  for (int i = 0; i < 2 * neutral && begin != judged.end() && std::abs(*begin - 1.) < 1e-4; ++i)
+    ++begin;
+  judged.erase(judged.begin(), begin);
+  // Multipliers that lie close together are known to the root of what others are.
+  const double tolerance = 1e-8 + 10 * floquet.error;
+  bool inside = true, apart = true;
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    const double size = std::abs(judged[i]);
+    bool close = std::abs(judged[i].imag()) < 1e-3; // at 1 or -1 a pair meets
+    for (std::size_t j = 0; j < judged.size(); ++j)
+      close = close || (i != j && std::abs(judged[i] - judged[j]) < 1e-3);
+    const double limit = close ? std::max(1e-6, std::sqrt(10 * floquet.error)) : tolerance;
+    if (size > 1 + limit) {
+      out.stable = false;
+      return;
+    }
+    if (size < 1 - limit) continue;
+    inside = false;
+    if (close) apart = false;
+  }
+  if (neutral > 0) {
+    out.reason = StabilityReason::neutral;
+    return;
+  }
+  // On the unit circle and apart from each other they cannot leave it: motions stay as small as they begin
+  // (Krein).
+  if (inside || apart) out.stable = true;
+}
+
 } // namespace
 
-std::vector<Complex> pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
-                                        const Eigen::MatrixXd& stiffness) {
-  if (mass.rows() == 0) return {};
-  const double m = mass.norm(), k = stiffness.norm(), d = velocity.norm();
-  if (!std::isfinite(m + k + d)) return {};
-  if (m == 0) {
-    if (d == 0) return {};
-    const Eigen::MatrixXd z = felt(Eigen::MatrixXd::Identity(mass.rows(), mass.rows()), velocity, stiffness);
-    return singular_eigenvalues(onto(z, mass), onto(z, velocity), onto(z, stiffness));
-  }
-  // Time in units in which mass and stiffness are alike.
-  const double rate = k > 0 ? std::sqrt(k / m) : d > 0 ? d / m : 1;
-  const Eigen::MatrixXd m1 = mass / m, d1 = velocity / (m * rate), k1 = stiffness / (m * rate * rate);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shape((m1 + m1.transpose()) / 2);
-  Eigen::Index massless = 0;
-  while (massless < m1.rows() && shape.eigenvalues()[massless] < 1e-13)
-    ++massless;
-  std::vector<Complex> s;
-  if (massless == 0) {
-    s = regular_eigenvalues(Eigen::LLT<Eigen::MatrixXd>((m1 + m1.transpose()) / 2), d1, k1);
-  } else {
-    const Eigen::MatrixXd z = felt(shape.eigenvectors().leftCols(massless), d1, k1);
-    const Eigen::MatrixXd r = shape.eigenvectors().rightCols(m1.rows() - massless);
-    const bool damped = (d1 * z).norm() + (z.transpose() * d1).norm() > 1e-13 * (d1.norm() + 1);
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> condensed;
-    if (z.cols() > 0) condensed.compute(onto(z, k1));
-    if (!damped && (z.cols() == 0 || condensed.rank() == z.cols())) {
-      Eigen::MatrixXd kc = r.transpose() * k1 * r;
-      if (z.cols() > 0) kc -= r.transpose() * k1 * z * condensed.solve(z.transpose() * k1 * r);
-      s = regular_eigenvalues(Eigen::LLT<Eigen::MatrixXd>(r.transpose() * m1 * r), r.transpose() * d1 * r,
-                              kc);
-    } else {
-      Eigen::MatrixXd all(m1.rows(), z.cols() + r.cols());
-      all << z, r;
-      s = singular_eigenvalues(onto(all, m1), onto(all, d1), onto(all, k1));
-    }
-  }
-  for (Complex& x : s)
-    x *= rate;
-  sort_eigenvalues(s);
-  return s;
+bool can_compare_phases(const System& system) {
+  return system.nv <= (system.rows > 0 ? 600 : 2000);
 }
 
 bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
@@ -186,6 +124,7 @@ bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
 
 Stability find_stability(const Problem& problem, const Unknowns& z, bool with_eigenvalues, Workspace& w) {
   Stability out;
+  const bool varies = motion_varies(problem, z.q, sample_phases(problem.system, problem.parameters), w);
   evaluate(problem, z, 0, w);
   factor(problem, z, w);
   const bool potential = has_potential(problem, z, w);
@@ -197,7 +136,7 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
     w.noise[i] =
         1e-15 * basis.col(i).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
   energy.factor(reduced, w.noise, potential);
-  const bool minimum = potential && energy.positive_definite();
+  const bool minimum = potential && !varies && energy.positive_definite();
   if (minimum) {
     out.stable = true;
     out.reason = StabilityReason::minimum;
@@ -224,6 +163,10 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
         out.neutral.push_back(i);
   }
   std::ranges::sort(out.neutral);
+  if (varies) {
+    judge_by_multipliers(problem, z, flat_count, w, out);
+    return out;
+  }
   if (flat.cols() > 0) {
     evaluate(problem, z, 0, w);
     factor(problem, z, w);
@@ -231,8 +174,7 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
 
   double most_negative = 0;
   if (potential && !minimum && energy.size() > 0) {
-    energy.decompose();
-    most_negative = energy.eigenvalues()[0];
+    if (energy.decompose()) most_negative = energy.eigenvalues()[0];
   }
   if (minimum && !with_eigenvalues) return out;
 
@@ -244,8 +186,8 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
       basis.transpose() * s.asDiagonal() * w.linearization.velocity * s.asDiagonal() * basis;
   Eigen::MatrixXd stiffness = reduced;
   if (potential) stiffness = (reduced + reduced.transpose()) / 2;
-  out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness);
-  if (minimum) return out;
+  out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);
+  if (minimum || !out.eigenvalues) return out;
 
   // Eigenvalues that belong to flat directions are zero but for rounding: leave the smallest out.
   std::vector<Complex> moving = *out.eigenvalues;
@@ -263,15 +205,16 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   }
   // A massless direction with negative stiffness has no finite eigenvalue to tell of it.
   if (mass.rows() > 0) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shape((mass + mass.transpose()) / 2);
+    SymmetricEigen shape;
+    if (!shape.compute((mass + mass.transpose()) / 2)) return out;
     Eigen::Index massless = 0;
-    while (massless < mass.rows() && shape.eigenvalues()[massless] < 1e-13 * std::max(mass.norm(), 1e-300))
+    while (massless < mass.rows() && shape.values()[massless] < 1e-13 * std::max(mass.norm(), 1e-300))
       ++massless;
     if (massless > 0) {
-      const Eigen::MatrixXd zz = shape.eigenvectors().leftCols(massless);
-      const Eigen::MatrixXd kzz = zz.transpose() * (stiffness + stiffness.transpose()) * zz;
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> local(kzz, Eigen::EigenvaluesOnly);
-      if (local.eigenvalues()[0] < -1e-10 * std::max(stiffness.norm(), 1e-300)) right = true;
+      const Eigen::MatrixXd zz = shape.vectors().leftCols(massless);
+      const auto local = symmetric_eigenvalues(zz.transpose() * (stiffness + stiffness.transpose()) * zz);
+      if (!local) return out;
+      if ((*local)[0] < -1e-10 * std::max(stiffness.norm(), 1e-300)) right = true;
     }
   }
   // Where the energy falls nowhere it grows nowhere either, whatever rounding makes of the eigenvalues.

@@ -1,7 +1,6 @@
 #include "engine/equilibrium/tree_elimination.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include "engine/linear/spectral.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -211,23 +210,26 @@ void TreeElimination::eliminate_three(Node& n, double shift, Mat6& h) {
   const double noise = b.noise.maxCoeff();
   Vec3 inverse;
   if (symmetric_) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(Mat3(0.5 * (pivot + pivot.transpose())));
+    // What is not finite resists nothing, as in a pivot of one coordinate.
+    const PrincipalAxes eigen = principal_axes(0.5 * (pivot + pivot.transpose()))
+                                    .value_or(PrincipalAxes{Vec3::Zero(), Mat3::Identity()});
     for (int c = 0; c < 3; ++c) {
-      const double value = eigen.eigenvalues()[c];
+      const double value = eigen.values[c];
       const bool flat = !(std::abs(value) > noise);
       inverse[c] = flat ? 0 : 1 / value;
-      if (flat) flat_.push_back(way(n.v, eigen.eigenvectors().col(c)));
+      if (flat) flat_.push_back(way(n.v, eigen.vectors.col(c)));
       if (!flat && value < 0) ++negative_;
     }
-    b.inverse = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+    b.inverse = eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
   } else {
-    const Eigen::JacobiSVD<Mat3> svd(pivot, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const SingularVectors3 svd = singular_vectors_3(pivot).value_or(
+        SingularVectors3{Vec3::Zero(), Mat3::Identity(), Mat3::Identity()});
     for (int c = 0; c < 3; ++c) {
-      const bool flat = !(svd.singularValues()[c] > noise);
-      inverse[c] = flat ? 0 : 1 / svd.singularValues()[c];
-      if (flat) flat_.push_back(way(n.v, svd.matrixV().col(c)));
+      const bool flat = !(svd.values[c] > noise);
+      inverse[c] = flat ? 0 : 1 / svd.values[c];
+      if (flat) flat_.push_back(way(n.v, svd.right.col(c)));
     }
-    b.inverse = svd.matrixV() * inverse.asDiagonal() * svd.matrixU().transpose();
+    b.inverse = svd.right * inverse.asDiagonal() * svd.left.transpose();
   }
   h.noalias() -= b.u * b.inverse * b.r.transpose();
 }

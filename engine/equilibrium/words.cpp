@@ -29,6 +29,8 @@ std::string_view word(StabilityReason reason) {
   case StabilityReason::neutral: return "neutral";
   case StabilityReason::marginal: return "marginal";
   case StabilityReason::unstable: return "unstable";
+  case StabilityReason::floquet: return "floquet";
+  case StabilityReason::varying: return "varying";
   }
   return "";
 }

@@ -1,7 +1,7 @@
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/text.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "engine/linear/spectral.hpp"
 
 #include <cmath>
 
@@ -16,8 +16,9 @@ void find_inertia_mistakes(const Body& body, const std::string& path, Mistakes& 
   const double scale = inertia.cwiseAbs().maxCoeff();
   if (scale == 0) return;
   constexpr double tolerance = 1e-9;
-  const Vec3 principal =
-      Eigen::SelfAdjointEigenSolver<Mat3>(inertia / scale, Eigen::EigenvaluesOnly).eigenvalues();
+  const auto axes = principal_axes(inertia / scale);
+  if (!axes) return; // numbers that are not finite are told of where all numbers are looked at
+  const Vec3& principal = axes->values;
   const std::string moments = "; the principal moments are " + number_text(principal[0] * scale) + ", " +
                               number_text(principal[1] * scale) + " and " + number_text(principal[2] * scale);
   const double edge = tolerance * principal.cwiseAbs().maxCoeff();

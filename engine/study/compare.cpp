@@ -63,8 +63,10 @@ class Direct {
     find_equilibrium(problem(), drawn_, false, false, w_, history, found_);
     if (found_.status != Status::converged) return found_.status;
     refine(problem(), found_.z, found_.newton, w_, error_);
-    const bool holds = check_existence(problem(), found_.z.q, sample_phases(system_, parameters_), w_).holds;
-    if (holds && !found_.minimum) stability_ = find_stability(problem(), found_.z, false, w_);
+    const std::vector<double> phases = sample_phases(system_, parameters_);
+    const bool holds = check_existence(problem(), found_.z.q, phases, w_).holds;
+    if (holds && (!found_.minimum || !phases.empty()))
+      stability_ = find_stability(problem(), found_.z, false, w_);
     z = found_.z;
     return holds ? Status::converged : Status::no_steady_state;
   }

@@ -1,0 +1,21 @@
+// Eigenvalues of the linearised motion M q'' + D q' + K q = 0.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <atomic>
+#include <complex>
+#include <optional>
+#include <vector>
+
+namespace flyball {
+
+// Finite eigenvalues (1/s, by size of the imaginary part) of the pencil s^2 M + s D + K, each (n, n) in units
+// of one kind. M may be singular in any direction (massless coordinates): directions without mass and damping
+// are condensed statically, others leave as infinite eigenvalues. Nothing where an entry is not finite, the
+// iteration does not converge, or `cancel` is set.
+std::optional<std::vector<std::complex<double>>>
+pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                   const Eigen::MatrixXd& stiffness, const std::atomic<bool>* cancel = nullptr);
+
+} // namespace flyball

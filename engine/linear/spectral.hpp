@@ -1,0 +1,189 @@
+// Every decomposition of the program, in one place and each checked: what cannot be decomposed (an entry that
+// is not finite, an iteration that does not converge) is a value that the caller must handle, so that no
+// result is ever read that was not computed. Instantiated once, which spares every other file the compiling.
+//
+// The classes keep their storage: computing again at the same size allocates nothing. Their results may be
+// read after a compute() that returned true, and only then.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+#include <atomic>
+#include <complex>
+#include <optional>
+#include <vector>
+
+namespace flyball {
+
+// Set by another thread to end a long computation; null where nobody may.
+using CancelFlag = const std::atomic<bool>*;
+
+// A = V diag(values) V^T of a symmetric matrix (n, n), by the symmetric QR algorithm (Golub and Van Loan,
+// Matrix Computations, section 8.3). Only the lower triangle is read.
+class SymmetricEigen {
+ public:
+  // False where there is no entry, one is not finite, or the iteration does not converge.
+  [[nodiscard]] bool compute(const Eigen::MatrixXd& a, bool with_vectors = true);
+  const Eigen::VectorXd& values() const { return solver_.eigenvalues(); }   // (n), ascending
+  const Eigen::MatrixXd& vectors() const { return solver_.eigenvectors(); } // (n, n), orthonormal columns
+
+ private:
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver_;
+};
+
+// A = L L^T of a symmetric positive definite matrix (n, n); the lower triangle is read.
+class Cholesky {
+ public:
+  // False where the matrix is not positive definite to working precision.
+  [[nodiscard]] bool compute(const Eigen::MatrixXd& a);
+  // x = A^-1 x, in place; x may be a block of a longer vector.
+  void solve_in_place(Eigen::Ref<Eigen::VectorXd> x) const;
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+  // L^-1 b
+  Eigen::MatrixXd forward(const Eigen::MatrixXd& b) const;
+  double smallest_pivot() const; // of A = L' D L'^T: L_ii^2
+
+ private:
+  Eigen::LLT<Eigen::MatrixXd> factors_;
+};
+
+// A P = Q R with column pivoting (m, n): |R_00| >= |R_11| >= ...; the rank is read off the diagonal of R
+// (Golub and Van Loan, section 5.4).
+class PivotedQr {
+ public:
+  // False where there is no entry or one is not finite.
+  [[nodiscard]] bool compute(const Eigen::MatrixXd& a);
+  Eigen::Index rank(double relative_tolerance) const; // pivots above this share of the largest
+  double pivot(Eigen::Index i) const { return std::abs(qr_.matrixQR()(i, i)); }
+  // Column i of A P is column permutation()[i] of A.
+  const Eigen::PermutationMatrix<Eigen::Dynamic>::IndicesType& permutation() const {
+    return qr_.colsPermutation().indices();
+  }
+  const Eigen::MatrixXd& matrix() const { return qr_.matrixQR(); } // R above, Householder vectors below
+  double coefficient(Eigen::Index k) const { return qr_.hCoeffs()[k]; }
+  Eigen::MatrixXd q() const; // (m, m)
+
+ private:
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+};
+
+// A = Q R without pivoting (m, n), m >= n.
+class HouseholderQr {
+ public:
+  // False where there is no entry or one is not finite.
+  [[nodiscard]] bool compute(const Eigen::MatrixXd& a);
+  const Eigen::MatrixXd& matrix() const { return qr_.matrixQR(); }
+  double coefficient(Eigen::Index k) const { return qr_.hCoeffs()[k]; }
+  Eigen::MatrixXd q() const; // (m, m)
+
+ private:
+  Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
+};
+
+// Least squares of least norm for a matrix (m, n) of any rank, by a complete orthogonal decomposition (Golub
+// and Van Loan, section 5.5).
+class CompleteOrthogonal {
+ public:
+  // Pivots below this share of the largest count as zero. False where an entry is not finite.
+  [[nodiscard]] bool compute(const Eigen::MatrixXd& a, std::optional<double> relative_tolerance = {});
+  Eigen::Index rank() const;
+  void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+
+ private:
+  bool empty_ = true;
+  Eigen::Index unknowns_ = 0;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition_;
+};
+
+// A square matrix (n, n), by LU with partial pivoting.
+class Lu {
+ public:
+  // False where an entry is not finite or a pivot is exactly zero.
+  [[nodiscard]] bool compute(const Eigen::MatrixXd& a);
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  Eigen::VectorXd solve_transposed(const Eigen::VectorXd& b) const;
+  int sign_of_determinant() const; // -1 or 1
+
+ private:
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+};
+
+// The same of a complex matrix, for blocks of right-hand sides.
+class ComplexLu {
+ public:
+  [[nodiscard]] bool compute(const Eigen::MatrixXcd& a);
+  Eigen::MatrixXcd solve(const Eigen::MatrixXcd& b) const;
+
+ private:
+  Eigen::PartialPivLU<Eigen::MatrixXcd> lu_;
+};
+
+// Q (n, n), orthonormal, whose first columns span those of `columns` (n, k), k <= n.
+std::optional<Eigen::MatrixXd> orthonormal_completion(const Eigen::MatrixXd& columns);
+
+// The same of at most six columns of spatial vectors, without allocation.
+using SpatialColumns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+Eigen::Matrix<double, 6, 6> spatial_completion(const SpatialColumns& columns);
+
+// Basis (columns, not orthonormal) of the null space of a (m, n), by LU with complete pivoting; (n, 0) where
+// the rank is full. Nothing where an entry is not finite.
+std::optional<Eigen::MatrixXd> null_space(const Eigen::MatrixXd& a);
+
+// x of least norm that minimises |a x - b|.
+std::optional<Eigen::VectorXd> least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+// The same for every column of b.
+std::optional<Eigen::MatrixXd> least_squares_columns(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+// x with a x = b by LU with complete pivoting, which is as good as a (nearly) singular matrix allows. Nothing
+// where an entry of a, b or x is not finite.
+std::optional<Eigen::VectorXd> solve_square(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+// Ascending; of a symmetric matrix, whose lower triangle is read.
+std::optional<Eigen::VectorXd> symmetric_eigenvalues(const Eigen::MatrixXd& a);
+
+// Descending, min(m, n) of them.
+std::optional<Eigen::VectorXd> singular_values(const Eigen::MatrixXd& a);
+
+struct SingularVectors {
+  Eigen::VectorXd values;      // descending
+  Eigen::MatrixXd left, right; // (m, m) and (n, n)
+};
+std::optional<SingularVectors> singular_vectors(const Eigen::MatrixXd& a);
+
+// Of a general real matrix (n, n), in no particular order, by Hessenberg reduction and Francis steps (Golub
+// and Van Loan, section 7.5). Nothing where an entry is not finite, the iteration does not converge or
+// `cancel` is set, which large matrices look at all the time.
+std::optional<std::vector<std::complex<double>>> eigenvalues(const Eigen::MatrixXd& a,
+                                                             CancelFlag cancel = nullptr);
+
+struct ComplexEigen {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors; // columns, by value, of length one
+};
+std::optional<ComplexEigen> eigenvectors(const Eigen::MatrixXd& a);
+
+// The finite s of (a - s b) x = 0, b singular or not: by QZ (Moler and Stewart 1973), and where that does not
+// converge by shift and invert. Eigenvalues above 1e12 times the size of the rest count as infinite and are
+// left out. Nothing where neither gives an answer, as of a singular pencil.
+std::optional<std::vector<std::complex<double>>>
+generalized_eigenvalues(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, CancelFlag cancel = nullptr);
+
+// Of a symmetric matrix (3, 3); the lower triangle is read.
+struct PrincipalAxes {
+  Eigen::Vector3d values;  // ascending
+  Eigen::Matrix3d vectors; // orthonormal columns
+};
+std::optional<PrincipalAxes> principal_axes(const Eigen::Matrix3d& a);
+
+struct SingularVectors3 {
+  Eigen::Vector3d values; // descending
+  Eigen::Matrix3d left, right;
+};
+std::optional<SingularVectors3> singular_vectors_3(const Eigen::Matrix3d& a);
+
+} // namespace flyball
