@@ -45,8 +45,8 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["run_time_s"] = s.run_time_s;
   out["stable"] = s.stable ? Json(*s.stable) : Json(nullptr);
   out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);
-  for (const char* key : {"potential", "eigenvalues", "neutral", "drive_torques", "reactions", "poses",
-                          "sensitivities", "condition"})
+  for (const char* key : {"potential", "eigenvalues", "floquet", "neutral", "drive_torques", "reactions",
+                          "poses", "sensitivities", "condition"})
     out[key] = nullptr;
   if (!converged) return out;
 
@@ -65,6 +65,16 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
     out["eigenvalues"] = Json::array();
     for (const auto& e : *s.eigenvalues)
       out["eigenvalues"].push_back({number(e.real()), number(e.imag())});
+  }
+  if (s.floquet) {
+    Json floquet = {{"period_s", number(s.floquet->period)}, {"error", number(s.floquet->error)}};
+    floquet["multipliers"] = Json::array();
+    for (const auto& mu : s.floquet->multipliers)
+      floquet["multipliers"].push_back({number(mu.real()), number(mu.imag())});
+    floquet["growth_rates"] = Json::array();
+    for (const double growth : s.floquet->growth)
+      floquet["growth_rates"].push_back(number(growth));
+    out["floquet"] = std::move(floquet);
   }
   out["neutral"] = s.neutral;
   out["drive_torques"] = Json::object();

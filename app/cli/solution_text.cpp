@@ -26,6 +26,11 @@ std::string stability(const Solution& s) {
   case StabilityReason::neutral: return "neutral: nothing resists some direction";
   case StabilityReason::marginal: return "marginal: too close to the border of stability to tell";
   case StabilityReason::unstable: return "unstable";
+  case StabilityReason::floquet:
+    return s.stable == true    ? "stable by its Floquet multipliers"
+           : s.stable == false ? "unstable: a Floquet multiplier is larger than 1"
+                               : "a Floquet multiplier is too close to 1 to tell";
+  case StabilityReason::varying: return "stability not known: the linearised motion turns with the drives";
   }
   return "";
 }
@@ -83,7 +88,15 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   if (s.reactions_nonunique)
     out +=
         "  The loops are redundant: these are the reactions with the least multipliers of many possible.\n";
-  if (s.eigenvalues && !s.eigenvalues->empty()) {
+  if (s.floquet) {
+    heading("Floquet multipliers");
+    out += fmt::format("  {:{}}  {:.10g} s, multipliers to {:.1g}\n", "period", width, s.floquet->period,
+                       s.floquet->error);
+    for (std::size_t i = 0; i < s.floquet->growth.size(); ++i)
+      out += fmt::format("  {:>+13.9f} {:>+13.9f} i  size {:.9g}, growth {:.6g} 1/s\n",
+                         s.floquet->multipliers[i].real(), s.floquet->multipliers[i].imag(),
+                         std::abs(s.floquet->multipliers[i]), s.floquet->growth[i]);
+  } else if (s.eigenvalues && !s.eigenvalues->empty()) {
     heading("eigenvalues of the linearised motion");
     for (const auto& e : *s.eigenvalues)
       if (e.imag() >= 0)

@@ -14,9 +14,28 @@ std::string part_text(double value, double largest) {
   return value_text(value, std::max(largest * 1e-5, 1e-12), {6, 1e-16, false});
 }
 
+// Where the linearised motion turns with the drives: what a period makes of a disturbance.
+void multiplier_results(App& app, const Floquet& floquet) {
+  if (!section(app, "results/eigenvalues", "Floquet multipliers", app.panels.eigenvalues)) return;
+  paragraph("The linearised motion turns with the drives. In a period a disturbance becomes a multiplier "
+            "times what it "
+            "was: above 1 in size it grows.",
+            colors_of(app).dim);
+  row(app, "Period", value_text(floquet.period, 1e-4 * floquet.period, {6, 1e-16, false}), "s");
+  for (std::size_t i = 0; i < floquet.growth.size(); ++i) {
+    const std::complex<double> mu = floquet.multipliers[i];
+    if (mu.imag() < 0) continue; // its conjugate stands for both
+    const double size = std::abs(floquet.multipliers.front());
+    const std::string imaginary = mu.imag() > 1e-9 * size ? " ± " + part_text(mu.imag(), size) + " i" : "";
+    row(app, "Multiplier", part_text(mu.real(), size) + imaginary, "");
+    row(app, "Growth", value_text(floquet.growth[i], 1e-6 / floquet.period, {6, 1e-16, false}), "1/s");
+  }
+}
+
 } // namespace
 
 void eigenvalue_results(App& app) {
+  if (app.answer.solution.floquet) return multiplier_results(app, *app.answer.solution.floquet);
   const auto& eigenvalues = app.answer.solution.eigenvalues;
   if (!eigenvalues || eigenvalues->empty()) return;
   if (!section(app, "results/eigenvalues", "Eigenvalues", app.panels.eigenvalues)) return;

@@ -28,6 +28,10 @@ const char* reason_text(StabilityReason reason) {
   case StabilityReason::neutral: return "Stable but for directions that nothing resists.";
   case StabilityReason::marginal: return "Too close to the limit of stability to tell.";
   case StabilityReason::unstable: return "Disturbances grow.";
+  case StabilityReason::floquet:
+    return "By the Floquet multipliers: the linearised motion turns with the drives.";
+  case StabilityReason::varying:
+    return "The linearised motion turns with the drives, and no multipliers tell of it.";
   }
   return "";
 }

@@ -144,7 +144,6 @@ TEST_CASE("Floquet: damping takes c / 2 m off every growth rate of Mathieu's equ
   const double damping = 0.6;
   const Solution without = solve(mathieu(t), nearest()), with = solve(mathieu(t, damping), nearest());
   // With x = exp(-c t / 2 m) y the stiffness of y is less by c^2 / 4 m^2: at small damping hardly.
-  Mechanism m = mathieu(t);
   CHECK(without.floquet->growth.front() + without.floquet->growth.back() == Approx(0).margin(1e-9));
   CHECK(with.floquet->growth.front() + with.floquet->growth.back() == Approx(-damping / t.mass));
   CHECK(with.floquet->growth.front() ==
@@ -166,7 +165,8 @@ TEST_CASE("Floquet: a rotating saddle holds what it carries where it turns fast 
     a(2, 3) = 2 * speed;
     a(3, 2) = -2 * speed;
     double growth = -1e9;
-    for (const Complex x : eigenvalues(a).value())
+    const std::vector<Complex> all = eigenvalues(a).value();
+    for (const Complex x : all)
       growth = std::max(growth, x.real());
     CHECK(s.floquet->growth.front() == Approx(growth).margin(1e-7));
     CHECK(s.stable == (speed > 10));
@@ -205,7 +205,8 @@ Mechanism rotor(const Rotor& r) {
     const double angle = 2 * std::numbers::pi * i / r.blades;
     const Vec3 out(std::cos(angle), std::sin(angle), 0);
     const std::string name = "blade" + std::to_string(i);
-    m.bodies.push_back(body(name, r.mass, (r.hinge + r.length) * out, Vec3(r.inertia / 2, r.inertia / 2, r.inertia)));
+    m.bodies.push_back(
+        body(name, r.mass, (r.hinge + r.length) * out, Vec3(r.inertia / 2, r.inertia / 2, r.inertia)));
     Joint lag = revolute("lag" + std::to_string(i), "head", name, r.hinge * out, Vec3::UnitZ());
     lag.coordinates[0].spring = CoordinateSpring{r.lag_stiffness, 0};
     lag.coordinates[0].damping = r.lag_damping;
@@ -241,7 +242,8 @@ double multiblade_growth(const Rotor& r) {
   a.bottomLeftCorner(4, 4) = -m.inverse() * c;
   a.bottomRightCorner(4, 4) = -m.inverse() * d;
   double growth = -r.lag_damping / (2 * i);
-  for (const Complex x : eigenvalues(a).value())
+  const std::vector<Complex> all = eigenvalues(a).value();
+  for (const Complex x : all)
     growth = std::max(growth, x.real());
   return growth;
 }
