@@ -1,5 +1,6 @@
 #include "engine/equilibrium/newton.hpp"
 
+#include "engine/linear/spectral.hpp"
 #include "engine/system/constraint_row.hpp"
 
 namespace flyball {
@@ -159,8 +160,19 @@ void factor_constraints(const Problem& problem, Workspace& w) {
 }
 
 int independent_rows(const Problem& problem, const Workspace& w) {
-  if (problem.system.rows == 0) return 0;
-  return problem.is_dense() ? w.constraints.rank() : problem.system.rows - w.loops.redundant();
+  const int rows = problem.system.rows;
+  if (rows == 0) return 0;
+  if (problem.is_dense()) return w.constraints.rank();
+  if (w.loops.redundant() <= rows) return rows - w.loops.redundant();
+  // Chains of bodies without mass leave the metric singular by itself, which its pivots do not tell apart
+  // from redundant rows: the rank of the rows alone.
+  Linearization l;
+  linearize_constraints(problem.system, problem.parameters, w.kinematics, l);
+  PivotedQr qr;
+  if (!qr.compute(problem.scaling.column.asDiagonal() * l.constraint.transpose() *
+                  problem.scaling.row.asDiagonal()))
+    return 0;
+  return static_cast<int>(qr.rank(rank_tolerance(problem, w.residual.phi)));
 }
 
 void best_multipliers(const Problem& problem, Workspace& w, Eigen::VectorXd& lambda) {
