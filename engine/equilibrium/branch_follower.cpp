@@ -16,6 +16,10 @@ namespace {
 
 constexpr double special_accuracy = 1e-11; // of the scaled arclength
 
+bool turns_with_drives(const ResponsePoint& point) {
+  return point.stability_reason == StabilityReason::floquet;
+}
+
 } // namespace
 
 Mechanism with_parameter(const Mechanism& mechanism, const std::string& address, double value) {
@@ -84,6 +88,8 @@ BranchFollower::Described BranchFollower::describe(const BranchState& state) {
     if (e.real() > 1e-7 * std::abs(e) + noise) ++d.right;
     if (e.real() < -1e-7 * std::abs(e) - noise && e.imag() != 0) d.damped = true;
   }
+  // Exponents have their frequencies but for whole turns a period: multipliers tell what crosses.
+  if (turns_with_drives(d.point)) d.right = 0;
   return d;
 }
 
@@ -223,6 +229,8 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
     }
     Described then = describe(next);
     find_specials(state, next, length, now, then, out);
+    if (turns_with_drives(now.point) && turns_with_drives(then.point))
+      find_multiplier_crossing(state, next, length, out);
     out.points.push_back(then.point);
     out.states.push_back(next);
     report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);
@@ -239,10 +247,12 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
     }
     state = std::move(next);
     now = std::move(then);
+    // Bands in which the drives pump a motion up are narrow.
+    const double longest = options_.largest_step * (turns_with_drives(now.point) ? 0.25 : 1);
     if (corner)
       length = options_.largest_step / 4;
     else
-      length = std::min(options_.largest_step, length * (iterations <= 3 ? 1.5 : iterations > 5 ? 0.6 : 1.));
+      length = std::min(longest, length * (iterations <= 3 ? 1.5 : iterations > 5 ? 0.6 : 1.));
   }
   return out;
 }

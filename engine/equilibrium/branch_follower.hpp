@@ -80,6 +80,9 @@ class BranchFollower {
                      const Described& then, FollowedBranch& out);
   BranchState locate_crossing_pair(const BranchState& state, const BranchState& next, double length,
                                    int right_before, bool damped);
+  // Of a step along which the linearised motion turns with the drives.
+  void find_multiplier_crossing(const BranchState& state, const BranchState& next, double length,
+                                FollowedBranch& out);
   void land_on_border(const BranchState& state, double border, FollowedBranch& out);
   bool out_of_reach(const BranchState& state) const;
   bool holds_at_every_phase(const BranchState& state);

@@ -222,6 +222,7 @@ std::string_view word(SpecialPointType type) {
   case SpecialPointType::branch_point: return "branch_point";
   case SpecialPointType::hopf: return "hopf";
   case SpecialPointType::flutter: return "flutter";
+  case SpecialPointType::parametric: return "parametric";
   }
   return "";
 }

@@ -24,6 +24,7 @@ enum class SpecialPointType {
   fold,         // the branch turns back
   branch_point, // another branch crosses
   hopf,         // a pair of eigenvalues crosses the imaginary axis where there is damping
+  parametric,   // a real Floquet multiplier leaves the unit circle: the drives pump a motion up
   flutter,      // two imaginary pairs collide where there is none
 };
 std::string_view word(SpecialPointType type);

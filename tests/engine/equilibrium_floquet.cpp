@@ -1,6 +1,7 @@
 // Stability where the linearised motion turns with the drives: multipliers against closed forms.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
+#include "engine/equilibrium/branches.hpp"
 #include "engine/equilibrium/floquet.hpp"
 #include "engine/linear/spectral.hpp"
 
@@ -337,4 +338,68 @@ TEST_CASE("Floquet: what does not turn is judged as before", "[floquet]") {
     CHECK(s.stability_reason != StabilityReason::floquet);
     CHECK(s.stability_reason != StabilityReason::varying);
   }
+}
+
+namespace {
+
+std::vector<double> specials_of(const ResponseDiagram& d, SpecialPointType type) {
+  std::vector<double> out;
+  for (const SpecialPoint& s : d.special)
+    if (s.type == type) out.push_back(s.at.parameter);
+  std::ranges::sort(out);
+  return out;
+}
+
+} // namespace
+
+TEST_CASE("branches: onset speeds of Mathieu's equation are where its characteristic values say",
+          "[floquet]") {
+  Turntable t;
+  t.free_length = 0.6;
+  t.mass = 0.5;
+  // The speeds at which a = k_0 / m w^2 is the i-th characteristic value of q = k_2 / 4 m w^2.
+  const auto onset = [&](std::size_t i, double low, double high) {
+    return static_cast<double>(root(
+        [&](long double speed) {
+          const double unit = t.mass * static_cast<double>(speed * speed);
+          const double a = (t.along() + t.across()) / 2 / unit, q = (t.along() - t.across()) / 4 / unit;
+          return characteristic_values(q)[i] - a;
+        },
+        low, high));
+  };
+  std::vector<double> wanted;
+  for (const std::size_t i : {1u, 2u, 3u, 4u})
+    wanted.push_back(onset(i, 3, 60));
+  std::ranges::sort(wanted);
+  const double low = 0.9 * wanted.front(), high = 1.2 * wanted.back();
+  const ResponseDiagram d = follow_branches(mathieu(t), "joints.spin.drive.speed", low, high);
+  const std::vector<double> found = specials_of(d, SpecialPointType::parametric);
+  INFO(d.message);
+  REQUIRE(found.size() >= wanted.size());
+  for (const double speed : wanted) {
+    const double nearest =
+        *std::ranges::min_element(found, {}, [&](double x) { return std::abs(x - speed); });
+    CHECK(nearest == Approx(speed).epsilon(0).margin(1e-8 * (high - low)));
+  }
+  CHECK(specials_of(d, SpecialPointType::hopf).empty());
+}
+
+TEST_CASE("branches: ground resonance begins and ends where the multiblade eigenvalues cross", "[floquet]") {
+  Rotor r;
+  const auto growth = [&](long double speed) {
+    Rotor at = r;
+    at.speed = static_cast<double>(speed);
+    return multiblade_growth(at);
+  };
+  std::vector<double> wanted;
+  for (double speed = 15; speed < 45; speed += 0.25)
+    if (growth(speed) * growth(speed + 0.25) < 0)
+      wanted.push_back(static_cast<double>(root(growth, speed, speed + 0.25)));
+  REQUIRE_FALSE(wanted.empty());
+  const ResponseDiagram d = follow_branches(rotor(r), "joints.spin.drive.speed", 15, 45);
+  const std::vector<double> found = specials_of(d, SpecialPointType::hopf);
+  INFO(d.message);
+  REQUIRE(found.size() == wanted.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    CHECK(found[i] == Approx(wanted[i]).epsilon(0).margin(1e-7));
 }
