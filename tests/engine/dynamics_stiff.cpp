@@ -4,7 +4,7 @@
 #include "engine/dynamics/choose_method.hpp"
 #include "engine/dynamics/fastest_rates.hpp"
 #include "engine/dynamics/motion_ode.hpp"
-#include "engine/equilibrium/stability.hpp"
+#include "engine/equilibrium/pencil.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -88,7 +88,7 @@ TEST_CASE("the fastest rates of a motion are those of its pencil") {
     Motion m(springy_chain(20, 10, damping), 0.1);
     const Equations::Pencil p = m.equations.pencil();
     double largest = 0, found = 0;
-    for (const std::complex<double>& rate : pencil_eigenvalues(p.mass, p.velocity, p.stiffness))
+    for (const std::complex<double>& rate : pencil_eigenvalues(p.mass, p.velocity, p.stiffness).value())
       largest = std::max(largest, std::abs(rate));
     for (const std::complex<double>& rate : fastest_rates(m.equations, 0, m.q, m.s))
       found = std::max(found, std::abs(rate));
