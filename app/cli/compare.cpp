@@ -2,6 +2,7 @@
 #include "app/cli/command.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
+#include "app/cli/time_limit.hpp"
 #include "app/plot/comparison_plot.hpp"
 #include "app/plot/svg.hpp"
 #include "engine/mechanism/error.hpp"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
 namespace flyball::cli {
@@ -65,6 +67,11 @@ std::string time_text(double seconds) {
   return fmt::format("{:.3f} s", seconds);
 }
 
+// Why a run has no error, in at most eight letters.
+std::string short_word(RunStatus status) {
+  return status == RunStatus::time_limit ? "too long" : std::string(word(status));
+}
+
 // The runs of one integrator: tolerances down, simulated durations across.
 std::string table(const Comparison& c, Integrator method) {
   std::vector<const MotionCurve*> curves;
@@ -74,13 +81,18 @@ std::string table(const Comparison& c, Integrator method) {
   for (const MotionCurve* curve : curves)
     out += fmt::format("  {:>19}", fmt::format("{:.3g} s simulated", curve->duration));
   out += "\n";
-  for (std::size_t p = 0; p < curves.front()->points.size(); ++p) {
-    out += fmt::format("  {:9.0e}", curves.front()->points[p].tolerance);
+  const auto longest =
+      *std::ranges::max_element(curves, {}, [](const MotionCurve* curve) { return curve->points.size(); });
+  for (std::size_t p = 0; p < longest->points.size(); ++p) {
+    out += fmt::format("  {:9.0e}", longest->points[p].tolerance);
     for (const MotionCurve* curve : curves) {
-      if (p >= curve->points.size()) continue; // cancelled
+      if (p >= curve->points.size()) { // given up before
+        out += fmt::format("  {:>19}", "-");
+        continue;
+      }
       const MotionPoint& point = curve->points[p];
       const std::string error =
-          std::isfinite(point.error) ? fmt::format("{:.1e}", point.error) : std::string(word(point.status));
+          std::isfinite(point.error) ? fmt::format("{:.1e}", point.error) : short_word(point.status);
       out += fmt::format("  {:>8} {:>10}", error, time_text(point.run_time_s));
     }
     out += "\n";
@@ -90,6 +102,7 @@ std::string table(const Comparison& c, Integrator method) {
 
 std::string to_text(const Mechanism& mechanism, const Comparison& c) {
   std::string out = fmt::format("{}: {}\n", mechanism.name, c.message);
+  if (c.reference.empty()) return out;
   out += fmt::format("reference verified in extended precision: last correction {:.1e}, residual {:.1e}\n",
                      c.reference_error, c.reference_residual);
   out += "\ndirect solution           error      run time\n";
@@ -116,6 +129,7 @@ struct Options {
   std::string csv, svg;
   int repeats = 5;
   std::vector<double> durations;
+  double time_limit = usual_time_limit;
   bool json = false;
 };
 
@@ -125,7 +139,11 @@ int run_compare(const Options& options) {
   Comparison comparison;
   try {
     progress->show({"solving"});
+    // What looks at no clock of its own is cancelled, a moment later than what does.
+    const TimeLimit limit(options.time_limit + 0.2);
     CompareOptions wanted;
+    wanted.time_limit = options.time_limit;
+    wanted.cancel = &limit.over();
     wanted.repeats = options.repeats;
     wanted.durations = options.durations;
     wanted.progress = [&](std::size_t done, std::size_t all) {
@@ -136,13 +154,18 @@ int run_compare(const Options& options) {
     throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
   }
   progress.reset();
-  if (!options.svg.empty()) write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison)));
-  if (!options.csv.empty()) write_bytes(options.csv, comparison_csv(comparison));
+  const bool any = !comparison.reference.empty();
+  if (any && !options.svg.empty())
+    write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison)));
+  if (any && !options.csv.empty()) write_bytes(options.csv, comparison_csv(comparison));
   if (options.json)
     fmt::print("{}\n", to_json(comparison).dump(2));
   else if (options.csv != "-" && options.svg != "-") // else standard output is theirs
     fmt::print("{}", to_text(mechanism, comparison));
-  return comparison.status == Status::converged ? exit_done : exit_no_result;
+  if (comparison.status == Status::converged && comparison.complete) return exit_done;
+  std::fflush(stdout);
+  fmt::print(stderr, "flyball: {}\n", comparison.message);
+  return exit_no_result;
 }
 
 } // namespace
@@ -161,6 +184,7 @@ void add_compare(CLI::App& app, int& exit_code) {
       ->add_option("--duration", options->durations,
                    "Seconds to simulate; may be given several times (default: by the slowest motion)")
       ->check(above_zero());
+  add_time_limit(*command, options->time_limit);
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer("Example: flyball compare governor.json --csv compare.csv --svg compare.svg");
   command->callback([options, &exit_code] { exit_code = run_compare(*options); });

@@ -3,6 +3,7 @@
 #include "app/cli/picture.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
+#include "app/cli/time_limit.hpp"
 #include "app/render/movie.hpp"
 #include "engine/dynamics/settled.hpp"
 #include "engine/dynamics/simulator.hpp"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -112,8 +114,12 @@ SimulationState read_state(const std::filesystem::path& file) {
 }
 
 Json run_json(const Run& run, const std::optional<Settled>& settled) {
-  Json out = {{"status", word(run.status)},         {"message", run.message}, {"method", word(run.method)},
-              {"method_reason", run.method_reason}, {"damped", run.damped},   {"time", run.time.back()}};
+  Json out = {{"status", word(run.status)},
+              {"message", run.message},
+              {"method", word(run.method)},
+              {"method_reason", run.method_reason},
+              {"damped", run.damped}};
+  out["time"] = run.time.empty() ? Json(nullptr) : Json(run.time.back());
   out["settled"] = nullptr;
   if (settled)
     out["settled"] = {
@@ -122,8 +128,8 @@ Json run_json(const Run& run, const std::optional<Settled>& settled) {
         {"message", settled->message}};
   out["coordinates"] = out["rates"] = Json::object();
   for (const CoordinateTrack& c : run.coordinates) {
-    out["coordinates"][coordinate_label(c)] = c.value.back();
-    out["rates"][coordinate_label(c)] = c.rate.back();
+    out["coordinates"][coordinate_label(c)] = c.value.empty() ? Json(nullptr) : Json(c.value.back());
+    out["rates"][coordinate_label(c)] = c.rate.empty() ? Json(nullptr) : Json(c.rate.back());
   }
   const auto drift = jacobi_drift(run);
   out["energy"] = {{"balance_error", energy_error(run)},
@@ -152,6 +158,7 @@ Json run_json(const Run& run, const std::optional<Settled>& settled) {
 
 std::string run_text(const Mechanism& mechanism, const Run& run, const std::optional<Settled>& settled) {
   std::string out = fmt::format("{}: {}\n", mechanism.name, run.message);
+  if (run.time.empty()) return out;
   if (settled) out += "  " + settled->message + "\n";
   out += "  " + run.method_reason + "\n";
   for (const std::string& note : run.notes)
@@ -183,6 +190,7 @@ struct Options {
   std::string start = "rest", method = "automatic", csv, from_state, save_state;
   std::vector<std::string> at, kick;
   bool undamped = false, json = false;
+  double time_limit = usual_time_limit;
   MovieOptions movie; // without a file: none
   std::string size = "1280x720";
 };
@@ -209,6 +217,7 @@ SimulationOptions simulation_of(const Options& options, const Mechanism& mechani
   wanted.tolerance = options.tolerance;
   wanted.fixed_step = options.step;
   wanted.method = methods.at(options.method);
+  wanted.time_limit = options.time_limit;
   wanted.damped = mechanism.simulation.damped && !options.undamped;
   wanted.start = starts.at(options.start);
   for (const std::string& text : options.at)
@@ -243,17 +252,26 @@ int run_simulate(const Options& options) {
   std::optional<Solution> steady;
   std::optional<Settled> settled;
   try {
+    // What looks at no clock of its own is cancelled, a moment later than what does.
+    const TimeLimit limit(options.time_limit + 0.2);
     progress->show({"finding the start"});
     const double begin = wanted.start == Start::state ? wanted.state.time : 0;
     wanted.progress = [&](double t) {
       progress->show({"simulating", std::clamp((t - begin) / wanted.duration, 0., 1.)});
     };
+    wanted.cancel = &limit.over();
     run = simulate(mechanism, wanted);
+    if (run.status == RunStatus::cancelled) {
+      run.status = RunStatus::time_limit;
+      run.message = fmt::format("The motion stopped: the time limit of {} s was reached.",
+                                rounded_text(options.time_limit, 4));
+    }
     SolveOptions quick;
     quick.details = false;
     quick.progress = progress->reporter();
-    steady = Analysis(mechanism).solve(quick);
-    if (steady->status == Status::converged)
+    quick.cancel = &limit.over();
+    if (!run.time.empty()) steady = Analysis(mechanism).solve(quick);
+    if (steady && steady->status == Status::converged)
       settled = find_settled(run, *steady);
     else
       steady.reset();
@@ -261,17 +279,21 @@ int run_simulate(const Options& options) {
     throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
   }
   progress.reset();
-  if (!options.save_state.empty())
+  const bool any = !run.time.empty();
+  if (any && !options.save_state.empty())
     write_bytes(options.save_state, state_json(state_at(run, run.time.size() - 1)).dump(2) + "\n");
-  if (!options.csv.empty()) write_bytes(options.csv, to_csv(run));
-  if (!movie.file.empty()) draw_movie(mechanism, std::make_shared<const Run>(run), steady, movie);
+  if (any && !options.csv.empty()) write_bytes(options.csv, to_csv(run));
+  if (any && !movie.file.empty()) draw_movie(mechanism, std::make_shared<const Run>(run), steady, movie);
   if (options.json)
     fmt::print("{}\n", run_json(run, settled).dump(2));
-  else if (options.csv != "-") // then standard output is the table's
+  else if (any && options.csv != "-") // then standard output is the table's
     fmt::print("{}", run_text(mechanism, run, settled));
-  if (run.status != RunStatus::completed && options.csv == "-")
-    fmt::print(stderr, "flyball: {}\n", run.message);
-  return run.status == RunStatus::completed ? exit_done : exit_no_result;
+  if (run.status == RunStatus::completed) return exit_done;
+  std::fflush(stdout);
+  fmt::print(stderr, "flyball: {}\n", run.message);
+  if (any && run.time.size() > 1)
+    fmt::print(stderr, "flyball: what was computed until then, {} samples, is kept\n", run.time.size());
+  return exit_no_result;
 }
 
 } // namespace
@@ -315,6 +337,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
   command->add_option("--step", options->step, "Runge-Kutta steps of this many seconds instead")
       ->check(above_zero())
       ->excludes(tolerance);
+  add_time_limit(*command, options->time_limit);
   command->add_option("--csv", options->csv, "Write all samples to a file (-: standard output)");
   command->add_flag("--json", options->json, "Print a JSON object of the outcome");
   CLI::Option* movie = command->add_option("--movie", options->movie.file,

@@ -151,6 +151,8 @@ void LiveMotion::State::compute(Job job) {
       options.state = state_at(*job.before, last);
     }
     Simulator simulator(job.mechanism, options);
+    if (simulator.run().time.empty()) // cancelled before it began
+      return publish({job.ticket, job.before, true, simulator.run().message});
     const double begin = simulator.time(), end = begin + std::max(duration, 0.);
     const auto send = [&](bool finished) {
       auto run = std::make_shared<const Run>(job.before ? joined(*job.before, last, simulator.run())

@@ -1,5 +1,6 @@
 #include "engine/dynamics/choose_method.hpp"
 
+#include "engine/dynamics/fastest_rates.hpp"
 #include "engine/equilibrium/pencil.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -13,16 +14,29 @@ namespace {
 constexpr double stages = 13, stable_step = 4.5;
 // Steps that an oscillation needs a radian, times the tolerance to the power of one over the order.
 constexpr double steps_explicit = 0.09, steps_implicit = 0.25;
+// Coordinates up to which all rates are found.
+constexpr int most_for_all_rates = 64;
 
 } // namespace
 
-MethodChoice choose_method(Equations& equations, double duration, double tolerance, Integrator wanted) {
+MethodChoice choose_method(Equations& equations, double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s,
+                           double duration, double tolerance, Integrator wanted) {
   const MotionModel& model = equations.model();
   MethodChoice out;
   std::vector<std::complex<double>> rates;
-  if (model.system.nv > 0 && model.system.nv <= 150) {
+  // What moves it and how it moves, in radians or reaches: modes of larger rates than these allow for are not
+  // seen, and need not be followed.
+  double push = 0, speed = 0;
+  if (model.system.nv > 0) {
+    push = equations.acceleration().cwiseQuotient(model.scaling.column).lpNorm<Eigen::Infinity>();
+    speed = s.cwiseQuotient(model.scaling.column).lpNorm<Eigen::Infinity>();
+  }
+  const bool at_rest = push == 0 && speed == 0;
+  if (model.system.nv > 0 && model.system.nv <= most_for_all_rates) {
     const Equations::Pencil p = equations.pencil();
     rates = pencil_eigenvalues(p.mass, p.velocity, p.stiffness).value_or(rates);
+  } else if (model.system.nv > 0) {
+    rates = fastest_rates(equations, t, q, s);
   }
   double driven = 0;
   for (const DrivenCoordinate& d : model.system.drives) {
@@ -39,15 +53,17 @@ MethodChoice choose_method(Equations& equations, double duration, double toleran
     fastest = std::max(fastest, size);
     // A motion is to be followed until it has died out, and held stable to the end.
     const double decay = std::max(0., -rate.real());
-    const double alive = std::min(duration, decay > 0 ? -std::log(tolerance) / decay : duration);
+    const bool seen = at_rest || std::max(push / size, speed) / size > tolerance;
+    const double alive = !seen ? 0 : decay > 0 ? std::min(duration, -std::log(tolerance) / decay) : duration;
     const double followed = size * alive * steps_explicit * std::pow(tolerance, -1. / 8);
-    const double held = decay > 0 ? size * (duration - alive) / stable_step : 0;
+    const double held = size * (duration - alive) / stable_step;
     if (stages * (followed + held) > explicit_cost) {
       explicit_cost = stages * (followed + held);
       costly = rate;
     }
     implicit_cost = std::max(implicit_cost, 2 * size * alive * steps_implicit * std::pow(tolerance, -1. / 5));
   }
+  out.fastest = fastest;
   out.rate_scale = std::max({driven, slowest, 1e-3 * fastest});
   if (!(out.rate_scale > 0)) out.rate_scale = 1;
 
@@ -57,15 +73,19 @@ MethodChoice choose_method(Equations& equations, double duration, double toleran
     return out;
   }
   if (rates.empty()) {
-    out.reason = "Runge-Kutta: there is no linearised motion to judge by.";
+    out.reason = model.system.nv > 0
+                     ? "Runge-Kutta: the linearised motion was not found, so there is nothing to judge by."
+                     : "Runge-Kutta: nothing moves but the drives.";
     return out;
   }
   if (explicit_cost > implicit_cost) {
     out.method = Integrator::bdf;
-    out.reason = "BDF: a motion at " + rounded_text(std::abs(costly), 2) + " 1/s dies out within " +
-                 rounded_text(-std::log(tolerance) / std::max(1e-300, -costly.real()), 2) +
-                 " s, but would keep explicit steps below " +
-                 rounded_text(stable_step / std::abs(costly), 2) + " s.";
+    const double decay = std::max(0., -costly.real()), span = -std::log(tolerance) / decay;
+    out.reason = "BDF: a motion at " + rounded_text(std::abs(costly), 2) + " 1/s " +
+                 (decay > 0 && span < duration ? "dies out within " + rounded_text(span, 2) + " s"
+                                               : std::string("is too small to be seen")) +
+                 ", but would keep explicit steps below " + rounded_text(stable_step / std::abs(costly), 2) +
+                 " s.";
   } else {
     out.reason = "Runge-Kutta: no fast motion dies out early, so that explicit steps are held by accuracy "
                  "alone (fastest " +

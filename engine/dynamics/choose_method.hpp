@@ -9,10 +9,14 @@ struct MethodChoice {
   Integrator method = Integrator::runge_kutta;
   std::string reason;    // a sentence
   double rate_scale = 1; // 1/s, how fast the motion is as a rule
+  double fastest = 0;    // 1/s, the largest rate of the linearised motion; 0: not known
 };
 
-// From the linearised motion at an evaluated state: BDF where fast motions die out long before the end, for
-// explicit steps stay as short as those ask for.
-MethodChoice choose_method(Equations& equations, double duration, double tolerance, Integrator wanted);
+// From the linearised motion at a state (t; q and s as Equations has them) that is the last evaluated: BDF
+// where fast motions die out long before the end (`duration`, s, from here), or are too small to be seen, for
+// explicit steps stay as short as those ask for. All rates are found for small mechanisms, the fastest for
+// large ones.
+MethodChoice choose_method(Equations& equations, double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s,
+                           double duration, double tolerance, Integrator wanted);
 
 } // namespace flyball

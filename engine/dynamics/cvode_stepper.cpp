@@ -4,8 +4,9 @@
 #include <cvode/cvode.h>
 #include <cvode/cvode_ls.h>
 #include <cvode/cvode_proj.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
+#include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_matrix.h>
+#include <sundials/sundials_nonlinearsolver.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <utility>
@@ -13,15 +14,34 @@
 namespace flyball {
 namespace {
 
-int jacobian(realtype t, N_Vector y, N_Vector rate, SUNMatrix out, void* data, N_Vector, N_Vector, N_Vector) {
-  return sundials::ode_of(data).jacobian(t, sundials::data(y), sundials::data(rate), SUNDenseMatrix_Data(out))
-             ? 0
-             : 1;
+// The matrix of the implicit steps is the Ode's own; SUNDIALS is given an empty shell in its place.
+int set_up(realtype t, N_Vector y, N_Vector rate, SUNMatrix, booleantype keep, booleantype* taken,
+           realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
+  Ode& ode = sundials::ode_of(data);
+  *taken = keep ? SUNFALSE : SUNTRUE;
+  if (!keep && !ode.linearise(t, sundials::data(y), sundials::data(rate))) return sundials::failure(ode);
+  return ode.factor(gamma) ? 0 : sundials::failure(ode);
+}
+
+SUNMatrix_ID matrix_kind(SUNMatrix) {
+  return SUNMATRIX_CUSTOM;
+}
+SUNLinearSolver_Type solver_type(SUNLinearSolver) {
+  return SUNLINEARSOLVER_DIRECT;
+}
+SUNLinearSolver_ID solver_kind(SUNLinearSolver) {
+  return SUNLINEARSOLVER_CUSTOM;
+}
+int solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+  N_VScale(1, b, x);
+  sundials::ode_of(solver->content).solve(sundials::data(x));
+  return 0;
 }
 
 int project(realtype t, N_Vector y, N_Vector correction, realtype, N_Vector, void* data) {
+  Ode& ode = sundials::ode_of(data);
   N_VScale(1, y, correction);
-  if (!sundials::ode_of(data).project(t, sundials::data(correction))) return 1;
+  if (!ode.project(t, sundials::data(correction))) return sundials::failure(ode);
   N_VLinearSum(1, correction, -1, y, correction);
   return 0;
 }
@@ -50,9 +70,9 @@ class CvodeStepper : public Stepper {
   }
   ~CvodeStepper() override {
     CVodeFree(&memory_);
-    if (linear_) SUNLinSolFree(linear_);
     if (nonlinear_) SUNNonlinSolFree(nonlinear_);
-    if (matrix_) SUNMatDestroy(matrix_);
+    if (linear_) SUNLinSolFreeEmpty(linear_);
+    if (matrix_) SUNMatFreeEmpty(matrix_);
   }
 
   void start(double t, const Eigen::VectorXd& y) override {
@@ -78,10 +98,16 @@ class CvodeStepper : public Stepper {
       CVodeSetNonlinearSolver(memory_, nonlinear_);
       CVodeSetMaxNonlinIters(memory_, 10);
     } else {
-      matrix_ = SUNDenseMatrix(ode_.size(), ode_.size(), context_);
-      linear_ = SUNLinSol_Dense(y_, matrix_, context_);
+      matrix_ = SUNMatNewEmpty(context_);
+      linear_ = SUNLinSolNewEmpty(context_);
+      if (!matrix_ || !linear_) throw std::bad_alloc();
+      matrix_->ops->getid = matrix_kind;
+      linear_->ops->gettype = solver_type;
+      linear_->ops->getid = solver_kind;
+      linear_->ops->solve = solve;
+      linear_->content = &ode_;
       CVodeSetLinearSolver(memory_, linear_, matrix_);
-      CVodeSetJacFn(memory_, jacobian);
+      CVodeSetLinSysFn(memory_, set_up);
       CVodeSetStabLimDet(memory_, SUNTRUE);
       if (ode_.has_manifold()) {
         CVodeSetProjFn(memory_, project);

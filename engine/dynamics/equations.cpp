@@ -1,6 +1,7 @@
 #include "engine/dynamics/equations.hpp"
 
 #include "engine/equilibrium/constraint_space.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/system/constraint_row.hpp"
 
 namespace flyball {
@@ -19,9 +20,9 @@ std::vector<StopElement> list_stops(const System& system, const Parameters& p) {
   return out;
 }
 
-Equations::Equations(const MotionModel& model)
-    : model_(model), system_(model.released), parameters_(model.parameters), n_(model.system.nv),
-      drives_(static_cast<int>(model.system.drives.size())) {
+Equations::Equations(const MotionModel& model, const Watch& watch)
+    : model_(model), watch_(watch), system_(model.released), parameters_(model.parameters),
+      n_(model.system.nv), drives_(static_cast<int>(model.system.drives.size())) {
   q_.setZero(system_.nq);
   u_.setZero(system_.nv);
   s_.setZero(system_.nv);
@@ -157,6 +158,7 @@ bool Equations::solve_motion(const Eigen::VectorXd& force, const Eigen::VectorXd
 }
 
 bool Equations::evaluate(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s) {
+  if (watch_.over()) return false;
   load(t, q, s);
   s_ = u_;
   place();
@@ -176,18 +178,39 @@ bool Equations::evaluate(double t, const Eigen::VectorXd& q, const Eigen::Vector
   return true;
 }
 
-void Equations::reduce(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u, Eigen::VectorXd& s) {
+bool Equations::reduce(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u, Eigen::VectorXd& s) {
   s = u;
-  if (idle_.empty()) return;
+  if (idle_.empty()) return true;
   load(t, q, u);
   place();
-  if (!factor() || !find_null_directions()) return;
+  if (!factor() || !find_null_directions()) return false;
   Eigen::VectorXd idle(static_cast<Eigen::Index>(idle_.size()));
   for (std::size_t i = 0; i < idle_.size(); ++i)
     idle[static_cast<Eigen::Index>(i)] = u[idle_[i]] / model_.scaling.column[idle_[i]];
   s -= (null_ * idle).cwiseProduct(model_.scaling.column);
   for (int v : idle_)
     s[v] = 0;
+  return true;
+}
+
+std::string Equations::unsolved() const {
+  if (!mass_.mass.allFinite()) return "the numbers overflow";
+  if (!(saddle_.independence() > 1e-12))
+    return "the equations of its loops are not independent to rounding at this position";
+  int light = -1, heavy = -1;
+  const auto inertia = [&](int v) {
+    return mass_.mass(v, v) * model_.scaling.column[v] * model_.scaling.column[v];
+  };
+  for (const int v : regular_) {
+    if (light < 0 || inertia(v) < inertia(light)) light = v;
+    if (heavy < 0 || inertia(v) > inertia(heavy)) heavy = v;
+  }
+  if (light < 0 || !(inertia(light) < 1e-10 * inertia(heavy)))
+    return "the mass matrix is singular to rounding";
+  return "the inertias that move with " + name_of_coordinate(model_, heavy) + " and with " +
+         name_of_coordinate(model_, light) + " are " + rounded_text(inertia(heavy), 2) + " and " +
+         rounded_text(inertia(light), 2) +
+         " kg m^2, too far apart for double precision; masses and lengths of like sizes mend that";
 }
 
 Eigen::VectorXd Equations::drive_forces() const {
@@ -276,6 +299,24 @@ Equations::Pencil Equations::pencil() {
     return Eigen::MatrixXd(basis.transpose() * m.topLeftCorner(n_, n_) * basis);
   };
   return {project(linearization_.mass), project(linearization_.velocity), project(linearization_.stiffness)};
+}
+
+void Equations::acceleration_derivatives(Eigen::MatrixXd& with_q, Eigen::MatrixXd& with_s) {
+  full_a_.head(n_) = a_;
+  place(nullptr, &full_a_);
+  const Eigen::VectorXd& q = sided_configuration();
+  evaluate_residual<double>(system_, parameters_, q, lambda_, kinematics_, moving_residual_);
+  linearize(system_, parameters_, q, lambda_, kinematics_, moving_residual_, linearization_);
+  linearize_motion(system_, parameters_, q, kinematics_, linearization_);
+  add_coordinate_damping_stiffness(system_, parameters_, q, u_, linearization_.stiffness);
+  const auto column = model_.scaling.column.asDiagonal();
+  const auto respond = [&](const Eigen::MatrixXd& change, Eigen::MatrixXd& out) {
+    out = -(column * change.topLeftCorner(n_, n_));
+    saddle_.respond(out);
+    out = column * out;
+  };
+  respond(linearization_.stiffness, with_q);
+  respond(linearization_.velocity, with_s);
 }
 
 } // namespace flyball

@@ -10,6 +10,7 @@
 
 #include "engine/dynamics/motion_model.hpp"
 #include "engine/dynamics/saddle_point.hpp"
+#include "engine/dynamics/watch.hpp"
 #include "engine/system/motion.hpp"
 #include "engine/system/reactions.hpp"
 
@@ -35,7 +36,8 @@ std::vector<StopElement> list_stops(const System& system, const Parameters& para
 
 class Equations {
  public:
-  explicit Equations(const MotionModel& model);
+  // Where `watch` is over, what evaluates fails.
+  explicit Equations(const MotionModel& model, const Watch& watch);
 
   // Finds independent constraints and null directions at a state whose loops are closed; `u` is a velocity
   // that keeps them closed. Moves what stands in balance into it, in q. Throws SceneError, naming joints,
@@ -48,9 +50,12 @@ class Equations {
   void latch(const std::vector<StopElement>& stops, const std::vector<bool>& touching,
              std::vector<FlipElement> flips);
 
-  // s of a velocity u, and both evaluated: false where the equations cannot be solved.
-  void reduce(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u, Eigen::VectorXd& s);
-  bool evaluate(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s);
+  // s of a velocity u, and both evaluated: false where the equations cannot be solved. Then s is u, and what
+  // is told of the last evaluation means nothing until the next that succeeds.
+  [[nodiscard]] bool reduce(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u, Eigen::VectorXd& s);
+  [[nodiscard]] bool evaluate(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s);
+  // Why they cannot, as a clause: which numbers are too far apart.
+  std::string unsolved() const;
 
   // Of the last evaluation. Configuration and velocity of the released system, drives last.
   const Eigen::VectorXd& configuration() const { return q_; }
@@ -92,6 +97,10 @@ class Equations {
     Eigen::MatrixXd mass, velocity, stiffness;
   };
   Pencil pencil();
+  // Derivatives of the acceleration at the evaluated state, for the iterations of implicit steps: (n, n) with
+  // a tangent step of q, in the axes of retract(), and with s. Not for what has massless bodies. The rates of
+  // the constraints' own curvature are left out: they are no stiffness, and cost third derivatives.
+  void acceleration_derivatives(Eigen::MatrixXd& with_q, Eigen::MatrixXd& with_s);
 
   const MotionModel& model() const { return model_; }
 
@@ -109,6 +118,7 @@ class Equations {
   bool find_null_directions();
   void evaluate_damping(Eigen::MatrixXd& out) const;
   bool find_damped_velocity();
+  bool find_standing_stiffness();
   bool find_standing_velocity();
   bool balanced_to_rounding();
   bool set_velocity();
@@ -116,7 +126,7 @@ class Equations {
   Eigen::VectorXd null_force() const;
   Eigen::VectorXd null_motion(const Eigen::VectorXd& idle) const;
   bool solve_motion(const Eigen::VectorXd& force, const Eigen::VectorXd& bias, Eigen::VectorXd& a);
-  bool find_standing_balance(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, int limit);
+  [[nodiscard]] bool find_standing_balance(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, int limit);
   double open_rows();
   bool close_loops(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, double& shift);
   std::string motion_of(const Eigen::MatrixXd& kinds) const;
@@ -125,6 +135,7 @@ class Equations {
   std::optional<Eigen::VectorXd> balancing_step() const;
 
   const MotionModel& model_;
+  const Watch& watch_;
   const System& system_; // released
   Parameters parameters_;
   int n_ = 0, drives_ = 0;
@@ -146,7 +157,7 @@ class Equations {
 
   // Null directions Y of M and Phi_q in scaled coordinates, the identity on the idle ones: (n, idle).
   Eigen::MatrixXd null_, damping_, null_damping_, kinds_, standing_stiffness_;
-  Eigen::VectorXd idle_velocity_, standing_force_, kind_sizes_;
+  Eigen::VectorXd idle_velocity_, standing_force_, standing_rate_, kind_sizes_;
   double chosen_independence_ = 1;
   double least_damping_ = 0;
   double null_mass_ = 0; // what mass is left on them, relative

@@ -59,7 +59,7 @@ bool Equations::find_damped_velocity() {
   if (kinds_.rows() != count) kinds_ = Eigen::MatrixXd::Identity(count, count);
   if (damped_ == 0) return true;
   double previous = 0;
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < 50 && !watch_.over(); ++i) {
     u_.head(n_) = s_.head(n_) + null_motion(idle_velocity_);
     place();
     forces();
@@ -112,7 +112,8 @@ bool Equations::sort_kinds(const Eigen::MatrixXd& damping) {
 // What stands in balance keeps in balance: d/dt (Y^T F) = Y^T (F_q u + F_q_D q_D') = 0, F being the whole
 // balance at the motion's own accelerations and multipliers. Y removes all that has mass or is damped, so
 // the balance of forces stays as it is along these directions, and the motion of the rest is known already.
-bool Equations::find_standing_velocity() {
+// Here its stiffness along them, and how fast the balance changes while they stand still.
+bool Equations::find_standing_stiffness() {
   place();
   forces();
   constraint_accelerations(system_, parameters_, nullptr, kinematics_, carried_, bias_);
@@ -143,11 +144,17 @@ bool Equations::find_standing_velocity() {
   const Eigen::MatrixXd standing = column.asDiagonal() * null_ * kinds;
   const Eigen::MatrixXd change = standing.transpose() * linearization_.stiffness.topRows(n_);
   standing_stiffness_ = change.leftCols(n_) * standing;
+  standing_rate_ = change * u_;
+  return standing_stiffness_.allFinite() && standing_rate_.allFinite();
+}
+
+bool Equations::find_standing_velocity() {
+  if (!find_standing_stiffness()) return false;
   Lu lu;
   if (!lu.compute(standing_stiffness_)) return false;
-  const Eigen::VectorXd step = lu.solve(-change * u_);
+  const Eigen::VectorXd step = lu.solve(-standing_rate_);
   if (!step.allFinite()) return false;
-  idle_velocity_ += kinds * step;
+  idle_velocity_ += kinds_.middleCols(damped_, standing_) * step;
   return set_velocity();
 }
 

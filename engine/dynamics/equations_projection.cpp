@@ -22,7 +22,7 @@ double Equations::open_rows() {
 
 bool Equations::close_loops(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, double& shift) {
   double previous = 0;
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 12 && !watch_.over(); ++i) {
     load(t, q, s);
     place();
     const double open = open_rows();
@@ -38,7 +38,7 @@ bool Equations::close_loops(double t, Eigen::VectorXd& q, const Eigen::VectorXd&
     retract<double>(model_.system, step_, q);
     previous = open;
   }
-  return previous < 1e-10;
+  return !watch_.over() && previous < 1e-10;
 }
 
 bool Equations::catch_up(double t, Eigen::VectorXd& q, Eigen::VectorXd& s) {

@@ -21,9 +21,10 @@ constexpr double no_force = 1e-8;     // relative to the terms it is made of
 
 // "the massless motion of a, b and c", of the coordinates that take part.
 std::string Equations::motion_of(const Eigen::MatrixXd& kinds) const {
+  if (kinds.size() == 0) return "the motion of massless bodies";
   const Eigen::MatrixXd directions = null_ * kinds;
   std::vector<std::string> names;
-  const double largest = directions.size() > 0 ? directions.cwiseAbs().maxCoeff() : 0;
+  const double largest = directions.cwiseAbs().maxCoeff();
   for (int v = 0; v < n_; ++v)
     if (directions.row(v).cwiseAbs().maxCoeff() > 1e-3 * largest)
       names.push_back(name_of_coordinate(model_, v));
@@ -142,13 +143,14 @@ void Equations::choose_structure(double t, Eigen::VectorXd& q, const Eigen::Vect
   choose_idle();
   fill_gradient();
   chosen_independence_ = saddle_.factor_constraints(scaled_gradient_) ? saddle_.independence() : 0;
-  kinds_.resize(0, 0);
+  damped_ = standing_ = 0;
+  const auto count = static_cast<Eigen::Index>(idle_.size());
+  null_.setZero(n_, count);
+  kinds_.setIdentity(count, count);
+  kind_sizes_.setZero(count);
+  if (count == 0) return;
   Eigen::VectorXd s;
-  reduce(t, q, u, s);
-  if (idle_.empty()) {
-    damped_ = standing_ = 0;
-    return;
-  }
+  if (!reduce(t, q, u, s)) refuse(unsolved());
   choose_kinds();
   const auto rest = static_cast<Eigen::Index>(idle_.size()) - damped_;
   if (rest == 0) return;
@@ -157,9 +159,9 @@ void Equations::choose_structure(double t, Eigen::VectorXd& q, const Eigen::Vect
   load(t, q, s);
   s_ = u_;
   place();
-  if (!factor() || !find_null_directions() || !find_damped_velocity())
-    refuse(motion_of(kinds_) + " gets no velocity from the balance of forces");
-  find_standing_velocity(); // for the stiffness alone
+  if (!factor() || !find_null_directions()) refuse(unsolved());
+  if (!find_damped_velocity()) refuse(motion_of(kinds_) + " gets no velocity from the balance of forces");
+  if (!find_standing_stiffness()) refuse(unsolved());
   const Eigen::MatrixXd column = model_.scaling.column.asDiagonal();
   const Eigen::MatrixXd scaled = column * linearization_.stiffness.topLeftCorner(n_, n_) * column;
   const double stiffest = scaled.cwiseAbs().maxCoeff();
@@ -170,7 +172,9 @@ void Equations::choose_structure(double t, Eigen::VectorXd& q, const Eigen::Vect
   for (Eigen::Index i = 0; i < rest; ++i)
     standing_ += std::abs((*stiffnesses)[i]) > no_stiffness * stiffest;
   if (!find_standing_balance(t, q, s, 200))
-    refuse(motion_of(kinds_.middleCols(damped_, standing_)) + " comes to no balance of forces");
+    refuse(standing_ == 0
+               ? unsolved()
+               : motion_of(kinds_.middleCols(damped_, standing_)) + " comes to no balance of forces");
   if (const std::string what = trouble(); !what.empty()) refuse(what);
 }
 

@@ -1,12 +1,11 @@
 #include "engine/dynamics/motion_ode.hpp"
 
-#include <limits>
-
 namespace flyball {
 
-MotionOde::MotionOde(Equations& equations, double tolerance, double rate_scale, double energy_scale)
-    : equations_(equations), model_(equations.model()), nq_(model_.system.nq), nv_(model_.system.nv),
-      tolerance_(tolerance), energy_scale_(energy_scale) {
+MotionOde::MotionOde(Equations& equations, const Watch& watch, double tolerance, double rate_scale,
+                     double energy_scale)
+    : equations_(equations), watch_(watch), model_(equations.model()), nq_(model_.system.nq),
+      nv_(model_.system.nv), tolerance_(tolerance), energy_scale_(energy_scale) {
   q_.resize(nq_);
   s_.resize(nv_);
   scale_.setOnes(nq_ + nv_);
@@ -81,27 +80,12 @@ void MotionOde::weights(const double* y, double* out) {
     out[i] = tolerance_ * (energy_scale_ + std::abs(y[i]));
 }
 
-bool MotionOde::jacobian(double t, const double* y, const double* rate_at_y, double* out) {
-  const int n = size();
-  perturbed_ = Eigen::Map<const Eigen::VectorXd>(y, n);
-  rates_.resize(n);
-  std::fill(out, out + static_cast<std::ptrdiff_t>(n) * n, 0.);
-  const double root = std::sqrt(std::numeric_limits<double>::epsilon());
-  for (int j = 0; j < nq_ + nv_; ++j) {
-    const double kept = perturbed_[j];
-    double step = root * std::max(std::abs(kept), scale_[j]);
-    perturbed_[j] = kept + step;
-    step = perturbed_[j] - kept;
-    if (!rate(t, perturbed_.data(), rates_.data())) {
-      perturbed_[j] = kept - step;
-      step = -step;
-      if (!rate(t, perturbed_.data(), rates_.data())) return false;
-    }
-    for (int i = 0; i < n; ++i)
-      out[static_cast<std::ptrdiff_t>(j) * n + i] = (rates_[i] - rate_at_y[i]) / step;
-    perturbed_[j] = kept;
-  }
-  return true;
+bool MotionOde::linearise(double t, const double* y, const double* rate_at_y) {
+  if (equations_.has_massless())
+    return matrix_.take_quotients([&](const double* x, double* out) { return rate(t, x, out); }, y, rate_at_y,
+                                  scale_, size());
+  unpack(y, q_, s_);
+  return equations_.evaluate(t, q_, s_) && matrix_.take_derivatives(equations_, y);
 }
 
 bool MotionOde::project(double t, double* y) {

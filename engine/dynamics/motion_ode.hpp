@@ -2,7 +2,7 @@
 // its quaternions, the velocity that carries the momentum, and three energies that are integrated along.
 #pragma once
 
-#include "engine/dynamics/equations.hpp"
+#include "engine/dynamics/newton_matrix.hpp"
 #include "engine/dynamics/stepper.hpp"
 
 namespace flyball {
@@ -14,7 +14,8 @@ class MotionOde : public Ode {
  public:
   // `rate_scale` (1/s): how fast a coordinate that moves through a radian or the reach is as a rule;
   // `energy_scale` (J): the energies at play.
-  MotionOde(Equations& equations, double tolerance, double rate_scale, double energy_scale);
+  MotionOde(Equations& equations, const Watch& watch, double tolerance, double rate_scale,
+            double energy_scale);
 
   // What ends steps: stops reached or left, rotation vectors that turn over.
   void set_events(std::vector<StopElement> stops, std::vector<FlipElement> flips);
@@ -32,7 +33,10 @@ class MotionOde : public Ode {
   int size() const override { return nq_ + nv_ + 3; }
   bool rate(double t, const double* y, double* out) override;
   void weights(const double* y, double* out) override;
-  bool jacobian(double t, const double* y, const double* rate, double* out) override;
+  bool linearise(double t, const double* y, const double* rate) override;
+  bool factor(double gamma) override { return matrix_.factor(gamma); }
+  void solve(double* b) override { matrix_.solve(b); }
+  bool wanted() const override { return !watch_.over(); }
   bool has_manifold() const override { return rotations_ || equations_.needs_projection(); }
   bool project(double t, double* y) override;
   int events() const override { return static_cast<int>(stops_.size() + flips_.size()); }
@@ -40,6 +44,7 @@ class MotionOde : public Ode {
 
  private:
   Equations& equations_;
+  const Watch& watch_;
   const MotionModel& model_;
   int nq_, nv_;
   double tolerance_, energy_scale_;
@@ -47,7 +52,8 @@ class MotionOde : public Ode {
   std::vector<StopElement> stops_;
   std::vector<bool> touching_;
   std::vector<FlipElement> flips_;
-  Eigen::VectorXd q_, s_, scale_, perturbed_, rates_;
+  Eigen::VectorXd q_, s_, scale_;
+  NewtonMatrix matrix_;
 };
 
 } // namespace flyball

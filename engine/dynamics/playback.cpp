@@ -60,6 +60,7 @@ std::string_view word(RunStatus status) {
   switch (status) {
   case RunStatus::completed: return "completed";
   case RunStatus::cancelled: return "cancelled";
+  case RunStatus::time_limit: return "time_limit";
   case RunStatus::diverged: return "diverged";
   }
   return "";

@@ -11,7 +11,8 @@ namespace flyball {
 namespace {
 
 int project(realtype t, N_Vector y, void* data) {
-  return sundials::ode_of(data).project(t, sundials::data(y)) ? 0 : 1;
+  Ode& ode = sundials::ode_of(data);
+  return ode.project(t, sundials::data(y)) ? 0 : sundials::failure(ode);
 }
 
 std::string clause(int flag) {

@@ -59,6 +59,20 @@ void SaddlePoint::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eige
                                              &scratch);
 }
 
+void SaddlePoint::respond(Eigen::MatrixXd& forces) const {
+  Eigen::VectorXd scratch(forces.cols());
+  const auto turn = [&](Eigen::Index k) {
+    forces.bottomRows(n_ - k).applyHouseholderOnTheLeft(qr_.matrix().col(k).tail(n_ - k - 1),
+                                                        qr_.coefficient(k), scratch.data());
+  };
+  for (Eigen::Index k = 0; k < rows_; ++k)
+    turn(k);
+  forces.topRows(rows_).setZero();
+  if (n_ > rows_) forces.bottomRows(n_ - rows_) = cholesky_.solve(forces.bottomRows(n_ - rows_));
+  for (Eigen::Index k = rows_; k-- > 0;)
+    turn(k);
+}
+
 void SaddlePoint::shortest(const Eigen::VectorXd& g, Eigen::VectorXd& a) {
   a.setZero(n_);
   if (rows_ == 0) return;

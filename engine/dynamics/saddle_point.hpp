@@ -14,6 +14,8 @@ class SaddlePoint {
   bool factor_mass(const Eigen::MatrixXd& m);
 
   void solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& a, Eigen::VectorXd& l);
+  // For g = 0 the accelerations in place of the forces, by columns.
+  void respond(Eigen::MatrixXd& forces) const;
   // The shortest a with C a = g; needs the constraints alone.
   void shortest(const Eigen::VectorXd& g, Eigen::VectorXd& a);
 

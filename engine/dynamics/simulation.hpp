@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -61,7 +62,9 @@ struct SimulationOptions {
   SimulationState state;                            // for Start::state
   bool reactions = false;                           // record what all joints transmit
   long max_steps = 50'000'000;
-  const std::atomic<bool>* cancel = nullptr;   // polled at every step
+  double time_limit =
+      std::numeric_limits<double>::infinity(); // s by the clock on the wall, for all of the run
+  const std::atomic<bool>* cancel = nullptr;   // polled at every evaluation, inside steps too
   std::function<void(double time)> progress{}; // called at every sample
 };
 
@@ -123,7 +126,8 @@ struct RunStatistics {
 enum class RunStatus {
   completed, // all that was asked for
   cancelled,
-  diverged, // the message says when and why
+  time_limit, // SimulationOptions::time_limit came before the end
+  diverged,   // the message says when and why
 };
 
 std::string_view word(RunStatus status);

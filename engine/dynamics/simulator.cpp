@@ -5,6 +5,7 @@
 #include "engine/dynamics/recorder.hpp"
 #include "engine/dynamics/singular_position.hpp"
 #include "engine/dynamics/start.hpp"
+#include "engine/dynamics/watch.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -19,6 +20,13 @@ namespace {
 // A coordinate this many radians or reaches away, or as many times too fast, has left the mechanism.
 constexpr double far_away = 1e8, far_too_fast = 1e10;
 
+// Steps over which their size is judged, and how many times more than are allowed the rest would have to
+// need.
+constexpr long judged_steps = 5000;
+constexpr double hopeless = 100;
+// Explicit steps after which the choice of a method is thought over for the first time.
+constexpr long first_review = 500;
+
 const std::string locked = "the loops have come to a position that they cannot pass";
 
 std::string at_time(double t) {
@@ -28,8 +36,11 @@ std::string at_time(double t) {
 } // namespace
 
 struct Simulator::State {
+  State(const SimulationOptions& wanted) : options(wanted), damped(wanted.damped), watch(wanted.cancel) {}
+
   SimulationOptions options;
   bool damped = true;
+  Watch watch;
   std::shared_ptr<const MotionModel> model;
   std::unique_ptr<Equations> equations;
   std::unique_ptr<MotionOde> ode;
@@ -37,7 +48,8 @@ struct Simulator::State {
   std::vector<StopElement> stops;
   std::vector<bool> touching; // by stop
   std::vector<FlipElement> flips;
-  double rate_scale = 1;
+  double rate_scale = 1, energy_scale = 1;
+  double fastest = 0; // 1/s, of the linearised motion where the method was chosen; 0: not known
   Integrator method = Integrator::automatic;
 
   Run run;
@@ -46,6 +58,7 @@ struct Simulator::State {
   long next_sample = 0;               // on the grid, from `begin`
   std::optional<StepOutcome> pending; // the last step's, to be looked at
   double best_independence = 0, started_at = 0;
+  bool torn = false; // the last step was given up within
   // The way over a singular position, for samples that fall on it.
   struct Bridge {
     double time;
@@ -67,33 +80,44 @@ struct Simulator::State {
     stepper.reset();
     pending.reset();
     bridge.reset();
-    equations = std::make_unique<Equations>(*model);
+    torn = false;
+    equations = std::make_unique<Equations>(*model, watch);
     stops = list_stops(model->system, model->parameters);
     touching.assign(stops.size(), false);
     flips = list_flips(model->system, model->parameters);
     restructure(t, u);
     if (!equations->evaluate(t, q, s))
-      throw SceneError("", "the equations of motion have no solution at the start");
-    const double energy_scale = equations->energy_scale();
-    const MethodChoice choice =
-        choose_method(*equations, options.duration, options.tolerance, options.method);
-    method = options.fixed_step > 0 ? Integrator::runge_kutta : choice.method;
+      throw SceneError("", "the equations of motion have no solution at the start: " + equations->unsolved());
+    energy_scale = equations->energy_scale();
+    MethodChoice choice =
+        choose_method(*equations, t, q, s, options.duration, options.tolerance, options.method);
     rate_scale = choice.rate_scale;
-    run.method = method;
-    run.method_reason = options.fixed_step > 0 ? "Steps of a fixed size." : choice.reason;
-    ode = std::make_unique<MotionOde>(*equations, options.tolerance, rate_scale, energy_scale);
+    fastest = choice.fastest;
+    if (options.fixed_step > 0) choice = {Integrator::runge_kutta, "Steps of a fixed size."};
+    run.method_reason = choice.reason;
+    stepped_to = t;
+    use_method(choice.method);
+    ode->pack(q, s, energies, y);
+    start_stepper(t);
+  }
+
+  void use_method(Integrator chosen) {
+    run.method = method = chosen;
+    ode = std::make_unique<MotionOde>(*equations, watch, options.tolerance, rate_scale, energy_scale);
     ode->set_events(stops, flips);
     ode->set_touching(touching);
     ode->set_inner_projection(method == Integrator::adams && equations->needs_projection());
     stepper = method == Integrator::runge_kutta ? make_runge_kutta_stepper(*ode, options.fixed_step)
                                                 : make_cvode_stepper(*ode, method);
-    ode->pack(q, s, energies, y);
-    start_stepper(t);
+    review_at = taken + first_review;
+    judged_at = taken;
+    judged_from = stepped_to;
   }
 
   void start_stepper(double t) {
     stepper->start(t, y);
     stepped_to = started_at = t;
+    torn = false;
     ++run.statistics.restarts;
   }
 
@@ -110,7 +134,8 @@ struct Simulator::State {
     }
     equations->latch(stops, touching, flips);
     if (equations->has_massless()) equations->analyse(t, q, u);
-    equations->reduce(t, q, u, s);
+    if (!equations->reduce(t, q, u, s))
+      throw SceneError("", "the equations of motion have no solution there: " + equations->unsolved());
     if (equations->needs_projection()) equations->project(t, q, s);
   }
 
@@ -127,7 +152,21 @@ struct Simulator::State {
     return equations->project(t, q, s, shift) && equations->evaluate(t, q, s);
   }
 
+  // Where nobody wants it any more, or its time is over, that is why it stops, whatever failed for it.
+  bool interrupt() {
+    if (!watch.over()) return false;
+    const std::string where =
+        run.time.empty() ? std::string("before the motion began") : at_time(run.time.back());
+    const bool late = watch.out_of_time();
+    run.status = late ? RunStatus::time_limit : RunStatus::cancelled;
+    run.message = late ? "The motion stopped " + where + ": the time limit of " +
+                             rounded_text(options.time_limit, 4) + " s was reached" + pace() + "."
+                       : "Cancelled " + where + ".";
+    return true;
+  }
+
   bool diverge(double t, const std::string& why) {
+    if (interrupt()) return false;
     run.status = RunStatus::diverged;
     run.message = "The motion stopped " + at_time(t) + ": " + why + ".";
     return false;
@@ -290,7 +329,8 @@ struct Simulator::State {
     } catch (const SceneError& error) {
       return diverge(t, error.what());
     }
-    equations->reduce(t, q, u, s);
+    if (!equations->reduce(t, q, u, s))
+      return diverge(t, "the equations of motion have no solution there: " + equations->unsolved());
     ode->pack(q, s, ode->energies(y), y);
     start_stepper(t);
     return true;
@@ -307,19 +347,69 @@ struct Simulator::State {
     return true;
   }
 
+  // How long the last steps were, as a clause; empty before there are enough of them.
+  std::string pace() const {
+    if (taken - judged_at < 10) return "";
+    std::string out = "; its last steps took " +
+                      rounded_text((stepped_to - judged_from) / static_cast<double>(taken - judged_at), 2) +
+                      " s each";
+    if (fastest > 0) out += ", the fastest motion about the start is at " + rounded_text(fastest, 2) + " 1/s";
+    return out;
+  }
+
+  // Steps so short that the rest would never be done, however many were allowed: told at once.
+  bool is_hopeless(double t) {
+    if (taken - judged_at < judged_steps) return false;
+    const double rest = std::max(t, begin + options.duration) - stepped_to;
+    const double each = (stepped_to - judged_from) / judged_steps;
+    if (rest > hopeless * static_cast<double>(options.max_steps) * each) return true;
+    judged_at = taken;
+    judged_from = stepped_to;
+    return false;
+  }
+
+  // A motion may become stiff on its way. Thought over after ever more steps; to BDF where that suits it now.
+  void review_method() {
+    review_at = 2 * taken;
+    if (method != Integrator::runge_kutta || options.method != Integrator::automatic ||
+        options.fixed_step > 0)
+      return;
+    const double rest = begin + options.duration - stepped_to;
+    stepper->state_at(stepped_to, y);
+    ode->unpack(y.data(), q, s);
+    if (!(rest > 0) || !equations->evaluate(stepped_to, q, s)) return;
+    const MethodChoice choice =
+        choose_method(*equations, stepped_to, q, s, rest, options.tolerance, Integrator::automatic);
+    if (choice.method == method) return;
+    fastest = choice.fastest;
+    run.notes.push_back("From t = " + rounded_text(stepped_to, 4) + " s on: " + choice.reason);
+    stepper->count(run.statistics);
+    use_method(choice.method);
+    start_stepper(stepped_to);
+  }
+
   bool step_to(double t) {
     while (stepped_to < t) {
-      if (options.cancel && options.cancel->load(std::memory_order_relaxed)) {
-        run.status = RunStatus::cancelled;
-        run.message = "Cancelled " + at_time(run.time.back()) + ".";
-        return false;
+      if (interrupt()) return false;
+      if (torn) { // it begins anew from where it was well last
+        y = whole;
+        start_stepper(stepped_to);
       }
       if (!finish_step()) return false;
       if (stepped_to >= t) break; // over a singular position
       if (++taken > options.max_steps)
         return diverge(stepped_to, "more than " + std::to_string(options.max_steps) + " steps were needed");
+      if (is_hopeless(t))
+        return diverge(stepped_to, "it would need more than " +
+                                       rounded_text(hopeless * static_cast<double>(options.max_steps), 2) +
+                                       " steps" + pace());
+      if (taken >= review_at) review_method();
+      stepper->state_at(stepped_to, whole);
       const StepOutcome outcome = stepper->step(t);
-      if (outcome.kind == StepOutcome::failed) return diverge(outcome.time, reason_of(outcome));
+      if (outcome.kind == StepOutcome::failed) {
+        torn = interrupt();
+        return torn ? false : diverge(outcome.time, reason_of(outcome));
+      }
       stepped_to = outcome.time;
       pending = outcome;
     }
@@ -335,7 +425,10 @@ struct Simulator::State {
       if (const std::string what = equations->trouble(); !what.empty()) return what;
     return equations->independence() < 0.01 * best_independence ? locked : failure.message;
   }
-  long taken = 0;
+  long taken = 0; // steps
+  long review_at = 0, judged_at = 0;
+  double judged_from = 0; // s
+  Eigen::VectorXd whole;  // where the last step began
 
   bool record(double t) {
     double shift = 0;
@@ -349,18 +442,27 @@ struct Simulator::State {
 };
 
 Simulator::Simulator(const Mechanism& mechanism, const SimulationOptions& options)
-    : state_(std::make_unique<State>()) {
+    : state_(std::make_unique<State>(options)) {
   State& x = *state_;
-  x.options = options;
-  x.damped = options.damped;
   const auto clock = std::chrono::steady_clock::now();
-  x.open(mechanism, options);
+  x.watch.allow(options.time_limit);
   x.run.damped = options.damped;
+  try {
+    x.open(mechanism, options);
+  } catch (const SceneError&) {
+    x.stepper.reset();
+    if (!x.interrupt()) throw;
+    return; // without a sample
+  }
   x.run.notes = x.model->notes;
   x.begin = x.stepped_to;
   x.recorder = std::make_unique<Recorder>(x.run, options.reactions);
   x.recorder->use(x.model, *x.equations);
-  x.record(x.begin);
+  if (!x.record(x.begin)) {
+    x.stepper.reset();
+    if (x.run.status == RunStatus::diverged) throw SceneError("", x.run.message);
+    return;
+  }
   x.next_sample = 1;
   x.run.statistics.run_time_s +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
@@ -371,8 +473,9 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 bool Simulator::advance(double until, bool sample_end) {
   State& x = *state_;
-  if (x.run.status == RunStatus::diverged) return false;
+  if (x.run.status == RunStatus::diverged || x.run.time.empty()) return false;
   x.run.status = RunStatus::completed;
+  x.watch.allow(x.options.time_limit - x.run.statistics.run_time_s);
   const auto clock = std::chrono::steady_clock::now();
   const double rounding = 1e-12 * std::max(1., std::abs(until));
   bool well = true;
@@ -394,10 +497,11 @@ const Run& Simulator::run() const {
 }
 
 double Simulator::time() const {
-  return state_->run.time.back();
+  return state_->run.time.empty() ? 0 : state_->run.time.back();
 }
 
 SimulationState Simulator::state() const {
+  if (state_->run.time.empty()) throw SceneError("", "the motion has not begun");
   return state_at(state_->run, state_->run.time.size() - 1);
 }
 
@@ -410,6 +514,7 @@ void Simulator::change(const Mechanism& mechanism, bool damped) {
   SimulationOptions how;
   how.start = Start::state;
   how.state = now;
+  x.watch.allow(x.options.time_limit - x.run.statistics.run_time_s);
   Eigen::VectorXd q, u;
   find_start(how, *made, q, u);
   const Eigen::Vector3d energies = x.recorder->energies();

@@ -17,8 +17,13 @@ class Ode {
   virtual bool rate(double t, const double* y, double* out) = 0;
   // The size of each entry that counts as an error of one.
   virtual void weights(const double* y, double* out) = 0;
-  // Its derivative with y by columns, `rate` being f at y.
-  virtual bool jacobian(double t, const double* y, const double* rate, double* out) = 0;
+  // For implicit steps: takes J = f_y, `rate` being f at y; factors I - gamma J with the J taken last, both
+  // false where that fails; b := (I - gamma J)^-1 b with these factors.
+  virtual bool linearise(double t, const double* y, const double* rate) = 0;
+  virtual bool factor(double gamma) = 0;
+  virtual void solve(double* b) = 0;
+  // Once this is false nothing more is evaluated, and a step fails for good.
+  virtual bool wanted() const = 0;
 
   virtual bool has_manifold() const = 0;
   // Puts y back on the manifold.

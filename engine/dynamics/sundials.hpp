@@ -5,9 +5,6 @@
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
-#include <sundials/sundials_linearsolver.h>
-#include <sundials/sundials_matrix.h>
-#include <sundials/sundials_nonlinearsolver.h>
 
 #include <Eigen/Core>
 
@@ -57,8 +54,14 @@ inline Ode& ode_of(void* ode) {
   return *static_cast<Ode*>(ode);
 }
 
-inline int rate(realtype t, N_Vector y, N_Vector out, void* ode) {
-  return ode_of(ode).rate(t, data(y), data(out)) ? 0 : 1;
+// To be tried again with a shorter step, or given up.
+inline int failure(const Ode& ode) {
+  return ode.wanted() ? 1 : -1;
+}
+
+inline int rate(realtype t, N_Vector y, N_Vector out, void* data_of_user) {
+  Ode& ode = ode_of(data_of_user);
+  return ode.rate(t, data(y), data(out)) ? 0 : failure(ode);
 }
 
 inline int weights(N_Vector y, N_Vector out, void* ode) {

@@ -1,6 +1,7 @@
 #include "engine/study/compare.hpp"
 
 #include "engine/dynamics/simulator.hpp"
+#include "engine/dynamics/watch.hpp"
 #include "engine/equilibrium/analysis.hpp"
 #include "engine/equilibrium/drive_cuts.hpp"
 #include "engine/equilibrium/existence.hpp"
@@ -8,6 +9,7 @@
 #include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
@@ -26,9 +28,20 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+// What one run may take of the whole time, and from which part on it is not repeated.
+constexpr double longest_run = 0.1, longest_repeated = 0.01;
+
+// The clock and whether anybody still waits.
+struct Time {
+  Watch watch;
+  double limit; // s, for everything
+
+  bool is_long(double seconds) const { return seconds > longest_repeated * limit || watch.over(); }
+};
+
 // Median of the time that one call takes, over batches long enough for the clock.
 template <class Work>
-double time_of(int repeats, Work work) {
+double time_of(int repeats, const Time& time, Work work) {
   using Clock = std::chrono::steady_clock;
   const auto seconds = [&](int count) {
     const auto begin = Clock::now();
@@ -37,17 +50,19 @@ double time_of(int repeats, Work work) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
   };
   int count = 1;
-  for (double spent = seconds(1); spent < 1e-3 && count < 1 << 20; spent = seconds(count))
+  double spent = seconds(1);
+  if (time.is_long(spent)) return spent;
+  for (; spent < 1e-3 && count < 1 << 20; spent = seconds(count))
     count *= 2;
   std::vector<double> times;
-  for (int i = 0; i < repeats; ++i)
+  for (int i = 0; i < repeats && !(i > 0 && time.watch.over()); ++i)
     times.push_back(seconds(count) / count);
   return median(std::move(times));
 }
 
 class Direct {
  public:
-  explicit Direct(const Mechanism& mechanism) {
+  Direct(const Mechanism& mechanism, const std::atomic<bool>* cancel) : cancel_(cancel) {
     std::vector<std::string> notes;
     system_ = compile_for_drives(mechanism, notes);
     bind(system_, mechanism, parameters_);
@@ -135,7 +150,7 @@ class Direct {
   }
 
  private:
-  Problem problem() const { return {system_, parameters_, scaling_}; }
+  Problem problem() const { return {system_, parameters_, scaling_, cancel_}; }
 
   // What no multipliers balance, and how far the loops are open, relative to the terms they are made of.
   double balance(Workspace& w) const {
@@ -151,6 +166,7 @@ class Direct {
     return worst;
   }
 
+  const std::atomic<bool>* cancel_;
   System system_;
   Parameters parameters_;
   Scaling scaling_;
@@ -200,74 +216,112 @@ void find_best(Comparison& c) {
     }
 }
 
-} // namespace
+// The error of where a run ended; not a number where it did not come to its end.
+double end_error(const Run& run, const Direct& direct, const std::vector<std::string>& neutral) {
+  if (run.status != RunStatus::completed) return std::numeric_limits<double>::quiet_NaN();
+  const auto nq = static_cast<std::ptrdiff_t>(direct.system().nq);
+  const auto sample =
+      static_cast<std::ptrdiff_t>(run.states.size()) - (nq + static_cast<std::ptrdiff_t>(direct.system().nv));
+  return direct.error_of(Eigen::Map<const Eigen::VectorXd>(run.states.data() + sample, nq), neutral);
+}
 
-Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
-  Comparison out;
-  const auto cancelled = [&] { return options.cancel && options.cancel->load(std::memory_order_relaxed); };
-  SolveOptions solve;
-  solve.cancel = options.cancel;
-  const Solution steady = Analysis(mechanism).solve(solve);
-  out.status = steady.status;
-  out.message = steady.message;
-  if (steady.status != Status::converged) return out;
-
-  Direct direct(mechanism);
-  Unknowns answer;
-  if (direct.answer(answer) != Status::converged) return out; // found above
-  direct.settle_reference(answer, out);
-  out.answer = {direct.iterations(), direct.error_of(answer.q, steady.neutral),
-                time_of(options.repeats, [&] { direct.answer(answer); })};
-  for (int i = 0; i <= 30; ++i) {
-    Unknowns z;
-    const bool converged = direct.iterate(i, z);
-    const double error = direct.error_of(z.q, steady.neutral);
-    out.direct.push_back({i, error, time_of(options.repeats, [&] { direct.iterate(i, z); })});
-    if (converged) break;
+// One run and its repeats. Nothing where nobody waits for it any more.
+std::optional<MotionPoint> measure(const Mechanism& mechanism, const SimulationOptions& simulation,
+                                   int repeats, const Time& time, const Direct& direct,
+                                   const std::vector<std::string>& neutral) {
+  MotionPoint point;
+  point.tolerance = simulation.tolerance;
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i) {
+    const Run run = simulate(mechanism, simulation);
+    if (time.watch.over()) break;
+    times.push_back(run.statistics.run_time_s);
+    if (i == 0) {
+      point.error = end_error(run, direct, neutral);
+      point.steps = run.statistics.steps;
+      point.evaluations = run.statistics.evaluations;
+      point.status = run.status;
+    }
+    if (run.status != RunStatus::completed || time.is_long(times.back())) break; // once is enough
   }
-  if (!(out.direct.back().error < 1e-6)) out.direct.clear();
+  if (times.empty()) return {};
+  point.run_time_s = median(std::move(times));
+  return point;
+}
 
-  const std::vector<double> durations =
-      options.durations.empty() ? natural_durations(steady, mechanism) : options.durations;
+// One curve a method and duration, into out.motion. False where it was broken off.
+bool measure_motions(const Mechanism& mechanism, const CompareOptions& options,
+                     const std::vector<double>& durations, const Time& time, const Direct& direct,
+                     const std::vector<std::string>& neutral, Comparison& out) {
   const std::size_t all = options.integrators.size() * durations.size() * options.tolerances.size();
   std::size_t done = 0;
   for (Integrator method : options.integrators)
     for (double duration : durations) {
       MotionCurve& curve = out.motion.emplace_back(MotionCurve{method, duration, {}});
+      bool too_long = false;
       for (double tolerance : options.tolerances) {
-        SimulationOptions simulation;
-        simulation.duration = duration;
-        simulation.rate = 0;
-        simulation.tolerance = tolerance;
-        simulation.method = method;
-        simulation.max_steps = options.max_steps;
-        simulation.cancel = options.cancel;
-        MotionPoint point;
-        point.tolerance = tolerance;
-        std::vector<double> times;
-        for (int i = 0; i < options.repeats; ++i) {
-          const Run run = simulate(mechanism, simulation);
-          if (cancelled()) {
-            out.message = "Cancelled.";
-            return out;
-          }
-          times.push_back(run.statistics.run_time_s);
-          if (i > 0) continue;
-          const auto nq = static_cast<std::ptrdiff_t>(direct.system().nq);
-          const auto sample = static_cast<std::ptrdiff_t>(run.states.size()) -
-                              (nq + static_cast<std::ptrdiff_t>(direct.system().nv));
-          point.error = direct.error_of(Eigen::Map<const Eigen::VectorXd>(run.states.data() + sample, nq),
-                                        steady.neutral);
-          point.steps = run.statistics.steps;
-          point.evaluations = run.statistics.evaluations;
-          point.status = run.status;
-          if (run.status == RunStatus::diverged) break; // once is enough
+        if (!too_long) {
+          SimulationOptions simulation;
+          simulation.duration = duration;
+          simulation.rate = 0;
+          simulation.tolerance = tolerance;
+          simulation.method = method;
+          simulation.max_steps = options.max_steps;
+          simulation.cancel = options.cancel;
+          simulation.time_limit = longest_run * time.limit;
+          const std::optional<MotionPoint> point =
+              measure(mechanism, simulation, options.repeats, time, direct, neutral);
+          if (!point) return false;
+          curve.points.push_back(*point);
+          too_long = point->status == RunStatus::time_limit;
         }
-        point.run_time_s = median(std::move(times));
-        curve.points.push_back(point);
         if (options.progress) options.progress(++done, all);
       }
     }
+  return true;
+}
+
+} // namespace
+
+Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
+  Comparison out;
+  Time time{Watch(options.cancel), options.time_limit};
+  time.watch.allow(options.time_limit);
+  const auto broken_off = [&] {
+    out.complete = false;
+    out.message = !time.watch.out_of_time() ? "Cancelled."
+                                            : "The time limit of " + rounded_text(options.time_limit, 4) +
+                                                  " s was reached before all was measured.";
+  };
+  SolveOptions solve;
+  solve.cancel = options.cancel;
+  const Solution steady = Analysis(mechanism).solve(solve);
+  out.status = steady.status;
+  out.message = steady.message;
+  if (time.watch.over()) broken_off();
+  if (steady.status != Status::converged || !out.complete) return out;
+
+  Direct direct(mechanism, options.cancel);
+  Unknowns answer;
+  if (direct.answer(answer) != Status::converged) { // found above
+    broken_off();
+    return out;
+  }
+  direct.settle_reference(answer, out);
+  out.answer = {direct.iterations(), direct.error_of(answer.q, steady.neutral),
+                time_of(options.repeats, time, [&] { direct.answer(answer); })};
+  for (int i = 0; i <= 30 && !time.watch.over(); ++i) {
+    Unknowns z;
+    const bool converged = direct.iterate(i, z);
+    const double error = direct.error_of(z.q, steady.neutral);
+    out.direct.push_back({i, error, time_of(options.repeats, time, [&] { direct.iterate(i, z); })});
+    if (converged) break;
+  }
+  if (out.direct.empty() || !(out.direct.back().error < 1e-6)) out.direct.clear();
+
+  const std::vector<double> durations =
+      options.durations.empty() ? natural_durations(steady, mechanism) : options.durations;
+  if (!measure_motions(mechanism, options, durations, time, direct, steady.neutral, out)) broken_off();
   find_best(out);
   return out;
 }

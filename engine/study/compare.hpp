@@ -17,6 +17,9 @@ struct CompareOptions {
   std::vector<Integrator> integrators{Integrator::bdf, Integrator::adams, Integrator::runge_kutta};
   int repeats = 5;
   long max_steps = 2'000'000; // of one run; longer ones are given up
+  // s by the clock on the wall, for all of it. A run is given up after a tenth of that, and tighter
+  // tolerances with it; one that takes over a hundredth is not repeated.
+  double time_limit = std::numeric_limits<double>::infinity();
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(std::size_t done, std::size_t all)> progress{};
 };
@@ -28,15 +31,17 @@ struct DirectMark {
 };
 
 struct MotionPoint {
-  double tolerance = 0, error = 0, run_time_s = 0;
+  double tolerance = 0;
+  double error = 0; // NaN where the run did not come to its end
+  double run_time_s = 0;
   long steps = 0, evaluations = 0;
   RunStatus status = RunStatus::completed;
 };
 
 struct MotionCurve {
   Integrator method = Integrator::bdf;
-  double duration = 0; // s, simulated
-  std::vector<MotionPoint> points;
+  double duration = 0;             // s, simulated
+  std::vector<MotionPoint> points; // fewer than tolerances where it was given up
 };
 
 // The motion that comes nearest, against the direct solution that comes as near.
@@ -49,6 +54,7 @@ struct SpeedRatio {
 
 struct Comparison {
   Status status = Status::not_converged; // of the direct solution
+  bool complete = true;                  // neither cancelled nor out of time, when the message says so
   std::string message;                   // a sentence
   // The reference q*, iterated in extended precision until it stood: values rounded to double, `error` how
   // far the last correction moved it.
