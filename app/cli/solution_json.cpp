@@ -112,8 +112,10 @@ Json to_json(const Mechanism& mechanism, const AllSolutions& all) {
   Json bounds = Json::object();
   for (const AllSolutions::Bound& b : all.bounds)
     put(bounds, b.joint, b.index, b.count, {b.lower, b.upper});
-  out["search"] = {
-      {"bounds", std::move(bounds)}, {"starts", all.starts}, {"complete", false}, {"message", all.message}};
+  out["search"] = {{"bounds", std::move(bounds)}, {"starts", all.starts},
+                   {"complete", false},           {"message", all.message},
+                   {"end", word(all.end)},        {"expected_missing", number(all.unseen)},
+                   {"not_steady", all.passing}};
   return out;
 }
 

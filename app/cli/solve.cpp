@@ -16,7 +16,8 @@ void add_solve(CLI::App& app, int& exit_code) {
   struct Options {
     SceneArgument scene;
     std::vector<std::string> start;
-    int modes = 0;
+    int modes = 0, starts = 0;
+    double search_time = 1;
     bool all = false, nearest = false, json = false;
   };
   auto options = std::make_shared<Options>();
@@ -34,6 +35,17 @@ void add_solve(CLI::App& app, int& exit_code) {
       ->excludes(nearest)
       ->excludes(start);
   command
+      ->add_option("--starts", options->starts,
+                   "With --all: the most Newton-Raphson runs (default: as many as the "
+                   "budget allows)")
+      ->check(above_zero());
+  command
+      ->add_option(
+          "--search-time", options->search_time,
+          "With --all: the budget, in seconds of one core, counted in operations so that every run finds "
+          "the same (default 1); it ends earlier where nothing more is expected")
+      ->check(above_zero());
+  command
       ->add_option("--modes", options->modes,
                    "Eigenvalues to print where there are more than 200 coordinates")
       ->check(above_zero());
@@ -46,6 +58,8 @@ void add_solve(CLI::App& app, int& exit_code) {
     solve.nearest = options->nearest;
     solve.modes = options->modes;
     solve.progress = progress->reporter();
+    solve.search_time = options->search_time;
+    solve.search_starts = options->starts;
     for (const std::string& text : options->start)
       solve.start.push_back(parse_assignment("--start", text));
     Solution solution;

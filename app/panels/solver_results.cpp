@@ -11,6 +11,7 @@ const char* net_text(Net net) {
   case Net::damped: return "damped steps";
   case Net::homotopy: return "speeding up from rest";
   case Net::descent: return "descent of the potential";
+  case Net::search: return "search all over the ranges";
   }
   return "";
 }

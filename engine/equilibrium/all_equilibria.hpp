@@ -1,46 +1,53 @@
-// Every equilibrium that a bounded search finds: many seeded starts spread over the coordinates' ranges, and
-// from each equilibrium deflated runs that cannot find it again (Farrell, Birkisson and Funke, Deflation
-// techniques for finding distinct solutions of nonlinear PDEs, 2015). No search of this kind can promise
-// completeness.
+// Every equilibrium that a bounded search finds: Newton-Raphson from starts spread over the coordinates'
+// ranges, from mixtures of the equilibria known, and deflated so that it cannot find those again (Farrell,
+// Birkisson and Funke, Deflation techniques for finding distinct solutions of nonlinear PDEs, 2015). It goes
+// on until what the spread starts found, and how often, says that nothing more is to be expected, or its
+// budget is spent. No search of this kind can promise completeness.
 #pragma once
 
+#include "engine/equilibrium/configuration_difference.hpp"
 #include "engine/equilibrium/newton.hpp"
+#include "engine/equilibrium/search_starts.hpp"
+#include "engine/equilibrium/solution.hpp"
+#include "engine/task/progress.hpp"
 
 #include <vector>
 
 namespace flyball {
 
-struct SearchRange {
-  double lower = 0, upper = 0; // rad or m, as the joint labels its coordinate
+struct SearchOptions {
+  // What to spend at most, in seconds of one core of 2020 or so. It is counted in operations, so that every
+  // run on every computer searches alike.
+  double seconds = 1;
+  int starts = 0;       // at most so many; zero: as many as the budget allows
+  double unseen = 0.25; // stop where no more than these are expected to be missing
+  std::uint32_t seed = 1;
+  ReportProgress progress{}; // the part of the budget that is spent
 };
 
 struct SearchReport {
-  std::vector<SearchRange>
-      ranges;     // by coordinate in System::coordinates; driven ones from and to their drawn value
-  int starts = 0; // Newton-Raphson runs, deflated ones included
+  std::vector<SearchRange> ranges; // by coordinate in System::coordinates
+  int starts = 0;                  // Newton-Raphson runs, deflated ones included
+  int arrivals = 0;                // runs from the spread starts that led to an equilibrium in the ranges
+  // Equilibria expected to be missing: of w found in n arrivals w (w + 1) / (n - w - 2) (Boender and Rinnooy
+  // Kan, Bayesian stopping rules for multistart global optimization methods, 1987); infinite where n is too
+  // small to tell.
+  double unseen = 0;
+  SearchEnd end = SearchEnd::settled;
 };
 
 struct EquilibriumList {
-  std::vector<Unknowns> states; // distinct: whole turns of a joint without spring or stop count as one
+  // Distinct, their coordinates within the report's ranges: whole turns of a joint without spring or stop
+  // count as one, and so do those of a spring that is too soft to be felt. A family along directions that
+  // nothing resists is one.
+  std::vector<Unknowns> states;
   std::vector<NewtonOutcome> outcomes;
   SearchReport report;
 };
 
-// Ranges of the search: whole turns, and for slides twice the mechanism's reach around the drawn pose, the
-// springs' free values and the stops.
-std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::VectorXd& drawn);
-
-// From `drawn` and all over the ranges. The same seed gives the same list.
-EquilibriumList find_all_equilibria(const Problem& problem, const Eigen::VectorXd& drawn, unsigned seed,
-                                    Workspace& w);
-
-// Whether two configurations are one pose: scaled distance below `tolerance`, angles of unsprung joints
-// modulo turns. `ignore` lists coordinates of q_R that do not count (neutral directions).
-bool same_pose(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b, double tolerance,
-               const std::vector<int>& ignore = {});
-
-// The scaled step of q_R from one configuration to another, angles of unsprung joints the short way round.
-Eigen::VectorXd scaled_difference(const Problem& problem, const Eigen::VectorXd& from,
-                                  const Eigen::VectorXd& to);
+// From `drawn` and all over the ranges. The same options give the same list, whatever the computer does
+// besides, unless it ends by time.
+EquilibriumList find_all_equilibria(const Problem& problem, const Eigen::VectorXd& drawn,
+                                    const SearchOptions& options, Workspace& w);
 
 } // namespace flyball

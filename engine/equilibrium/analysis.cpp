@@ -1,9 +1,10 @@
 #include "engine/equilibrium/analysis.hpp"
 
-#include "engine/equilibrium/all_equilibria.hpp"
+#include "engine/equilibrium/answer_search.hpp"
 #include "engine/equilibrium/drive_cuts.hpp"
 #include "engine/equilibrium/existence.hpp"
 #include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/equilibrium/largest.hpp"
 #include "engine/equilibrium/linear_motion.hpp"
 #include "engine/equilibrium/pivot_stability.hpp"
 #include "engine/equilibrium/refine.hpp"
@@ -47,6 +48,9 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
   return true;
 }
 
+constexpr double phase_rounding = 64 * std::numeric_limits<double>::epsilon();
+constexpr double most_phase_variation = 1e-2; // scaled; what moves further with the drives does not stand
+
 constexpr int largest_for_second_thoughts = 120; // coordinates; a refusal then takes a second or two
 
 // Eigenvalues need the matrices; beyond a size the pivots have to do.
@@ -76,6 +80,27 @@ Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eige
   return out;
 }
 
+std::string search_message(const AllSolutions& all) {
+  std::string text = all.equilibria.empty() ? "No steady state was found in the range searched."
+                                            : "Found by a bounded search; there may be more.";
+  if (all.passing > 0)
+    text += " " + std::to_string(all.passing) +
+            (all.passing == 1 ? " equilibrium of the drawn phase is not listed: it does"
+                              : " equilibria of the drawn phase are not listed: they do") +
+            " not hold as the drives turn.";
+  switch (all.end) {
+  case SearchEnd::settled: break;
+  case SearchEnd::starts: text += " The search ended after the starts asked for."; break;
+  case SearchEnd::budget: text += " The search spent its budget; a larger one may find more."; break;
+  case SearchEnd::time: text += " The search took too long and was ended; the next may end elsewhere."; break;
+  case SearchEnd::cancelled: text += " The search was cancelled."; break;
+  }
+  if (all.end != SearchEnd::settled && std::isfinite(all.unseen) && all.unseen >= 0.5)
+    text += " By how often the same were found again, " + std::to_string(std::lround(all.unseen)) +
+            (std::lround(all.unseen) == 1 ? " is" : " are") + " expected to be missing.";
+  return text;
+}
+
 } // namespace
 
 struct Analysis::State {
@@ -91,6 +116,42 @@ struct Analysis::State {
   Eigen::VectorXd drawn, answer, start;
   bool answered = false;
   bool settled = false; // the last solve converged, and no number has changed since
+
+  // Whether a refined state holds at every phase. Adds to its error what it leaves there.
+  Existence exists(const Problem& problem, const Unknowns& z, const std::vector<double>& phases) {
+    Existence existence = check_existence(problem, z.q, phases, workspace);
+    if (!existence.holds || !(existence.left > phase_rounding)) return existence;
+    const Eigen::VectorXd away = phase_variation(problem, z, phases, workspace);
+    error += away;
+    existence.holds = largest(away.cwiseQuotient(scaling.column)) < most_phase_variation;
+    return existence;
+  }
+
+  // The last net. What it tried, in words, where `found` stays as it is.
+  std::string search(const Problem& problem, const std::vector<double>& phases, double seconds,
+                     Existence& existence) {
+    const bool fails_later = found.status == Status::converged;
+    const std::string only = fails_later ? "That is said of the equilibrium found from this start alone; "
+                                         : "No other start was tried; ";
+    if (!(seconds > 0) || system.nv > largest_for_second_thoughts)
+      return only + "solve --all looks for others.";
+    if (system.nv == 0) return "";
+    const Problem whole{system, parameters, scaling, problem.cancel};
+    AnswerSearch other = search_answer(whole, start, phases, seconds, workspace);
+    if (!other.answer) return describe(other);
+    Found first = std::exchange(found, std::move(*other.answer));
+    found.iterations += first.iterations;
+    evaluate(problem, found.z, 0, workspace);
+    history.push_back(scaled_residual(problem, workspace));
+    factor(problem, found.z, workspace);
+    refine(problem, found.z, found.newton, workspace, error);
+    existence = exists(problem, found.z, phases);
+    found.message = (fails_later ? "The equilibrium next to the start holds at one phase of the drives only"
+                                 : "Newton-Raphson and its nets led nowhere from the start") +
+                    std::string("; a search all over the coordinates' ranges found this steady state") +
+                    (other.steady > 1 ? ", the nearest of " + std::to_string(other.steady) + "." : ".");
+    return "";
+  }
 
   void bind_numbers() {
     bind(system, mechanism, parameters);
@@ -144,11 +205,15 @@ Solution Analysis::solve(const SolveOptions& options) {
     problem.eliminated = false;
     find_equilibrium(problem, s.start, options.nearest, false, s.workspace, s.history, s.found);
   }
+  const std::vector<double> phases = sample_phases(s.system, s.parameters);
   if (s.found.status == Status::converged) refine(problem, s.found.z, s.found.newton, s.workspace, s.error);
   Existence existence;
-  const std::vector<double> phases = sample_phases(s.system, s.parameters);
-  if (s.found.status == Status::converged)
-    existence = check_existence(problem, s.found.z.q, phases, s.workspace);
+  if (s.found.status == Status::converged) existence = s.exists(problem, s.found.z, phases);
+  std::string tried; // beside the run that is refused
+  if ((s.found.status != Status::converged || !existence.holds) && !options.nearest && !problem.cancelled()) {
+    report_progress(options.progress, "searching for another steady state");
+    tried = s.search(problem, phases, options.search, existence);
+  }
   const bool steady = s.found.status == Status::converged && existence.holds;
   Stability stability;
   if (steady && s.found.minimum && phases.empty()) {
@@ -173,6 +238,7 @@ Solution Analysis::solve(const SolveOptions& options) {
   if (!steady) {
     const ReportInput input{s.mechanism, problem, s.found, existence, stability};
     out.message = failure_message(input, s.workspace);
+    if (!tried.empty()) out.message += " " + tried;
     out.residual = s.history.empty() ? 0 : s.history.back();
     return out;
   }
@@ -214,10 +280,15 @@ Solution Analysis::solve(const SolveOptions& options) {
 AllSolutions Analysis::solve_all(const SolveOptions& options) {
   State& s = *state_;
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
-  report_progress(options.progress, "searching");
-  EquilibriumList list = find_all_equilibria(problem, s.drawn, 1, s.workspace);
+  SearchOptions search;
+  search.seconds = options.search_time;
+  search.starts = options.search_starts;
+  search.progress = options.progress;
+  EquilibriumList list = find_all_equilibria(problem, s.drawn, search, s.workspace);
   AllSolutions out;
   out.starts = list.report.starts;
+  out.unseen = list.report.unseen;
+  out.end = list.report.end;
   for (std::size_t c = 0; c < s.system.coordinates.size(); ++c) {
     const CoordinateInfo& info = s.system.coordinates[c];
     const TreeJoint& joint = s.system.tree_joints[static_cast<std::size_t>(info.tree_joint)];
@@ -246,8 +317,11 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
     evaluate(problem, found.z, 0, s.workspace);
     factor(problem, found.z, s.workspace);
     refine(problem, found.z, found.newton, s.workspace, s.error);
-    const Existence existence = check_existence(problem, found.z.q, phases, s.workspace);
-    if (!existence.holds) continue;
+    const Existence existence = s.exists(problem, found.z, phases);
+    if (!existence.holds) {
+      ++out.passing;
+      continue;
+    }
     const bool many = s.system.nv > largest_for_eigenvalues && options.modes == 0;
     const Stability stability = find_stability(problem, found.z, !many, s.workspace);
     // A family along a direction that nothing resists is one entry.
@@ -268,13 +342,13 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
       entry.potential = amended_potential(s.system, s.parameters, found.z.q, s.workspace.kinematics).value;
       entry.solution.potential = entry.potential;
     }
+    if (!is_finite(entry.solution)) continue;
     entries.push_back(std::move(entry));
   }
   std::ranges::stable_sort(entries, {}, &Entry::potential);
   for (Entry& e : entries)
     out.equilibria.push_back(std::move(e.solution));
-  out.message = out.equilibria.empty() ? "No equilibrium was found in the range searched."
-                                       : "Found by a bounded search; there may be more.";
+  out.message = search_message(out);
   return out;
 }
 

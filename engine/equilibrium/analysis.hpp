@@ -23,6 +23,12 @@ struct SolveOptions {
   std::vector<std::pair<std::string, double>> start; // "joint" or "joint.index" = value, over the drawn pose
   const std::atomic<bool>* cancel = nullptr;         // looked at all the time; then not_converged
   ReportProgress progress{};
+  // Where no steady state is found from the start: how long others are looked for before refusing, in seconds
+  // of one core, counted in operations (see SearchOptions). Zero: not at all.
+  double search = 0.2;
+  // Of solve_all, see SearchOptions.
+  double search_time = 1;
+  int search_starts = 0;
 };
 
 // What was compiled and what was left out, for `flyball check`.
@@ -45,7 +51,10 @@ struct AllSolutions {
   };
   std::vector<Bound> bounds; // free coordinates
   int starts = 0;            // Newton-Raphson runs
-  std::string message;       // a sentence
+  int passing = 0;           // equilibria of the drawn phase that do not hold as the drives turn: not listed
+  double unseen = 0;         // expected to be missing (SearchReport::unseen)
+  SearchEnd end = SearchEnd::settled;
+  std::string message; // a sentence
 };
 
 class Analysis {
@@ -62,7 +71,7 @@ class Analysis {
 
   Solution solve(const SolveOptions& options = {});
 
-  // `options`: details, modes, cancel and progress count.
+  // `options`: details, modes, cancel, search_time, search_starts and progress count.
   AllSolutions solve_all(const SolveOptions& options = {});
 
   SystemSummary summary() const;

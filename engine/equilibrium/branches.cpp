@@ -140,7 +140,7 @@ class Diagram {
     const Problem problem = follower_.problem_at(value);
     Eigen::VectorXd drawn;
     drawn_configuration(problem.system, problem.parameters, drawn);
-    const EquilibriumList list = find_all_equilibria(problem, drawn, 1, w);
+    const EquilibriumList list = find_all_equilibria(problem, drawn, {}, w);
     out_.searched.push_back(value);
     out_.starts += list.report.starts;
     const std::vector<double> phases = sample_phases(problem.system, problem.parameters);

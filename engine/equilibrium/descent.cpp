@@ -1,5 +1,7 @@
 #include "engine/equilibrium/descent.hpp"
 
+#include "engine/equilibrium/largest.hpp"
+
 namespace flyball {
 namespace {
 
@@ -37,7 +39,7 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
     // In equilibrated coordinates: step along each eigenvector against the gradient, with |eigenvalue|.
     const Eigen::VectorXd g = gradient.cwiseProduct(hessian.scale());
     Eigen::VectorXd y = Eigen::VectorXd::Zero(g.size());
-    const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
+    const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     double slope = 0, lowest = 0;
     Eigen::Index lowest_index = 0;
     bool down = false;

@@ -48,15 +48,17 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
       for (std::size_t r = 0; r < cut.rows.size(); ++r) {
         const auto row = static_cast<Eigen::Index>(cut.first_row) + static_cast<Eigen::Index>(r);
         const double open = std::abs(w.residual.phi[row]) * problem.scaling.row[row];
+        result.left = std::max(result.left, open);
         if (open <= tolerance || (result.loops_open && open <= result.violation)) continue;
-        result = {false, true, t, open, static_cast<int>(c)};
+        result = {false, true, t, open, static_cast<int>(c), result.left};
       }
     }
     if (result.loops_open) continue;
     w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
     const auto judge = [&](double left, double size) {
+      if (left > 0) result.left = std::max(result.left, left / size);
       if (left > tolerance * size && left / size > result.violation)
-        result = {false, false, t, left / size, -1};
+        result = {false, false, t, left / size, -1, result.left};
     };
     if (problem.system.rows > 0 && !problem.is_dense()) { // with the multipliers that do best
       Unknowns z{q, {}};
@@ -76,6 +78,23 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
             basis.col(k).cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column)));
   }
   return result;
+}
+
+Eigen::VectorXd phase_variation(const Problem& problem, const Unknowns& z, const std::vector<double>& phases,
+                                Workspace& w) {
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(problem.system.nv);
+  Unknowns there{z.q, {}};
+  for (double t : phases) {
+    evaluate_phase(problem, z.q, t, w);
+    best_multipliers(problem, w, there.lambda);
+    evaluate(problem, there, t, w);
+    factor(problem, there, w);
+    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+    most = most.cwiseMax(w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs());
+  }
+  evaluate(problem, z, 0, w);
+  factor(problem, z, w);
+  return 2 * most;
 }
 
 std::string blame(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q, double phase,

@@ -13,6 +13,7 @@ struct Existence {
   double phase = 0;        // s, where it fails worst
   double violation = 0;    // scaled
   int worst_cut = -1;      // loops_open: in System::cuts
+  double left = 0;         // where it holds: the largest imbalance at another phase, scaled
 };
 
 // Times (s) along q_D(t) at which to look: for each drive several turns at angles where no low harmonic
@@ -22,6 +23,11 @@ std::vector<double> sample_phases(const System& system, const Parameters& parame
 // At each phase Phi must vanish and the force balance must lie in the range of Phi_q^T.
 Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,
                           Workspace& w);
+
+// How far (rad, m), by coordinate of q_R, the balance at other phases asks a state that holds within the
+// tolerance to move: twice the largest Newton step there. Leaves the balance at z evaluated and factored.
+Eigen::VectorXd phase_variation(const Problem& problem, const Unknowns& z, const std::vector<double>& phases,
+                                Workspace& w);
 
 // What turns with the drives, as a phrase: "the weight of bob", "the force push", "the inertia of rotor".
 std::string blame(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q, double phase,

@@ -1,5 +1,6 @@
 #include "engine/equilibrium/newton.hpp"
 
+#include "engine/equilibrium/largest.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/system/constraint_row.hpp"
 
@@ -68,7 +69,7 @@ double resolution(const Problem& problem, const Eigen::VectorXd& q) {
 double merit(const Problem& problem, Workspace& w) {
   w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
   double sum = 0;
-  const double size = std::max(1e-300, w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff());
+  const double size = std::max(1e-300, largest(w.magnitudes.force.cwiseProduct(problem.scaling.column)));
   if (problem.system.rows == 0) {
     sum += (w.scaled_force / size).squaredNorm();
   } else if (problem.is_dense()) {

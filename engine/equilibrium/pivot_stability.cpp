@@ -1,5 +1,7 @@
 #include "engine/equilibrium/pivot_stability.hpp"
 
+#include "engine/equilibrium/largest.hpp"
+
 #include <random>
 
 namespace flyball {
@@ -13,7 +15,7 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
   Eigen::VectorXd step = way, multipliers;
   const double shift = w.eliminator(problem).shift();
   const auto balanced = [&] {
-    const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
+    const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     const double left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
     const double open = problem.system.rows > 0
                             ? w.residual.phi.cwiseProduct(problem.scaling.row).lpNorm<Eigen::Infinity>()

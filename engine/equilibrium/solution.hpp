@@ -21,7 +21,12 @@ enum class Status {
 };
 
 // The safety net that caught a Newton-Raphson run which did not arrive by itself.
-enum class Net { damped, homotopy, descent };
+enum class Net {
+  damped,
+  homotopy,
+  descent,
+  search, // the others led to no steady state: one of those that a search all over the ranges found
+};
 
 enum class StabilityReason {
   minimum,         // strict minimum of the amended potential on the constraints
@@ -43,9 +48,19 @@ struct Floquet {
   double error = 0;                              // estimated, absolute, of the largest multiplier
 };
 
+// Why a search for all equilibria stopped (all_equilibria.hpp).
+enum class SearchEnd {
+  settled, // no more than SearchOptions::unseen are expected to be missing
+  starts,  // as many starts as asked for
+  budget,  // the budget is spent
+  time,    // it took many times longer than its budget says; another run may end elsewhere
+  cancelled,
+};
+
 std::string_view word(Status status);
 std::string_view word(Net net);
 std::string_view word(StabilityReason reason);
+std::string_view word(SearchEnd end);
 
 struct CoordinateSolution {
   std::string joint;

@@ -1,6 +1,7 @@
 #include "engine/equilibrium/stability.hpp"
 
 #include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/largest.hpp"
 #include "engine/equilibrium/linear_motion.hpp"
 #include "engine/equilibrium/pencil.hpp"
 #include "engine/linear/spectral.hpp"
@@ -25,7 +26,7 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Matr
     evaluate_with_multipliers(problem, moved, w);
     const Eigen::MatrixXd& basis = w.constraints.basis();
     const Eigen::VectorXd left = basis.transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
-    const double force = w.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff();
+    const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
     factor(problem, moved, w);
     const auto all = orthonormal_completion(basis.transpose() * flat);

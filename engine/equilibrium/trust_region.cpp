@@ -1,5 +1,7 @@
 #include "engine/equilibrium/trust_region.hpp"
 
+#include "engine/equilibrium/largest.hpp"
+
 #include <random>
 
 namespace flyball {
@@ -193,7 +195,7 @@ class TrustRegion {
   void take_in() {
     if (history_) history_->push_back(scaled_residual(p_, w_));
     gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
-    force_ = w_.magnitudes.force.cwiseProduct(p_.scaling.column).maxCoeff();
+    force_ = largest(w_.magnitudes.force.cwiseProduct(p_.scaling.column));
     convex_ = false;
     least_shift_ = 0;
   }

@@ -17,6 +17,18 @@ std::string_view word(Net net) {
   case Net::damped: return "damped";
   case Net::homotopy: return "homotopy";
   case Net::descent: return "descent";
+  case Net::search: return "search";
+  }
+  return "";
+}
+
+std::string_view word(SearchEnd end) {
+  switch (end) {
+  case SearchEnd::settled: return "settled";
+  case SearchEnd::starts: return "starts";
+  case SearchEnd::budget: return "budget";
+  case SearchEnd::time: return "time";
+  case SearchEnd::cancelled: return "cancelled";
   }
   return "";
 }

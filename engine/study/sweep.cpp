@@ -10,6 +10,9 @@
 
 namespace flyball {
 
+// Of a point from which no steady state is found, see SolveOptions::search: a map has thousands.
+constexpr double search = 0.05; // s
+
 double Variation::value(int i) const {
   if (count < 2 || i == 0) return from;
   if (i == count - 1) return to;
@@ -52,6 +55,7 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
           analysis.emplace(varied);
         SolveOptions options;
         options.details = false;
+        options.search = search;
         options.cancel = cancel ? cancel : &stop;
         points[i].solution = analysis->solve(options);
       }

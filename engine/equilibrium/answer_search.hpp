@@ -1,0 +1,30 @@
+// The last net: where Newton-Raphson and what catches it lead to no steady state, or to an equilibrium that
+// holds at one phase of the drives only, other equilibria are looked for before solving refuses.
+#pragma once
+
+#include "engine/equilibrium/all_equilibria.hpp"
+#include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/find_equilibrium.hpp"
+
+#include <optional>
+
+namespace flyball {
+
+struct AnswerSearch {
+  std::optional<Found> answer; // holds at every phase
+  Existence existence;         // of the answer
+  int equilibria = 0;          // found at the drawn phase
+  int steady = 0;              // of these, at every phase
+  SearchReport report;
+};
+
+// Of the equilibria that a bounded search of `seconds` (see SearchOptions) finds, the one that holds at all
+// `phases`, is stable if any is, and lies nearest to `start`. An answer is left evaluated and factored in the
+// workspace. `problem` must be dense.
+AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
+                           const std::vector<double>& phases, double seconds, Workspace& w);
+
+// What was tried, as a sentence to follow a refusal: "None of 3 equilibria found by 120 starts holds ...".
+std::string describe(const AnswerSearch& search);
+
+} // namespace flyball

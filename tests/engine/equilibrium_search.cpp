@@ -1,0 +1,192 @@
+// What a search all over the ranges adds: the list of all equilibria, and answers where the way from the
+// start leads to none that holds.
+#include "tests/engine/equilibrium_mechanisms.hpp"
+
+#include <cstring>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Mechanism test_case(const std::string& name) {
+  return load_scene(FLYBALL_ASSETS "/../tests/cases/" + name + ".json");
+}
+
+// An unsymmetric rotor in a gimbal on a turntable, which a spring draws towards the turntable's axis: only
+// there does the balance hold as the rotor turns.
+Mechanism gimbal(double turn, double rotor_speed, const Vec3& inertia, double stiffness) {
+  Mechanism m;
+  m.bodies = {spindle(), body("gimbal", 0.1, {0, 0, 0}, {0.001, 0.001, 0.001}),
+              body("rotor", 0.5, {0, 0, 0}, inertia)};
+  m.joints = {
+      spin(turn),
+      dampened(sprung(revolute("tilt", "spindle", "gimbal", {0, 0, 0}, {0, 0, 1}), stiffness, pi / 2), 0.1),
+      driven(revolute("rotor", "gimbal", "rotor", {0, 0, 0}, {1, 0, 0}), rotor_speed)};
+  return m;
+}
+
+// An arm on a level shaft: its weight turns with the shaft, but has no moment about the hinge where the arm
+// stands at right angles to the shaft.
+Mechanism arm_on_level_shaft(double speed, double angle) {
+  Mechanism m = conical(0.5, 0.1, speed, angle);
+  m.gravity = {-standard_gravity, 0, 0};
+  m.joints[1].coordinates[0].damping = 0.5;
+  return m;
+}
+
+void check_list(const AllSolutions& all) {
+  for (std::size_t i = 0; i < all.equilibria.size(); ++i) {
+    const Solution& s = all.equilibria[i];
+    for (const AllSolutions::Bound& b : all.bounds) {
+      const double at = value(s, b.joint, b.index);
+      CAPTURE(b.joint, b.index, at, b.lower, b.upper);
+      CHECK(at >= b.lower - 1e-9);
+      CHECK(at <= b.upper + 1e-9);
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      bool copy = true;
+      for (const AllSolutions::Bound& b : all.bounds) {
+        double away = value(s, b.joint, b.index) - value(all.equilibria[k], b.joint, b.index);
+        if (b.angle) away = std::remainder(away, 2 * pi);
+        copy = copy && std::abs(away) < 1e-6;
+      }
+      CAPTURE(i, k);
+      CHECK_FALSE(copy);
+    }
+  }
+}
+
+} // namespace
+
+TEST_CASE("a steady state that the way from the start misses is found before solving refuses", "[search]") {
+  const Solution shipped_case = solve(test_case("gimbal_along_the_shaft"));
+  INFO(shipped_case.message);
+  REQUIRE(shipped_case.status == Status::converged);
+  CHECK(shipped_case.net == Net::search);
+  CHECK_THAT(shipped_case.message, ContainsSubstring("search"));
+  check_value(shipped_case, "h", pi / 2);
+
+  for (const double turn : {2., -4.})
+    for (const double rotor : {30., -75.}) {
+      const Solution s = solve(gimbal(turn, rotor, {0.003, 0.002, 0.0025}, 0.3));
+      CAPTURE(turn, rotor, s.message);
+      REQUIRE(s.status == Status::converged);
+      CHECK(std::abs(std::remainder(value(s, "tilt") - pi / 2, 2 * pi)) < 1e-12);
+    }
+  for (const double angle : {-2.5, -0.4, 0.3, 1.2}) {
+    const Solution s = solve(arm_on_level_shaft(7, angle));
+    CAPTURE(angle, s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(std::abs(std::cos(value(s, "swing"))) < 1e-12);
+  }
+  // Nearest is nearest: it refuses, and says that others were not tried.
+  const Solution plain = solve(arm_on_level_shaft(7, 0.3), nearest());
+  INFO(plain.message);
+  CHECK(plain.status == Status::no_steady_state);
+}
+
+TEST_CASE("a refusal says what was tried", "[search]") {
+  Mechanism leaning = conical(0.5, 0.2, 5, 0.2);
+  leaning.gravity = standard_gravity * Vec3(0, -std::cos(0.3), std::sin(0.3));
+  const Solution s = solve(leaning);
+  INFO(s.message);
+  CHECK(s.status == Status::no_steady_state);
+  CHECK_THAT(s.message,
+             ContainsSubstring("holds at every phase") || ContainsSubstring("the only equilibrium"));
+
+  SolveOptions at_once;
+  at_once.search = 0;
+  const Solution brief = solve(leaning, at_once);
+  INFO(brief.message);
+  CHECK(brief.status == Status::no_steady_state);
+  CHECK_THAT(brief.message, ContainsSubstring("this start alone"));
+  CHECK_THAT(brief.message, ContainsSubstring("--all"));
+}
+
+TEST_CASE("where Newton-Raphson and its nets lead nowhere a search may", "[search]") {
+  const Solution s = solve(test_case("five_bodies_from_afar"));
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.net == Net::search);
+  CHECK(s.residual < 1e-10);
+
+  std::atomic<bool> cancel = true;
+  SolveOptions cancelled;
+  cancelled.cancel = &cancel;
+  CHECK(solve(test_case("five_bodies_from_afar"), cancelled).status == Status::not_converged);
+}
+
+TEST_CASE("what a state leaves at other phases counts in its error", "[search]") {
+  for (const double tilt : {1e-8, 3e-10, 1e-12}) {
+    Mechanism m = test_case("slightly_tilted");
+    const double g = -m.gravity.z();
+    m.gravity.x() = tilt * g;
+    const Solution s = solve(m);
+    CAPTURE(tilt, s.message);
+    if (s.status == Status::no_steady_state) continue; // honest, too
+    REQUIRE(s.status == Status::converged);
+    // Where the balance stands as gravity turns round the shaft.
+    for (const double phase : {0.5, 1.5, 3., 4.7}) {
+      m.gravity = {tilt * g * std::cos(phase), -tilt * g * std::sin(phase), -g};
+      SolveOptions options;
+      options.start = start_values(s.coordinates);
+      options.nearest = true;
+      const Solution there = solve(m, options);
+      CAPTURE(phase, value(there, "h"), value(s, "h"));
+      CHECK(std::abs(value(there, "h") - value(s, "h")) <= coordinate(s, "h").error);
+    }
+  }
+  Mechanism upright = test_case("slightly_tilted");
+  upright.gravity.x() = 0;
+  CHECK(coordinate(solve(upright), "h").error < 1e-14);
+}
+
+TEST_CASE("all equilibria of planar pendulums on a shaft", "[all]") {
+  const AllSolutions triple = Analysis(test_case("triple_pendulum_turning")).solve_all();
+  INFO(triple.message);
+  CHECK(triple.equilibria.size() == 32);
+  check_list(triple);
+  for (const char* name : {"soft_spirals", "soft_spirals_of_two"}) {
+    const AllSolutions all = Analysis(test_case(name)).solve_all();
+    CAPTURE(name, all.message, all.equilibria.size());
+    check_list(all);
+  }
+}
+
+TEST_CASE("a search is bounded by its starts, repeats itself to the bit and can be cancelled", "[all]") {
+  const Mechanism m = test_case("soft_spirals");
+  SolveOptions options;
+  const AllSolutions one = Analysis(m).solve_all(options), again = Analysis(m).solve_all(options);
+  REQUIRE(one.equilibria.size() == again.equilibria.size());
+  CHECK(one.starts == again.starts);
+  for (std::size_t i = 0; i < one.equilibria.size(); ++i)
+    for (std::size_t c = 0; c < one.equilibria[i].coordinates.size(); ++c) {
+      const double a = one.equilibria[i].coordinates[c].value, b = again.equilibria[i].coordinates[c].value;
+      CHECK(std::memcmp(&a, &b, sizeof a) == 0);
+    }
+  options.search_starts = 20;
+  const AllSolutions few = Analysis(m).solve_all(options);
+  CHECK(few.end == SearchEnd::starts);
+  CHECK(few.starts <= 25);
+  CHECK(few.equilibria.size() <= one.equilibria.size());
+  std::atomic<bool> cancel = true;
+  options.cancel = &cancel;
+  CHECK(Analysis(m).solve_all(options).end == SearchEnd::cancelled);
+}
+
+TEST_CASE("bounds reach as far as the answer does", "[all]") {
+  // Wound up by two turns and a half: the answer lies where the drawn pose's label says.
+  Mechanism m = conical(0.5, 0.1, 2, 0.2);
+  m.joints[1].coordinates[0].drawn = 15.9;
+  m.joints[1].coordinates[0].spring = CoordinateSpring{40, 16};
+  const Solution answer = solve(m);
+  REQUIRE(answer.status == Status::converged);
+  const AllSolutions all = Analysis(m).solve_all();
+  check_list(all);
+  CHECK(std::ranges::any_of(all.equilibria, [&](const Solution& s) {
+    return std::abs(value(s, "swing") - value(answer, "swing")) < 1e-9;
+  }));
+}
