@@ -10,6 +10,7 @@
 #include "engine/equilibrium/sensitivity.hpp"
 #include "engine/equilibrium/sign_is_open.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/equilibrium/unbounded.hpp"
 #include "engine/mechanism/error.hpp"
 
 #include <algorithm>
@@ -157,6 +158,9 @@ Solution Analysis::solve(const SolveOptions& options) {
     const ReportInput input{s.mechanism, problem, s.found, existence, stability};
     out.message = failure_message(input, s.workspace);
     out.residual = s.history.empty() ? 0 : s.history.back();
+    explain_unbounded(problem, s.start, s.workspace, out);
+    out.weight_turns = out.status == Status::no_steady_state && !existence.loops_open &&
+                       weight_turns(problem, s.found.z.q, existence.phase, s.workspace);
     return out;
   }
   s.answer = s.found.z.q;
