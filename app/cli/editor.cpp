@@ -165,7 +165,8 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
       export_picture(app, size);
       settling = settling_frames;
     }
-    if (ImGui::IsAnyItemActive() || app.files.gallery.drawing || app.movie.progress || stage.resting())
+    if (ImGui::IsAnyItemActive() || app.files.gallery.drawing || app.movie.progress || stage.resting() ||
+        app.panels.slider_press.place)
       settling = std::max(settling, 1);
     if (title_of(app) != title) window.set_title(title = title_of(app));
     if (!options.state_file.empty()) {

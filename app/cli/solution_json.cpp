@@ -48,6 +48,9 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   for (const char* key : {"potential", "eigenvalues", "floquet", "neutral", "drive_torques", "reactions",
                           "poses", "sensitivities", "condition"})
     out[key] = nullptr;
+  out["unheld"] = Json::array();
+  for (const UnheldCoordinate& c : s.unheld)
+    out["unheld"].push_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index));
   if (!converged) return out;
 
   if (s.potential) out["potential"] = number(*s.potential);

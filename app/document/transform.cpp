@@ -11,8 +11,8 @@ namespace {
 
 class Transform {
  public:
-  Transform(Mechanism& mechanism, const Selection& selection, const Isometry& isometry)
-      : mechanism_(mechanism), isometry_(isometry) {
+  Transform(Mechanism& mechanism, const Selection& selection, const Isometry& isometry, OuterJoints joints)
+      : mechanism_(mechanism), isometry_(isometry), outer_(joints == OuterJoints::follow) {
     for (const Part& part : selection.parts) {
       if (part.kind == PartKind::body) bodies_.insert(part.name);
       if (part.kind == PartKind::joint) joints_.insert(part.name);
@@ -41,7 +41,9 @@ class Transform {
   // Whether all of it moved.
   bool transform(Joint& joint) const {
     if (joint.type == JointType::gear) return false;
-    if (joints_.contains(joint.name) || (moves(joint.bodies[0]) && moves(joint.bodies[1]))) {
+    const bool first = moves(joint.bodies[0]), second = moves(joint.bodies[1]);
+    const bool taken_along = outer_ && joint.type != JointType::distance && (first || second);
+    if (joints_.contains(joint.name) || (first && second) || taken_along) {
       joint = image_of(joint, isometry_);
       return true;
     }
@@ -77,6 +79,7 @@ class Transform {
 
   Mechanism& mechanism_;
   Isometry isometry_;
+  bool outer_; // joints to what stays go along
   std::unordered_set<std::string> bodies_, joints_, forces_;
 };
 
@@ -114,14 +117,28 @@ std::optional<Vec3> default_point(const Mechanism& mechanism, const PointId& poi
 
 } // namespace
 
-void move_parts(Mechanism& mechanism, const Selection& selection, const Vec3& by) {
-  if (by.allFinite()) Transform(mechanism, selection, translation(by)).run();
+void move_parts(Mechanism& mechanism, const Selection& selection, const Vec3& by, OuterJoints joints) {
+  if (by.allFinite()) Transform(mechanism, selection, translation(by), joints).run();
 }
 
-void rotate_parts(Mechanism& mechanism, const Selection& selection, const Vec3& centre,
-                  const Quat& rotation) {
+void rotate_parts(Mechanism& mechanism, const Selection& selection, const Vec3& centre, const Quat& rotation,
+                  OuterJoints joints) {
   if (const auto isometry = rotation_about(centre, rotation))
-    Transform(mechanism, selection, *isometry).run();
+    Transform(mechanism, selection, *isometry, joints).run();
+}
+
+std::vector<std::string> outer_joints(const Mechanism& mechanism, const Selection& selection) {
+  std::unordered_set<std::string> bodies, joints;
+  for (const Part& part : selection.parts) {
+    if (part.kind == PartKind::body) bodies.insert(part.name);
+    if (part.kind == PartKind::joint) joints.insert(part.name);
+  }
+  std::vector<std::string> names;
+  for (const Joint& joint : mechanism.joints)
+    if (joint.type != JointType::gear && joint.type != JointType::distance && !joints.contains(joint.name) &&
+        bodies.contains(joint.bodies[0]) != bodies.contains(joint.bodies[1]))
+      names.push_back(joint.name);
+  return names;
 }
 
 std::optional<Vec3> point_position(const Mechanism& mechanism, const PointId& point) {
@@ -129,10 +146,10 @@ std::optional<Vec3> point_position(const Mechanism& mechanism, const PointId& po
   return default_point(mechanism, point);
 }
 
-void set_point(Mechanism& mechanism, const PointId& point, const Vec3& position) {
+void set_point(Mechanism& mechanism, const PointId& point, const Vec3& position, OuterJoints joints) {
   const std::optional<Vec3> now = point_position(mechanism, point);
   if (!now || !position.allFinite() || position == *now) return;
-  if (point.part.kind == PartKind::body) move_parts(mechanism, {{point.part}}, position - *now);
+  if (point.part.kind == PartKind::body) move_parts(mechanism, {{point.part}}, position - *now, joints);
   if (Vec3* found = find_point(mechanism, point))
     *found = position;
   else

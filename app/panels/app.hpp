@@ -61,6 +61,17 @@ struct ViewState {
   unsigned texture_beside = 0;          // the same of the motion, where it has a view of its own
 };
 
+// The button on a slider: a click moves the knob only once it is known not to be the first of two, which
+// type.
+struct SliderPress {
+  std::string name;                       // of the slider
+  float from = 0;                         // pixel of the window where the button went down
+  float grip = 0;                         // pixels from the knob's middle, where it was taken by the knob
+  bool on_knob = false, dragging = false; // dragging: the hand has moved, and the knob follows
+  bool typing = false;                    // it asked for typing; nothing moves any more
+  std::optional<double> place{}, since{}; // of a click beside the knob: share of the track; s of ImGui's
+};
+
 // Sizes in points, so that they mean the same on every display.
 struct PanelState {
   float parameters_width = 290, results_width = 345, stacked_width = 330;
@@ -74,6 +85,7 @@ struct PanelState {
   bool dampers = true;
   bool torques = true, reactions = false, eigenvalues = false, system = false;
   std::map<std::string, KeptRates> rates; // by the slider's address
+  SliderPress slider_press;
 };
 
 // A key that went down. Kept as it happened: Dear ImGui 1.86 only sees which keys are down when a frame

@@ -1,5 +1,6 @@
 #include "app/panels/commands.hpp"
 #include "app/panels/edit_commands.hpp"
+#include "app/panels/key_focus.hpp"
 #include "app/panels/panels.hpp"
 #include "app/panels/plot_save.hpp"
 #include "app/panels/study_panels.hpp"
@@ -22,6 +23,9 @@ void notice_gestures(App& app) {
   for (int button = 0; button < 3; ++button)
     pressed = pressed || ImGui::IsMouseClicked(button);
   if (pressed) ++app.gesture;
+  // A slider that is not drawn any more waits for no second click.
+  if (SliderPress& press = app.panels.slider_press; press.place && ImGui::GetTime() - *press.since > 1)
+    press = {};
 }
 
 } // namespace
@@ -30,6 +34,8 @@ void build_gui(App& app) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   app.widgets.clear();
   notice_gestures(app);
+  notice_key_focus(app);
+  give_keys_to_popups(app);
   take_tool_keys(app);
   handle_shortcuts(app);
   const Layout layout = layout_of(app, size.x, size.y);

@@ -1,4 +1,4 @@
-// The command palette, the sheet of shortcuts, and what the commands that copy ask for.
+// The command palette, the sheet of shortcuts, where keys go, and what the commands that copy ask for.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -14,11 +14,20 @@ struct CopyChoice {
   int count = 3;
 };
 
+// Where keys go; see key_focus.hpp.
+struct KeyFocus {
+  bool in_panel = false;     // the last click was in a panel, or one types there
+  bool among_fields = false; // in one of numbers and words, rather than a list of parts
+  bool letters = false;      // which are commands all the same, as long as no number is begun
+  bool number_begun = false; // a digit or sign was pressed there outside of any field
+};
+
 struct CommandState {
   bool palette_wanted = false, palette_showing = false; // wanted: to be opened by the next frame
   std::string search;
   int chosen = 0; // row of the palette
   bool shortcuts = false;
+  KeyFocus focus;
   CopyChoice copy;
 };
 

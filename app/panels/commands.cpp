@@ -2,6 +2,7 @@
 
 #include "app/panels/edit_commands.hpp"
 #include "app/panels/file_commands.hpp"
+#include "app/panels/key_focus.hpp"
 #include "app/panels/modes_control.hpp"
 #include "app/panels/motion_control.hpp"
 #include "app/panels/panels.hpp"
@@ -472,17 +473,34 @@ std::string key_text(const KeyPress& key) {
   }
 }
 
+namespace {
+
+// Something has come up that has its own use for keys.
+bool keys_are_wanted(const App& app) {
+  return app.dialog.showing || app.dialog.wanted != Dialog::none || app.commands.palette_showing ||
+         app.commands.palette_wanted || app.commands.shortcuts;
+}
+
+void act_on(App& app, const KeyPress& key) {
+  // The first Escape gives the keys back to the view.
+  if (key == plain(keys::escape) && std::exchange(app.commands.focus, {}).in_panel) return;
+  for (const Command& command : table)
+    if (pressed(command, key) && is_enabled(app, command)) {
+      if (may_command(app, key)) command.run(app);
+      return;
+    }
+  may_command(app, key); // no command, but maybe the beginning of a number
+}
+
+} // namespace
+
 void handle_shortcuts(App& app) {
   // The palette has its own use for keys.
   if (app.commands.palette_showing) return;
   const std::vector<KeyPress> pressed_keys = std::exchange(app.keys, {});
   if (ImGui::GetIO().WantTextInput || !app.inspector.typing.name.empty() || app.dialog.showing) return;
   for (const KeyPress& key : pressed_keys)
-    for (const Command& command : table)
-      if (pressed(command, key) && is_enabled(app, command)) {
-        command.run(app);
-        break;
-      }
+    if (!keys_are_wanted(app)) act_on(app, key);
 }
 
 } // namespace flyball

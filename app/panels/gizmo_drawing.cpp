@@ -1,6 +1,7 @@
 #include "app/panels/gizmo_drawing.hpp"
 
 #include "app/panels/aim.hpp"
+#include "app/panels/typed_size.hpp"
 #include "app/panels/view_drawing.hpp"
 #include "app/panels/widgets.hpp"
 
@@ -125,13 +126,14 @@ void draw_sector(const App& app, const ViewInput& input, const Grab& grab) {
 
 std::string moved_text(const Grab& grab, double step) {
   const auto free = free_coordinates(grab.handle, grab.normal);
+  if (!grab.typed.empty() && std::ranges::count(free, true) > 1)
+    return (grab.point ? "length " : "distance ") + typed_text(grab.typed, "m");
   std::string text;
   for (int i = 0; i < 3; ++i) {
     if (!free[static_cast<std::size_t>(i)]) continue;
-    const bool arrow = std::ranges::count(free, true) == 1;
-    const std::string number =
-        arrow && !grab.typed.empty() ? grab.typed + "_" : length_text(grab.by[i], step);
-    text += std::string(text.empty() ? "" : "  ") + "Δ" + letters[i] + " " + number;
+    text += std::string(text.empty() ? "" : "  ") + "Δ" + letters[i] + " ";
+    if (!grab.typed.empty()) return text + typed_text(grab.typed, "m");
+    text += length_text(grab.by[i], step);
   }
   return text + " m";
 }
@@ -149,9 +151,9 @@ void draw_grabbed(const App& app, const ViewInput& input) {
   const Grab& grab = *app.tool.grab;
   if (is_ring(grab.handle)) {
     draw_sector(app, input, grab);
-    const std::string number =
-        grab.typed.empty() ? short_text(grab.angle * 180 / std::numbers::pi, 4) : grab.typed + "_";
-    draw_tag(app, input, input.cursor, "", number + "°");
+    const std::string number = grab.typed.empty() ? short_text(grab.angle * 180 / std::numbers::pi, 4) + "°"
+                                                  : typed_text(grab.typed, "deg");
+    draw_tag(app, input, input.cursor, "", number);
     return;
   }
   const Vec3 now = grab.centre + grab.by;

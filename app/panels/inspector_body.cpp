@@ -2,6 +2,7 @@
 #include "app/document/transform.hpp"
 #include "app/panels/inspector_parts.hpp"
 #include "app/panels/inspector_rows.hpp"
+#include "app/panels/joints_along.hpp"
 #include "app/panels/typed_field.hpp"
 
 #include <fmt/format.h>
@@ -62,9 +63,12 @@ void turn_body(App& app, const std::string& name, int axis, double angle) {
     Body& body = mechanism.bodies[static_cast<std::size_t>(index)];
     const Quat to = turned(turns);
     if (!app.inspector.mass_alone)
-      rotate_parts(mechanism, only(body), body.position, to * body.rotation.normalized().conjugate());
+      rotate_parts(mechanism, only(body), body.position, to * body.rotation.normalized().conjugate(),
+                   joints_of_moved(app, false));
     body.rotation = to;
   });
+  if (!app.inspector.mass_alone)
+    tell_joints(app, only(app.mechanism().bodies[static_cast<std::size_t>(index)]), false);
   app.inspector.turned_to = app.mechanism().bodies[static_cast<std::size_t>(index)].rotation;
   app.inspector.turns = turns;
 }
@@ -79,8 +83,10 @@ void move_body(App& app, const std::string& name, int axis, double to) {
     if (app.inspector.mass_alone)
       body.position = position;
     else
-      set_point(mechanism, {{PartKind::body, name}, 0}, position);
+      set_point(mechanism, {{PartKind::body, name}, 0}, position, joints_of_moved(app, false));
   });
+  if (!app.inspector.mass_alone)
+    tell_joints(app, only(app.mechanism().bodies[static_cast<std::size_t>(index)]), false);
 }
 
 void inertia_rows(App& app, const Body& body) {
@@ -224,9 +230,15 @@ void body_inspector(App& app, const Body& body) {
                }});
   if (check_row(
           app, "inspector/mass alone", "Move mass centre alone", app.inspector.mass_alone,
-          "Typing a position or rotation moves the mass centre and the axes of inertia, and leaves shapes "
-          "and ends of springs where they are."))
+          "Typing a position or rotation moves the mass centre and the axes of inertia, and leaves shapes, "
+          "joints and ends of springs where they are."))
     app.inspector.mass_alone = !app.inspector.mass_alone;
+  if (check_row(
+          app, "inspector/leave joints", "Leave joints behind", app.inspector.leave_joints,
+          "A body that is moved or turned, here or in the view, leaves its joints where they are in the "
+          "world; otherwise they go with it. In the view Shift does the opposite.",
+          app.inspector.mass_alone ? "A mass centre that moves alone leaves everything." : nullptr))
+    app.inspector.leave_joints = !app.inspector.leave_joints;
   mass_section(app, body);
   rotation_section(app, body);
   shapes_section(app, body);

@@ -73,17 +73,30 @@ struct CoordinateRows {
                  reset);
   }
 
+  // Always in its place, so that nothing below it moves with what is ticked there or found meanwhile.
   void settled() const {
     const CoordinateSolution* found = solution();
-    if (!found || found->driven) return;
-    const NumberStyle& numbers = app.options.numbers;
-    const double factor = screen_factor(angle());
-    std::string help = value_text(found->value, found->error, numbers) + " " + value_unit();
-    if (found->error > 0)
-      help += " ± " + magnitude_text(std::max(found->error, numbers.noise), numbers) + " " + value_unit();
-    row(app, "Settles at", value_text(found->value * factor, found->error * factor, numbers),
-        screen_unit(angle()), ("In the steady state: " + help + ".").c_str());
+    if (coordinate().drive || (found && found->driven)) {
+      no_value("driven", "It moves at a constant speed, so there is no place where it settles.");
+    } else if (!found) {
+      no_value("not known", "There is no steady state of which this could be told.");
+    } else {
+      const NumberStyle& numbers = app.options.numbers;
+      const double factor = screen_factor(angle());
+      std::string help = value_text(found->value, found->error, numbers) + " " + value_unit();
+      if (found->error > 0)
+        help += " ± " + magnitude_text(std::max(found->error, numbers.noise), numbers) + " " + value_unit();
+      row(app, "Settles at", value_text(found->value * factor, found->error * factor, numbers),
+          screen_unit(angle()), ("In the steady state: " + help + ".").c_str());
+    }
     note_widget(app.widgets, widget(key("settles")));
+  }
+
+  // The row of a value that there is not.
+  void no_value(const char* word, const char* help) const {
+    ImGui::BeginDisabled();
+    row(app, "Settles at", word, "", help);
+    ImGui::EndDisabled();
   }
 
   void drive() const {

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <string_view>
+#include <unordered_map>
 
 namespace flyball {
 
@@ -72,11 +75,34 @@ void axis_rows(App& app, const Joint& joint) {
   direction_buttons(app, joint, &Joint::axis2, "inspector/axis2");
 }
 
+// Whether some joint leads back to where others lead already. Of the drawing alone, so that the row below
+// does not come and go with answers.
+bool has_loops(const Mechanism& mechanism) {
+  std::unordered_map<std::string_view, std::size_t> index{{ground_name, 0}};
+  for (const Body& body : mechanism.bodies)
+    index.emplace(body.name, index.size());
+  std::vector<std::size_t> leads_to(index.size()); // union-find
+  std::iota(leads_to.begin(), leads_to.end(), std::size_t{0});
+  const auto group = [&](std::size_t i) {
+    while (leads_to[i] != i)
+      i = leads_to[i] = leads_to[leads_to[i]];
+    return i;
+  };
+  for (const Joint& joint : mechanism.joints) {
+    const auto a = index.find(joint.bodies[0]), b = index.find(joint.bodies[1]);
+    if (joint.type == JointType::gear || a == index.end() || b == index.end()) continue;
+    const std::size_t from = group(a->second), to = group(b->second);
+    if (from == to) return true;
+    leads_to[from] = to;
+  }
+  return false;
+}
+
 // Only where there are loops is there anything to cut.
 void cut_row(App& app, const Joint& joint) {
   const SystemSummary& summary = app.answer.summary;
   const bool can = joint.type != JointType::free && joint.type != JointType::distance;
-  if (!can || (!joint.cut && summary.cut_joints.empty())) return;
+  if (!can || (!joint.cut && !has_loops(app.mechanism()))) return;
   constexpr std::array<std::string_view, 3> options{"automatic", "cut here", "not cut here"};
   const std::size_t present = !joint.cut ? 0 : *joint.cut ? 1 : 2;
   const bool cut_now = std::ranges::find(summary.cut_joints, joint.name) != summary.cut_joints.end();

@@ -110,7 +110,18 @@ void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism) {
 
 bool inspector_section(App& app, const std::string& name, const char* title, bool open) {
   const auto found = app.inspector.open.find(name);
-  bool now = found == app.inspector.open.end() ? open : found->second;
+  bool now = open;
+  if (found != app.inspector.open.end()) {
+    now = found->second;
+  } else {
+    // What is open stays open while one works in it, even if the last number that opened it goes.
+    if (app.inspector.seen_of.parts != app.selection().parts) {
+      app.inspector.seen.clear();
+      app.inspector.seen_of = app.selection();
+    }
+    bool& seen = app.inspector.seen[name];
+    now = seen = seen || open;
+  }
   const bool before = now;
   ImGui::Dummy({0, 2 * app.scale});
   section(app, name, title, now);

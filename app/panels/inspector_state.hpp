@@ -29,6 +29,7 @@ struct Typing {
   TextTaker take{};
   bool wants_focus = false; // to be given the keyboard when it is drawn next
   int idle = 0;             // frames in which it had not the keyboard
+  bool by_number = false;   // a double click selects the number, until the button is up again
 };
 
 // A number that is dragged by its label.
@@ -56,6 +57,8 @@ struct InspectorState {
   std::vector<std::function<void(App&)>> later;
   std::optional<double> plain;                   // what was typed in a field outside the document
   std::map<std::string, bool, std::less<>> open; // sections that were opened or closed by hand
+  std::map<std::string, bool, std::less<>> seen; // those the inspector has shown open of itself, of `seen_of`
+  Selection seen_of{};
 
   std::string search; // in the outline
   OutlineRows rows;
@@ -64,6 +67,7 @@ struct InspectorState {
   Part anchor, revealed;     // where a range of rows begins; the last one brought into view
   Part independent;          // a body whose mass does not follow its shapes, though it could
   bool mass_alone = false;   // a typed position moves the mass centre alone
+  bool leave_joints = false; // a body that is moved leaves its joints where they are
   Part turned;               // whose rotation the angles below are
   Quat turned_to = Quat::Identity();
   Vec3 turns = Vec3::Zero(); // deg, about x, y and z

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace flyball {
@@ -61,6 +62,43 @@ std::string duration_text(double seconds, const NumberStyle& style) {
   if (seconds < 999.5e-6) return digits(seconds * 1e6) + " µs";
   if (seconds < 999.5e-3) return digits(seconds * 1e3) + " ms";
   return digits(seconds) + " s";
+}
+
+std::pair<std::size_t, std::size_t> number_at(std::string_view text, std::size_t at) {
+  const auto is_digit = [&](std::size_t i) {
+    return i < text.size() && ((text[i] >= '0' && text[i] <= '9') || text[i] == '.');
+  };
+  const auto is_letter = [&](std::size_t i) {
+    return i < text.size() && std::isalpha(static_cast<unsigned char>(text[i])) != 0;
+  };
+  std::pair<std::size_t, std::size_t> found{0, 0};
+  bool any = false, signed_place = true; // a sign here belongs to the number after it
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t begin = i;
+    if (signed_place && (text[i] == '-' || text[i] == '+') && is_digit(i + 1)) ++i;
+    if (is_digit(i)) {
+      while (is_digit(i))
+        ++i;
+      const std::size_t sign = i + 1 < text.size() && (text[i + 1] == '-' || text[i + 1] == '+') ? 1 : 0;
+      if (i < text.size() && (text[i] == 'e' || text[i] == 'E') && is_digit(i + 1 + sign)) {
+        i += 1 + sign;
+        while (is_digit(i))
+          ++i;
+      }
+      if (any && begin > at) return found;
+      found = {begin, i};
+      any = true;
+      signed_place = false;
+    } else if (is_letter(i)) { // with its power: "m/s^2", "m2"
+      while (is_letter(i) || is_digit(i) || (i < text.size() && text[i] == '^'))
+        ++i;
+      signed_place = false;
+    } else {
+      if (text[i] != ' ') signed_place = text[i] != ')';
+      ++i;
+    }
+  }
+  return found;
 }
 
 } // namespace flyball

@@ -1,7 +1,10 @@
 // Numbers as a person reads them: no more digits than are known.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace flyball {
 
@@ -22,5 +25,9 @@ std::string magnitude_text(double value, const NumberStyle& style);
 std::string short_text(double value, int digits = 6);
 // "2.4 µs", "13 ms", "1.2 s".
 std::string duration_text(double seconds, const NumberStyle& style);
+
+// Where the number begins and ends that a person means who points at byte `at` of a typed quantity: the one
+// there, else the one whose unit is there. "2 m" has its 2 at [0, 1). Empty where there is no number.
+std::pair<std::size_t, std::size_t> number_at(std::string_view text, std::size_t at);
 
 } // namespace flyball

@@ -55,12 +55,29 @@ void set(App& app, const QuantityField& field, double value) {
 
 struct Stepping {
   const QuantityField& field;
+  Typing& typing;
   bool stepped = false;
 };
 
-// The arrow keys, while the number is typed in.
+// A double click selects the number, which is typed over then, and not the word under the cursor, which may
+// be its unit.
+void select_number(ImGuiInputTextCallbackData* data, Typing& typing) {
+  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) typing.by_number = true;
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) typing.by_number = false;
+  if (!typing.by_number) return;
+  const auto [from, to] = number_at({data->Buf, static_cast<std::size_t>(data->BufTextLen)},
+                                    static_cast<std::size_t>(std::max(data->CursorPos, 0)));
+  data->SelectionStart = static_cast<int>(from);
+  data->SelectionEnd = data->CursorPos = static_cast<int>(to);
+}
+
+// The arrow keys and the mouse, while the number is typed in.
 int step_typed(ImGuiInputTextCallbackData* data) {
   auto& stepping = *static_cast<Stepping*>(data->UserData);
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackAlways) {
+    select_number(data, stepping.typing);
+    return 0;
+  }
   const QuantityField& field = stepping.field;
   const Quantity typed = parse_quantity({data->Buf, static_cast<std::size_t>(data->BufTextLen)}, field.unit);
   if (!typed) return 0;
@@ -221,7 +238,7 @@ float label_width(const App& app) {
 void quantity_field(App& app, const QuantityField& field, float width) {
   const UiColors& colors = colors_of(app);
   const float height = ImGui::GetFrameHeight(), padding = 6 * app.scale;
-  Stepping stepping{field};
+  Stepping stepping{field, app.inspector.typing};
   TextField text{.name = field.name,
                  .text = field.various.empty() ? with_unit(number_text(field.value), field.unit) : "",
                  .check = [field](const std::string& typed) { return mistake_in(typed, field); },
@@ -235,7 +252,7 @@ void quantity_field(App& app, const QuantityField& field, float width) {
                      },
                  .at_once = field.at_once,
                  .drawn_here = false,
-                 .flags = ImGuiInputTextFlags_CallbackHistory,
+                 .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
                  .callback = step_typed,
                  .callback_data = &stepping};
   const bool bare = !field.framed && !typing_in(app, field.name);

@@ -1,5 +1,6 @@
 #include "app/panels/mistake_list.hpp"
 #include "app/panels/panels.hpp"
+#include "app/panels/remedies.hpp"
 #include "app/panels/state_words.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
@@ -44,11 +45,12 @@ void verdict(App& app) {
   const UiColors& colors = colors_of(app);
   const Solution& solution = app.answer.solution;
   const Verdict verdict = verdict_of(solution, colors);
+  const std::string unheld = unheld_words(solution), headline = unheld.empty() ? verdict.text : unheld;
   ImGui::PushFont(app.fonts.strong);
   ImGui::TextColored(verdict.color, "%s", verdict.icon);
   ImGui::SameLine(0, 7 * app.scale);
   ImGui::PushTextWrapPos(0);
-  ImGui::TextColored(verdict.color, "%s", verdict.text);
+  ImGui::TextColored(verdict.color, "%s", headline.c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
   note_widget(app.widgets, "results/verdict");
@@ -56,7 +58,7 @@ void verdict(App& app) {
     paragraph(reason_text(*solution.stability_reason), colors.dim);
   // Where all went well the words above say it already.
   if (solution.status != Status::converged || solution.message != "Converged.")
-    paragraph(without_repetition(solution.message, verdict.text),
+    paragraph(without_repetition(solution.message, headline),
               solution.status == Status::converged ? colors.dim : colors.text);
 }
 
@@ -99,9 +101,11 @@ void results_panel(App& app, const PanelRect& rect) {
     paragraph(*app.answer.error, colors_of(app).text);
   } else if (app.answer.ticket) {
     verdict(app);
+    remedies(app);
     neutral_joints(app);
     coordinate_results(app);
-    solver_results(app);
+    // What runs away leaves a residual that says nothing: it is small because everything else is large.
+    if (app.answer.solution.unheld.empty()) solver_results(app);
     load_results(app);
     eigenvalue_results(app);
     system_results(app);

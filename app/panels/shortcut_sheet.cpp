@@ -1,6 +1,8 @@
 #include "app/panels/commands.hpp"
 #include "app/panels/widgets.hpp"
 
+#include <imgui_internal.h>
+
 #include <array>
 
 namespace flyball {
@@ -18,8 +20,9 @@ constexpr std::array mouse{
     Line{"Click", "Select; Ctrl adds"},
     Line{"Ctrl+drag", "Select a box"},
     Line{"Double-click", "All in view"},
-    Line{"Ctrl+click a slider", "Type its value"},
+    Line{"Double-click a slider", "Type its value"},
     Line{"Shift+drag a slider", "Finer"},
+    Line{"Digits while placing", "Length or size, with a unit"},
 };
 
 void line(App& app, const std::string& keys, const std::string& does) {
@@ -46,19 +49,25 @@ void lines(App& app, const char* title, std::string_view prefix) {
 } // namespace
 
 void shortcut_sheet(App& app) {
-  if (!app.commands.shortcuts) return;
+  constexpr const char* name = "shortcuts";
+  if (!app.commands.shortcuts) {
+    if (ImGui::IsPopupOpen(name)) ImGui::ClosePopupToLevel(0, true);
+    return;
+  }
+  if (!ImGui::IsPopupOpen(name)) ImGui::OpenPopup(name);
   const float s = app.scale;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({std::min(1000 * s, window.x - 20 * s), std::min(600 * s, window.y - 20 * s)});
-  ImGui::SetNextWindowFocus();
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ImGui::GetStyle().PopupBorderSize);
-  ImGui::Begin("shortcuts", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+  const bool begun = ImGui::BeginPopupModal(name, nullptr,
+                                            ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                                                ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar(3);
+  if (!begun) return;
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {8 * s, 2 * s});
   if (ImGui::BeginTable("columns", 3, ImGuiTableFlags_SizingStretchSame)) {
     ImGui::TableNextColumn();
@@ -79,10 +88,11 @@ void shortcut_sheet(App& app) {
     ImGui::EndTable();
   }
   ImGui::PopStyleVar();
-  if (text_button(app, "shortcuts/close", "Close", true) ||
-      (ImGui::IsMouseClicked(0) && !ImGui::IsWindowHovered(ImGuiHoveredFlags_RootAndChildWindows)))
-    app.commands.shortcuts = false;
-  ImGui::End();
+  const bool beside =
+      ImGui::IsMouseClicked(0) && !ImGui::IsWindowHovered(ImGuiHoveredFlags_RootAndChildWindows);
+  if (text_button(app, "shortcuts/close", "Close", true) || beside) app.commands.shortcuts = false;
+  if (!app.commands.shortcuts) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
 }
 
 } // namespace flyball

@@ -1,6 +1,7 @@
 // One line at the foot of the view: solved, solving, or what is missing.
 #include "app/panels/mistake_list.hpp"
 #include "app/panels/panels.hpp"
+#include "app/panels/remedies.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
 
@@ -33,7 +34,9 @@ StatusLine status_line(const App& app) {
   const Solution& solution = app.answer.solution;
   switch (solution.status) {
   case Status::converged: break;
-  case Status::not_converged: return {"No steady state found", colors.bad, icon::warning};
+  case Status::not_converged:
+    return {solution.unheld.empty() ? "No steady state found" : unheld_words(solution), colors.bad,
+            icon::warning};
   case Status::no_steady_state: return {"There is no steady state", colors.bad, icon::warning};
   case Status::infeasible: return {"The loops cannot be closed", colors.bad, icon::warning};
   }

@@ -55,6 +55,7 @@ struct Grab {
   double angle = 0, swept = 0; // rad, so far; swept: without snapping
   std::string what;            // that it snapped to
   std::string typed;           // a number instead of the hand's
+  bool shift = false;          // held when it was moved last
 };
 
 // A joint before it is made.
@@ -101,8 +102,10 @@ struct ToolState {
   std::optional<Aim> first{};  // where the button went down, or the first of two clicks
   bool first_clicked = false;  // the latter
   std::optional<JointDraft> joint{};
-  float card_height = 0; // pixels, of the joint's card in the last frame
-  bool spent = false;    // the button that is down has done its work
+  float card_height = 0;  // pixels, of the joint's card in the last frame
+  bool spent = false;     // the button that is down has done its work
+  std::string typed{};    // the length or size of what is being placed, instead of the hand's
+  bool place_now = false; // Enter was pressed: as if clicked here
 
   ToolCaches caches{};
 };

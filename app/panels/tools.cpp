@@ -1,6 +1,7 @@
 #include "app/panels/tools.hpp"
 
 #include "app/panels/commands.hpp"
+#include "app/panels/typed_size.hpp"
 
 namespace flyball {
 
@@ -13,25 +14,49 @@ bool has_body(const App& app, const std::string& name) {
 void drop_begun(ToolState& tool) {
   tool.first.reset();
   tool.first_clicked = false;
+  tool.typed.clear();
+  tool.place_now = false;
   tool.frame.reset();
   tool.joint.reset();
   tool.hovered = Handle::none;
   tool.hovered_point.reset();
 }
 
-// A key of a typed number.
-bool types_number(int key) {
-  return (key >= '0' && key <= '9') || key == '.' || key == '-' || key == '/' || key == '*';
+void take_key_while_holding(App& app, const KeyPress& key) {
+  if (key.key == keys::escape) {
+    step_back(app);
+  } else if (key.key == keys::enter) {
+    let_go(app, true);
+    app.tool.spent = true;
+  } else {
+    take_typed_key(app.tool.grab->typed, key);
+  }
 }
 
-void take_key_while_holding(App& app, const KeyPress& key) {
-  std::string& typed = app.tool.grab->typed;
-  if (key.key == keys::escape)
-    step_back(app);
-  else if (key.key == keys::backspace && !typed.empty())
-    typed.pop_back();
-  else if (types_number(key.key) && !key.ctrl)
-    typed += static_cast<char>(key.key);
+// Whether a number that is typed now is the size of what is being placed.
+bool takes_size(const App& app) {
+  const ToolState& tool = app.tool;
+  if (app.mode != Mode::build) return false;
+  switch (tool.tool) {
+  case Tool::rod:
+  case Tool::distance:
+  case Tool::spring:
+  case Tool::damper: return tool.first.has_value();
+  case Tool::ball:
+  case Tool::block:
+  case Tool::plate: return tool.first || !app.commands.focus.in_panel;
+  default: return false;
+  }
+}
+
+bool take_size_key(App& app, const KeyPress& key) {
+  ToolState& tool = app.tool;
+  if (!tool.typed.empty() && key.key == keys::escape) {
+    tool.typed.clear();
+    return true;
+  }
+  if (key.key == keys::enter && (!tool.typed.empty() || tool.first)) return tool.place_now = true;
+  return take_typed_key(tool.typed, key);
 }
 
 bool take_key(App& app, const KeyPress& key) {
@@ -40,8 +65,13 @@ bool take_key(App& app, const KeyPress& key) {
     take_key_while_holding(app, key);
     return true;
   }
+  if (takes_size(app) && take_size_key(app, key)) return true;
   if (key.ctrl || key.shift) return false;
-  if (key.key == keys::escape) return step_back(app);
+  if (key.key == keys::escape) {
+    if (!step_back(app)) return false;
+    app.commands.focus = {};
+    return true;
+  }
   if (key.key == keys::enter && app.tool.joint) return make_joint(app);
   return false;
 }
@@ -123,20 +153,25 @@ std::string tool_hint(const App& app) {
   const ToolState& tool = app.tool;
   if (tool.grab)
     return std::string(tool.snap ? "Ctrl drags freely." : "Ctrl snaps.") +
+           (outer_joints(*tool.grab->before, tool.grab->selection).empty() ? ""
+            : app.inspector.leave_joints                                   ? " Shift takes joints along."
+                                                                           : " Shift leaves joints behind.") +
            " A number can be typed. Esc takes it back.";
   switch (tool.tool) {
   case Tool::select: return "";
   case Tool::rotate:
     return app.selection().empty() ? "Select what is to be turned." : "Drag a ring. Esc ends.";
   case Tool::box: return "Drag a frame round the parts; Shift adds. Esc ends.";
-  case Tool::ball: return "Click where the centre is, or drag from there to the radius. Esc ends.";
+  case Tool::ball:
+    return "Click where the centre is, or drag from there to the radius; it can be typed. Esc ends.";
   case Tool::block:
-  case Tool::plate: return "Click where the centre is, or drag from there to a corner. Esc ends.";
+  case Tool::plate:
+    return "Click where the centre is, or drag from there to a corner; an edge can be typed. Esc ends.";
   case Tool::rod:
   case Tool::distance:
   case Tool::spring:
   case Tool::damper:
-    return tool.first ? "Click the other end. Esc drops the first."
+    return tool.first ? "Click the other end, or type the length. Esc drops the first."
                       : "Click one end, then the other. Esc ends.";
   case Tool::joint:
     if (!tool.joint) return "Click the point where two bodies meet. Esc ends.";

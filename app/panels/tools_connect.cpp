@@ -2,11 +2,14 @@
 #include "app/panels/aim.hpp"
 #include "app/panels/body_preview.hpp"
 #include "app/panels/tools.hpp"
+#include "app/panels/typed_size.hpp"
 #include "app/panels/view_drawing.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/viewport/snapping.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace flyball {
 
@@ -61,6 +64,38 @@ std::string obstacle(Tool tool, const Aim& from, const Aim& to) {
   return "";
 }
 
+// The direction from one end to where the cursor is. On nothing in particular it snaps to round angles, as a
+// grid point far away would not.
+Vec3 direction(const App& app, const ViewInput& input, const Aim& from, const Aim& to) {
+  const int n = to.plane.normal, a = (n + 1) % 3, b = (n + 2) % 3;
+  const Vec3 by = to.point - from.point;
+  const bool in_plane = std::abs(by[n]) <= 1e-9 * by.norm();
+  if (!(by.norm() > 0)) { // to the right, as it is seen
+    int along = a;
+    if (std::abs(input.camera.right()[b]) > std::abs(input.camera.right()[a])) along = b;
+    return std::copysign(1.0, input.camera.right()[along]) * Vec3::Unit(along);
+  }
+  if (!in_plane || !to.what.empty() || !snaps(app, input)) return by.normalized();
+  const double angle = round_angle(std::atan2(by[b], by[a]));
+  Vec3 unit = Vec3::Zero();
+  unit[a] = std::cos(angle);
+  unit[b] = std::sin(angle);
+  for (double& x : unit)
+    if (std::abs(x) < 1e-15) x = 0;
+  return unit;
+}
+
+// Where the cursor is, or as far away from the first end as is typed.
+Aim second_end(const App& app, const ViewInput& input, const Aim& from, const Aim& seen,
+               std::string& mistake) {
+  if (app.tool.typed.empty()) return seen;
+  const auto length = typed_length(app.tool.typed, &mistake);
+  if (!length) return seen;
+  Aim end = seen;
+  end.point = from.point + *length * direction(app, input, from, seen);
+  return end;
+}
+
 void draw_end(const App& app, const ViewInput& input, const Vec3& at) {
   if (const auto pixel = input.on_screen(at)) draw_dot(app, *pixel, 4);
 }
@@ -79,12 +114,16 @@ void draw_between(const App& app, const ViewInput& input, const Vec3& from, cons
 
 void use_connecting(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
+  const bool entered = std::exchange(tool.place_now, false);
   if (!input.hovered && !tool.first) return;
-  const Aim aim = aim_at(app, input);
+  Aim aim = aim_at(app, input);
+  std::string mistake;
   if (tool.first) {
     const Aim& from = *tool.first;
+    aim = second_end(app, input, from, aim, mistake);
     draw_between(app, input, from.point, aim.point);
-    std::string head = "length " + short_text((aim.point - from.point).norm(), 4) + " m";
+    std::string head = "length " + (tool.typed.empty() ? short_text((aim.point - from.point).norm(), 4) + " m"
+                                                       : typed_text(tool.typed, "m"));
     if (!aim.what.empty())
       head += ", " + aim.what;
     else if (tool.tool != Tool::rod && aim.body != ground_name)
@@ -95,20 +134,25 @@ void use_connecting(App& app, const ViewInput& input) {
   }
   if (tool.spent) return;
   if (input.pressed && !tool.first) tool.first = aim;
-  if (!input.released || !tool.first) return;
+  if ((!input.released && !entered) || !tool.first) return;
   const Aim from = *tool.first;
-  if (!tool.first_clicked && !input.moved) {
+  if (!entered && !tool.first_clicked && !input.moved) {
     tool.first_clicked = true;
     tool.last_point = from.point;
     return;
   }
+  if (!mistake.empty()) {
+    app.notice = "“" + tool.typed + "” is no length. " + mistake;
+    return;
+  }
   if (const std::string reason = obstacle(tool.tool, from, aim); !reason.empty()) {
     app.notice = reason;
-    if (!tool.first_clicked) tool.first.reset();
+    if (!tool.first_clicked && !entered) tool.first.reset();
     return;
   }
   add(app, input, from, aim);
   tool.last_point = aim.point;
+  tool.spent = input.held; // Enter, while the button is down
   end_tool(app, input);
 }
 

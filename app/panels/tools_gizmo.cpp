@@ -2,6 +2,7 @@
 // the state it began with at every movement.
 #include "app/panels/aim.hpp"
 #include "app/panels/gizmo_drawing.hpp"
+#include "app/panels/joints_along.hpp"
 #include "app/panels/quantity.hpp"
 #include "app/panels/tools.hpp"
 #include "app/panels/view_drawing.hpp"
@@ -25,17 +26,23 @@ std::optional<PointId> only_point(const Mechanism& mechanism, const Selection& s
   return first;
 }
 
-void move_grabbed(Mechanism& mechanism, const Grab& grab, const Vec3& target) {
+void move_grabbed(Mechanism& mechanism, const Grab& grab, const Vec3& target, OuterJoints joints) {
   if (const auto point = grab.point ? grab.point : only_point(mechanism, grab.selection))
-    set_point(mechanism, *point, target);
+    set_point(mechanism, *point, target, joints);
   else
-    move_parts(mechanism, grab.selection, target - grab.centre);
+    move_parts(mechanism, grab.selection, target - grab.centre, joints);
+}
+
+// The other end of what has two and is dragged by one of them.
+std::optional<Vec3> other_end(const Grab& grab) {
+  if (!grab.point) return std::nullopt;
+  return point_position(*grab.before, {grab.point->part, 1 - grab.point->end});
 }
 
 // Points to snap to: those that stay where they are when the grabbed ones go far away.
 std::vector<SnapPoint> targets_of(const Grab& grab) {
   Mechanism moved = *grab.before;
-  move_grabbed(moved, grab, grab.centre + Vec3(1.2345e3, 2.3456e3, 3.4567e3));
+  move_grabbed(moved, grab, grab.centre + Vec3(1.2345e3, 2.3456e3, 3.4567e3), OuterJoints::follow);
   std::vector<SnapPoint> stayed = snap_points(moved), before = snap_points(*grab.before);
   const auto place = [](const SnapPoint& p) { return std::array{p.point.x(), p.point.y(), p.point.z()}; };
   std::ranges::sort(before, {}, place);
@@ -84,14 +91,17 @@ void turn(App& app, const ViewInput& input, const Gizmo& gizmo) {
   const auto turned_by = turned(gizmo, grab.handle, grab.from, input.ray());
   if (turned_by) grab.swept += std::remainder(*turned_by - grab.swept, 2 * std::numbers::pi);
   double angle = snaps(app, input) ? round_angle(grab.swept) : grab.swept;
-  if (const Quantity typed = parse_quantity(grab.typed + " deg", "rad"); !grab.typed.empty() && typed)
-    angle = typed.value;
-  if (angle == grab.angle) return;
+  if (const Quantity typed = parse_quantity(grab.typed, "deg"); !grab.typed.empty() && typed)
+    angle = typed.value * std::numbers::pi / 180;
+  if (angle == grab.angle && grab.shift == input.shift) return;
   grab.angle = angle;
+  grab.shift = input.shift;
   const Quat rotation(Eigen::AngleAxisd(angle, Vec3::Unit(axis_of(grab.handle))));
   edit_grabbed(app, [&](Mechanism& mechanism) {
-    if (angle != 0) rotate_parts(mechanism, grab.selection, grab.centre, rotation);
+    if (angle != 0)
+      rotate_parts(mechanism, grab.selection, grab.centre, rotation, joints_of_moved(app, input.shift));
   });
+  tell_joints(app, grab.selection, input.shift);
 }
 
 void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
@@ -101,10 +111,13 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
   const std::array<bool, 3> free = free_coordinates(grab.handle, grab.normal);
   Vec3 target = grab.centre + *by;
   grab.what.clear();
-  const auto typed = parse_quantity(grab.typed, "m");
+  const Quantity typed = parse_quantity(grab.typed, "m");
   const bool arrow = std::ranges::count(free, true) == 1;
-  if (arrow && !grab.typed.empty() && typed) {
-    target = grab.centre + typed.value * Vec3::Unit(axis_of(grab.handle));
+  // Along the arrow; else as far from the other end, or from where it was, on the line to where the hand is.
+  const Vec3 origin = other_end(grab).value_or(grab.centre);
+  const Vec3 along = arrow ? Vec3::Unit(axis_of(grab.handle)) : Vec3((target - origin).stableNormalized());
+  if (!grab.typed.empty() && typed && along.norm() > 0) {
+    target = origin + typed.value * along;
   } else if (input.moved && snaps(app, input)) {
     const SnapPoint* point =
         snap_point(grab.targets, input.camera, input.size, input.cursor, snap_reach * input.point);
@@ -118,9 +131,13 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
     return; // a press does not move anything
   }
   const Vec3 moved = target - grab.centre;
-  if (moved == grab.by) return;
+  if (moved == grab.by && grab.shift == input.shift) return;
   grab.by = moved;
-  edit_grabbed(app, [&](Mechanism& mechanism) { move_grabbed(mechanism, grab, target); });
+  grab.shift = input.shift;
+  edit_grabbed(app, [&](Mechanism& mechanism) {
+    move_grabbed(mechanism, grab, target, joints_of_moved(app, input.shift));
+  });
+  tell_joints(app, grab.selection, input.shift);
 }
 
 void hold(App& app, const ViewInput& input, const Gizmo& gizmo) {

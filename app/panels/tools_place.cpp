@@ -2,11 +2,13 @@
 #include "app/panels/aim.hpp"
 #include "app/panels/body_preview.hpp"
 #include "app/panels/tools.hpp"
+#include "app/panels/typed_size.hpp"
 #include "app/panels/view_drawing.hpp"
 #include "app/viewport/snapping.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flyball {
 
@@ -63,6 +65,13 @@ NewBody drawn_out(const ViewInput& input, BodyForm form, const Aim& from, const 
   return body;
 }
 
+// The radius, or the edges of a block; a plate is as thin as ever.
+void take_typed_size(NewBody& body, double size, int normal) {
+  body.radius = size;
+  body.size = Vec3::Constant(size);
+  if (body.form == BodyForm::plate) body.size[normal] = round_to(size / 10, size / 100);
+}
+
 std::string size_text(const NewBody& body, double step) {
   if (body.form == BodyForm::ball) return "radius " + length_text(body.radius, step) + " m";
   return short_text(body.size.x(), 4) + " × " + short_text(body.size.y(), 4) + " × " +
@@ -76,23 +85,37 @@ void use_placing(App& app, const ViewInput& input) {
   const BodyForm form = tool.tool == Tool::ball    ? BodyForm::ball
                         : tool.tool == Tool::block ? BodyForm::block
                                                    : BodyForm::plate;
+  const bool entered = std::exchange(tool.place_now, false);
   if (!input.hovered && !tool.first) return;
   const Aim& aim = aim_at(app, input);
   const Aim from = tool.first.value_or(aim);
   const bool drawing = tool.first && input.moved;
-  const NewBody body = drawing ? drawn_out(input, form, from, aim) : of_round_size(input, form, from);
+  NewBody body = drawing ? drawn_out(input, form, from, aim) : of_round_size(input, form, from);
+  std::string mistake;
+  const bool typing = !tool.typed.empty();
+  if (const auto size = typing ? typed_length(tool.typed, &mistake) : std::nullopt)
+    take_typed_size(body, *size, from.plane.normal);
   draw_body_outline(app, input, body);
-  if (drawing)
+  if (typing)
+    draw_tag(app, input, input.cursor, from.what,
+             (form == BodyForm::ball ? "radius " : "edge ") + typed_text(tool.typed, "m"));
+  else if (drawing)
     draw_tag(app, input, input.cursor, aim.what, size_text(body, from.step));
   else
     draw_aim(app, input, from);
   if (tool.spent) return;
   if (input.pressed) tool.first = aim;
-  if (!input.released || !tool.first) return;
+  if (!entered && (!input.released || !tool.first)) return;
+  if (typing && !mistake.empty()) {
+    app.notice = "“" + tool.typed + "” is no size. " + mistake;
+    tool.first.reset();
+    return;
+  }
   edit(app, "Add " + form_name(form), [&](Mechanism& mechanism, Selection& selection) {
     selection.set({PartKind::body, add_body(mechanism, body)});
   });
   tool.last_point = from.point;
+  tool.spent = input.held; // Enter, while the button is down
   end_tool(app, input);
 }
 

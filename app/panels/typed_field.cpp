@@ -66,6 +66,7 @@ void go_on(App& app, const TextField& field, bool entered) {
     if (!typing.mistake.empty()) show_mistake(app, typing.mistake);
   } else if (escape_pressed_now()) {
     typing = {};
+    app.commands.focus = {};
   } else if (entered && !typing.mistake.empty()) {
     typing.wants_focus = true;
   } else {

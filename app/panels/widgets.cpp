@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace flyball {
 
@@ -153,6 +155,45 @@ void clipped_text(const std::string& text, float width) {
   help_on_hover(text.c_str());
 }
 
+namespace {
+
+constexpr float slack = 3; // points that the hand may move in a click
+
+// What the button on a slider does in this frame; `knob` and `left` are pixels of the window. Returns the
+// place on the track that the knob is to go to.
+std::optional<double> slider_place_wanted(App& app, const std::string& name, double now, float left,
+                                          float span, float radius, bool& type_value) {
+  const ImGuiIO& io = ImGui::GetIO();
+  SliderPress& press = app.panels.slider_press;
+  const float at = io.MousePos.x, knob = left + span * static_cast<float>(now);
+  if (ImGui::IsItemActivated()) {
+    type_value = io.KeyCtrl || (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && press.name == name);
+    press = {.name = name,
+             .from = at,
+             .grip = at - knob,
+             .on_knob = std::abs(at - knob) <= radius,
+             .typing = type_value};
+  }
+  if (press.name != name || press.typing) return std::nullopt;
+  if (ImGui::IsItemActive()) {
+    if (!press.on_knob) press.grip = 0;
+    press.dragging = press.dragging || std::abs(at - press.from) > slack * app.scale;
+    if (!press.dragging || io.MouseDelta.x == 0) return std::nullopt;
+    // With Shift the knob follows at a tenth of the hand's speed.
+    if (io.KeyShift) return now + static_cast<double>(io.MouseDelta.x / span) / 10;
+    return static_cast<double>((at - press.grip - left) / span);
+  }
+  if (ImGui::IsItemDeactivated() && !press.dragging && !press.on_knob) {
+    press.place = static_cast<double>((press.from - left) / span);
+    press.since = ImGui::GetTime();
+  }
+  if (!press.place || ImGui::GetTime() - *press.since < static_cast<double>(io.MouseDoubleClickTime))
+    return std::nullopt;
+  return std::exchange(press.place, std::nullopt);
+}
+
+} // namespace
+
 bool slider(App& app, const std::string& name, const ParameterControl& control, double& value,
             bool& type_value) {
   const UiColors& colors = colors_of(app);
@@ -163,16 +204,11 @@ bool slider(App& app, const std::string& name, const ParameterControl& control, 
   note_widget(app.widgets, name);
   const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
   const float left = from.x + radius, span = width - 2 * radius, middle = from.y + height / 2;
-  const ImGuiIO& io = ImGui::GetIO();
 
   bool moved = false;
-  if (ImGui::IsItemActivated() && io.KeyCtrl) {
-    type_value = true;
-  } else if (active && !io.KeyCtrl && (ImGui::IsItemActivated() || io.MouseDelta.x != 0)) {
-    // With Shift the knob follows at a tenth of the hand's speed.
-    double place = static_cast<double>((io.MousePos.x - left) / span);
-    if (io.KeyShift) place = slider_place(control, value) + static_cast<double>(io.MouseDelta.x / span) / 10;
-    const double next = slider_value(control, place, io.KeyShift);
+  if (const auto place =
+          slider_place_wanted(app, name, slider_place(control, value), left, span, radius, type_value)) {
+    const double next = slider_value(control, *place, ImGui::GetIO().KeyShift);
     moved = next != value;
     value = next;
   }

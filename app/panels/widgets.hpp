@@ -49,7 +49,8 @@ void paragraph(const std::string& text, const ImVec4& color);
 // Text cut to the width with "..." where it is longer; the whole of it appears over it.
 void clipped_text(const std::string& text, float width);
 
-// A slim slider over the control's range; returns whether the value was moved. Ctrl-click asks for typing.
+// A slim slider over the control's range; returns whether the value was moved. A double click, or one with
+// Ctrl, asks for typing and moves nothing.
 bool slider(App& app, const std::string& name, const ParameterControl& control, double& value,
             bool& type_value);
 

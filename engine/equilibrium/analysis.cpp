@@ -12,6 +12,7 @@
 #include "engine/equilibrium/sensitivity.hpp"
 #include "engine/equilibrium/sign_is_open.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/equilibrium/unbounded.hpp"
 #include "engine/mechanism/error.hpp"
 
 #include <algorithm>
@@ -240,6 +241,9 @@ Solution Analysis::solve(const SolveOptions& options) {
     out.message = failure_message(input, s.workspace);
     if (!tried.empty()) out.message += " " + tried;
     out.residual = s.history.empty() ? 0 : s.history.back();
+    explain_unbounded(problem, s.start, s.workspace, out);
+    out.weight_turns = out.status == Status::no_steady_state && !existence.loops_open &&
+                       weight_turns(problem, s.found.z.q, existence.phase, s.workspace);
     return out;
   }
   s.answer = s.found.z.q;

@@ -103,6 +103,14 @@ struct Sensitivity {
   std::vector<Rate> rates;
 };
 
+// A coordinate along which the forces push on without end: nothing opposes them, so nothing settles.
+struct UnheldCoordinate {
+  std::string joint;
+  int index = 0, count = 1; // which of the joint's coordinates
+  bool angle = false;       // N m rather than N
+  double force = 0;         // generalised, positive along the coordinate: what would have to hold it
+};
+
 // The free ones by name, as SolveOptions::start wants them.
 std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates);
 
@@ -122,6 +130,10 @@ struct Solution {
   std::optional<std::vector<std::complex<double>>> eigenvalues;
   std::optional<Floquet> floquet; // where the linearised motion turns with the drives
   std::vector<std::string> neutral; // joints that take part in a direction nothing resists
+  // Without an answer: what runs away, and whether it would not without gravity; whether what turns with the
+  // drives is the weight alone.
+  std::vector<UnheldCoordinate> unheld;
+  bool unheld_by_weight = false, weight_turns = false;
   std::vector<DriveTorque> drive_torques;
   std::vector<Reaction> reactions;
   bool reactions_nonunique = false;       // redundant loops: the minimum-norm multipliers

@@ -33,7 +33,11 @@ class Builder {
     reveal(name);
     robot_.click(name);
   }
-  void key(int code, bool ctrl = false, bool shift = false) { robot_.key(code, ctrl, shift); }
+  // The hand is at work in the view again, where letters are commands.
+  void key(int code, bool ctrl = false, bool shift = false) {
+    robot_.point(robot_.widget("view").center());
+    robot_.key(code, ctrl, shift);
+  }
 
   // Types into a field of the inspector.
   void fill(const std::string& field, const std::string& text) {

@@ -18,6 +18,12 @@ class Builder:
     def key(self, keys):
         self.window.do("key", keys)
 
+    def command(self, keys):
+        """A letter, which is a command while the hand is in the view."""
+        left, top, right, bottom = self.window.state()["widgets"]["view"]
+        self.window.do("mousemove", round((left + right) / 2), round((top + bottom) / 2))
+        self.key(keys)
+
     def pixel(self, x, y):
         screen = self.window.state()["screen"]
         origin, right, up = screen["origin"], screen["x"], screen["y"]
@@ -82,21 +88,21 @@ def build(window):
     b.key("ctrl+n")
     window.wait("an empty document", lambda s: s["name"] == "Untitled")
     b.key("1")
-    b.key("shift+r")  # the first steps make room
+    b.command("shift+r")  # the first steps make room
     b.zoom_to_height(7)
     b.click("inspector/gravity/none")
 
-    b.key("shift+r")
+    b.command("shift+r")
     b.click_at(0, 0)
     b.click_at(1, 0)
     b.fill("name", "crank")
     b.mass_and_inertia("1", "0", "0.1", "0.1")
-    b.key("shift+r")
+    b.command("shift+r")
     b.click_at(1, 0)
     b.click_at(2.4, 0)
     b.fill("name", "arm")
     b.fill("mass", "0")
-    b.key("shift+b")
+    b.command("shift+b")
     b.click_at(2.1, 0)
     b.fill("name", "weight")
     b.fill("position/x", "2100 mm")

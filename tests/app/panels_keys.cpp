@@ -1,0 +1,339 @@
+// Whose keys are: a click that missed a field does no harm, and what lies over the document keeps them.
+#include "robot.hpp"
+
+#include "app/document/create.hpp"
+#include "app/panels/commands.hpp"
+#include "app/panels/number_text.hpp"
+#include "app/panels/study_panels.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+
+#include <cmath>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr const char* speed = "joints.spin.drive.speed";
+
+// What keys could have changed.
+struct Look {
+  Mode mode;
+  Tool tool;
+  Study study;
+  double azimuth, elevation;
+  bool playing, ghost, snap;
+  std::size_t step;
+  std::vector<Part> selected;
+  bool operator==(const Look&) const = default;
+};
+
+Look look(const App& app) {
+  return {app.mode,
+          app.tool.tool,
+          app.study.open,
+          app.view.camera.azimuth,
+          app.view.camera.elevation,
+          app.playback.playing,
+          app.view.ghost,
+          app.tool.snap,
+          app.document.position(),
+          app.selection().parts};
+}
+
+struct Hand : Robot {
+  Hand() : Robot({1280, 1100}) {
+    ImGui::GetIO().KeyMap[ImGuiKey_Tab] = keys::tab;
+    set_mode(app, Mode::build);
+    app.panels.inspector_share = 0.9f;
+    select(app, {{{PartKind::joint, "spin"}}});
+    frames(2);
+  }
+  // As a person types, each key also as a character.
+  void strike(const std::string& text) {
+    for (const char c : text) {
+      const int code = std::toupper(static_cast<unsigned char>(c));
+      ImGui::GetIO().AddInputCharacter(static_cast<unsigned char>(c));
+      key(code);
+    }
+  }
+  // Beside everything in the inspector.
+  void miss_in_inspector() {
+    const WidgetRect name = widget("inspector/name");
+    click({name.to.x + 3, name.to.y + 1});
+    REQUIRE(app.inspector.typing.name.empty());
+  }
+};
+
+} // namespace
+
+TEST_CASE("what is typed after a click that missed a field changes nothing") {
+  Hand hand;
+  hand.miss_in_inspector();
+  const Look before = look(hand.app);
+  hand.strike("150 rpm");
+  hand.strike("-2.5e3");
+  hand.key(keys::backspace);
+  hand.key(keys::del);
+  hand.key('A', true);
+  hand.key('X', true);
+  CHECK(look(hand.app) == before);
+  CHECK_THAT(hand.app.notice, ContainsSubstring("No field is being typed in"));
+
+  SECTION("wherever the pointer goes then") {
+    hand.point(hand.widget("view").center());
+    hand.strike("rpm");
+    CHECK(look(hand.app) == before);
+  }
+  SECTION("until Escape is pressed, which does nothing else") {
+    hand.key(key_escape);
+    CHECK(look(hand.app) == before);
+    hand.key('R');
+    CHECK(hand.app.tool.tool == Tool::rotate);
+    hand.key('1');
+    CHECK(hand.app.view.camera.azimuth == 0);
+  }
+  SECTION("or the view is clicked") {
+    hand.click({hand.widget("view").from.x + 150, hand.widget("view").to.y - 60});
+    hand.key('J');
+    CHECK(hand.app.tool.tool == Tool::joint);
+  }
+  SECTION("but undo and the like go on working") {
+    hand.click("inspector/drive");
+    CHECK(hand.app.document.position() == 1);
+    hand.key('Z', true);
+    CHECK(hand.app.document.position() == 0);
+  }
+}
+
+TEST_CASE("letters are commands while the pointer works in the view, digits only after a click there") {
+  Hand hand;
+  const double azimuth = hand.app.view.camera.azimuth;
+  hand.miss_in_inspector();
+  hand.key('J');
+  CHECK(hand.app.tool.tool == Tool::select);
+  hand.point(hand.widget("view").center());
+  hand.key('J');
+  CHECK(hand.app.tool.tool == Tool::joint);
+  hand.key('1');
+  CHECK(hand.app.view.camera.azimuth == azimuth);
+}
+
+TEST_CASE("among plots letters are commands, but not those of a number's unit") {
+  Hand hand;
+  open_study(hand.app, Study::response);
+  hand.frames(3);
+  const WidgetRect close = hand.widget("study/close");
+  hand.click({close.from.x - 30, close.center().y});
+  SECTION("a letter") {
+    hand.key('M');
+    CHECK(hand.app.study.open == Study::motion);
+  }
+  SECTION("a number") {
+    const Look before = look(hand.app);
+    hand.strike("150 rpm");
+    hand.key(keys::del);
+    CHECK(look(hand.app) == before);
+  }
+}
+
+TEST_CASE("right after the start keys are commands wherever the pointer is") {
+  Hand hand;
+  hand.point(hand.widget("inspector/name").center());
+  hand.key('J');
+  CHECK(hand.app.tool.tool == Tool::joint);
+}
+
+TEST_CASE("in the list of parts Delete means the part, letters mean nothing") {
+  Hand hand;
+  hand.click("outline/bodies/ball1");
+  REQUIRE(hand.app.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
+  hand.key('J');
+  CHECK(hand.app.tool.tool == Tool::select);
+  hand.key(keys::del);
+  CHECK(body_index(hand.app.mechanism(), "ball1") < 0);
+}
+
+TEST_CASE("a tick moves neither itself nor what was above it") {
+  Hand hand;
+  for (const char* joint : {"spin", "slide"}) {
+    select(hand.app, {{{PartKind::joint, joint}}});
+    hand.frames(3);
+    for (const char* name : {"inspector/drive", "inspector/spring", "inspector/damper", "inspector/stop"}) {
+      const std::map<std::string, WidgetRect, std::less<>> before(hand.app.widgets.begin(),
+                                                                  hand.app.widgets.end());
+      const float at = hand.widget(name).from.y;
+      hand.click(name);
+      hand.frames(3);
+      INFO(joint << " " << name);
+      CHECK(hand.widget(name).from.y == at);
+      for (const auto& [other, rect] : hand.app.widgets) {
+        if (!other.starts_with("inspector/") || rect.from.y >= at) continue;
+        INFO(other);
+        const auto was = before.find(other);
+        REQUIRE(was != before.end());
+        CHECK(was->second.from.y == rect.from.y);
+      }
+      CHECK(hand.app.widgets.contains("inspector/settles"));
+    }
+  }
+}
+
+TEST_CASE("the sheet of keys has the keys, and goes with Escape") {
+  Hand hand;
+  hand.key('?');
+  hand.frames(2);
+  REQUIRE(hand.app.commands.shortcuts);
+  const Look before = look(hand.app);
+  hand.key('P', true);
+  hand.strike("mrj1 ");
+  hand.key(keys::del);
+  hand.key(keys::tab);
+  CHECK(look(hand.app) == before);
+  CHECK_FALSE(hand.app.commands.palette_showing);
+  REQUIRE(hand.app.commands.shortcuts);
+  const auto way = GENERATE(0, 1, 2, 3);
+  if (way == 0) hand.key(key_escape);
+  if (way == 1) hand.key('?');
+  if (way == 2) hand.click("shortcuts/close");
+  if (way == 3) hand.click({5, 400}); // beside it: that closes it and selects nothing behind
+  hand.frames(2);
+  CHECK_FALSE(hand.app.commands.shortcuts);
+  CHECK(look(hand.app) == before);
+  hand.key('?'); // and comes again
+  hand.frames(2);
+  CHECK(hand.app.commands.shortcuts);
+}
+
+TEST_CASE("a menu has the keys, and goes with Escape") {
+  Hand hand;
+  hand.click("menu/Edit");
+  hand.frames(2);
+  REQUIRE(hand.app.widgets.contains("menu/edit.delete"));
+  const Look before = look(hand.app);
+  hand.strike("j1m");
+  hand.key(keys::del);
+  CHECK(look(hand.app) == before);
+  REQUIRE(hand.app.widgets.contains("menu/edit.delete"));
+  hand.key(key_escape);
+  hand.frames(2);
+  CHECK_FALSE(hand.app.widgets.contains("menu/edit.delete"));
+  CHECK(look(hand.app) == before); // the selection, too
+}
+
+TEST_CASE("a list of choices goes with Escape and chooses nothing") {
+  Hand hand;
+  hand.click("inspector/type");
+  hand.frames(2);
+  REQUIRE(hand.app.widgets.contains("inspector/type/universal"));
+  const Look before = look(hand.app);
+  hand.key('U');
+  hand.key(key_escape);
+  hand.frames(2);
+  CHECK_FALSE(hand.app.widgets.contains("inspector/type/universal"));
+  CHECK(look(hand.app) == before);
+}
+
+TEST_CASE("dialogs and the palette have the keys, and go with Escape") {
+  Hand hand;
+  const auto what = GENERATE(0, 1, 2, 3);
+  const Look before = look(hand.app);
+  if (what == 0) hand.key('P', true);
+  if (what == 1) hand.key('O', true, true);
+  if (what == 2) hand.key('E', true);
+  if (what == 3) hand.key('O', true);
+  hand.frames(3);
+  const auto open = [&] { return hand.app.commands.palette_showing || hand.app.dialog.showing; };
+  REQUIRE(open());
+  hand.strike("jm1");
+  hand.key(keys::del);
+  CHECK(look(hand.app) == before);
+  REQUIRE(open());
+  for (int i = 0; i < 3 && open(); ++i) { // the first may be the field's
+    hand.key(key_escape);
+    hand.frames(2);
+  }
+  CHECK_FALSE(open());
+  CHECK(look(hand.app) == before);
+}
+
+TEST_CASE("keys that come with the one that opens something do not pass it") {
+  Hand hand;
+  const Look before = look(hand.app);
+  hand.app.keys = {{'P', true, false}, {'J', false, false}, {'M', false, false}};
+  hand.frames(3);
+  CHECK(hand.app.commands.palette_showing);
+  CHECK(look(hand.app) == before);
+}
+
+TEST_CASE("a double click on a slider types, and does not move the knob") {
+  Robot robot;
+  const std::string slider = std::string("parameters/") + speed;
+  const std::uint64_t answers = robot.app.answer.ticket;
+  robot.double_click(slider); // in the middle, away from the knob
+  robot.frames(30);           // longer than a second click may take
+  CHECK(get_parameter(robot.app.mechanism(), speed) == 11.0174);
+  CHECK(robot.app.document.position() == 0);
+  CHECK(robot.app.answer.ticket == answers);
+  REQUIRE(robot.app.inspector.typing.name == slider + "/value");
+  robot.type("120 rpm");
+  robot.key(key_enter);
+  CHECK(get_parameter(robot.app.mechanism(), speed) == Approx(4 * 3.141592653589793));
+  CHECK(robot.app.document.position() == 1);
+}
+
+TEST_CASE("one click on a slider's track moves the knob there once it cannot become two") {
+  Robot robot;
+  const std::string slider = std::string("parameters/") + speed;
+  robot.click(slider);
+  CHECK(get_parameter(robot.app.mechanism(), speed) == 11.0174);
+  robot.frames(30);
+  CHECK(get_parameter(robot.app.mechanism(), speed) == Approx(15).epsilon(0.02));
+  CHECK(robot.app.document.position() == 1);
+  // On the knob a click moves nothing, not by the pixels between it and the middle either.
+  const WidgetRect rect = robot.widget(slider);
+  const double value = get_parameter(robot.app.mechanism(), speed);
+  robot.click({rect.center().x + 3, rect.center().y});
+  robot.frames(30);
+  CHECK(get_parameter(robot.app.mechanism(), speed) == value);
+}
+
+TEST_CASE("a double click in a field selects the number and not its unit") {
+  Hand hand;
+  select(hand.app, {{{PartKind::body, "ball1"}}});
+  hand.frames(2);
+  const std::string field = "inspector/position/y";
+  REQUIRE(hand.app.mechanism().bodies[1].position.y() != 0.5);
+  const WidgetRect rect = hand.widget(field);
+  // On the digits, beyond them, where the unit is shown: anywhere in the field.
+  const float share = GENERATE(0.03f, 0.1f, 0.2f, 0.5f, 0.97f);
+  hand.point({rect.from.x + share * (rect.to.x - rect.from.x), rect.center().y});
+  for (int i = 0; i < 4; ++i) {
+    ImGui::GetIO().MouseDown[0] = i % 2 == 0;
+    hand.frames(1);
+  }
+  hand.frames(2);
+  hand.type("0.5");
+  CHECK(hand.app.inspector.typing.text == "0.5 m");
+  hand.key(key_enter);
+  const int ball = body_index(hand.app.mechanism(), "ball1");
+  CHECK(hand.app.mechanism().bodies[static_cast<std::size_t>(ball)].position.y() == 0.5);
+}
+
+TEST_CASE("the number that is meant in a typed quantity") {
+  const auto meant = [](std::string_view text, std::size_t at) {
+    const auto [from, to] = number_at(text, at);
+    return std::string(text.substr(from, to - from));
+  };
+  CHECK(meant("2 m", 0) == "2");
+  CHECK(meant("2 m", 3) == "2");
+  CHECK(meant("-0.25 m", 6) == "-0.25");
+  CHECK(meant("9.80665 m/s^2", 13) == "9.80665");
+  CHECK(meant("1.5e-3 kg m^2", 9) == "1.5e-3");
+  CHECK(meant("160 mm + 20 mm", 5) == "160");
+  CHECK(meant("160 mm + 20 mm", 14) == "20");
+  CHECK(meant("2*-3 m", 6) == "-3");
+  CHECK(meant("m", 1).empty());
+  CHECK(meant("", 0).empty());
+}
