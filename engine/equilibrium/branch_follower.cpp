@@ -79,17 +79,8 @@ BranchFollower::Described BranchFollower::describe(const BranchState& state) {
   d.point = response_point(family_.mechanism(), problem, state.z, {},
                            {options_.eigenvalues, options_.reactions}, w_);
   d.point.parameter = state.parameter;
-  double largest = 0;
-  for (const auto& e : d.point.eigenvalues)
-    largest = std::max(largest, std::abs(e));
-  // The double zeros of families come out as the root of rounding.
-  const double noise = (families_ ? 1e-5 : 1e-9) * largest;
-  for (const auto& e : d.point.eigenvalues) {
-    if (e.real() > 1e-7 * std::abs(e) + noise) ++d.right;
-    if (e.real() < -1e-7 * std::abs(e) - noise && e.imag() != 0) d.damped = true;
-  }
   // Exponents have their frequencies but for whole turns a period: multipliers tell what crosses.
-  if (turns_with_drives(d.point)) d.right = 0;
+  if (!turns_with_drives(d.point)) d.right = right_of_axis(d.point.eigenvalues, families_);
   return d;
 }
 
@@ -97,8 +88,12 @@ ResponsePoint BranchFollower::point(const BranchState& state) {
   return describe(state).point;
 }
 
-// Where `value` changes its sign along the branch, by the Illinois method (Dowell and Jarratt 1971), and how
-// far along that is. `value` may be a step function: then this halves.
+Spectrum BranchFollower::spectrum(const BranchState& state) {
+  return find_stability(problem_at(state.parameter), state.z, true, w_).eigenvalues.value_or(Spectrum{});
+}
+
+// Where `value` (of a state and its distance along the branch) changes its sign, by the Illinois method
+// (Dowell and Jarratt 1971), and how far along that is. `value` may be a step function: then this halves.
 template <class Value>
 std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, double low, double at_low,
                                                       double high, double at_high, const BranchState& beyond,
@@ -111,7 +106,7 @@ std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, d
     if (!(middle > low && middle < high)) middle = (low + high) / 2;
     int iterations = 0;
     if (!continuation_.step(from, middle, probe, iterations)) break;
-    const double now = value(probe);
+    const double now = value(probe, middle);
     at = probe;
     found = middle;
     if (now == 0 || (std::abs(middle - previous) < 0.1 * special_accuracy && i > 3)) break;
@@ -259,63 +254,123 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
 
 void BranchFollower::find_specials(const BranchState& state, const BranchState& next, double length,
                                    const Described& now, const Described& then, FollowedBranch& out) {
-  bool explained = false;
+  int explained = 0; // eigenvalues that go through zero
   if (!families_ && state.turning * next.turning < 0) {
     // At a crossing the tangent can jump; a fold's own balance stays regular.
     const BranchState at =
-        locate(state, 0, state.turning, length, next.turning, next, [](const BranchState& s) {
+        locate(state, 0, state.turning, length, next.turning, next, [](const BranchState& s, double) {
           return s.turning;
         }).first;
     out.special.emplace_back(SpecialPointType::fold, point(at));
-    explained = true;
+    ++explained;
   }
   if (!families_ && state.determinant * next.determinant < 0) {
     BranchState at =
-        locate(state, 0, state.determinant, length, next.determinant, next, [](const BranchState& s) {
+        locate(state, 0, state.determinant, length, next.determinant, next, [](const BranchState& s, double) {
           return s.determinant;
         }).first;
     // At the crossing itself the balance has two tangents; this is the branch's own.
     at.tangent = state.tangent;
     out.special.emplace_back(SpecialPointType::branch_point, point(at));
     out.crossings.push_back(std::move(at));
-    explained = true;
+    ++explained;
   }
-  if (explained || now.right == then.right || !options_.eigenvalues) return;
-  const bool damped = now.damped || then.damped;
-  const BranchState at = locate_crossing_pair(state, next, length, now.right, damped);
-  out.special.emplace_back(damped ? SpecialPointType::hopf : SpecialPointType::flutter, point(at));
+  if (options_.eigenvalues && std::abs(then.right - now.right) > explained)
+    find_pair_crossings(state, next, length, now.right, then.right, out);
 }
 
-// Where eigenvalues cross the imaginary axis: first by their number, which a tolerance blurs, then, where
-// there is damping, by the real part of the pair that crosses.
-BranchState BranchFollower::locate_crossing_pair(const BranchState& state, const BranchState& next,
-                                                 double length, int right_before, bool damped) {
-  const auto [coarse, at] = locate(state, 0, -1, length, 1, next, [&](const BranchState& s) {
-    return describe(s).right != right_before ? 1. : -1.;
-  });
-  if (!damped) return coarse;
-  std::complex<double> reference = 0;
-  double closest = std::numeric_limits<double>::infinity();
-  for (const auto& e : describe(coarse).point.eigenvalues)
-    if (e.imag() > 0 && std::abs(e.real()) < closest * std::abs(e)) {
-      closest = std::abs(e.real()) / std::abs(e);
-      reference = e;
+// Every place on a step at which the number of eigenvalues to the right of the axis changes, in order.
+void BranchFollower::find_pair_crossings(const BranchState& state, const BranchState& next, double length,
+                                         int before, int after, FollowedBranch& out) {
+  constexpr int most = 8;
+  CrossingBracket at{0, length, before, after};
+  for (int i = 0; i < most && at.right_low != after && !cancelled(); ++i) {
+    at.high = length;
+    at.right_high = after;
+    // Their number is blurred by rounding where they meet: it brackets, and a smooth function locates.
+    std::optional<std::pair<SpecialPointType, BranchState>> found;
+    for (const double width : {1e-3 * length, 1e-7 * length}) {
+      if (!narrow(state, width, at)) return;
+      if ((found = locate_pair_crossing(state, next, length, at))) break;
     }
-  const auto real_part = [&](const BranchState& s) {
-    const auto eigenvalues = describe(s).point.eigenvalues;
-    return std::ranges::min_element(eigenvalues, {},
-                                    [&](std::complex<double> e) { return std::abs(e - reference); })
-        ->real();
+    if (!found) found = jumping_pair(state, at);
+    if (found) out.special.emplace_back(found->first, point(found->second));
+    at.low = at.high;
+    at.right_low = at.right_high;
+  }
+}
+
+bool BranchFollower::narrow(const BranchState& state, double width, CrossingBracket& at) {
+  while (at.high - at.low > width && !cancelled()) {
+    BranchState probe;
+    int iterations = 0;
+    const double middle = (at.low + at.high) / 2;
+    if (!continuation_.step(state, middle, probe, iterations)) return false;
+    const int right = right_of_axis(spectrum(probe), families_);
+    (right == at.right_low ? at.low : at.high) = middle;
+    if (right != at.right_low) at.right_high = right;
+  }
+  return true;
+}
+
+std::optional<std::pair<SpecialPointType, BranchState>>
+BranchFollower::locate_pair_crossing(const BranchState& state, const BranchState& next, double length,
+                                     const CrossingBracket& at) {
+  const bool forth = at.right_high > at.right_low; // towards the unstable side
+  const auto spectrum_at = [&](double along) {
+    BranchState probe;
+    int iterations = 0;
+    return continuation_.step(state, along, probe, iterations) ? spectrum(probe) : Spectrum{};
   };
-  if (reference == 0.) return coarse;
-  double low = std::max(0., at - 0.01 * length), high = std::min(length, at + 0.01 * length);
-  BranchState a, b;
+  const double unstable = forth ? at.high : at.low;
+  const Spectrum there = spectrum_at(unstable);
+  for (PairCrossing crossing : possible_crossings(there, std::abs(at.right_high - at.right_low), families_)) {
+    double stable = forth ? at.low : at.high;
+    Spectrum here = spectrum_at(stable);
+    std::complex<double> first = crossing.at, second = crossing.at; // on the stable and the unstable side
+    if (!crossing.coalescence && !here.empty()) {
+      first = nearest_eigenvalue(here, second);
+      // A real part grows slowly: it was above zero for a while before it counted.
+      for (double reach = stable - unstable; first.real() > 0; reach *= 2) {
+        stable += reach;
+        here = stable < -length || stable > 2 * length ? Spectrum{} : spectrum_at(stable);
+        if (here.empty()) break;
+        first = nearest_eigenvalue(here, first);
+      }
+    }
+    const auto value = [&](const Spectrum& s, double along) {
+      crossing.at = first + (second - first) * ((along - stable) / (unstable - stable));
+      return crossing_value(s, crossing).value_or(0);
+    };
+    const double at_stable = value(here, stable), at_unstable = value(there, unstable);
+    if (!(at_stable < 0 && at_unstable > 0)) continue;
+    const double ends[] = {std::min(stable, unstable), std::max(stable, unstable)};
+    double last = at_unstable;
+    const BranchState found =
+        locate(state, ends[0], forth ? at_stable : at_unstable, ends[1], forth ? at_unstable : at_stable,
+               next, [&](const BranchState& s, double along) { return last = value(spectrum(s), along); })
+            .first;
+    const double jump = std::max(1e-5, 10 * special_accuracy / (ends[1] - ends[0]));
+    if (std::abs(last) > jump * std::max(-at_stable, at_unstable)) continue;
+    return std::pair{crossing.coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, found};
+  }
+  return {};
+}
+
+// Where nothing goes through zero smoothly the number of eigenvalues itself is followed, as at a corner of
+// the branch. Nothing where only real ones cross.
+std::optional<std::pair<SpecialPointType, BranchState>> BranchFollower::jumping_pair(const BranchState& state,
+                                                                                     CrossingBracket at) {
+  BranchState low, high;
   int iterations = 0;
-  if (!continuation_.step(state, low, a, iterations) || !continuation_.step(state, high, b, iterations))
-    return coarse;
-  const double at_low = real_part(a), at_high = real_part(b);
-  if (!(at_low * at_high < 0)) return coarse;
-  return locate(state, low, at_low, high, at_high, coarse, real_part).first;
+  if (!narrow(state, special_accuracy, at) || !continuation_.step(state, at.low, low, iterations) ||
+      !continuation_.step(state, at.high, high, iterations))
+    return {};
+  const bool forth = at.right_high > at.right_low;
+  const auto crossings =
+      possible_crossings(spectrum(forth ? high : low), std::abs(at.right_high - at.right_low), families_);
+  if (crossings.empty()) return {};
+  return std::pair{crossings[0].coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, high};
 }
 
 std::optional<BranchState> BranchFollower::off(const BranchState& crossing, double length) {

@@ -3,6 +3,7 @@
 
 #include "engine/equilibrium/branches.hpp"
 #include "engine/equilibrium/continuation.hpp"
+#include "engine/equilibrium/pair_crossing.hpp"
 
 #include <utility>
 
@@ -70,7 +71,12 @@ class BranchFollower {
   struct Described {
     ResponsePoint point;
     int right = 0; // eigenvalues to the right of the axis
-    bool damped = false;
+  };
+  // Part of a step (scaled arclength from its start) along which the number of eigenvalues to the right of
+  // the axis changes.
+  struct CrossingBracket {
+    double low = 0, high = 0;
+    int right_low = 0, right_high = 0;
   };
   Described describe(const BranchState& state);
   template <class Value>
@@ -78,8 +84,17 @@ class BranchFollower {
                                         double at_high, const BranchState& beyond, Value value);
   void find_specials(const BranchState& state, const BranchState& next, double length, const Described& now,
                      const Described& then, FollowedBranch& out);
-  BranchState locate_crossing_pair(const BranchState& state, const BranchState& next, double length,
-                                   int right_before, bool damped);
+  Spectrum spectrum(const BranchState& state);
+  void find_pair_crossings(const BranchState& state, const BranchState& next, double length, int before,
+                           int after, FollowedBranch& out);
+  // Halves the bracket to `width`. False where the branch cannot be followed into it.
+  bool narrow(const BranchState& state, double width, CrossingBracket& at);
+  std::optional<std::pair<SpecialPointType, BranchState>> locate_pair_crossing(const BranchState& state,
+                                                                               const BranchState& next,
+                                                                               double length,
+                                                                               const CrossingBracket& at);
+  std::optional<std::pair<SpecialPointType, BranchState>> jumping_pair(const BranchState& state,
+                                                                       CrossingBracket at);
   // Of a step along which the linearised motion turns with the drives.
   void find_multiplier_crossing(const BranchState& state, const BranchState& next, double length,
                                 FollowedBranch& out);

@@ -23,9 +23,9 @@ struct ResponsePoint {
 enum class SpecialPointType {
   fold,         // the branch turns back
   branch_point, // another branch crosses
-  hopf,         // a pair of eigenvalues crosses the imaginary axis where there is damping
+  hopf,         // a damped pair of eigenvalues crosses the imaginary axis
   parametric,   // a real Floquet multiplier leaves the unit circle: the drives pump a motion up
-  flutter,      // two imaginary pairs collide where there is none
+  flutter,      // two undamped pairs meet on the imaginary axis and leave it, whatever is damped elsewhere
 };
 std::string_view word(SpecialPointType type);
 

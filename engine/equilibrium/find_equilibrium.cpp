@@ -1,6 +1,7 @@
 #include "engine/equilibrium/find_equilibrium.hpp"
 
 #include "engine/equilibrium/descent.hpp"
+#include "engine/equilibrium/gyroscopic_stability.hpp"
 #include "engine/equilibrium/homotopy.hpp"
 #include "engine/equilibrium/stability.hpp"
 #include "engine/equilibrium/trust_region.hpp"
@@ -113,8 +114,19 @@ class Search {
   bool acceptable(const NewtonOutcome& outcome) {
     judge(!found_.net && still_factored(outcome));
     if (nearest_ || !potential_) return true;
-    if (unstable_ || outcome.largest_step > 1) return false;
+    if (unstable_) return drawn_and_held_by_rotation();
+    if (outcome.largest_step > 1) return false;
     return !begin_ || below(*begin_);
+  }
+
+  // A mechanism drawn at a state from which the potential falls, but that gyroscopic forces keep, stays
+  // there.
+  bool drawn_and_held_by_rotation() {
+    if (found_.net || !begin_ || !same(found_.z.q, w_.assembled)) return false;
+    const bool held = is_gyroscopically_stable(p_, found_.z, w_);
+    evaluate(p_, found_.z, 0, w_);
+    factor(p_, found_.z, w_);
+    return held;
   }
 
   // Whether Newton-Raphson's last step was rounding, and taken from a balance with these multipliers: then

@@ -2,8 +2,9 @@
 //
 // Newton-Raphson runs first, then damped, then by homotopy from rest, then downhill on the amended potential.
 // Where there is a potential an answer counts only if it is a minimum that the assembled start can reach
-// without climbing; Newton's habit of stopping at unstable states is met by going on downhill. Without one,
-// Newton's answer stands.
+// without climbing; Newton's habit of stopping at unstable states is met by going on downhill. A drawn pose
+// that is itself a gyroscopically stable state is the answer, too: it is what the mechanism does from there.
+// Without a potential Newton's answer stands.
 #pragma once
 
 #include "engine/equilibrium/newton.hpp"

@@ -303,6 +303,10 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
                    std::to_string(largest_for_eigenvalues) + " coordinates.";
   if (out.floquet) out.message += floquet_message(*out.floquet, out.stable);
   if (in.stability.floquet_failure) out.message += floquet_message(*in.stability.floquet_failure);
+  if (out.stability_reason == StabilityReason::gyroscopic_only)
+    out.message +=
+        " Rotation alone keeps this state, which is no minimum of the amended potential: any damping in "
+        "what moves would make it unstable.";
   if (out.stable == false && in.found.message.empty()) out.message += " This state is unstable.";
 }
 

@@ -1,6 +1,7 @@
 #include "engine/equilibrium/stability.hpp"
 
 #include "engine/equilibrium/existence.hpp"
+#include "engine/equilibrium/gyroscopic_stability.hpp"
 #include "engine/equilibrium/largest.hpp"
 #include "engine/equilibrium/linear_motion.hpp"
 #include "engine/equilibrium/pencil.hpp"
@@ -231,7 +232,10 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
     out.stable = true;
     out.reason = StabilityReason::asymptotic;
   } else if (potential && most_negative < -ReducedHessian::zero) {
-    out.reason = StabilityReason::gyroscopic_only;
+    const auto damped = damping_destabilizes(problem, z.q, basis, mass, velocity, stiffness, w);
+    if (!damped) return out;
+    if (*damped) out.stable = false;
+    out.reason = *damped ? StabilityReason::unstable : StabilityReason::gyroscopic_only;
   } else {
     out.reason = StabilityReason::marginal;
   }
