@@ -2,6 +2,7 @@
 
 #include "app/cli/assets.hpp"
 #include "app/cli/command.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/picture.hpp"
 #include "app/cli/report_error.hpp"
 #include "app/cli/state_folder.hpp"
@@ -14,7 +15,6 @@
 #include "engine/mechanism/file.hpp"
 
 #include <backends/imgui_impl_glfw.h>
-#include <fmt/format.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -107,7 +107,7 @@ void open_first(App& app, const std::filesystem::path& scene) {
   begin_files(app);
 }
 
-int run_window(Window& window, const std::filesystem::path& scene, const EditorOptions& options) {
+Ending run_window(Window& window, const std::filesystem::path& scene, const EditorOptions& options) {
   App app({.mode = LiveSolver::Mode::background,
            .on_news = glfwPostEmptyEvent,
            .scenes = shipped_scenes(),
@@ -173,12 +173,12 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
       if (now_shown != state) write_bytes(options.state_file, state = std::move(now_shown));
     }
   }
-  return exit_done;
+  return {};
 }
 
-int run_without_display(const std::filesystem::path& scene, const EditorOptions& options,
-                        const std::string& reason) {
-  fmt::print(stderr, "flyball: {}; drawing the interface into a picture instead\n", reason);
+Ending run_without_display(const std::filesystem::path& scene, const EditorOptions& options,
+                           const std::string& reason) {
+  report_error(reason + "; drawing the interface into a picture instead");
   PictureOptions wanted;
   wanted.scale = options.scale.value_or(1.f);
   wanted.width = static_cast<int>(static_cast<float>(options.width) * wanted.scale);
@@ -189,15 +189,14 @@ int run_without_display(const std::filesystem::path& scene, const EditorOptions&
   const std::filesystem::path file =
       std::filesystem::current_path() / ("flyball-" + scene.stem().string() + ".png");
   write_png(file, picture.image);
-  fmt::print("{}\n", file.string());
-  if (picture.answer.solution.status == Status::converged) return exit_done;
-  report_error(scene.string() + ": " + picture.answer.error.value_or(picture.answer.solution.message));
-  return exit_no_result;
+  print_text(file.string() + "\n");
+  return end_with(picture.answer.solution.status == Status::converged, scene,
+                  picture.answer.error.value_or(picture.answer.solution.message));
 }
 
 } // namespace
 
-int run_editor(const std::filesystem::path& scene, const EditorOptions& options) {
+Ending run_editor(const std::filesystem::path& scene, const EditorOptions& options) {
   std::string reason;
   std::optional<Window> window;
   if (display_available(&reason)) {
