@@ -1,4 +1,5 @@
 #include "app/cli/command.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
@@ -9,6 +10,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <fmt/format.h>
@@ -61,9 +63,9 @@ std::string diagram_csv(const std::string& address, const ResponseDiagram& d) {
       if (!c.driven) out += "," + csv_field(coordinate_label(c));
   out += ",stable,special\n";
   const auto row = [&](int branch, const ResponsePoint& p, std::string_view special) {
-    out += fmt::format("{},{}", branch, number_text(p.parameter));
+    out += fmt::format("{},{}", branch, csv_number(p.parameter));
     for (const CoordinateSolution& c : p.coordinates)
-      if (!c.driven) out += "," + number_text(c.value);
+      if (!c.driven) out += "," + csv_number(c.value);
     out += fmt::format(",{},{}\n", p.stable ? (*p.stable ? "true" : "false") : "", special);
   };
   for (std::size_t b = 0; b < d.branches.size(); ++b)
@@ -125,7 +127,7 @@ Plot diagram_plot(const Mechanism& m, const std::string& address, const Response
 }
 
 std::string diagram_text(const Mechanism& m, const std::string& address, const ResponseDiagram& d) {
-  std::string out = fmt::format("{}: {}\n", m.name, d.message);
+  std::string out = fmt::format("{}: {}\n", printable(m.name), printable(d.message));
   const std::string unit = parameter_unit(m, address);
   for (std::size_t b = 0; b < d.branches.size(); ++b) {
     const auto& points = d.branches[b].points;
@@ -136,8 +138,7 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
   for (const SpecialPoint& s : d.special) {
     out += fmt::format("  {} on branch {} at {:.12g} {}:", word(s.type), s.branch, s.at.parameter, unit);
     for (const CoordinateSolution& c : s.at.coordinates)
-      if (!c.driven)
-        out += fmt::format("  {} = {:.9g} {}", coordinate_label(c), c.value, c.angle ? "rad" : "m");
+      if (!c.driven) out += fmt::format("  {} = {:.9g} {}", shown_label(c), c.value, c.angle ? "rad" : "m");
     out += "\n";
   }
   return out + fmt::format("  {:.1f} ms\n", d.run_time_s * 1e3);
@@ -145,7 +146,7 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
 
 } // namespace
 
-void add_branch(CLI::App& app, int& exit_code) {
+void add_branch(CLI::App& app, Ending& ending) {
   struct Options {
     SceneArgument scene;
     std::string vary, csv, svg, png, plot;
@@ -168,7 +169,9 @@ void add_branch(CLI::App& app, int& exit_code) {
                       "The coordinate that --svg and --png draw: joint, or joint.index (default: the first)");
   command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
   command->footer("Example: flyball branch conical_pendulum.json --vary joints.spin.drive.speed=0:10 --json");
-  command->callback([options, &exit_code] {
+  command->callback([options, &ending] {
+    check_outputs(options->scene.file,
+                  {{"--csv", options->csv}, {"--svg", options->svg}, {"--png", options->png}});
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
     const Range range = parse_range("--vary", options->vary);
@@ -193,13 +196,14 @@ void add_branch(CLI::App& app, int& exit_code) {
         write_bytes(options->png, encode_png(draw_plot_picture(plot, {})));
       }
     }
-    if (!options->csv.empty())
+    // Files of earlier runs are not replaced by empty ones.
+    if (!options->csv.empty() && !diagram.branches.empty())
       write_bytes(options->csv, diagram_csv(range.address, diagram));
-    else if (options->json)
-      fmt::print("{}\n", diagram_json(diagram).dump(2));
-    else if (options->svg != "-" && options->png != "-") // then standard output is the drawing's
-      fmt::print("{}", diagram_text(mechanism, range.address, diagram));
-    exit_code = any ? exit_done : exit_no_result;
+    if (options->json)
+      print_json(diagram_json(diagram));
+    else if (options->csv.empty() && options->svg != "-" && options->png != "-") // else it is theirs
+      print_text(diagram_text(mechanism, range.address, diagram));
+    ending = end_with(any, options->scene.file, diagram.message);
   });
 }
 

@@ -1,4 +1,5 @@
 #include "app/cli/command.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report_error.hpp"
 #include "app/cli/scene_argument.hpp"
@@ -17,37 +18,37 @@ namespace flyball::cli {
 namespace {
 
 std::string joined(const std::vector<std::string>& words) {
-  return fmt::format("{}", fmt::join(words, ", "));
+  return printable(fmt::format("{}", fmt::join(words, ", ")));
 }
 
 std::string to_text(const Mechanism& m, const SystemSummary& s) {
   const auto many = [](int n, const char* one, const char* several) {
     return fmt::format("{} {}", n, n == 1 ? one : several);
   };
-  std::string out =
-      fmt::format("{}: a valid scene\n  {}, {}, {}, {}\n", m.name, many(s.bodies, "body", "bodies"),
-                  many(s.free_coordinates, "free coordinate", "free coordinates"),
-                  many(s.driven_coordinates, "driven", "driven"),
-                  many(s.constraint_equations, "constraint equation", "constraint equations"));
+  std::string out = fmt::format("{}: a valid scene\n  {}, {}, {}, {}\n", printable(m.name),
+                                many(s.bodies, "body", "bodies"),
+                                many(s.free_coordinates, "free coordinate", "free coordinates"),
+                                many(s.driven_coordinates, "driven", "driven"),
+                                many(s.constraint_equations, "constraint equation", "constraint equations"));
   if (!s.tree_joints.empty()) out += "  tree joints: " + joined(s.tree_joints) + "\n";
   if (!s.implicit_joints.empty())
     out += "  joints added to hold bodies on strings and springs: " + joined(s.implicit_joints) + "\n";
   if (!s.cut_joints.empty()) out += "  cut joints: " + joined(s.cut_joints) + "\n";
   for (const std::string& note : s.notes)
-    out += "  " + note + "\n";
+    out += "  " + printable(note) + "\n";
   out += "\nin the system\n";
   for (const std::string& pass : s.in)
-    out += "  + " + pass + "\n";
+    out += "  + " + printable(pass) + "\n";
   if (s.in.empty()) out += "  nothing but joints\n";
   out += "left out, because the scene does not need it\n";
   for (const std::string& pass : s.left_out)
-    out += "  - " + pass + "\n";
+    out += "  - " + printable(pass) + "\n";
   return out;
 }
 
 } // namespace
 
-void add_check(CLI::App& app, int& exit_code) {
+void add_check(CLI::App& app, Ending& ending) {
   struct Options {
     std::filesystem::path file;
     bool json = false;
@@ -58,7 +59,7 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_option("scene", options->file, "Scene file (-: standard input)")->required();
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer("Example: flyball check governor.json");
-  command->callback([options, &exit_code] {
+  command->callback([options, &ending] {
     const auto named = [&](const SceneError& error) {
       return SceneError(options->file.string() + (error.where().empty() ? "" : ": " + error.where()),
                         error.expected());
@@ -75,7 +76,7 @@ void add_check(CLI::App& app, int& exit_code) {
     const std::vector<SceneError> mistakes = find_mistakes(mechanism);
     if (!mistakes.empty()) progress.reset();
     for (const SceneError& mistake : mistakes)
-      exit_code = report_error(named(mistake));
+      ending.exit_code = report_error(named(mistake));
     if (!mistakes.empty()) return;
     SystemSummary summary;
     try {
@@ -97,11 +98,10 @@ void add_check(CLI::App& app, int& exit_code) {
                                           {"cut_joints", summary.cut_joints},
                                           {"implicit_joints", summary.implicit_joints},
                                           {"notes", summary.notes}};
-      fmt::print("{}\n", out.dump(2));
+      print_json(out);
     } else {
-      fmt::print("{}", to_text(mechanism, summary));
+      print_text(to_text(mechanism, summary));
     }
-    exit_code = exit_done;
   });
 }
 

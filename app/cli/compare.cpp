@@ -1,5 +1,6 @@
 #include "engine/study/compare.hpp"
 #include "app/cli/command.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/time_limit.hpp"
@@ -101,7 +102,7 @@ std::string table(const Comparison& c, Integrator method) {
 }
 
 std::string to_text(const Mechanism& mechanism, const Comparison& c) {
-  std::string out = fmt::format("{}: {}\n", mechanism.name, c.message);
+  std::string out = fmt::format("{}: {}\n", printable(mechanism.name), printable(c.message));
   if (c.reference.empty()) return out;
   out += fmt::format("reference verified in extended precision: last correction {:.1e}, residual {:.1e}\n",
                      c.reference_error, c.reference_residual);
@@ -133,7 +134,8 @@ struct Options {
   bool json = false;
 };
 
-int run_compare(const Options& options) {
+Ending run_compare(const Options& options) {
+  check_outputs(options.scene.file, {{"--csv", options.csv}, {"--svg", options.svg}});
   std::optional<ProgressBar> progress(std::in_place, "reading");
   const Mechanism mechanism = options.scene.load();
   Comparison comparison;
@@ -154,23 +156,22 @@ int run_compare(const Options& options) {
     throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
   }
   progress.reset();
+  // Files of earlier runs are not replaced by empty ones.
   const bool any = !comparison.reference.empty();
   if (any && !options.svg.empty())
     write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison)));
   if (any && !options.csv.empty()) write_bytes(options.csv, comparison_csv(comparison));
   if (options.json)
-    fmt::print("{}\n", to_json(comparison).dump(2));
+    print_json(to_json(comparison));
   else if (options.csv != "-" && options.svg != "-") // else standard output is theirs
-    fmt::print("{}", to_text(mechanism, comparison));
-  if (comparison.status == Status::converged && comparison.complete) return exit_done;
-  std::fflush(stdout);
-  fmt::print(stderr, "flyball: {}\n", comparison.message);
-  return exit_no_result;
+    print_text(to_text(mechanism, comparison));
+  return end_with(comparison.status == Status::converged && comparison.complete, options.scene.file,
+                  comparison.message);
 }
 
 } // namespace
 
-void add_compare(CLI::App& app, int& exit_code) {
+void add_compare(CLI::App& app, Ending& ending) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("compare", "Measure error against run time: direct solution and damped motion");
@@ -187,7 +188,7 @@ void add_compare(CLI::App& app, int& exit_code) {
   add_time_limit(*command, options->time_limit);
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer("Example: flyball compare governor.json --csv compare.csv --svg compare.svg");
-  command->callback([options, &exit_code] { exit_code = run_compare(*options); });
+  command->callback([options, &ending] { ending = run_compare(*options); });
 }
 
 } // namespace flyball::cli

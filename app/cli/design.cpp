@@ -1,5 +1,6 @@
 #include "engine/study/design.hpp"
 #include "app/cli/command.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
@@ -43,16 +44,15 @@ Json answer_json(const std::string& address, const std::string& coordinate, cons
 
 std::string answer_text(const Mechanism& m, const std::string& address, const DesignAnswer& a) {
   const std::string unit = parameter_unit(m, address);
-  std::string out = fmt::format("{}: {}\n", m.name, a.message);
+  std::string out = fmt::format("{}: {}\n", printable(m.name), printable(a.message));
   for (const DesignSolution& s : a.solutions) {
-    out += fmt::format("  {} = {} {} (± {:.1e}), {}{}\n", address, number_text(s.parameter), unit,
+    out += fmt::format("  {} = {} {} (± {:.1e}), {}{}\n", printable(address), number_text(s.parameter), unit,
                        s.parameter_error,
                        s.at.stable ? (*s.at.stable ? "stable" : "unstable") : "stability open",
                        s.connected ? "" : ", on a branch that nothing connects with the drawn pose's");
     out += "   ";
     for (const CoordinateSolution& c : s.at.coordinates)
-      if (!c.driven)
-        out += fmt::format(" {} = {:.12g} {} ", coordinate_label(c), c.value, c.angle ? "rad" : "m");
+      if (!c.driven) out += fmt::format(" {} = {:.12g} {} ", shown_label(c), c.value, c.angle ? "rad" : "m");
     out += fmt::format("\n    {} iterations, scaled residual {:.1e}\n", s.iterations, s.residual);
   }
   return out + fmt::format("  {:.1f} ms\n", a.run_time_s * 1e3);
@@ -60,7 +60,7 @@ std::string answer_text(const Mechanism& m, const std::string& address, const De
 
 } // namespace
 
-void add_design(CLI::App& app, int& exit_code) {
+void add_design(CLI::App& app, Ending& ending) {
   struct Options {
     SceneArgument scene;
     std::string vary, want;
@@ -80,7 +80,7 @@ void add_design(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer(
       "Example: flyball design governor.json --vary joints.spin.drive.speed=0:30 --want slide=0.12");
-  command->callback([options, &exit_code] {
+  command->callback([options, &ending] {
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
     const Range range = parse_range("--vary", options->vary);
@@ -97,10 +97,10 @@ void add_design(CLI::App& app, int& exit_code) {
     }
     progress.reset();
     if (options->json)
-      fmt::print("{}\n", answer_json(range.address, coordinate, answer).dump(2));
+      print_json(answer_json(range.address, coordinate, answer));
     else
-      fmt::print("{}", answer_text(mechanism, range.address, answer));
-    exit_code = answer.status == Status::converged ? exit_done : exit_no_result;
+      print_text(answer_text(mechanism, range.address, answer));
+    ending = end_with(answer.status == Status::converged, options->scene.file, answer.message);
   });
 }
 

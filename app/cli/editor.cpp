@@ -2,6 +2,8 @@
 
 #include "app/cli/assets.hpp"
 #include "app/cli/command.hpp"
+#include "app/cli/end_signals.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/picture.hpp"
 #include "app/cli/report_error.hpp"
 #include "app/cli/state_folder.hpp"
@@ -14,13 +16,15 @@
 #include "engine/mechanism/file.hpp"
 
 #include <backends/imgui_impl_glfw.h>
-#include <fmt/format.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
+#include <functional>
+#include <memory>
 
 namespace flyball::cli {
 
@@ -79,20 +83,57 @@ class Input {
   bool changed_ = false;
 };
 
+// What GLFW's callbacks find at the window.
+struct Desk {
+  App* app;
+  std::atomic<bool>* stirred; // something has happened that may show: set from any thread
+};
+
+Desk& desk_of(GLFWwindow* window) {
+  return *static_cast<Desk*>(glfwGetWindowUserPointer(window));
+}
 App& app_of(GLFWwindow* window) {
-  return *static_cast<App*>(glfwGetWindowUserPointer(window));
+  return *desk_of(window).app;
+}
+
+// A callback that takes note of the event and nothing else.
+template <class... Arguments>
+void stir(GLFWwindow* window, Arguments...) {
+  *desk_of(window).stirred = true;
 }
 
 void press_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+  stir(window);
   if (const auto press = pressed_key(key, scancode, action, modifiers)) app_of(window).keys.push_back(*press);
 }
 
 void type_character(GLFWwindow* window, unsigned character) {
+  stir(window);
   if (const auto press = typed_sign(character)) app_of(window).keys.push_back(*press);
 }
 
 void drop_file(GLFWwindow* window, int count, const char** paths) {
+  stir(window);
   if (count > 0) open_file(app_of(window), paths[0]);
+}
+
+// Before ImGui's, which call these in turn.
+void set_callbacks(GLFWwindow* window, Desk& desk) {
+  glfwSetWindowUserPointer(window, &desk);
+  glfwSetDropCallback(window, drop_file);
+  glfwSetKeyCallback(window, press_key);
+  glfwSetCharCallback(window, type_character);
+  glfwSetCursorPosCallback(window, stir);
+  glfwSetCursorEnterCallback(window, stir);
+  glfwSetMouseButtonCallback(window, stir);
+  glfwSetScrollCallback(window, stir);
+  glfwSetWindowFocusCallback(window, stir);
+  glfwSetWindowCloseCallback(window, stir);
+  glfwSetWindowSizeCallback(window, stir);
+  glfwSetWindowRefreshCallback(window, stir);
+  glfwSetWindowIconifyCallback(window, stir);
+  glfwSetWindowContentScaleCallback(window, stir);
+  glfwSetFramebufferSizeCallback(window, stir);
 }
 
 std::string title_of(const App& app) {
@@ -107,38 +148,44 @@ void open_first(App& app, const std::filesystem::path& scene) {
   begin_files(app);
 }
 
-int run_window(Window& window, const std::filesystem::path& scene, const EditorOptions& options) {
-  App app({.mode = LiveSolver::Mode::background,
-           .on_news = glfwPostEmptyEvent,
-           .scenes = shipped_scenes(),
-           .theme = options.dark ? Theme::dark : Theme::light,
-           .numbers = {},
-           .state = state_folder()});
-  const auto scale = [&] { return options.scale.value_or(std::max(window.content_scale(), 1.f)); };
-  Stage stage(app, scale());
-  stage.draft_while_moving(true);
-  ImGui::GetIO().ConfigInputTextCursorBlink = false;
-  glfwSetWindowUserPointer(window.handle(), &app);
-  glfwSetDropCallback(window.handle(), drop_file);
-  glfwSetKeyCallback(window.handle(), press_key); // before ImGui's, which call these in turn
-  glfwSetCharCallback(window.handle(), type_character);
-  Input input(window);
-  open_first(app, scene);
+// What the window shows, for tests outside the program.
+class ShownState {
+ public:
+  explicit ShownState(std::filesystem::path file) : file_(std::move(file)) {}
+  void tell(const App& app) {
+    if (file_.empty()) return;
+    std::string now = window_state(app);
+    if (now != told_) write_bytes(file_, told_ = std::move(now));
+  }
 
+ private:
+  std::filesystem::path file_;
+  std::string told_;
+};
+
+// Until the person quits or `ends` says so.
+void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& options,
+              std::atomic<bool>& stirred, const std::function<bool()>& ends) {
+  const auto scale = [&] { return options.scale.value_or(std::max(window.content_scale(), 1.f)); };
+  Input input(window);
+  ShownState shown(options.state_file);
   using Clock = std::chrono::steady_clock;
   auto last = Clock::now();
   int settling = settling_frames;
-  std::string title, state;
-  while (!app.quit) {
-    const bool waits = settling == 0 && !in_motion(app);
+  std::string title;
+  while (!app.quit && !ends()) {
+    // A film is drawn all the same.
+    const bool hidden = !app.movie.progress && !window.visible();
+    const bool waits = hidden || (settling == 0 && !in_motion(app));
     const double longest = waits ? std::min(idle, next_file_update(app)) : 0;
     window.wait_events(longest);
     const auto now = Clock::now();
     const double elapsed = std::chrono::duration<double>(now - last).count();
     last = now;
     const bool news = update_files(app, elapsed);
-    // One frame is enough where it was only time to look at the disk.
-    settling = waits ? (elapsed < longest || news ? settling_frames : 0) : std::max(settling - 1, 0);
+    const bool something = stirred.exchange(false) || news || (hidden && window.visible());
+    // Otherwise it was only time to look at the disk.
+    settling = something ? settling_frames : std::max(settling - 1, 0);
     // Time spent waiting is no time of the motion's.
     const double seconds = waits ? 0 : std::min(elapsed, 0.1);
     if (window.should_close()) {
@@ -149,8 +196,9 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
 
     const auto pixels = window.framebuffer_size();
     const PixelSize size{pixels.width, pixels.height};
-    if (size.width <= 0 || size.height <= 0) {
-      settling = 0;
+    if (size.width <= 0 || size.height <= 0) settling = 0;
+    if (size.width <= 0 || size.height <= 0 || hidden || (waits && settling == 0)) {
+      shown.tell(app);
       continue;
     }
     if (app.scale != scale()) stage.set_scale(app, scale());
@@ -158,6 +206,7 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
     // What comes while the last thing settles has to settle, too.
     if (input.changed()) settling = settling_frames;
     stage.frame(app, size, seconds);
+    if (!app.quit) note_unsaved_work(app);
     bind_window_framebuffer(size.width, size.height);
     stage.render(app, size);
     window.swap();
@@ -169,17 +218,71 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
         app.panels.slider_press.place)
       settling = std::max(settling, 1);
     if (title_of(app) != title) window.set_title(title = title_of(app));
-    if (!options.state_file.empty()) {
-      std::string now_shown = window_state(app);
-      if (now_shown != state) write_bytes(options.state_file, state = std::move(now_shown));
-    }
+    shown.tell(app);
   }
-  return exit_done;
 }
 
-int run_without_display(const std::filesystem::path& scene, const EditorOptions& options,
-                        const std::string& reason) {
-  fmt::print(stderr, "flyball: {}; drawing the interface into a picture instead\n", reason);
+// For one who finds the window gone.
+void tell_kept(const std::string& problem, const AutosaveSlot& slot) {
+  if (!problem.empty())
+    report_error("unsaved work could not be kept: " + problem);
+  else if (!slot.path().empty())
+    report_error("unsaved work is kept in " + slot.path().string() + " and offered at the next start");
+}
+
+// Keeps unsaved work when the display goes, for as long as it lives.
+class LostDisplay {
+ public:
+  explicit LostDisplay(std::shared_ptr<AutosaveSlot> slot) {
+    on_lost_display([slot = std::move(slot)] {
+      report_error("the display is gone");
+      tell_kept(slot->write(), *slot);
+    });
+  }
+  ~LostDisplay() { on_lost_display({}); }
+  LostDisplay(const LostDisplay&) = delete;
+  LostDisplay& operator=(const LostDisplay&) = delete;
+};
+
+Ending run_window(Window& window, const std::filesystem::path& scene, const EditorOptions& options) {
+  // These two last longer than the app, of which the end may take its time.
+  std::optional<LostDisplay> lost_display;
+  std::optional<EndSignals> signals;
+  // Shared, as a computation that was given up may still tell its news after the window has gone.
+  const auto stirred = std::make_shared<std::atomic<bool>>(true);
+  App app({.mode = LiveSolver::Mode::background,
+           .on_news =
+               [stirred] {
+                 *stirred = true;
+                 glfwPostEmptyEvent();
+               },
+           .scenes = shipped_scenes(),
+           .theme = options.dark ? Theme::dark : Theme::light,
+           .numbers = {},
+           .state = state_folder()});
+  app.files.changes = ChangeWatch(glfwPostEmptyEvent);
+  Stage stage(app, options.scale.value_or(std::max(window.content_scale(), 1.f)));
+  stage.draft_while_moving(true);
+  ImGui::GetIO().ConfigInputTextCursorBlink = false;
+  Desk desk{&app, stirred.get()};
+  set_callbacks(window.handle(), desk);
+  open_first(app, scene);
+  const std::shared_ptr<AutosaveSlot> slot = app.files.autosave.slot();
+  lost_display.emplace(slot);
+  signals.emplace(glfwPostEmptyEvent, [slot] { tell_kept(slot->write(), *slot); });
+  try {
+    run_loop(window, app, stage, options, *stirred, [&] { return signals->came() != 0; });
+  } catch (...) {
+    tell_kept(keep_unsaved_work(app), *slot);
+    throw;
+  }
+  if (!app.quit) tell_kept(keep_unsaved_work(app), *slot);
+  return {};
+}
+
+Ending run_without_display(const std::filesystem::path& scene, const EditorOptions& options,
+                           const std::string& reason) {
+  report_error(reason + "; drawing the interface into a picture instead");
   PictureOptions wanted;
   wanted.scale = options.scale.value_or(1.f);
   wanted.width = static_cast<int>(static_cast<float>(options.width) * wanted.scale);
@@ -190,15 +293,14 @@ int run_without_display(const std::filesystem::path& scene, const EditorOptions&
   const std::filesystem::path file =
       std::filesystem::current_path() / ("flyball-" + scene.stem().string() + ".png");
   write_png(file, picture.image);
-  fmt::print("{}\n", file.string());
-  if (picture.answer.solution.status == Status::converged) return exit_done;
-  report_error(scene.string() + ": " + picture.answer.error.value_or(picture.answer.solution.message));
-  return exit_no_result;
+  print_text(file.string() + "\n");
+  return end_with(picture.answer.solution.status == Status::converged, scene,
+                  picture.answer.error.value_or(picture.answer.solution.message));
 }
 
 } // namespace
 
-int run_editor(const std::filesystem::path& scene, const EditorOptions& options) {
+Ending run_editor(const std::filesystem::path& scene, const EditorOptions& options) {
   std::string reason;
   std::optional<Window> window;
   if (display_available(&reason)) {

@@ -1,6 +1,8 @@
 // The window.
 #pragma once
 
+#include "app/cli/command.hpp"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -15,7 +17,7 @@ struct EditorOptions {
 };
 
 // Opens the scene; an empty path opens the governor. Where there is no display it says so on standard error,
-// draws the interface into a PNG in the current folder instead and prints its path. Returns an exit code.
-int run_editor(const std::filesystem::path& scene, const EditorOptions& options);
+// draws the interface into a PNG in the current folder instead and prints its path.
+Ending run_editor(const std::filesystem::path& scene, const EditorOptions& options);
 
 } // namespace flyball::cli

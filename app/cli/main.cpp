@@ -35,7 +35,7 @@ int run(int argc, char** argv) {
   app.footer("Example: flyball governor.json");
   app.require_subcommand(0, 1);
 
-  int exit_code = exit_done;
+  Ending ending;
   EditorOptions options;
   std::string scene, theme = "light";
   app.add_option("scene", scene, "Scene file to open (default: the governor)");
@@ -46,21 +46,23 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--state-file", options.state_file)->group("");
 
-  add_solve(app, exit_code);
-  add_sweep(app, exit_code);
-  add_branch(app, exit_code);
-  add_design(app, exit_code);
-  add_simulate(app, exit_code);
-  add_compare(app, exit_code);
-  add_render(app, exit_code);
-  add_check(app, exit_code);
+  add_solve(app, ending);
+  add_sweep(app, ending);
+  add_branch(app, ending);
+  add_design(app, ending);
+  add_simulate(app, ending);
+  add_compare(app, ending);
+  add_render(app, ending);
+  add_check(app, ending);
 
   try {
     app.parse(argc, argv);
     options.dark = theme == "dark";
-    if (app.get_subcommands().empty())
-      exit_code = is_slip(scene) ? report_slip(app, scene) : run_editor(scene, options);
-    return exit_code;
+    if (app.get_subcommands().empty()) {
+      if (is_slip(scene)) return report_slip(app, scene);
+      ending = run_editor(scene, options);
+    }
+    return finish(ending);
   } catch (const CLI::ParseError& error) {
     if (app.get_subcommands().empty() && is_slip(scene)) return report_slip(app, scene);
     return report_usage(app, error);

@@ -1,7 +1,8 @@
 #include "app/cli/command.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/picture.hpp"
 #include "app/cli/progress.hpp"
-#include "app/cli/report_error.hpp"
+#include "engine/mechanism/error.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +21,8 @@ struct RenderOptions {
   bool interface = false, plain = false;
 };
 
-int run_render(const RenderOptions& options) {
+Ending run_render(const RenderOptions& options) {
+  check_outputs(options.scene, {{"--out", options.out}});
   PictureOptions wanted;
   wanted.interface = options.interface;
   wanted.drawn_pose = options.pose == "drawn";
@@ -32,22 +34,20 @@ int run_render(const RenderOptions& options) {
   std::string ending = options.out.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (!ending.empty() && ending != ".png")
-    return report_error(fmt::format("--out: pictures are PNG files, found {}", options.out.string()));
+    throw SceneError("", fmt::format("--out: pictures are PNG files, found {}", options.out.string()));
   std::optional<ProgressBar> progress(std::in_place, "drawing");
   const Picture picture = draw_picture(options.scene, wanted);
   write_png(options.out, picture.image);
   progress.reset();
-  if (wanted.drawn_pose) return exit_done;
-  if (picture.answer.error) return report_error(*picture.answer.error);
-  if (picture.answer.solution.status == Status::converged) return exit_done;
-  report_error(fmt::format("{}: {} (the picture shows the drawn pose)", options.scene.string(),
-                           picture.answer.solution.message));
-  return exit_no_result;
+  if (wanted.drawn_pose) return {};
+  if (picture.answer.error) throw SceneError("", *picture.answer.error);
+  return end_with(picture.answer.solution.status == Status::converged, options.scene,
+                  picture.answer.solution.message + " (the picture shows the drawn pose)");
 }
 
 } // namespace
 
-void add_render(CLI::App& app, int& exit_code) {
+void add_render(CLI::App& app, Ending& ending) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = app.add_subcommand("render", "Draw a scene into a PNG, without a display");
   command->add_option("scene", options->scene, "Scene file (-: standard input)")->required();
@@ -68,7 +68,7 @@ void add_render(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--no-msaa", options->plain, "Without anti-aliasing of the view: faster");
   command->footer("Example: flyball render governor.json -o governor.png --ui --size 1280x800");
-  command->callback([options, &exit_code] { exit_code = run_render(*options); });
+  command->callback([options, &ending] { ending = run_render(*options); });
 }
 
 } // namespace flyball::cli

@@ -1,6 +1,7 @@
 #include "app/cli/report_error.hpp"
 
 #include "app/cli/command.hpp"
+#include "engine/mechanism/safe_text.hpp"
 
 #include <fmt/format.h>
 
@@ -20,8 +21,19 @@ std::string spoken_command(const CLI::App& app) {
 
 } // namespace
 
+Ending end_with(bool result, const std::filesystem::path& scene, std::string_view reason) {
+  if (result) return {};
+  return {exit_no_result, fmt::format("{}: {}", scene == "-" ? "standard input" : scene.string(),
+                                      reason.empty() ? std::string_view("no result was found") : reason)};
+}
+
+int finish(const Ending& ending) {
+  if (ending.exit_code == exit_no_result) report_error(ending.reason);
+  return ending.exit_code;
+}
+
 int report_error(std::string_view message) {
-  fmt::print(stderr, "flyball: {}\n", message);
+  fmt::print(stderr, "flyball: {}\n", printable(message));
   return exit_bad_input;
 }
 
@@ -36,7 +48,7 @@ int report_error(const std::filesystem::path& file, const SceneError& error) {
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
   const std::string command = spoken_command(app);
-  fmt::print(stderr, "{}: {}\nSee {} --help.\n", command, error.what(), command);
+  fmt::print(stderr, "{}: {}\nSee {} --help.\n", command, printable_lines(error.what()), command);
   return exit_bad_input;
 }
 

@@ -1,5 +1,6 @@
 #include "app/cli/command.hpp"
 #include "app/cli/movie.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/picture.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
@@ -10,6 +11,7 @@
 #include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <fmt/format.h>
@@ -63,7 +65,7 @@ std::string to_csv(const Run& run) {
   for (std::size_t i = 0; i < run.time.size(); ++i) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (c) out += ",";
-      out += number_text((*columns[c].values)[i]);
+      out += csv_number((*columns[c].values)[i]);
     }
     out += "\n";
   }
@@ -157,20 +159,20 @@ Json run_json(const Run& run, const std::optional<Settled>& settled) {
 }
 
 std::string run_text(const Mechanism& mechanism, const Run& run, const std::optional<Settled>& settled) {
-  std::string out = fmt::format("{}: {}\n", mechanism.name, run.message);
+  std::string out = fmt::format("{}: {}\n", printable(mechanism.name), printable(run.message));
   if (run.time.empty()) return out;
-  if (settled) out += "  " + settled->message + "\n";
-  out += "  " + run.method_reason + "\n";
+  if (settled) out += "  " + printable(settled->message) + "\n";
+  out += "  " + printable(run.method_reason) + "\n";
   for (const std::string& note : run.notes)
-    out += "  " + note + "\n";
+    out += "  " + printable(note) + "\n";
   out += fmt::format("\nat {:.6g} s\n", run.time.back());
   std::size_t width = 10;
   for (const CoordinateTrack& c : run.coordinates)
-    width = std::max(width, coordinate_label(c).size());
+    width = std::max(width, shown_label(c).size());
   for (const CoordinateTrack& c : run.coordinates)
-    out += fmt::format("  {:{}}  {:>18.12g} {:3}  {:>14.6g} {}/s{}\n", coordinate_label(c), width,
-                       c.value.back(), c.angle ? "rad" : "m", c.rate.back(), c.angle ? "rad" : "m",
-                       c.driven ? "  driven" : "");
+    out +=
+        fmt::format("  {:{}}  {:>18.12g} {:3}  {:>14.6g} {}/s{}\n", shown_label(c), width, c.value.back(),
+                    c.angle ? "rad" : "m", c.rate.back(), c.angle ? "rad" : "m", c.driven ? "  driven" : "");
   out += fmt::format("\nenergy balance within {:.1e} J of {:.3g} J at play", energy_error(run),
                      energy_at_play(run));
   if (const auto drift = jacobi_drift(run)) out += fmt::format("; Jacobi integral within {:.1e} J", *drift);
@@ -242,8 +244,11 @@ MovieOptions movie_of(const Options& options, double duration) {
   return movie;
 }
 
-int run_simulate(const Options& options) {
+Ending run_simulate(const Options& options) {
   if (options.csv == "-" && options.json) throw SceneError("--csv -", "expected no --json beside it");
+  check_outputs(
+      options.scene.file,
+      {{"--csv", options.csv}, {"--save-state", options.save_state}, {"--movie", options.movie.file}});
   std::optional<ProgressBar> progress(std::in_place, "reading");
   const Mechanism mechanism = options.scene.load();
   SimulationOptions wanted = simulation_of(options, mechanism);
@@ -285,20 +290,18 @@ int run_simulate(const Options& options) {
   if (any && !options.csv.empty()) write_bytes(options.csv, to_csv(run));
   if (any && !movie.file.empty()) draw_movie(mechanism, std::make_shared<const Run>(run), steady, movie);
   if (options.json)
-    fmt::print("{}\n", run_json(run, settled).dump(2));
+    print_json(run_json(run, settled));
   else if (any && options.csv != "-") // then standard output is the table's
-    fmt::print("{}", run_text(mechanism, run, settled));
-  if (run.status == RunStatus::completed) return exit_done;
-  std::fflush(stdout);
-  fmt::print(stderr, "flyball: {}\n", run.message);
-  if (any && run.time.size() > 1)
-    fmt::print(stderr, "flyball: what was computed until then, {} samples, is kept\n", run.time.size());
-  return exit_no_result;
+    print_text(run_text(mechanism, run, settled));
+  std::string message = run.message;
+  if (run.status != RunStatus::completed && run.time.size() > 1)
+    message += " What was computed until then, " + std::to_string(run.time.size()) + " samples, is kept.";
+  return end_with(run.status == RunStatus::completed, options.scene.file, message);
 }
 
 } // namespace
 
-void add_simulate(CLI::App& app, int& exit_code) {
+void add_simulate(CLI::App& app, Ending& ending) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("simulate", "Integrate the damped motion");
   options->scene.add_to(*command);
@@ -356,7 +359,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->footer("Examples: flyball simulate governor.json --duration 5 --csv run.csv\n"
                   "          flyball simulate governor.json --movie run.mp4 --slow-motion 0.2");
-  command->callback([options, &exit_code] { exit_code = run_simulate(*options); });
+  command->callback([options, &ending] { ending = run_simulate(*options); });
 }
 
 } // namespace flyball::cli

@@ -1,6 +1,6 @@
 #include "app/cli/solution_text.hpp"
 
-#include "engine/mechanism/text.hpp"
+#include "app/cli/output.hpp"
 
 #include <fmt/format.h>
 
@@ -38,22 +38,23 @@ std::string stability(const Solution& s) {
 } // namespace
 
 std::string to_text(const Mechanism& mechanism, const Solution& s) {
-  std::string out = fmt::format("{}: {}\n", mechanism.name, s.message);
+  std::string out = fmt::format("{}: {}\n", printable(mechanism.name), printable(s.message));
   if (s.status != Status::converged) {
-    out += fmt::format("  residual {:.2g}, {} iterations, {:.1f} µs\n", s.residual, s.iterations,
+    if (std::isfinite(s.residual)) out += fmt::format("  residual {:.2g}, ", s.residual);
+    out += fmt::format("{}{} iterations, {:.1f} µs\n", std::isfinite(s.residual) ? "" : "  ", s.iterations,
                        s.run_time_s * 1e6);
     return out;
   }
   if (const std::string words = stability(s); !words.empty()) out += "  " + words + "\n";
   std::size_t width = 10;
   for (const auto& c : s.coordinates)
-    width = std::max(width, coordinate_label(c).size());
+    width = std::max(width, shown_label(c).size());
   for (const auto& r : s.reactions)
-    width = std::max(width, r.joint.size());
+    width = std::max(width, printable(r.joint).size());
   const auto heading = [&](const char* text) { out += fmt::format("\n{}\n", text); };
   if (!s.coordinates.empty()) heading("coordinates");
   for (const CoordinateSolution& c : s.coordinates) {
-    const std::string name = coordinate_label(c);
+    const std::string name = shown_label(c);
     if (c.driven) {
       out += fmt::format("  {:{}}  driven\n", name, width);
       continue;
@@ -66,8 +67,8 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   }
   if (!s.drive_torques.empty()) heading("drives");
   for (const DriveTorque& d : s.drive_torques)
-    out += fmt::format("  {:{}}  {:>22.9g} {}{}\n", coordinate_label(d), width, d.value,
-                       d.angle ? "N m" : "N", d.varying ? "  (changes with the phase)" : "");
+    out += fmt::format("  {:{}}  {:>22.9g} {}{}\n", shown_label(d), width, d.value, d.angle ? "N m" : "N",
+                       d.varying ? "  (changes with the phase)" : "");
   if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
   // What is rounding beside the largest reaction is shown as zero.
   double force = 0, torque = 0;
@@ -82,8 +83,8 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
     const Reaction r{raw.joint, clean(raw.force, force), clean(raw.torque, std::max(torque, force)),
                      raw.varying};
     out += fmt::format("  {:{}}  force [{:.6g}, {:.6g}, {:.6g}] N  torque [{:.6g}, {:.6g}, {:.6g}] N m{}\n",
-                       r.joint, width, r.force.x(), r.force.y(), r.force.z(), r.torque.x(), r.torque.y(),
-                       r.torque.z(), r.varying ? "  (changes with the phase)" : "");
+                       printable(r.joint), width, r.force.x(), r.force.y(), r.force.z(), r.torque.x(),
+                       r.torque.y(), r.torque.z(), r.varying ? "  (changes with the phase)" : "");
   }
   if (s.reactions_nonunique)
     out +=
@@ -111,19 +112,18 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
 }
 
 std::string to_text(const Mechanism& mechanism, const AllSolutions& all) {
-  std::string out = fmt::format("{}: {} equilibria from {} starts. {}\n", mechanism.name,
-                                all.equilibria.size(), all.starts, all.message);
+  std::string out = fmt::format("{}: {} equilibria from {} starts. {}\n", printable(mechanism.name),
+                                all.equilibria.size(), all.starts, printable(all.message));
   out += "searched";
   for (const AllSolutions::Bound& b : all.bounds)
-    out +=
-        fmt::format("  {} {:.4g} to {:.4g} {}", coordinate_label(b), b.lower, b.upper, b.angle ? "rad" : "m");
+    out += fmt::format("  {} {:.4g} to {:.4g} {}", shown_label(b), b.lower, b.upper, b.angle ? "rad" : "m");
   for (std::size_t i = 0; i < all.equilibria.size(); ++i) {
     const Solution& s = all.equilibria[i];
     out += fmt::format("\n\n{}  {}", i + 1, stability(s));
     if (s.potential) out += fmt::format(", potential {:.9g} J", *s.potential);
     for (const CoordinateSolution& c : s.coordinates)
       if (!c.driven)
-        out += fmt::format("\n   {} = {} {}  ± {:.1g}", coordinate_label(c), rounded(c.value, c.error, 17),
+        out += fmt::format("\n   {} = {} {}  ± {:.1g}", shown_label(c), rounded(c.value, c.error, 17),
                            c.angle ? "rad" : "m", c.error);
   }
   return out;

@@ -1,4 +1,5 @@
 #include "app/cli/command.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
@@ -12,7 +13,7 @@
 
 namespace flyball::cli {
 
-void add_solve(CLI::App& app, int& exit_code) {
+void add_solve(CLI::App& app, Ending& ending) {
   struct Options {
     SceneArgument scene;
     std::vector<std::string> start;
@@ -51,7 +52,7 @@ void add_solve(CLI::App& app, int& exit_code) {
       ->check(above_zero());
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer("Example: flyball solve governor.json --set joints.spin.drive.speed=12 --json");
-  command->callback([options, &exit_code] {
+  command->callback([options, &ending] {
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
     SolveOptions solve;
@@ -67,8 +68,11 @@ void add_solve(CLI::App& app, int& exit_code) {
       if (options->all) {
         const AllSolutions all = Analysis(mechanism).solve_all(solve);
         progress.reset();
-        fmt::print("{}\n", options->json ? to_json(mechanism, all).dump(2) : to_text(mechanism, all));
-        exit_code = all.equilibria.empty() ? exit_no_result : exit_done;
+        if (options->json)
+          print_json(to_json(mechanism, all));
+        else
+          print_text(to_text(mechanism, all) + "\n");
+        ending = end_with(!all.equilibria.empty(), options->scene.file, all.message);
         return;
       }
       solution = Analysis(mechanism).solve(solve);
@@ -77,10 +81,10 @@ void add_solve(CLI::App& app, int& exit_code) {
     }
     progress.reset();
     if (options->json)
-      fmt::print("{}\n", to_json(mechanism, solution).dump(2));
+      print_json(to_json(mechanism, solution));
     else
-      fmt::print("{}", to_text(mechanism, solution));
-    exit_code = solution.status == Status::converged ? exit_done : exit_no_result;
+      print_text(to_text(mechanism, solution));
+    ending = end_with(solution.status == Status::converged, options->scene.file, solution.message);
   });
 }
 

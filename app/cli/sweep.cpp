@@ -1,16 +1,19 @@
 #include "engine/study/sweep.hpp"
 #include "app/cli/command.hpp"
+#include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace flyball::cli {
@@ -42,23 +45,24 @@ std::string to_csv(const Mechanism& m, const std::vector<Variation>& variations,
   out += ",stable,residual,run_time_s\n";
   for (const SweepPoint& p : points) {
     for (double value : p.parameters)
-      out += number_text(value) + ",";
+      out += csv_number(value) + ",";
     out += word(p.solution.status);
     std::size_t at = 0;
     for (const CoordinateSolution& c : p.solution.coordinates)
       if (!c.driven) {
-        out += "," + number_text(c.value);
+        out += "," + csv_number(c.value);
         ++at;
       }
     for (; at < columns.size(); ++at)
       out += ",";
     out += p.solution.stable ? (*p.solution.stable ? ",true," : ",false,") : ",,";
-    out += number_text(p.solution.residual) + "," + number_text(p.solution.run_time_s) + "\n";
+    out += csv_number(p.solution.residual) + "," + csv_number(p.solution.run_time_s) + "\n";
   }
   return out;
 }
 
-std::string to_json(const std::vector<Variation>& variations, const std::vector<SweepPoint>& points) {
+nlohmann::ordered_json to_json(const std::vector<Variation>& variations,
+                               const std::vector<SweepPoint>& points) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const SweepPoint& p : points) {
     nlohmann::ordered_json row;
@@ -71,11 +75,12 @@ std::string to_json(const std::vector<Variation>& variations, const std::vector<
       if (!c.driven) row["coordinates"][ColumnName{c.joint, c.count == 1 ? -1 : c.index}.text()] = c.value;
     row["stable"] =
         p.solution.stable ? nlohmann::ordered_json(*p.solution.stable) : nlohmann::ordered_json(nullptr);
-    row["residual"] = p.solution.residual;
+    row["residual"] = std::isfinite(p.solution.residual) ? nlohmann::ordered_json(p.solution.residual)
+                                                         : nlohmann::ordered_json(nullptr);
     row["run_time_s"] = p.solution.run_time_s;
     rows.push_back(std::move(row));
   }
-  return nlohmann::ordered_json{{"points", std::move(rows)}}.dump(2) + "\n";
+  return {{"points", std::move(rows)}};
 }
 
 std::string to_table(const Mechanism& m, const std::vector<Variation>& variations,
@@ -84,14 +89,15 @@ std::string to_table(const Mechanism& m, const std::vector<Variation>& variation
   std::vector<std::vector<std::string>> rows(1);
   for (const Variation& v : variations) {
     const std::string unit = parameter_unit(m, v.address);
-    rows[0].push_back(unit.empty() ? v.address : fmt::format("{} [{}]", v.address, unit));
+    const std::string name = printable(v.address);
+    rows[0].push_back(unit.empty() ? name : fmt::format("{} [{}]", name, unit));
   }
   rows[0].push_back("status");
   for (const ColumnName& c : columns) {
     const int j = joint_index(m, c.joint);
     const bool angle = j >= 0 ? is_angle(m.joints[static_cast<std::size_t>(j)].type, std::max(0, c.index))
                               : is_angle(JointType::free, c.index);
-    rows[0].push_back(fmt::format("{} [{}]", c.text(), angle ? "rad" : "m"));
+    rows[0].push_back(fmt::format("{} [{}]", printable(c.text()), angle ? "rad" : "m"));
   }
   rows[0].insert(rows[0].end(), {"stable", "residual", "time [µs]"});
   for (const SweepPoint& p : points) {
@@ -103,7 +109,7 @@ std::string to_table(const Mechanism& m, const std::vector<Variation>& variation
       if (!c.driven) row.push_back(fmt::format("{:.10f}", c.value));
     row.resize(variations.size() + 1 + columns.size());
     row.push_back(p.solution.stable ? (*p.solution.stable ? "yes" : "no") : "-");
-    row.push_back(fmt::format("{:.1e}", p.solution.residual));
+    row.push_back(std::isfinite(p.solution.residual) ? fmt::format("{:.1e}", p.solution.residual) : "-");
     row.push_back(fmt::format("{:.1f}", p.solution.run_time_s * 1e6));
   }
   std::vector<std::size_t> widths(rows[0].size());
@@ -119,9 +125,15 @@ std::string to_table(const Mechanism& m, const std::vector<Variation>& variation
   return out;
 }
 
+// Why no point has an answer: what is said of the first.
+std::string reason_of(const std::vector<SweepPoint>& points) {
+  return fmt::format("no steady state at any of the {} points; at the first: {}", points.size(),
+                     points.empty() ? "" : points.front().solution.message);
+}
+
 } // namespace
 
-void add_sweep(CLI::App& app, int& exit_code) {
+void add_sweep(CLI::App& app, Ending& ending) {
   struct Options {
     SceneArgument scene;
     std::vector<std::string> vary;
@@ -143,7 +155,8 @@ void add_sweep(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
   command->footer(
       "Example: flyball sweep governor.json --vary joints.spin.drive.speed=5:20:31 --csv curve.csv");
-  command->callback([options, &exit_code] {
+  command->callback([options, &ending] {
+    check_outputs(options->scene.file, {{"--csv", options->csv}});
     const Mechanism mechanism = options->scene.load();
     std::vector<Variation> variations;
     double total = 1;
@@ -163,11 +176,13 @@ void add_sweep(CLI::App& app, int& exit_code) {
     }
     if (!options->csv.empty())
       write_bytes(options->csv, to_csv(mechanism, variations, points));
+    else if (options->json)
+      print_json(to_json(variations, points));
     else
-      fmt::print("{}", options->json ? to_json(variations, points) : to_table(mechanism, variations, points));
+      print_text(to_table(mechanism, variations, points));
     const bool any = std::ranges::any_of(
         points, [](const SweepPoint& p) { return p.solution.status == Status::converged; });
-    exit_code = any ? exit_done : exit_no_result;
+    ending = end_with(any, options->scene.file, reason_of(points));
   });
 }
 

@@ -137,7 +137,7 @@ std::vector<Leftover> find_leftovers(const fs::path& file, const fs::path& state
   std::vector<Leftover> leftovers;
   std::string text;
   try {
-    if (!file.empty()) text = read_bytes(file);
+    if (!file.empty() && stamp_of(file)) text = read_bytes(file);
   } catch (const SceneError&) { // gone: all the more reason to look
   }
   for (const fs::path& path : files_of(file, state_folder, kept)) {

@@ -1,13 +1,9 @@
 #include "app/document/autosaver.hpp"
 
 #include "app/document/autosave.hpp"
-#include "engine/mechanism/error.hpp"
-#include "engine/mechanism/file.hpp"
-#include "engine/mechanism/scene.hpp"
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 
 namespace flyball {
 
@@ -22,14 +18,8 @@ constexpr double soon = 0.1; // s, while something is being written
 
 void Autosaver::collect() {
   if (!writing_.valid()) return;
-  Outcome outcome = writing_.get();
-  if (outcome.problem.empty()) {
-    std::error_code ignored;
-    if (!path_.empty() && path_ != outcome.path) fs::remove(path_, ignored); // older
-    path_ = std::move(outcome.path);
-    return;
-  }
-  problem_ = std::move(outcome.problem);
+  problem_ = writing_.get();
+  if (problem_.empty()) return;
   written_ = 0;
   hold_ = retry;
 }
@@ -38,10 +28,20 @@ void Autosaver::wait() {
   collect();
 }
 
+void Autosaver::note(const Document& document, bool to_lose, std::uint64_t based_on,
+                     const AutosaveSettings& settings) {
+  if (settings.state_folder.empty() || !to_lose) return slot_->expect(std::nullopt);
+  slot_->expect(UnsavedWork{.mechanism = document.steps()[document.position()].mechanism,
+                            .file = document.file(),
+                            .based_on = based_on,
+                            .settings = settings});
+}
+
 void Autosaver::tick(const Document& document, bool to_lose, std::uint64_t based_on,
                      const AutosaveSettings& settings, double seconds) {
   due_ = never;
   if (settings.state_folder.empty()) return;
+  note(document, to_lose, based_on, settings);
   if (writing_.valid()) {
     if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
       due_ = soon;
@@ -58,65 +58,39 @@ void Autosaver::tick(const Document& document, bool to_lose, std::uint64_t based
   seen_ = document.revision();
   due_ = std::max({0., std::min(pause - still_, longest - waited_), hold_});
   if (due_ > 0) return;
-  start(document, based_on, settings);
-  due_ = soon;
-}
-
-void Autosaver::start(const Document& document, std::uint64_t based_on, const AutosaveSettings& settings) {
   written_ = document.revision();
   still_ = waited_ = 0;
   // Turning thousands of bodies into text and waiting for the disk is nothing for the thread of the
   // interface.
-  writing_ = std::async(std::launch::async,
-                        [mechanism = document.steps()[document.position()].mechanism, file = document.file(),
-                         based_on, settings, path = path_]() -> Outcome {
-                          Outcome outcome;
-                          try {
-                            Autosave autosave{.file = file,
-                                              .name = mechanism->name,
-                                              .based_on = based_on,
-                                              .owner = settings.owner,
-                                              .made = static_cast<std::int64_t>(std::time(nullptr)),
-                                              .scene = write_scene(*mechanism)};
-                            const std::string text = write_autosave(autosave);
-                            std::vector<fs::path> places = autosave_places(file, settings.state_folder);
-                            if (!path.empty()) places.insert(places.begin(), path);
-                            for (const fs::path& place : places) {
-                              try {
-                                if (place.parent_path() != file.parent_path())
-                                  fs::create_directories(place.parent_path());
-                                write_bytes(place, text);
-                                return {.path = place, .problem = {}};
-                              } catch (const std::exception& error) {
-                                outcome.problem = error.what();
-                              }
-                            }
-                          } catch (const std::exception& error) {
-                            outcome.problem = error.what();
-                          }
-                          return outcome;
-                        });
+  writing_ = std::async(std::launch::async, [slot = slot_] { return slot->write(); });
+  due_ = soon;
+}
+
+void Autosaver::reset() {
+  collect();
+  problem_.clear();
+  seen_ = written_ = 0;
+  still_ = waited_ = hold_ = 0;
+  due_ = never;
 }
 
 void Autosaver::remove() {
-  collect();
-  std::error_code ignored;
-  if (!path_.empty()) fs::remove(path_, ignored);
-  *this = {};
+  reset();
+  slot_->remove();
 }
 
 bool Autosaver::adopt(const fs::path& leftover, const fs::path& file, const AutosaveSettings& settings) {
   remove();
-  path_ = leftover;
+  fs::path path = leftover;
   std::error_code failed;
   for (const fs::path& place : autosave_places(file, settings.state_folder)) {
     if (place.parent_path() != leftover.parent_path()) continue;
     fs::rename(leftover, place, failed);
-    if (!failed) path_ = place;
+    if (!failed) path = place;
   }
-  if (fs::exists(path_, failed)) return true;
-  path_.clear();
-  return false;
+  if (!fs::exists(path, failed)) return false;
+  slot_->take_over(path);
+  return true;
 }
 
 } // namespace flyball

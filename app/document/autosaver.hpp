@@ -1,6 +1,7 @@
 // Keeps the open document's unsaved work in a file of its own, so that a crash costs a few seconds at most.
 #pragma once
 
+#include "app/document/autosave_slot.hpp"
 #include "app/document/document.hpp"
 
 #include <future>
@@ -8,12 +9,6 @@
 #include <utility>
 
 namespace flyball {
-
-// Where it is kept and on whose behalf.
-struct AutosaveSettings {
-  std::filesystem::path state_folder; // empty: nothing is kept anywhere
-  std::string owner;                  // see process.hpp
-};
 
 class Autosaver {
  public:
@@ -28,6 +23,8 @@ class Autosaver {
   Autosaver(Autosaver&&) = default;
   Autosaver& operator=(Autosaver&&) = default;
 
+  // What there is to lose now, for whoever has to write it at once (see slot()); quick.
+  void note(const Document& document, bool to_lose, std::uint64_t based_on, const AutosaveSettings& settings);
   // `seconds` after the last call. Where there is something to lose and the time has come it writes in the
   // background; where there is nothing to lose any more it removes the file. `based_on` is the hash of what
   // the document's file holds.
@@ -39,7 +36,9 @@ class Autosaver {
   std::string take_problem() { return std::exchange(problem_, {}); }
 
   // Where it is; empty where nothing is kept. Only what is already written.
-  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path path() const { return slot_->path(); }
+  // Writes what was noted last, from any thread; lasts as long as this.
+  const std::shared_ptr<AutosaveSlot>& slot() const { return slot_; }
   void wait(); // for what is being written
   // Removes the file: the work was saved, or is not wanted.
   void remove();
@@ -48,15 +47,11 @@ class Autosaver {
              const AutosaveSettings& settings);
 
  private:
-  struct Outcome {
-    std::filesystem::path path;
-    std::string problem;
-  };
   void collect(); // what was being written and no longer is
-  void start(const Document& document, std::uint64_t based_on, const AutosaveSettings& settings);
+  void reset();
 
-  std::filesystem::path path_;
-  std::future<Outcome> writing_;
+  std::shared_ptr<AutosaveSlot> slot_ = std::make_shared<AutosaveSlot>();
+  std::future<std::string> writing_; // why it could not be
   std::string problem_;
   std::uint64_t seen_ = 0, written_ = 0;     // revisions of the document
   double still_ = 0, waited_ = 0, hold_ = 0; // s: since the last change, since the first, before trying again

@@ -66,6 +66,10 @@ FileWatch::Look FileWatch::look() {
   return {News::changed, std::move(*text)};
 }
 
+bool FileWatch::settled() const {
+  return file_.empty() || (missing_ > 0 ? vanished() : last_ && last_ == known_);
+}
+
 bool FileWatch::differs() const {
   const std::optional<FileStamp> now = stamp_of(file_);
   if (!now || now == known_) return false;

@@ -43,6 +43,8 @@ class FileWatch {
   // What has happened since the last look that was not told yet. A file is changed once it has stood still
   // from one look to the next, so that one who writes it slowly is not interrupted; touching it is no change.
   Look look();
+  // Whether looking again would tell nothing new until somebody touches the file.
+  bool settled() const;
   // Whether the file holds something else than is known.
   bool differs() const;
 

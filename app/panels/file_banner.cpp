@@ -15,7 +15,7 @@ namespace {
 void keep_mine(App& app) {
   const std::filesystem::path file = app.document.file();
   try {
-    app.files.watch = FileWatch(file, read_bytes(file));
+    app.files.watch = FileWatch(file, read_bytes(file, 0.));
   } catch (const SceneError&) { // gone: there is nothing to be kept from
   }
   const bool save_wanted = app.files.save_wanted;

@@ -12,6 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// s: what is no regular file is not waited for longer.
+constexpr double patience = 1;
+
 // Another document takes the place of this one, of which nothing is wanted any more.
 void replace_document(App& app, Document document, std::string_view text) {
   app.files.autosave.remove();
@@ -59,10 +62,10 @@ void new_document(App& app) {
 }
 
 void open_scene(App& app, const fs::path& file) {
-  // What comes from a pipe has no file to be saved to.
-  const bool stream = file == "-";
   try {
-    const std::string text = read_bytes(file);
+    const std::string text = read_bytes(file, patience);
+    // What comes from a pipe has no file to be saved to.
+    const bool stream = file == "-" || !stamp_of(file);
     const fs::path own = stream ? fs::path() : resolved(file);
     replace_document(app, Document(parse_scene(text), own), text);
   } catch (const SceneError& error) {
@@ -84,7 +87,7 @@ std::string save_to(App& app, const fs::path& file) {
   const fs::path own = resolved(file);
   try {
     const std::string text = write_scene(app.mechanism());
-    write_bytes(own, text);
+    replace_file(own, text);
     app.files.watch = FileWatch(own, text);
   } catch (const SceneError& error) {
     const std::string& why = error.where() == own.string() ? error.expected() : error.what();
@@ -130,7 +133,7 @@ void reload_document(App& app) {
   const fs::path file = app.document.file();
   if (file.empty()) return;
   try {
-    const std::string text = read_bytes(file);
+    const std::string text = read_bytes(file, patience);
     Mechanism theirs = parse_scene(text);
     const bool had_edits = app.document.unsaved();
     edit(app, "Reload", [&](Mechanism& mechanism, Selection&) { mechanism = std::move(theirs); });

@@ -32,6 +32,10 @@ const std::vector<std::filesystem::path>& recent_files(const App& app);
 
 // When the program has started: reads what is kept in options.state, and offers what a crash has left.
 void begin_files(App& app);
+// What there is to lose, for whoever has to write it at once; after every frame.
+void note_unsaved_work(App& app);
+// Writes unsaved work where the next start offers it: the program is about to end. Returns why it could not.
+std::string keep_unsaved_work(App& app);
 // Once a frame, `seconds` after the last: autosaves what changed, and looks whether the file has changed on
 // disk. Returns whether there is anything new to show.
 bool update_files(App& app, double seconds);

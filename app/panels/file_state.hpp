@@ -3,6 +3,7 @@
 
 #include "app/document/autosave.hpp"
 #include "app/document/autosaver.hpp"
+#include "app/document/change_watch.hpp"
 #include "app/document/file_watch.hpp"
 #include "app/document/process.hpp"
 #include "engine/mechanism/mechanism.hpp"
@@ -47,6 +48,7 @@ struct FileState {
   std::vector<std::filesystem::path> recent;
 
   FileWatch watch;       // of the document's file
+  ChangeWatch changes;   // says when to look; whoever runs the loop makes it one that wakes the loop
   double until_look = 0; // s
   // The file has changed on disk, and there are unsaved edits; the person is to choose.
   bool conflict = false;

@@ -9,7 +9,9 @@ namespace flyball {
 
 namespace {
 
-constexpr double between_looks = 0.5; // s
+// s between looks at the disk: while the file is being written; where nothing tells of changes; and where the
+// folder is watched, as that does not see that a folder above it was renamed.
+constexpr double between_looks = 0.5, untold = 2, told = 30;
 
 bool look_at_disk(App& app) {
   const FileWatch::Look look = app.files.watch.look();
@@ -35,18 +37,41 @@ bool look_at_disk(App& app) {
   return true;
 }
 
+AutosaveSettings settings_of(const App& app) {
+  return {app.options.state, app.files.owner};
+}
+
+// s until the next look.
+double next_look(const App& app) {
+  const FileState& files = app.files;
+  double wait = files.watch.settled() ? (files.changes.tells() ? told : untold) : between_looks;
+  if (files.changes.changed()) wait = std::min(wait, between_looks);
+  return wait;
+}
+
 } // namespace
+
+void note_unsaved_work(App& app) {
+  app.files.autosave.note(app.document, has_unsaved_work(app), app.files.watch.hash(), settings_of(app));
+}
+
+std::string keep_unsaved_work(App& app) {
+  note_unsaved_work(app);
+  return app.files.autosave.slot()->write();
+}
 
 bool update_files(App& app, double seconds) {
   FileState& files = app.files;
   bool news = false;
-  files.until_look -= seconds;
+  files.until_look = std::min(files.until_look - seconds, next_look(app));
   if (files.until_look <= 0) {
-    files.until_look = between_looks;
+    // First what is to be told of, then the look: nothing between the two is missed.
+    files.changes.take_change();
+    files.changes.watch(app.document.file());
     if (files.watch.file() == app.document.file()) news = look_at_disk(app);
+    files.until_look = next_look(app);
   }
-  files.autosave.tick(app.document, has_unsaved_work(app), files.watch.hash(),
-                      {app.options.state, files.owner}, seconds);
+  files.autosave.tick(app.document, has_unsaved_work(app), files.watch.hash(), settings_of(app), seconds);
   if (const std::string problem = files.autosave.take_problem(); !problem.empty()) {
     app.notice = "Unsaved work cannot be kept for after a crash: " + problem;
     news = true;

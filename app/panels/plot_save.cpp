@@ -59,11 +59,11 @@ bool save_plot(App& app) {
     return true;
   }
   try {
-    write_bytes(file, save.kind == PlotFile::csv
-                          ? to_csv(save.plot, save.look)
-                          : to_svg(save.plot,
-                                   {.width = save.pixels[0], .height = save.pixels[1], .dark = save.dark},
-                                   save.look));
+    replace_file(file, save.kind == PlotFile::csv
+                           ? to_csv(save.plot, save.look)
+                           : to_svg(save.plot,
+                                    {.width = save.pixels[0], .height = save.pixels[1], .dark = save.dark},
+                                    save.look));
     app.notice = "Saved " + file.string();
     return true;
   } catch (const SceneError& error) {

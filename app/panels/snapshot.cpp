@@ -1,6 +1,7 @@
 #include "app/panels/snapshot.hpp"
 
 #include "app/panels/plot_picture.hpp"
+#include "engine/mechanism/file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,7 @@ void export_picture(App& app, PixelSize window) {
     const Image image = request.plot     ? plot_picture(*request.plot, size)
                         : request.panels ? interface_picture(app, size, scale)
                                          : view_picture(app, size);
-    write_png(request.file, image);
+    replace_file(request.file, encode_png(image));
     app.notice = "Saved " + request.file.string();
   } catch (const std::exception& error) {
     app.notice = std::string("Not saved: ") + error.what();

@@ -76,6 +76,10 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
         draw_view(app, beside_, motion_frame(app), motion_scene(app), pixels_of(layout.beside));
   else
     beside_ = {};
+  if (const bool coarse = view_.is_coarse() || beside_.is_coarse(); coarse != told_coarse_) {
+    told_coarse_ = coarse;
+    if (coarse) app.notice = "The view is too large for OpenGL here and is drawn more coarsely.";
+  }
   scene_pictures_.update(app, view_renderer_);
   movie_.update(app, view_renderer_);
   ImGuiIO& io = ImGui::GetIO();
@@ -111,10 +115,16 @@ unsigned Stage::draw_view(const App& app, View& view, const ViewFrame& shown,
   const bool draft = drafts_ && moving && key.samples > 1 && view.solids > many_solids && draws_in_software();
   if (!changed && draft) return view.quick->texture();
   std::optional<Framebuffer>& target = draft ? view.quick : view.target;
-  if (!target || target->width() != size.width || target->height() != size.height)
-    target.emplace(size.width, size.height, draft ? 1 : key.samples);
+  PixelSize& made = draft ? view.quick_made_for : view.target_made_for;
+  if (!target || made != size) {
+    target.reset(); // both at once may be too much
+    target.emplace(largest_framebuffer(size.width, size.height, draft ? 1 : key.samples));
+    made = size;
+  }
   ViewFrame frame = shown;
   frame.options.draft = draft;
+  if (target->width() < size.width) // shown larger, with lines as thick as ever
+    frame.options.scale *= static_cast<float>(target->width()) / static_cast<float>(size.width);
   view.solids = view_renderer_.draw(frame, scene, *target).drawn;
   view.drawn = std::move(key);
   view.draft = draft;

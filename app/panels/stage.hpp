@@ -55,11 +55,16 @@ class Stage {
  private:
   // A view of the app, drawn again only where something in it changed; its texture.
   struct View {
-    std::optional<Framebuffer> target, quick; // quick: without anti-aliasing
+    std::optional<Framebuffer> target, quick;  // quick: without anti-aliasing
+    PixelSize target_made_for, quick_made_for; // they have fewer pixels where OpenGL has no more
     ViewKey drawn;
     bool draft = false; // what was drawn last is in `quick`
     int solids = 0;     // that were in it
     std::chrono::steady_clock::time_point moved{};
+
+    bool is_coarse() const {
+      return target && (target->width() < target_made_for.width || target->short_of_samples());
+    }
   };
   unsigned draw_view(const App& app, View& view, const ViewFrame& frame,
                      const std::shared_ptr<const ViewScene>& scene, PixelSize size);
@@ -72,6 +77,7 @@ class Stage {
   MovieExport movie_;
   View view_, beside_;
   int views_drawn_ = 0;
+  bool told_coarse_ = false; // that a view has fewer pixels or samples than it should
   bool drafts_ = false;
 };
 

@@ -1,5 +1,6 @@
 #include "app/plot/comparison_plot.hpp"
 
+#include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <fmt/format.h>
@@ -88,15 +89,15 @@ Plot comparison_plot(const std::string& title, const Comparison& comparison) {
 std::string comparison_csv(const Comparison& c) {
   std::string out = "method,duration_s,tolerance,iterations,error,run_time_s,steps,evaluations,status\n";
   for (const DirectMark& m : c.direct)
-    out += fmt::format("direct,,,{},{},{},,,{}\n", m.iterations, number_text(m.error),
-                       number_text(m.run_time_s), word(c.status));
-  out += fmt::format("direct_answer,,,{},{},{},,,{}\n", c.answer.iterations, number_text(c.answer.error),
-                     number_text(c.answer.run_time_s), word(c.status));
+    out += fmt::format("direct,,,{},{},{},,,{}\n", m.iterations, csv_number(m.error),
+                       csv_number(m.run_time_s), word(c.status));
+  out += fmt::format("direct_answer,,,{},{},{},,,{}\n", c.answer.iterations, csv_number(c.answer.error),
+                     csv_number(c.answer.run_time_s), word(c.status));
   for (const MotionCurve& curve : c.motion)
     for (const MotionPoint& p : curve.points)
-      out += fmt::format("{},{},{},,{},{},{},{},{}\n", word(curve.method), number_text(curve.duration),
-                         number_text(p.tolerance), std::isfinite(p.error) ? number_text(p.error) : "",
-                         number_text(p.run_time_s), p.steps, p.evaluations, word(p.status));
+      out += fmt::format("{},{},{},,{},{},{},{},{}\n", word(curve.method), csv_number(curve.duration),
+                         csv_number(p.tolerance), csv_number(p.error), csv_number(p.run_time_s), p.steps,
+                         p.evaluations, word(p.status));
   return out;
 }
 

@@ -1,18 +1,13 @@
 #include "app/plot/csv.hpp"
 
+#include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace flyball {
 
 namespace {
-
-std::string number(double value) {
-  return std::isfinite(value) ? number_text(value) : "";
-}
 
 std::string header_of(const PlotAxis& axis, const char* otherwise) {
   const std::string text = axis_text(axis.label, axis.unit);
@@ -33,9 +28,9 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
   const auto row = [&](const std::string& name, double x, double y) {
     out += name;
     out += ',';
-    out += number(x);
+    out += csv_number(x);
     out += ',';
-    out += number(y);
+    out += csv_number(y);
   };
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const PlotCurve& curve = plot.curves[i];
@@ -54,7 +49,7 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
   for (std::size_t j = 0; j < plot.heat->y.size(); ++j)
     for (std::size_t i = 0; i < plot.heat->x.size(); ++i) {
       row("map", plot.heat->x[i], plot.heat->y[j]);
-      out += "," + number(plot.heat->values[j * plot.heat->x.size() + i]) + "\r\n";
+      out += "," + csv_number(plot.heat->values[j * plot.heat->x.size() + i]) + "\r\n";
     }
   return out;
 }

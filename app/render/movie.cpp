@@ -44,29 +44,6 @@ std::string place_problem(const fs::path& file) {
   return "";
 }
 
-// Makes something beside the target under a name that nothing has; `make` returns 0 or sets errno.
-template <class Make>
-fs::path make_beside(const fs::path& file, const fs::path& target, const Make& make) {
-  for (int attempt = 0; attempt < 1000; ++attempt) {
-    fs::path path = target;
-    path.replace_filename("." + target.filename().string() + "." + std::to_string(::getpid()) + "-" +
-                          std::to_string(attempt) + ".part");
-    if (make(path)) return path;
-    if (errno != EEXIST) fail(file, errno);
-  }
-  fail(file, EEXIST);
-}
-
-bool make_file(const fs::path& path) {
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (fd >= 0) ::close(fd);
-  return fd >= 0;
-}
-
-bool make_folder(const fs::path& path) {
-  return ::mkdir(path.c_str(), 0777) == 0;
-}
-
 int even(int pixels) {
   return pixels + pixels % 2;
 }
@@ -199,25 +176,19 @@ MovieWriter::MovieWriter(const fs::path& file, const MovieFormat& format) : file
     check_frames();
   else
     target_ = fs::weakly_canonical(target_, ignored);
-  part_ = make_beside(file, target_, kind_ == MovieKind::frames ? make_folder : make_file);
+  if (kind_ == MovieKind::frames)
+    part_.emplace(file, target_, PartFile::Kind::folder, 0777);
+  else
+    part_.emplace(file, target_, PartFile::Kind::file, 0666);
   try {
-    if (kind_ != MovieKind::frames) encoder_.emplace(arguments_of(kind_, format, part_));
+    if (kind_ != MovieKind::frames) encoder_.emplace(arguments_of(kind_, format, part_->path()));
   } catch (const std::runtime_error& error) {
-    remove_parts();
     throw SceneError(file.string(), error.what());
   }
 }
 
-MovieWriter::~MovieWriter() {
-  encoder_.reset(); // ends before its file goes
-  remove_parts();
-}
-
-void MovieWriter::remove_parts() {
-  std::error_code ignored;
-  if (!part_.empty()) fs::remove_all(part_, ignored);
-  part_.clear();
-}
+// The encoder ends before its file goes.
+MovieWriter::~MovieWriter() = default;
 
 bool MovieWriter::ready(double seconds) {
   try {
@@ -233,7 +204,7 @@ void MovieWriter::add(const Image& frame) {
                                          std::to_string(format_.width) + "x" +
                                          std::to_string(format_.height));
   if (kind_ == MovieKind::frames)
-    write_png(part_ / frame_file(target_.filename(), added_, format_.frames), frame);
+    write_png(part_->path() / frame_file(target_.filename(), added_, format_.frames), frame);
   else
     encoder_->send(kind_ == MovieKind::mp4 ? raw_frame(frame, even(frame.width), even(frame.height))
                                            : raw_frame(frame, frame.width, frame.height));
@@ -261,16 +232,16 @@ bool MovieWriter::finish(double seconds) {
 void MovieWriter::place_film() {
   struct stat made {
   }, old{};
-  if (::stat(part_.c_str(), &made) != 0) fail(file_, errno);
+  if (::stat(part_->path().c_str(), &made) != 0) fail(file_, errno);
   if (made.st_size == 0) throw SceneError(file_.string(), "ffmpeg has written nothing");
-  const int fd = ::open(part_.c_str(), O_RDONLY | O_CLOEXEC);
+  const int fd = ::open(part_->path().c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) fail(file_, errno);
   const int error = ::fsync(fd) == 0 ? 0 : errno;
   ::close(fd);
   if (error != 0) fail(file_, error);
-  if (::stat(target_.c_str(), &old) == 0) ::chmod(part_.c_str(), old.st_mode & 07777U);
-  if (::rename(part_.c_str(), target_.c_str()) != 0) fail(file_, errno);
-  part_.clear();
+  if (::stat(target_.c_str(), &old) == 0) ::chmod(part_->path().c_str(), old.st_mode & 07777U);
+  if (!part_->rename_to(target_)) fail(file_, errno);
+  part_.reset();
 }
 
 void MovieWriter::check_frames() const {
@@ -286,13 +257,13 @@ void MovieWriter::place_frames() {
   check_frames();
   for (std::size_t i = 0; i < added_; ++i) {
     const fs::path to = frame_file(target_, i, format_.frames);
-    if (::rename((part_ / to.filename()).c_str(), to.c_str()) == 0) continue;
+    if (::rename((part_->path() / to.filename()).c_str(), to.c_str()) == 0) continue;
     const int error = errno;
     for (std::size_t placed = 0; placed < i; ++placed)
       ::unlink(frame_file(target_, placed, format_.frames).c_str());
     fail(to, error);
   }
-  remove_parts();
+  part_.reset();
 }
 
 } // namespace flyball

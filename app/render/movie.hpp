@@ -4,6 +4,7 @@
 
 #include "app/render/encoder.hpp"
 #include "app/render/image.hpp"
+#include "engine/mechanism/part_file.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -50,7 +51,6 @@ class MovieWriter {
   bool finish(double seconds);
 
  private:
-  void remove_parts();
   void check_frames() const;
   void place_frames();
   void place_film();
@@ -59,7 +59,7 @@ class MovieWriter {
   MovieFormat format_;
   MovieKind kind_;
   std::filesystem::path target_; // where links lead
-  std::filesystem::path part_;   // beside it: the film, or a folder of frames; empty: nothing is there
+  std::optional<PartFile> part_; // beside it: the film, or a folder of frames; empty: nothing is there
   std::size_t added_ = 0;
   bool finished_ = false;
   std::optional<Encoder> encoder_;

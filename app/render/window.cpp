@@ -2,6 +2,8 @@
 
 #include "app/render/gl.hpp"
 
+#include <cstdlib>
+#include <dlfcn.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -32,6 +34,18 @@ class GlfwSession {
   inline static int count_ = 0;
 };
 
+// What to do when the display goes; a C library calls it.
+std::function<void()>& lost_display() {
+  static std::function<void()> call;
+  return call;
+}
+
+int display_is_lost(void*) {
+  if (lost_display()) lost_display()();
+  // Xlib would call exit(), whose handlers wait for threads that wait for the display.
+  std::_Exit(EXIT_FAILURE);
+}
+
 struct DestroyWindow {
   void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
 };
@@ -51,6 +65,17 @@ bool display_available(std::string* reason) {
     if (reason) *reason = error.what();
     return false;
   }
+}
+
+void on_lost_display(std::function<void()> call) {
+  lost_display() = std::move(call);
+  // GLFW has loaded Xlib where it uses it.
+  void* xlib = ::dlopen("libX11.so.6", RTLD_NOW | RTLD_NOLOAD);
+  if (!xlib) return;
+  using Handler = int (*)(void*);
+  if (const auto set = reinterpret_cast<Handler (*)(Handler)>(::dlsym(xlib, "XSetIOErrorHandler")))
+    set(lost_display() ? display_is_lost : nullptr);
+  ::dlclose(xlib);
 }
 
 Window::Window(const std::string& title, int width, int height) : state_(std::make_unique<State>()) {
@@ -113,6 +138,11 @@ void Window::wait_events(double seconds) {
     glfwWaitEventsTimeout(seconds);
   else
     glfwPollEvents();
+}
+
+bool Window::visible() const {
+  return glfwGetWindowAttrib(handle(), GLFW_VISIBLE) != 0 &&
+         glfwGetWindowAttrib(handle(), GLFW_ICONIFIED) == 0;
 }
 
 std::string Window::description() const {

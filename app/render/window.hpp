@@ -1,6 +1,7 @@
 // A window on the desktop with an OpenGL 3.3 core context, through GLFW.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -10,6 +11,10 @@ namespace flyball {
 
 // Whether a display can be opened at all; `reason` is then set to GLFW's words.
 bool display_available(std::string* reason = nullptr);
+
+// When the display goes, Xlib ends the program; it calls this first, from whichever thread notices. Nothing
+// to do with windows or OpenGL works any more. Empty for none.
+void on_lost_display(std::function<void()> call);
 
 class Window {
  public:
@@ -32,6 +37,8 @@ class Window {
   void swap();
   // Handles what the person did; waits up to `seconds` for something to happen, not at all for 0.
   void wait_events(double seconds);
+  // Whether any of it can be seen: not while it is an icon or unmapped.
+  bool visible() const;
   std::string description() const; // renderer and version, as OpenGL reports them
 
  private:

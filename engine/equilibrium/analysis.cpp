@@ -272,12 +272,14 @@ Solution Analysis::solve(const SolveOptions& options) {
     refused.message = "The forces are too large for the computer's numbers.";
     return refused;
   }
-  if (options.details)
+  if (options.details && !s.mechanism.sliders.empty()) {
+    Mechanism numbers = s.mechanism;
+    numbers.sliders.clear(); // or each of many would be copied for each
     for (const Slider& slider : s.mechanism.sliders) {
-      const Eigen::VectorXd rate =
-          sensitivity(problem, s.mechanism, s.found.z, slider.parameter, s.workspace);
+      const Eigen::VectorXd rate = sensitivity(problem, numbers, s.found.z, slider.parameter, s.workspace);
       if (rate.size() > 0) out.sensitivities.push_back(name_rates(s.system, slider.parameter, rate));
     }
+  }
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/stability.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -55,7 +56,9 @@ class Diagram {
     if (found.status != Status::converged || !existence.holds) {
       const Stability none;
       out_.status = found.status == Status::converged ? Status::no_steady_state : found.status;
-      out_.message = failure_message({follower_.mechanism(), problem, found, existence, none}, w);
+      const std::string unit = parameter_unit(mechanism_, address_);
+      out_.message = "At " + address_ + " = " + rounded_text(from_, 6) + (unit.empty() ? "" : " " + unit) +
+                     ": " + failure_message({follower_.mechanism(), problem, found, existence, none}, w);
       return;
     }
     out_.status = Status::converged;

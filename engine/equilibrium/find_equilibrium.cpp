@@ -5,6 +5,7 @@
 #include "engine/equilibrium/homotopy.hpp"
 #include "engine/equilibrium/stability.hpp"
 #include "engine/equilibrium/trust_region.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <random>
 
@@ -339,12 +340,14 @@ class Search {
     }
     found_.status = Status::not_converged;
     found_.net.reset();
-    found_.message = "Newton-Raphson, its damped form";
-    if (p_.parameters.moving) found_.message += ", homotopy from rest";
-    if (has_descent()) found_.message += ", descent of the potential";
-    found_.message +=
-        fell_ ? " found no equilibrium: the potential falls on, hundreds of times the mechanism's reach away."
-              : " found no equilibrium from this start.";
+    std::vector<std::string_view> tried{"Newton-Raphson", "its damped form"};
+    if (p_.parameters.moving) tried.emplace_back("homotopy from rest");
+    if (has_descent()) tried.emplace_back("descent of the potential");
+    found_.message =
+        word_list(tried, "and") +
+        (fell_
+             ? " found no equilibrium: the potential falls on, hundreds of times the mechanism's reach away."
+             : " found no equilibrium from this start.");
   }
 
   const Problem& p_;

@@ -1,14 +1,19 @@
 #include "engine/mechanism/file.hpp"
 
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/part_file.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
+#include <tuple>
 #include <unistd.h>
 #include <utility>
 
@@ -53,14 +58,30 @@ int own_descriptor(const fs::path& file, int standard) {
   return result.ec == std::errc{} && result.ptr == last ? fd : -1;
 }
 
-std::string read_all(const fs::path& file, int fd) {
+[[noreturn]] void fail_too_large(const fs::path& file) {
+  throw SceneError(file.string(),
+                   "expected at most " + std::to_string(largest_file / 1'000'000) + " MB, and there is more");
+}
+
+// Until the end, waiting for more at most `patience` seconds at a time.
+std::string read_all(const fs::path& file, int fd, std::optional<double> patience) {
   std::string bytes;
   std::array<char, 65536> buffer{};
   for (;;) {
+    if (patience) {
+      pollfd more{.fd = fd, .events = POLLIN, .revents = 0};
+      const int found = ::poll(&more, 1, static_cast<int>(std::ceil(*patience * 1e3)));
+      if (found == 0)
+        throw SceneError(file.string(), "cannot read: it is no regular file, and nothing came from it for " +
+                                            rounded_text(*patience, 2) + " s");
+      if (found < 0 && errno != EINTR) fail(file, "read", errno);
+      if (found < 0) continue;
+    }
     const ssize_t count = ::read(fd, buffer.data(), buffer.size());
     if (count > 0) bytes.append(buffer.data(), static_cast<std::size_t>(count));
     if (count == 0) return bytes;
-    if (count < 0 && errno != EINTR) fail(file, "read", errno);
+    if (count < 0 && errno != EINTR && errno != EAGAIN) fail(file, "read", errno);
+    if (bytes.size() > largest_file) fail_too_large(file);
   }
 }
 
@@ -84,32 +105,19 @@ fs::path follow_links(const fs::path& file) {
   fail(file, "write", ELOOP);
 }
 
-// A name beside `target` that nothing has, opened for writing.
-std::pair<fs::path, int> open_beside(const fs::path& file, const fs::path& target, mode_t mode) {
-  for (int attempt = 0; attempt < 1000; ++attempt) {
-    fs::path path = target;
-    path.replace_filename("." + target.filename().string() + "." + std::to_string(::getpid()) + "-" +
-                          std::to_string(attempt) + ".part");
-    const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-    if (fd >= 0) return {path, fd};
-    if (errno != EEXIST) fail(file, "write", errno);
-  }
-  fail(file, "write", EEXIST);
-}
-
 void replace(const fs::path& file, const fs::path& target, const struct stat* old, std::string_view bytes) {
-  auto [part, fd] = open_beside(file, target, 0666);
-  try {
-    Descriptor out(fd);
-    if (old != nullptr && ::fchmod(fd, old->st_mode & 07777U) != 0) fail(file, "write", errno);
-    write_all(file, fd, bytes);
-    if (::fsync(fd) != 0) fail(file, "write", errno);
-    if (!out.close()) fail(file, "write", errno);
-    if (::rename(part.c_str(), target.c_str()) != 0) fail(file, "write", errno);
-  } catch (...) {
-    ::unlink(part.c_str());
-    throw;
-  }
+  PartFile part(file, target, PartFile::Kind::file, 0666);
+  const int fd = part.descriptor();
+  // The owner first, as a new one takes special permissions away; where only root may give one, at least the
+  // group.
+  if (old != nullptr && (old->st_uid != ::geteuid() || old->st_gid != ::getegid()) &&
+      ::fchown(fd, old->st_uid, old->st_gid) != 0)
+    std::ignore = ::fchown(fd, static_cast<uid_t>(-1), old->st_gid);
+  if (old != nullptr && ::fchmod(fd, old->st_mode & 07777U) != 0) fail(file, "write", errno);
+  write_all(file, fd, bytes);
+  if (::fsync(fd) != 0) fail(file, "write", errno);
+  if (!part.close()) fail(file, "write", errno);
+  if (!part.rename_to(target)) fail(file, "write", errno);
   // The rename itself outlives a power cut only once the folder is on disk; where a file system cannot do
   // that, the file is whole all the same.
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
@@ -117,13 +125,34 @@ void replace(const fs::path& file, const fs::path& target, const struct stat* ol
   if (directory.get() >= 0) ::fsync(directory.get());
 }
 
+// Writes a regular file, or one that is not there yet.
+void replace_regular(const fs::path& file, const fs::path& target, const struct stat* old,
+                     std::string_view bytes) {
+  // A file marked read-only is meant to stay; renaming over it would not ask.
+  if (old != nullptr && ::access(target.c_str(), W_OK) != 0) fail(file, "write", errno);
+  if (!target.has_filename()) fail(file, "write", ENOENT);
+  replace(file, target, old, bytes);
+}
+
+// What a path stands for, through links; nothing where there is nothing.
+std::optional<struct stat> find(const fs::path& file, int standard) {
+  struct stat found {};
+  const int own = own_descriptor(file, standard);
+  const int result = own >= 0 ? ::fstat(own, &found) : ::stat(file.c_str(), &found);
+  return result == 0 ? std::optional(found) : std::nullopt;
+}
+
 } // namespace
 
-std::string read_bytes(const fs::path& file) {
-  if (const int own = own_descriptor(file, STDIN_FILENO); own >= 0) return read_all(file, own);
-  const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+std::string read_bytes(const fs::path& file, std::optional<double> patience) {
+  if (const int own = own_descriptor(file, STDIN_FILENO); own >= 0) return read_all(file, own, std::nullopt);
+  // A named pipe that nobody writes to would not even open.
+  const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC | (patience ? O_NONBLOCK : 0)));
   if (in.get() < 0) fail(file, "read", errno);
-  return read_all(file, in.get());
+  struct stat found {};
+  if (::fstat(in.get(), &found) != 0) fail(file, "read", errno);
+  if (S_ISREG(found.st_mode) && static_cast<std::size_t>(found.st_size) > largest_file) fail_too_large(file);
+  return read_all(file, in.get(), S_ISREG(found.st_mode) ? std::nullopt : patience);
 }
 
 void write_bytes(const fs::path& file, std::string_view bytes) {
@@ -135,17 +164,30 @@ void write_bytes(const fs::path& file, std::string_view bytes) {
   struct stat old {};
   const bool exists = ::stat(target.c_str(), &old) == 0;
   if (exists && S_ISDIR(old.st_mode)) fail(file, "write", EISDIR);
-  if (exists && !S_ISREG(old.st_mode)) {
-    Descriptor out(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-    if (out.get() < 0) fail(file, "write", errno);
-    write_all(file, out.get(), bytes);
-    if (!out.close()) fail(file, "write", errno);
-    return;
-  }
-  // A file marked read-only is meant to stay; renaming over it would not ask.
-  if (exists && ::access(target.c_str(), W_OK) != 0) fail(file, "write", errno);
-  if (!target.has_filename()) fail(file, "write", ENOENT);
-  replace(file, target, exists ? &old : nullptr, bytes);
+  if (!exists || S_ISREG(old.st_mode)) return replace_regular(file, target, exists ? &old : nullptr, bytes);
+  Descriptor out(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+  if (out.get() < 0) fail(file, "write", errno);
+  write_all(file, out.get(), bytes);
+  if (!out.close()) fail(file, "write", errno);
+}
+
+void replace_file(const fs::path& file, std::string_view bytes) {
+  const fs::path target = follow_links(file);
+  struct stat old {};
+  const bool exists = ::stat(target.c_str(), &old) == 0;
+  if (exists && S_ISDIR(old.st_mode)) fail(file, "write", EISDIR);
+  if (own_descriptor(file, STDOUT_FILENO) >= 0 || (exists && !S_ISREG(old.st_mode)))
+    throw SceneError(file.string(), "cannot write: it is no regular file, but a pipe or a device");
+  replace_regular(file, target, exists ? &old : nullptr, bytes);
+}
+
+bool same_file(const fs::path& input, const fs::path& output) {
+  const auto in = find(input, STDIN_FILENO), out = find(output, STDOUT_FILENO);
+  if (in && out) return S_ISREG(in->st_mode) && in->st_dev == out->st_dev && in->st_ino == out->st_ino;
+  if (in || out || input == "-" || output == "-") return false;
+  std::error_code failed;
+  const fs::path one = fs::weakly_canonical(input, failed);
+  return !failed && one == fs::weakly_canonical(output, failed) && !failed;
 }
 
 } // namespace flyball

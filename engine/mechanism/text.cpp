@@ -1,5 +1,7 @@
 #include "engine/mechanism/text.hpp"
 
+#include "engine/mechanism/safe_text.hpp"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -52,9 +54,13 @@ std::string coordinate_label(const std::string& joint, int index, int count) {
 }
 
 std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string out = "\"";
-  for (const char c : text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  const bool formula = first != std::string_view::npos &&
+                       std::string_view("=+-@\t\r\n").find(text[first]) != std::string_view::npos;
+  const std::string shown = printable(text, "\n\r\t");
+  if (!formula && shown.find_first_of(",\"\r\n") == std::string::npos) return shown;
+  std::string out = formula ? "\"'" : "\"";
+  for (const char c : shown) {
     if (c == '"') out += '"';
     out += c;
   }

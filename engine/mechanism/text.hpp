@@ -22,7 +22,7 @@ std::string coordinate_label(const Coordinate& c) {
   return coordinate_label(c.joint, c.index, c.count);
 }
 
-// A field of a CSV table, quoted where a comma, a quote or a line end asks for it (RFC 4180).
+// A text cell of a CSV table (RFC 4180); what would be a formula gets an apostrophe before it (safe_text.hpp).
 std::string csv_field(std::string_view text);
 
 // The candidate a person most likely meant by `word`, or "" where none is close.

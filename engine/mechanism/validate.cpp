@@ -85,7 +85,12 @@ void find_non_finite(const Mechanism& mechanism, Mistakes& mistakes) {
   }
 }
 
+constexpr std::size_t most_sliders = 10'000; // the answer's sensitivity to each is computed
+
 void find_slider_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
+  if (mechanism.sliders.size() > most_sliders)
+    return mistakes.add("sliders", "expected at most " + std::to_string(most_sliders) + " sliders, found " +
+                                       std::to_string(mechanism.sliders.size()));
   for (std::size_t i = 0; i < mechanism.sliders.size(); ++i) {
     const Slider& slider = mechanism.sliders[i];
     const std::string path = "sliders[" + std::to_string(i) + "]";

@@ -52,6 +52,7 @@ class Compiler {
     choose_tree();
     build_links();
     add_cuts();
+    expect_few_repetitions();
     add_forces();
     list_coordinates();
     classify();
@@ -405,6 +406,18 @@ class Compiler {
     }
     for (int j : gears)
       add_gear(j);
+  }
+
+  // No more equations than coordinates are independent. Loops of spatial joints have several times as many,
+  // nets of them included; what has far more repeats itself, and would take minutes to say so.
+  void expect_few_repetitions() const {
+    constexpr int many = 10'000, times = 20;
+    const int most = std::max(many, times * s_.nv);
+    if (s_.rows > most)
+      throw SceneError("joints", "expected at most " + std::to_string(most) + " constraint equations on " +
+                                     std::to_string(s_.nv) + " free coordinates, found " +
+                                     std::to_string(s_.rows) +
+                                     "; joints that hold what others hold already can be left out");
   }
 
   void add_gear(int j) {

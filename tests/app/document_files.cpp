@@ -1,6 +1,7 @@
 // Recent files, a watched file, and what is kept of unsaved work.
 #include "app/document/autosave.hpp"
 #include "app/document/autosaver.hpp"
+#include "app/document/change_watch.hpp"
 #include "app/document/file_watch.hpp"
 #include "app/document/process.hpp"
 #include "app/document/recent_files.hpp"
@@ -10,11 +11,13 @@
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <fstream>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 using namespace flyball;
@@ -353,4 +356,75 @@ TEST_CASE("a large document does not hold up the thread that asks") {
   const std::string text = write_scene(document.mechanism());
   const double writing = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   CHECK(slowest < writing);
+}
+
+TEST_CASE("the newest work is written at once when the program is about to end, from any thread") {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "governor.json";
+  const AutosaveSettings settings{folder / "state", dead_process()};
+  Document document = edited(file);
+  Autosaver autosaver;
+  const auto kept_mass = [&] {
+    return parse_scene(parse_autosave(read_bytes(autosaver.path())).scene).bodies[0].mass;
+  };
+  const auto end = [&] { std::thread([slot = autosaver.slot()] { CHECK(slot->write().empty()); }).join(); };
+  end();
+  CHECK(autosaver.path().empty()); // nothing was noted
+  autosaver.note(document, true, 7, settings);
+  end();
+  CHECK(kept_mass() == 123);
+  // Over what is being written.
+  run(autosaver, document, settings, 2);
+  Mechanism next = document.mechanism();
+  next.bodies[0].mass = 124;
+  document.edit("Set mass", std::move(next), {});
+  autosaver.tick(document, true, 7, settings, 0.25);
+  end();
+  CHECK(kept_mass() == 124);
+  const auto stamp = stamp_of(autosaver.path());
+  end();
+  CHECK(stamp_of(autosaver.path()) == stamp); // it is there already
+  autosaver.remove();
+  end();
+  CHECK(autosaver.path().empty());
+  CHECK(files_in(folder.path()) == 0);
+}
+
+TEST_CASE("changes of a file are told, however they are made") {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "inner");
+  const fs::path file = folder / "inner/scene.json", link = folder / "link.json";
+  write_bytes(file, "one");
+  write_bytes(folder / "inner/other.json", "one");
+  fs::create_symlink("inner/scene.json", link);
+  std::atomic<int> calls = 0;
+  ChangeWatch watch([&] { ++calls; });
+  const auto told = [&](const auto& change) {
+    watch.take_change();
+    watch.watch(link);
+    calls = 0;
+    change();
+    for (int i = 0; i < 200 && calls == 0; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return calls == 1 && watch.changed();
+  };
+  watch.watch(link);
+  if (!watch.tells()) return; // no watches to be had here
+  CHECK(told([&] { std::ofstream(file) << "two"; }));
+  CHECK(told([&] { write_bytes(file, "three"); })); // renamed over
+  CHECK(told([&] { std::ofstream(file, std::ios::app) << "four"; }));
+  CHECK(told([&] { fs::remove(file); }));
+  CHECK(told([&] { fs::rename(folder / "inner/other.json", file); }));
+  CHECK(told([&] {
+    fs::remove(link);
+    fs::create_symlink("elsewhere.json", link);
+  }));
+  CHECK(told([&] { write_bytes(folder / "elsewhere.json", "five"); }));
+  CHECK_FALSE(told([&] { write_bytes(folder / "unrelated.json", "six"); }));
+  CHECK_FALSE(ChangeWatch().tells());
+  FileWatch looked(file, "one");
+  CHECK_FALSE(looked.settled());
+  looked.look();
+  looked.look();
+  CHECK(looked.settled());
 }

@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 
@@ -177,4 +180,71 @@ TEST_CASE("A scene is saved and loaded") {
   const Mechanism governor = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
   save_scene(governor, folder / "copy.json");
   CHECK(load_scene(folder / "copy.json") == governor);
+}
+
+TEST_CASE("What has no end is not read") {
+  CHECK_THAT(message_of([] { read_bytes("/dev/zero"); }),
+             ContainsSubstring("/dev/zero: expected at most 256 MB"));
+  const Folder folder;
+  write_bytes(folder / "large", "");
+  fs::resize_file(folder / "large", largest_file + 1); // nothing of it is on disk
+  CHECK_THAT(message_of([&] { read_bytes(folder / "large"); }), ContainsSubstring("expected at most 256 MB"));
+}
+
+TEST_CASE("A pipe without a writer is not waited for longer than asked, and none is replaced") {
+  const Folder folder;
+  const fs::path pipe = folder / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK_THAT(message_of([&] { read_bytes(pipe, 0.01); }),
+             ContainsSubstring("nothing came from it for 0.01 s"));
+  CHECK_THAT(message_of([&] { replace_file(pipe, "text"); }), ContainsSubstring("no regular file"));
+  CHECK_THAT(message_of([&] { replace_file("/dev/null", "text"); }), ContainsSubstring("no regular file"));
+  CHECK_THAT(message_of([&] { replace_file("-", "text"); }), ContainsSubstring("no regular file"));
+  std::string read;
+  std::thread reader([&] { read = read_bytes(pipe); });
+  write_bytes(pipe, "through the pipe");
+  reader.join();
+  CHECK(read == "through the pipe");
+  replace_file(folder / "file", "text");
+  CHECK(read_bytes(folder / "file") == "text");
+}
+
+TEST_CASE("Two names of a file are known to be the same") {
+  const Folder folder;
+  const fs::path file = folder / "file";
+  write_bytes(file, "text");
+  fs::create_symlink("file", folder / "link");
+  fs::create_hard_link(file, folder / "hard");
+  CHECK(same_file(file, folder / "link"));
+  CHECK(same_file(file, folder / "hard"));
+  CHECK(same_file(folder / "new", folder / "./new"));
+  CHECK_FALSE(same_file(file, folder / "new"));
+  CHECK_FALSE(same_file("/dev/null", "/dev/null"));
+  CHECK_FALSE(same_file(file, "-"));
+}
+
+TEST_CASE("Parts that a killed program left go when the next one writes there") {
+  const Folder folder;
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  const std::string dead = std::to_string(child);
+  write_bytes(folder / (".scene.json." + dead + "-0.part"), "half");
+  fs::create_directory(folder / (".film.png." + dead + "-12.part"));
+  write_bytes(folder / (".film.png." + dead + "-12.part/film-0001.png"), "half");
+  const std::vector<std::string> kept{".scene.json." + std::to_string(::getpid()) + "-0.part",
+                                      ".scene.json." + dead + ".part", "scene.json." + dead + "-0.part",
+                                      "." + dead + "-0.part", ".scene.json." + dead + "-0.part.txt"};
+  for (const std::string& name : kept)
+    std::ofstream(folder / name) << "not ours";
+  // Another machine's process on a shared disk has a number of its own, and a lock.
+  const fs::path locked = folder / (".locked." + dead + "-0.part");
+  const int lock = ::open(locked.c_str(), O_CREAT | O_WRONLY, 0600);
+  REQUIRE(::flock(lock, LOCK_EX) == 0);
+  write_bytes(folder / "scene.json", "text");
+  CHECK(folder.count() == static_cast<std::ptrdiff_t>(kept.size()) + 2);
+  CHECK(fs::exists(locked));
+  ::close(lock);
+  write_bytes(folder / "scene.json", "text");
+  CHECK_FALSE(fs::exists(locked));
 }

@@ -1,4 +1,5 @@
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include "tests/catch.hpp"
@@ -65,4 +66,33 @@ TEST_CASE("Coordinates are found by name and named") {
     CHECK(find_coordinate(m, none).joint == -1);
   CHECK(coordinate_name(m.joints[0], 0) == "one");
   CHECK(coordinate_name(m.joints[1], 1) == "two.1");
+}
+
+TEST_CASE("Cells of a table are text or numbers, never formulas") {
+  CHECK(csv_field("swing") == "swing");
+  CHECK(csv_field("a,b") == "\"a,b\"");
+  CHECK(csv_field("say \"a\"") == "\"say \"\"a\"\"\"");
+  CHECK(csv_field("two\nlines") == "\"two\nlines\"");
+  CHECK(csv_field("") == "");
+  for (const char* formula : {"=1+1", "+1", "-arm", "@sum", "\ttab", "\rreturn", "\nend", "  =1"})
+    CHECK(csv_field(formula) == "\"'" + std::string(formula) + "\"");
+  CHECK(csv_field("=a\"b") == "\"'=a\"\"b\"");
+  CHECK(csv_field("a=b") == "a=b");
+  CHECK(csv_field("a\x1b[2J") == "a\\x1b[2J");
+  CHECK(csv_number(-0.5) == "-0.5");
+  CHECK(csv_number(std::numeric_limits<double>::infinity()).empty());
+  CHECK(csv_number(std::numeric_limits<double>::quiet_NaN()).empty());
+}
+
+TEST_CASE("Printed text does not steer a terminal") {
+  CHECK(printable("plain ü 球 🜚") == "plain ü 球 🜚");
+  CHECK(printable("\x1b]0;title\x07") == "\\x1b]0;title\\x07");
+  CHECK(printable("a\nb\tc\rd") == "a\\nb\\tc\\rd");
+  CHECK(printable("\x7f\xC2\x9B\xC2\x80") == "\\x7f\\x9b\\x80");
+  CHECK(printable("\xE2\x80\xAE\xE2\x81\xA6") == "\\u202e\\u2066");
+  CHECK(printable("a\xFF\x80z") == "a\\xff\\x80z");
+  CHECK(printable("\xE7\x90") == "\\xe7\\x90");
+  CHECK(printable_lines("a\nb\x1b\r") == "a\nb\\x1b\\r");
+  CHECK(printable_json("{\n \"a\": \"\xC2\x9B\x7F\"\n}") == "{\n \"a\": \"\\u009b\\u007f\"\n}");
+  CHECK(printable_json("[\"ü\"]") == "[\"ü\"]");
 }

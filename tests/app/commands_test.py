@@ -1,0 +1,222 @@
+"""The commands as a shell sees them: every refusal has its reason, nothing printed steers a terminal, tables are
+safe to open, no scene is overwritten, and nothing waits or reads for ever.
+
+Usage: commands_test.py FLYBALL CASES SCENE, with a folder of cases and a scene that has a steady state.
+"""
+import csv
+import io
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+FLYBALL, CASES, SCENE = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
+SPEED = "joints.spin.drive.speed"
+LIMIT = 120  # seconds, for anything
+failures = []
+
+
+def check(what, holds):
+    if not holds:
+        print("failed:", what)
+        failures.append(what)
+
+
+def run(*arguments, **options):
+    done = subprocess.run([FLYBALL, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          timeout=LIMIT, **options)
+    return done.returncode, done.stdout, done.stderr.decode()
+
+
+def reasons(folder):
+    """Whatever the output and wherever it goes, exit 1 says why in one line, and leaves older files alone."""
+    scene = CASES / "no_equilibrium.json"
+    old = folder / "old"
+    forms = [["solve"], ["solve", "--all"], ["solve", "--json"], ["solve", "--nearest"], ["design", "--vary",
+             f"{SPEED}=0:20", "--want", "h=0.2"], ["compare"], ["compare", "--csv", old], ["compare", "--csv", "-"],
+             ["compare", "--svg", old], ["compare", "--svg", "-"], ["compare", "--json"],
+             ["render", "-o", folder / "new.png"]]
+    for vary in (["branch", "--vary", f"{SPEED}=0:20"],):
+        forms += [vary, *([*vary, option, file] for option in ("--csv", "--svg", "--png") for file in (old, "-")),
+                  [*vary, "--json"], [*vary, "--all", "--csv", old], [*vary, "--csv", old, "--svg", "-"]]
+    sweep = ["sweep", "--vary", f"{SPEED}=0:20:3"]
+    forms += [sweep, [*sweep, "--csv", folder / "sweep.csv"], [*sweep, "--csv", "-"], [*sweep, "--json"]]
+    for form in forms:
+        old.write_text("what was here before")
+        code, out, error = run(form[0], scene, *form[1:])
+        check(f"{form} ends with 1, found {code}", code == 1)
+        check(f"{form} says why: {error!r}", error.startswith("flyball: ") and str(scene) in error and
+              len(error.splitlines()) == 1 and len(error) > len(str(scene)) + 30)
+        check(f"{form} leaves an older file", old.read_text() == "what was here before")
+        if "--json" in form:
+            json.loads(out)
+    code, _, error = run("branch", CASES / "no_equilibrium.json", "--vary", f"{SPEED}=0:20")
+    check(f"the words fit: {error}", f"At {SPEED} = 0 rad/s: " in error)
+
+
+def control_characters(folder):
+    """No control character but line ends reaches the terminal, from whatever is printed."""
+    scene = json.loads((CASES / "control_characters.json").read_text())
+    scene["name"] = "\x1b]0;title\x07\r\u009b2J\u202e\nflyball: all is well"
+    for joint in scene["joints"]:
+        joint["description"] = "\x1b[2J"
+    file = folder / "control.json"
+    file.write_text(json.dumps(scene))
+    broken = folder / "bro\x1bken.json"
+    broken.write_text(json.dumps(scene).replace('"revolute"', '"rev\\u001bolute"'))
+    forms = [["check", file], ["check", file, "--json"], ["solve", file], ["solve", file, "--json"],
+             ["solve", file, "--all"], ["solve", file, "--set", "joints.\x1b[31m.x=1"],
+             ["sweep", file, "--vary", "gravity.1=-1:-2:2"], ["simulate", file, "--duration", "0.1"],
+             ["branch", file, "--vary", "gravity.1=-1:-2"], ["compare", file, "--duration", "0.1", "--repeats", "1"],
+             ["design", file, "--vary", "gravity.1=-1:-2", "--want", "\x1b=1"], ["check", broken], ["solve", broken],
+             ["solve", folder / "no \x1b such.json"], ["\x1b[31m"], ["solve", file, "--\x1b"]]
+    for form in forms:
+        _, out, error = run(*form)
+        text = out.decode() + error
+        check(f"{form} steers the terminal: {text!r}", not re.search("[\0-\x09\x0b-\x1f\x7f-\x9f\u202e]", text))
+        check(f"{form} has a line that is none of its own", "\nflyball: all is well" not in text)
+    name = json.loads(run("compare", file, "--json", "--duration", "0.1", "--repeats", "1")[1] or b"{}")
+    check("JSON is JSON", isinstance(name, dict))
+
+
+def tables(folder):
+    """Cells are text or numbers, never formulas; what is no number is empty."""
+    governor = json.loads(pathlib.Path(SCENE).read_text())
+    text = json.dumps(governor).replace('"arm1"', json.dumps('=cmd|"/C calc"!A0')).replace(
+        '"slide"', '"@s,lide"').replace('"arm2"', '"-arm"')
+    file = folder / "formulas.json"
+    file.write_text(text)
+    address = "joints.spin.drive.speed"
+    for form in (["sweep", "--vary", f"{address}=5:10:3"], ["branch", "--vary", f"{address}=5:10"],
+                 ["simulate", "--duration", "0.1"]):
+        code, out, error = run(form[0], file, *form[1:], "--csv", "-")
+        rows = list(csv.reader(io.StringIO(out.decode(), newline="")))
+        check(f"{form} works: {error}", code == 0 and len(rows) > 2)
+        check(f"{form} has as many cells in each row", len({len(row) for row in rows}) == 1)
+        for row in rows:
+            for cell in row:
+                number = re.fullmatch(r"-?[0-9.]+(e[+-]?[0-9]+)?", cell)
+                check(f"{form} has a formula: {cell!r}", number or not cell[:1] in ("=", "+", "-", "@", "\t", "\r"))
+        check(f"{form} names its columns: {rows[0]}", "'@s,lide" in rows[0] and "'=cmd|\"/C calc\"!A0" in rows[0])
+    code, out, _ = run("sweep", CASES / "infinite_residual.json", "--vary", "gravity.1=0:1e-300:7", "--csv", "-")
+    check("no infinity in a table", not re.search("inf|nan", out.decode().lower()))
+    _, out, error = run("sweep", CASES / "infinite_residual.json", "--vary", "gravity.1=0:1e-300:7")
+    check("none on the screen either", not re.search(r"\b(inf|nan)\b", (out.decode() + error).lower()))
+
+
+def own_scene(folder):
+    """No output replaces the scene that it is about, by whatever name."""
+    file = folder / "scene.json"
+    link, hard, bare = folder / "link.json", folder / "hard.json", folder / "scene"
+    shutil.copy(SCENE, file)
+    link.symlink_to(file)
+    os.link(file, hard)
+    shutil.copy(SCENE, bare)
+    before = file.read_bytes()
+    vary = ["--vary", f"{SPEED}=5:6:2"]
+    for to in (file, link, hard, folder / "." / "scene.json"):
+        for form in (["sweep", *vary, "--csv"], ["branch", "--vary", f"{SPEED}=5:6", "--csv"],
+                     ["branch", "--vary", f"{SPEED}=5:6", "--svg"], ["branch", "--vary", f"{SPEED}=5:6", "--png"],
+                     ["simulate", "--duration", "0.1", "--csv"], ["simulate", "--duration", "0.1", "--save-state"],
+                     ["compare", "--repeats", "1", "--duration", "0.1", "--csv"],
+                     ["compare", "--repeats", "1", "--duration", "0.1", "--svg"]):
+            code, _, error = run(form[0], file, *form[1:], to)
+            check(f"{form} refuses its own scene as {to.name}: {code} {error}",
+                  code == 2 and "scene itself" in error and file.read_bytes() == before)
+    code, _, error = run("render", bare, "-o", bare)
+    check(f"render refuses its own scene: {code} {error}", code == 2 and bare.read_bytes() == before)
+    with open(file, "rb") as stdin:
+        code, _, error = run("sweep", "-", *vary, "--csv", file, stdin=stdin)
+    check(f"a scene from standard input, too: {error}", code == 2 and file.read_bytes() == before)
+    code, _, error = run("branch", file, "--vary", f"{SPEED}=5:6", "--csv", folder / "x", "--svg", folder / "x")
+    check(f"two outputs in one file are refused: {error}", code == 2)
+    for to in ("-", "/dev/stdout", "/dev/null"):
+        code, _, error = run("sweep", file, *vary, "--csv", to)
+        check(f"{to} is written directly: {error}", code == 0)
+
+
+def limits(folder):
+    """What has no end is refused, and what nobody writes to can be interrupted."""
+    for command in (["check"], ["solve"], ["render", "-o", folder / "x.png"]):
+        code, _, error = run(command[0], "/dev/zero", *command[1:])
+        check(f"{command} /dev/zero: {error}", code == 2 and "/dev/zero" in error and "256 MB" in error)
+    large = folder / "large.json"
+    with open(large, "wb") as sparse:
+        sparse.truncate(300_000_000)
+    code, _, error = run("check", large)
+    check(f"a large file: {error}", code == 2 and "large.json" in error and "256 MB" in error)
+    with open("/dev/zero", "rb") as zero:
+        code, _, error = run("check", "-", stdin=zero)
+    check(f"standard input without end: {error}", code == 2 and "256 MB" in error)
+    pipe = folder / "pipe"
+    os.mkfifo(pipe)
+    for arguments in (["sweep", SCENE, "--vary", f"{SPEED}=5:6:2", "--csv", pipe], ["check", pipe]):
+        waiting = subprocess.Popen([FLYBALL, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(0.5)
+        waiting.send_signal(signal.SIGINT)
+        check(f"{arguments[0]} at a pipe that nobody has open is interrupted",
+              waiting.wait(LIMIT) == -signal.SIGINT)
+    writer = subprocess.Popen(["sh", "-c", 'cat "$0" > "$1"', SCENE, pipe])
+    code, _, error = run("check", pipe)
+    check(f"a pipe is read: {error}", code == 0 and writer.wait(LIMIT) == 0)
+    reader = subprocess.Popen(["cat", pipe], stdout=subprocess.PIPE)
+    code, _, error = run("sweep", SCENE, "--vary", f"{SPEED}=5:6:2", "--csv", pipe)
+    check(f"a pipe is written: {error}", code == 0 and reader.communicate(timeout=LIMIT)[0].count(b"\n") == 3)
+
+
+def repetitions(folder):
+    """What would take minutes to repeat itself is refused with the limit."""
+    scene = {"flyball": 1, "name": "many", "gravity": [0, -9.8, 0],
+             "bodies": [{"name": "a", "mass": 1, "position": [0.5, 0, 0], "inertia": [0.1, 0.1, 0.1]}]}
+    hinge = {"type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 0, 1]}
+    scene["joints"] = [{"name": f"j{i}", **hinge} for i in range(100_000)]
+    file = folder / "joints.json"
+    file.write_text(json.dumps(scene))
+    code, _, error = run("solve", file)
+    check(f"a hundred thousand parallel joints: {error}",
+          code == 2 and "expected at most 10000 constraint equations" in error)
+    scene["joints"] = scene["joints"][:1]
+    scene["sliders"] = [{"parameter": "bodies.a.mass", "range": [1, 2]}] * 100_000
+    file.write_text(json.dumps(scene))
+    code, _, error = run("solve", file)
+    check(f"as many sliders: {error}", code == 2 and "expected at most 10000 sliders" in error)
+    scene["sliders"] = scene["sliders"][:10_000]
+    file.write_text(json.dumps(scene))
+    code, _, error = run("solve", file)
+    check(f"ten thousand sliders: {error}", code == 0)
+
+
+def parts(folder):
+    """What a killed program left is removed by the next that writes there; what another one writes stays."""
+    own = folder / "parts"
+    own.mkdir()
+    ended = subprocess.Popen(["true"])
+    ended.wait()
+    (own / f".x.csv.{ended.pid}-0.part").write_text("half")
+    film = own / f".film.mp4.{ended.pid}-3.part"
+    film.mkdir()
+    (film / "film-0001.png").write_text("half")
+    kept = [own / f".x.csv.{os.getpid()}-0.part", own / f".x.csv.{ended.pid}.part", own / f"x.csv.{ended.pid}-0.part"]
+    for file in kept:
+        file.write_text("not to be touched")
+    code, _, error = run("sweep", SCENE, "--vary", f"{SPEED}=5:6:2", "--csv", own / "x.csv")
+    check(f"written: {error}", code == 0)
+    names = sorted(path.name for path in own.iterdir())
+    check(f"only what is of a program that has ended goes: {names}",
+          names == sorted([file.name for file in kept] + ["x.csv"]))
+
+
+with tempfile.TemporaryDirectory() as name:
+    for part in (reasons, control_characters, tables, own_scene, limits, repetitions, parts):
+        home = pathlib.Path(name) / part.__name__
+        home.mkdir()
+        part(home)
+if failures:
+    sys.exit(1)
+print("the commands say why, and spare terminals, tables and files")

@@ -1,0 +1,172 @@
+"""How the real program ends, and what it does at rest, under Xvfb: signals and a lost display cost no work, nothing is
+drawn or asked of the processor where nothing changes, and pipes and other programs' files hold nothing up.
+
+Usage: window_end_test.py FLYBALL SCENE. Exits 77 with a message where Xvfb or xdotool are missing.
+"""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from window_test import LIMIT, SKIPPED, SPEED, Window, hidden_files, start_display
+
+
+def fail(words):
+    raise SystemExit("failed: " + words)
+
+
+def speed_kept(folder):
+    """The speed in the only autosave of the folder."""
+    kept = [folder / name for name in hidden_files(folder)]
+    if len(kept) != 1:
+        fail(f"one autosave is left, but {kept}")
+    scene = json.loads(kept[0].read_text().split("\n", 1)[1])
+    return next(joint for joint in scene["joints"] if joint["name"] == "spin")["drive"]["speed"]
+
+
+def drag_without_pause(window):
+    """The button stays down; returns the speed that the window shows."""
+    window.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
+    slider = "parameters/" + SPEED
+    window.do("mousemove", *window.place(slider, 0.4))
+    window.do("mousedown", 1)
+    for share in (0.45, 0.5, 0.55, 0.6):
+        window.do("mousemove", *window.place(slider, share))
+    return window.wait("another speed", lambda s: s["parameters"][SPEED] > 15)["parameters"][SPEED]
+
+
+def ends_and_keeps(window, folder, wanted, value, how):
+    code = window.program.wait(LIMIT)
+    if code != wanted:
+        fail(f"{how}: the program ended with {code}")
+    if (kept := speed_kept(folder)) != value:
+        fail(f"{how}: {kept} was kept for {value}")
+
+
+def ticks(process):
+    fields = pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()
+    return int(fields[11]) + int(fields[12])
+
+
+def share_of_core(window, seconds):
+    before = ticks(window.program.pid)
+    time.sleep(seconds)
+    return (ticks(window.program.pid) - before) / (seconds * os.sysconf("SC_CLK_TCK"))
+
+
+def rests(window, what):
+    """Nothing is drawn, and hardly anything done, while nothing happens."""
+    time.sleep(2)
+    frame = window.state()["frame"]
+    share = share_of_core(window, 4)
+    if share > 0.01:
+        fail(f"{what}: {100 * share:.1f} % of a core at rest")
+    if window.state()["frame"] != frame:
+        fail(f"{what}: drawn although nothing changed")
+
+
+def rest_and_watch(window, copy):
+    """At rest nothing is drawn; a file that another program replaces is read again all the same."""
+    window.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
+    window.do("mousemove", 5, 5)
+    rests(window, "open")
+    scene = json.loads(copy.read_text())
+    next(joint for joint in scene["joints"] if joint["name"] == "spin")["drive"]["speed"] = 7.5
+    beside = copy.with_name("4913~")
+    beside.write_text(json.dumps(scene))
+    beside.rename(copy)  # as editors do
+    window.wait("the file is read again", lambda s: s["parameters"][SPEED] == 7.5)
+    rests(window, "after reading again")
+    window.do("key", "space")
+    window.wait("it plays", lambda s: s["playing"])
+    number = subprocess.run(["xdotool", "search", "--name", "Flyball"], env=window.environment, check=True,
+                            capture_output=True, text=True).stdout.split()[-1]
+    subprocess.run(["xdotool", "windowunmap", "--sync", number], env=window.environment, check=True)
+    rests(window, "playing unmapped")
+    frame = window.state()["frame"]
+    subprocess.run(["xdotool", "windowmap", "--sync", number], env=window.environment, check=True)
+    window.wait("it plays on where it is seen", lambda s: s["frame"] > frame + 10)
+
+
+def pipes(window, pipe):
+    """A pipe that nobody writes to does not hold up the start, nor one that nobody reads a save."""
+    shown = window.wait("the window in spite of the pipe", lambda s: s["frame"] > 3)
+    if "no regular file" not in shown["problem"]:
+        fail(f"no word on the pipe, but {shown['problem']!r}")
+    window.program.kill()
+
+
+def save_onto_pipe(window, copy):
+    window.drag_speed()
+    copy.unlink()
+    os.mkfifo(copy)
+    window.do("key", "ctrl+s")
+    shown = window.wait("an answer to saving", lambda s: s["dialog"] or not s["unsaved"])
+    if not shown["unsaved"]:
+        fail("saved to a pipe")
+    window.program.send_signal(signal.SIGTERM)
+    if window.program.wait(LIMIT) != -signal.SIGTERM:
+        fail("the program hangs at a pipe")
+
+
+def main():
+    program, scene = map(os.path.abspath, sys.argv[1:])
+    for tool in ("Xvfb", "xdotool"):
+        if not shutil.which(tool):
+            print(f"skipped: {tool} is missing")
+            sys.exit(SKIPPED)
+    server, display = start_display()
+    windows = []
+    try:
+        with tempfile.TemporaryDirectory() as name:
+            def begin(part, own_display=display, file="governor.json"):
+                folder = pathlib.Path(name) / part
+                folder.mkdir()
+                (folder / "own").mkdir()
+                copy = pathlib.Path(shutil.copy(scene, folder / "own" / "governor.json"))
+                if file == "pipe":
+                    os.mkfifo(folder / "own" / file)
+                windows.append(Window(own_display, folder, program, folder / "own" / file))
+                return windows[-1], copy
+
+            for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+                window, copy = begin(number.name)
+                _, moved = window.drag_speed()
+                window.program.send_signal(number)
+                ends_and_keeps(window, copy.parent, -number, moved["parameters"][SPEED], number.name)
+            window, copy = begin("dragging")
+            value = drag_without_pause(window)
+            window.program.send_signal(signal.SIGTERM)
+            ends_and_keeps(window, copy.parent, -signal.SIGTERM, value, "while dragging")
+            subprocess.run(["xdotool", "mouseup", "1"], env=window.environment, check=True)
+            for part in ("display lost", "display lost while dragging"):
+                doomed, its_display = start_display()
+                try:
+                    window, copy = begin(part, its_display)
+                    if part.endswith("dragging"):
+                        value = drag_without_pause(window)
+                    else:
+                        value = window.drag_speed()[1]["parameters"][SPEED]
+                finally:
+                    doomed.kill()
+                    doomed.wait()
+                ends_and_keeps(window, copy.parent, 1, value, part)
+            rest_and_watch(*begin("rest"))
+            windows[-1].end()
+            pipes(begin("pipe", file="pipe")[0], None)
+            save_onto_pipe(*begin("saving"))
+    finally:
+        for window in windows:
+            window.end()
+        server.terminate()
+        server.wait()
+    print("no work is lost at the end, and nothing is done at rest")
+
+
+if __name__ == "__main__":
+    main()
