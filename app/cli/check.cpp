@@ -2,6 +2,7 @@
 #include "app/cli/progress.hpp"
 #include "app/cli/report_error.hpp"
 #include "app/cli/scene_argument.hpp"
+#include "app/cli/solution_json.hpp"
 #include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
@@ -20,7 +21,7 @@ std::string joined(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-std::string to_text(const Mechanism& m, const SystemSummary& s) {
+std::string to_text(const Mechanism& m, const SystemSummary& s, const std::vector<SceneError>& warnings) {
   const auto many = [](int n, const char* one, const char* several) {
     return fmt::format("{} {}", n, n == 1 ? one : several);
   };
@@ -29,6 +30,8 @@ std::string to_text(const Mechanism& m, const SystemSummary& s) {
                   many(s.free_coordinates, "free coordinate", "free coordinates"),
                   many(s.driven_coordinates, "driven", "driven"),
                   many(s.constraint_equations, "constraint equation", "constraint equations"));
+  for (const SceneError& warning : warnings)
+    out += std::string("  warning: ") + warning.what() + "\n";
   if (!s.tree_joints.empty()) out += "  tree joints: " + joined(s.tree_joints) + "\n";
   if (!s.implicit_joints.empty())
     out += "  joints added to hold bodies on strings and springs: " + joined(s.implicit_joints) + "\n";
@@ -85,6 +88,7 @@ void add_check(CLI::App& app, int& exit_code) {
       throw named(error);
     }
     progress.reset();
+    const std::vector<SceneError> warnings = find_warnings(mechanism);
     if (options->json) {
       const nlohmann::ordered_json out = {{"valid", true},
                                           {"in", summary.in},
@@ -96,10 +100,11 @@ void add_check(CLI::App& app, int& exit_code) {
                                           {"tree_joints", summary.tree_joints},
                                           {"cut_joints", summary.cut_joints},
                                           {"implicit_joints", summary.implicit_joints},
-                                          {"notes", summary.notes}};
+                                          {"notes", summary.notes},
+                                          {"warnings", warnings_json(warnings)}};
       fmt::print("{}\n", out.dump(2));
     } else {
-      fmt::print("{}", to_text(mechanism, summary));
+      fmt::print("{}", to_text(mechanism, summary, warnings));
     }
     exit_code = exit_done;
   });

@@ -99,8 +99,10 @@ void results_panel(App& app, const PanelRect& rect) {
     paragraph(*app.answer.error, colors_of(app).text);
   } else if (app.answer.ticket) {
     verdict(app);
+    warning_rows(app, "results/warnings", 3);
     neutral_joints(app);
     coordinate_results(app);
+    body_results(app);
     solver_results(app);
     load_results(app);
     eigenvalue_results(app);

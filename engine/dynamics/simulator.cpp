@@ -358,7 +358,7 @@ Simulator::Simulator(const Mechanism& mechanism, const SimulationOptions& option
   x.run.damped = options.damped;
   x.run.notes = x.model->notes;
   x.begin = x.stepped_to;
-  x.recorder = std::make_unique<Recorder>(x.run, options.reactions);
+  x.recorder = std::make_unique<Recorder>(x.run, options.reactions, options.points);
   x.recorder->use(x.model, *x.equations);
   x.record(x.begin);
   x.next_sample = 1;
