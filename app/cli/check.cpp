@@ -3,6 +3,7 @@
 #include "app/cli/progress.hpp"
 #include "app/cli/report_error.hpp"
 #include "app/cli/scene_argument.hpp"
+#include "app/cli/solution_json.hpp"
 #include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
@@ -21,7 +22,7 @@ std::string joined(const std::vector<std::string>& words) {
   return printable(fmt::format("{}", fmt::join(words, ", ")));
 }
 
-std::string to_text(const Mechanism& m, const SystemSummary& s) {
+std::string to_text(const Mechanism& m, const SystemSummary& s, const std::vector<SceneError>& warnings) {
   const auto many = [](int n, const char* one, const char* several) {
     return fmt::format("{} {}", n, n == 1 ? one : several);
   };
@@ -30,6 +31,8 @@ std::string to_text(const Mechanism& m, const SystemSummary& s) {
                                 many(s.free_coordinates, "free coordinate", "free coordinates"),
                                 many(s.driven_coordinates, "driven", "driven"),
                                 many(s.constraint_equations, "constraint equation", "constraint equations"));
+  for (const SceneError& warning : warnings)
+    out += "  warning: " + printable(warning.what()) + "\n";
   if (!s.tree_joints.empty()) out += "  tree joints: " + joined(s.tree_joints) + "\n";
   if (!s.implicit_joints.empty())
     out += "  joints added to hold bodies on strings and springs: " + joined(s.implicit_joints) + "\n";
@@ -86,6 +89,7 @@ void add_check(CLI::App& app, Ending& ending) {
       throw named(error);
     }
     progress.reset();
+    const std::vector<SceneError> warnings = find_warnings(mechanism);
     if (options->json) {
       const nlohmann::ordered_json out = {{"valid", true},
                                           {"in", summary.in},
@@ -97,10 +101,11 @@ void add_check(CLI::App& app, Ending& ending) {
                                           {"tree_joints", summary.tree_joints},
                                           {"cut_joints", summary.cut_joints},
                                           {"implicit_joints", summary.implicit_joints},
-                                          {"notes", summary.notes}};
+                                          {"notes", summary.notes},
+                                          {"warnings", warnings_json(warnings)}};
       print_json(out);
     } else {
-      print_text(to_text(mechanism, summary));
+      print_text(to_text(mechanism, summary, warnings));
     }
   });
 }

@@ -1,10 +1,12 @@
 #include "app/cli/picture.hpp"
 
 #include "app/cli/assets.hpp"
+#include "app/cli/report_error.hpp"
 #include "app/panels/snapshot.hpp"
 #include "app/render/offscreen.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/validate.hpp"
 
 #include <fmt/format.h>
 
@@ -32,6 +34,8 @@ Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& o
   app.view.samples = options.antialiased ? 4 : 1;
   app.scale = options.scale;
   open_document(app, Document(load_scene(scene), scene));
+  for (const SceneError& warning : find_warnings(app.mechanism()))
+    report_warning(scene, warning);
   if (options.drawn_pose) {
     app.mode = Mode::build;
     app.view.ghost = false;

@@ -45,6 +45,10 @@ int report_error(const std::filesystem::path& file, const SceneError& error) {
   return report_error(fmt::format("{}: {}", file.string(), error.what()));
 }
 
+void report_warning(const std::filesystem::path& file, const SceneError& warning) {
+  fmt::print(stderr, "flyball: warning: {}: {}\n", file.string(), warning.what());
+}
+
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
   const std::string command = spoken_command(app);

@@ -16,6 +16,9 @@ int report_error(const SceneError& error);
 // For an error about a scene that was read from `file` but whose `where` does not say so, as when compiling.
 int report_error(const std::filesystem::path& file, const SceneError& error);
 
+// Something to be told that stops nothing: `flyball: warning: robot.json: bodies.arm.inertia: ...`.
+void report_warning(const std::filesystem::path& file, const SceneError& warning);
+
 // Prints help and version to standard output (exit 0); for a mistake on the command line, what it is and
 // which --help explains it.
 int report_usage(const CLI::App& app, const CLI::ParseError& error);

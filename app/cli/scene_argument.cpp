@@ -1,5 +1,6 @@
 #include "app/cli/scene_argument.hpp"
 
+#include "app/cli/report_error.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
@@ -39,6 +40,37 @@ std::pair<std::string, double> parse_assignment(std::string_view option, std::st
   return {std::move(name), value};
 }
 
+BodyPoint parse_point(std::string_view option, std::string_view text) {
+  const auto fail = [&] {
+    return SceneError(std::string(option),
+                      "expected body, or body:x,y,z in metres, not \"" + std::string(text) + "\"");
+  };
+  // Names may have colons, coordinates none.
+  const std::size_t colon = text.rfind(':');
+  BodyPoint point{std::string(text.substr(0, colon)), std::nullopt};
+  if (point.body.empty()) throw fail();
+  if (colon == std::string_view::npos) return point;
+  Vec3 at;
+  std::string_view rest = text.substr(colon + 1);
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t comma = i < 2 ? rest.find(',') : std::string_view::npos;
+    if (i < 2 && comma == std::string_view::npos) throw fail();
+    at[i] = parse_number(std::string(option) + " " + point.body, rest.substr(0, comma));
+    rest = i < 2 ? rest.substr(comma + 1) : std::string_view{};
+  }
+  point.at = at;
+  return point;
+}
+
+void add_points(CLI::App& command, std::vector<std::string>& points) {
+  command
+      .add_option("--point", points,
+                  "Position, velocity and acceleration of a body's mass centre, or of a point of it in world "
+                  "coordinates of the drawn pose (m): body, or body:x,y,z; may be given again")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
 void SceneArgument::add_to(CLI::App& command) {
   command.add_option("scene", file, "Scene file (-: standard input)")->required();
   command.add_option("--set", settings, "Change a number: address=value, such as joints.spin.drive.speed=12")
@@ -48,16 +80,17 @@ void SceneArgument::add_to(CLI::App& command) {
 
 Mechanism SceneArgument::load() const {
   Mechanism mechanism = load_scene(file);
-  if (settings.empty()) return mechanism;
   try {
     for (const std::string& text : settings) {
       const auto [address, value] = parse_assignment("--set", text);
       set_parameter(mechanism, address, value);
     }
-    validate(mechanism);
+    if (!settings.empty()) validate(mechanism);
   } catch (const SceneError& error) {
     throw SceneError(file.string() + ": " + error.where(), error.expected());
   }
+  for (const SceneError& warning : find_warnings(mechanism))
+    report_warning(file, warning);
   return mechanism;
 }
 

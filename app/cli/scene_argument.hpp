@@ -1,6 +1,7 @@
 // What subcommands have in common: a scene file, --set address=value, --vary ranges.
 #pragma once
 
+#include "engine/mechanism/body_point.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
 #include <CLI/CLI.hpp>
@@ -18,7 +19,8 @@ struct SceneArgument {
   std::vector<std::string> settings; // "address=value"
 
   void add_to(CLI::App& command);
-  // Reads, applies the settings and validates. Throws SceneError that names the file.
+  // Reads, applies the settings and validates; warnings go to standard error. Throws SceneError that names
+  // the file.
   Mechanism load() const;
 };
 
@@ -27,6 +29,11 @@ CLI::Validator above_zero();
 
 // "name=1.5" as a pair. Throws SceneError naming the option.
 std::pair<std::string, double> parse_assignment(std::string_view option, std::string_view text);
+// "body", or "body:x,y,z" (m, world coordinates of the drawn pose): a point whose motion is asked for. Throws
+// SceneError naming the option.
+BodyPoint parse_point(std::string_view option, std::string_view text);
+// Adds the repeatable option --point.
+void add_points(CLI::App& command, std::vector<std::string>& points);
 // A finite number, all of the text. Throws SceneError naming the option.
 double parse_number(std::string_view option, std::string_view text);
 

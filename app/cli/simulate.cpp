@@ -4,6 +4,8 @@
 #include "app/cli/picture.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
+#include "app/cli/solution_json.hpp"
+#include "app/cli/solution_text.hpp"
 #include "app/cli/time_limit.hpp"
 #include "app/render/movie.hpp"
 #include "engine/dynamics/settled.hpp"
@@ -21,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -32,18 +35,22 @@ using Json = nlohmann::ordered_json;
 
 struct Column {
   std::string name;
-  const std::vector<double>* values;
+  std::function<double(std::size_t sample)> value;
 };
 
-// Time, coordinates (driven ones too), their rates, drive torques and energies.
+// Time, coordinates (driven ones too), their rates, drive torques, energies and points.
 std::vector<Column> columns_of(const Run& run) {
-  std::vector<Column> columns{{"t", &run.time}};
+  std::vector<Column> columns;
+  const auto add = [&](std::string name, const std::vector<double>& values) {
+    columns.push_back({std::move(name), [&values](std::size_t i) { return values[i]; }});
+  };
+  add("t", run.time);
   for (const CoordinateTrack& c : run.coordinates)
-    columns.push_back({coordinate_label(c), &c.value});
+    add(coordinate_label(c), c.value);
   for (const CoordinateTrack& c : run.coordinates)
-    columns.push_back({coordinate_label(c) + ".rate", &c.rate});
+    add(coordinate_label(c) + ".rate", c.rate);
   for (const DriveTrack& d : run.drives)
-    columns.push_back({coordinate_label(d) + ".torque", &d.torque});
+    add(coordinate_label(d) + ".torque", d.torque);
   const EnergyTracks& e = run.energy;
   for (const auto& [name, values] : std::initializer_list<std::pair<const char*, const std::vector<double>*>>{
            {"energy.kinetic", &e.kinetic},
@@ -52,7 +59,14 @@ std::vector<Column> columns_of(const Run& run) {
            {"energy.dissipated", &e.dissipated},
            {"energy.delivered", &e.delivered},
            {"energy.balance", &e.balance}})
-    if (values->size() == run.time.size()) columns.push_back({name, values});
+    if (values->size() == run.time.size()) add(name, *values);
+  for (const PointTrack& p : run.points)
+    for (const auto& [prefix, track] :
+         std::initializer_list<std::pair<const char*, const std::vector<Vec3>*>>{
+             {".", &p.position}, {".v", &p.velocity}, {".a", &p.acceleration}})
+      for (int i = 0; i < 3 && track->size() == run.time.size(); ++i)
+        columns.push_back({point_label(p.point) + prefix + "xyz"[i],
+                           [values = track, i](std::size_t sample) { return (*values)[sample][i]; }});
   return columns;
 }
 
@@ -65,11 +79,18 @@ std::string to_csv(const Run& run) {
   for (std::size_t i = 0; i < run.time.size(); ++i) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (c) out += ",";
-      out += csv_number((*columns[c].values)[i]);
+      out += csv_number(columns[c].value(i));
     }
     out += "\n";
   }
   return out;
+}
+
+// The last sample; its acceleration is zero where none is known.
+PointMotion last_motion(const PointTrack& track) {
+  PointMotion motion{track.position.back(), track.velocity.back(), Vec3::Zero()};
+  if (!track.acceleration.empty()) motion.acceleration = track.acceleration.back();
+  return motion;
 }
 
 double greatest(const std::vector<double>& values) {
@@ -133,6 +154,11 @@ Json run_json(const Run& run, const std::optional<Settled>& settled) {
     out["coordinates"][coordinate_label(c)] = c.value.empty() ? Json(nullptr) : Json(c.value.back());
     out["rates"][coordinate_label(c)] = c.rate.empty() ? Json(nullptr) : Json(c.rate.back());
   }
+  out["points"] = Json::object();
+  for (const PointTrack& p : run.points) {
+    Json& point = out["points"][point_label(p.point)] = to_json(last_motion(p));
+    if (p.acceleration.empty()) point["acceleration"] = nullptr;
+  }
   const auto drift = jacobi_drift(run);
   out["energy"] = {{"balance_error", energy_error(run)},
                    {"at_play", energy_at_play(run)},
@@ -170,9 +196,16 @@ std::string run_text(const Mechanism& mechanism, const Run& run, const std::opti
   for (const CoordinateTrack& c : run.coordinates)
     width = std::max(width, shown_label(c).size());
   for (const CoordinateTrack& c : run.coordinates)
-    out +=
-        fmt::format("  {:{}}  {:>18.12g} {:3}  {:>14.6g} {}/s{}\n", shown_label(c), width, c.value.back(),
-                    c.angle ? "rad" : "m", c.rate.back(), c.angle ? "rad" : "m", c.driven ? "  driven" : "");
+    out += fmt::format("  {:{}}  {:>18.12g} {:3}  {:>14.6g} {}/s{}\n", shown_label(c), width, c.value.back(),
+                       c.angle ? "rad" : "m", c.rate.back(), c.angle ? "rad" : "m",
+                       c.driven      ? "  driven"
+                       : c.dependent ? "  closes a loop"
+                                     : "");
+  for (const PointTrack& p : run.points) {
+    out += motion_text(printable(point_label(p.point)), width, last_motion(p), !p.acceleration.empty());
+    if (p.acceleration.empty())
+      out += "  Accelerations are left out: bodies without mass have velocities that are no states.\n";
+  }
   out += fmt::format("\nenergy balance within {:.1e} J of {:.3g} J at play", energy_error(run),
                      energy_at_play(run));
   if (const auto drift = jacobi_drift(run)) out += fmt::format("; Jacobi integral within {:.1e} J", *drift);
@@ -190,7 +223,7 @@ struct Options {
   std::optional<double> duration;
   double rate = 100, tolerance = 1e-10, step = 0;
   std::string start = "rest", method = "automatic", csv, from_state, save_state;
-  std::vector<std::string> at, kick;
+  std::vector<std::string> at, kick, points;
   bool undamped = false, json = false;
   double time_limit = usual_time_limit;
   MovieOptions movie; // without a file: none
@@ -226,6 +259,8 @@ SimulationOptions simulation_of(const Options& options, const Mechanism& mechani
     wanted.at.push_back(parse_assignment("--at", text));
   for (const std::string& text : options.kick)
     wanted.kick.push_back(parse_assignment("--kick", text));
+  for (const std::string& text : options.points)
+    wanted.points.push_back(parse_point("--point", text));
   if (!options.from_state.empty()) {
     wanted.start = Start::state;
     wanted.state = read_state(options.from_state);
@@ -324,6 +359,7 @@ void add_simulate(CLI::App& app, Ending& ending) {
   command->add_option("--kick", options->kick, "A rate over the start's: joint=rate (rad/s, m/s)")
       ->take_all()
       ->allow_extra_args(false);
+  add_points(*command, options->points);
   command->add_option("--from-state", options->from_state, "Go on from a state that --save-state wrote")
       ->excludes(start);
   command->add_option("--save-state", options->save_state, "Write the last state to a JSON file");

@@ -28,6 +28,19 @@ void put(Json& object, const std::string& joint, int index, int count, Json valu
 
 } // namespace
 
+Json to_json(const PointMotion& motion) {
+  return {{"position", array(motion.position)},
+          {"velocity", array(motion.velocity)},
+          {"acceleration", array(motion.acceleration)}};
+}
+
+Json warnings_json(const std::vector<SceneError>& warnings) {
+  Json out = Json::array();
+  for (const SceneError& warning : warnings)
+    out.push_back({{"where", warning.where()}, {"message", warning.expected()}});
+  return out;
+}
+
 Json to_json(const Mechanism& mechanism, const Solution& s) {
   const bool converged = s.status == Status::converged;
   Json out;
@@ -45,8 +58,9 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["run_time_s"] = s.run_time_s;
   out["stable"] = s.stable ? Json(*s.stable) : Json(nullptr);
   out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);
-  for (const char* key : {"potential", "eigenvalues", "floquet", "neutral", "drive_torques", "reactions",
-                          "poses", "sensitivities", "condition"})
+  for (const char* key :
+       {"potential", "eigenvalues", "floquet", "neutral", "drive_torques", "drive_torque_ranges", "reactions",
+        "poses", "points", "sensitivities", "condition"})
     out[key] = nullptr;
   out["unheld"] = Json::array();
   for (const UnheldCoordinate& c : s.unheld)
@@ -83,12 +97,28 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["drive_torques"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)
     put(out["drive_torques"], d.joint, d.index, d.count, number(d.value));
+  out["drive_torque_ranges"] = Json::object();
+  for (const DriveTorque& d : s.drive_torques)
+    if (d.varying) {
+      Json range = {{"mean", nullptr}, {"min", nullptr}, {"max", nullptr}};
+      if (d.range)
+        range = {
+            {"mean", number(d.range->mean)}, {"min", number(d.range->least)}, {"max", number(d.range->most)}};
+      put(out["drive_torque_ranges"], d.joint, d.index, d.count, std::move(range));
+    }
   out["reactions"] = Json::object();
   for (const Reaction& r : s.reactions) {
     Json entry = {{"force", array(r.force)}, {"torque", array(r.torque)}};
     if (r.varying) entry["varying"] = true;
-    if (s.reactions_nonunique) entry["nonunique"] = true;
+    if (r.nonunique) entry["nonunique"] = true;
     out["reactions"][r.joint] = std::move(entry);
+  }
+  for (const GearReaction& g : s.gears) {
+    Json entry = {
+        {"force", array(g.force)}, {"torque", array(g.torque)}, {"a", number(g.a)}, {"b", number(g.b)}};
+    if (g.varying) entry["varying"] = true;
+    if (g.nonunique) entry["nonunique"] = true;
+    out["reactions"][g.joint] = std::move(entry);
   }
   out["poses"] = Json::object();
   for (std::size_t b = 0; b < s.poses.size(); ++b) {
@@ -97,6 +127,9 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
         {"position", array(s.poses[b].position)},
         {"rotation", {number(q.w()), number(q.x()), number(q.y()), number(q.z())}}};
   }
+  out["points"] = Json::object();
+  for (const PointSolution& p : s.points)
+    out["points"][point_label(p.point)] = to_json(p.motion);
   out["sensitivities"] = Json::object();
   for (const Sensitivity& x : s.sensitivities) {
     out["sensitivities"][x.address] = Json::object();

@@ -2,14 +2,24 @@
 #pragma once
 
 #include "engine/equilibrium/analysis.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
 #include <nlohmann/json.hpp>
 
 namespace flyball::cli {
 
-// Every key is always there; what is not available is null.
+// Every key is always there; what is not available is null. `drive_torque_ranges` has those that vary with
+// the phase of the drives: {"mean", "min", "max"}. A gear's entry in `reactions` is what it does to the child
+// of its second joint as vectors, and along the coordinates of both as "a" and "b"; the reactions of these
+// joints include it.
 nlohmann::ordered_json to_json(const Mechanism& mechanism, const Solution& solution);
+
+// {"position", "velocity", "acceleration"}: m, m/s, m/s^2, world frame.
+nlohmann::ordered_json to_json(const PointMotion& motion);
+
+// [{"where": path, "message": sentence}].
+nlohmann::ordered_json warnings_json(const std::vector<SceneError>& warnings);
 
 // {joint: value or array}, driven ones left out.
 nlohmann::ordered_json coordinates_json(const std::vector<CoordinateSolution>& coordinates);

@@ -17,6 +17,21 @@ std::string rounded(double value, double error, int most) {
   return fmt::format("{:.{}f}", value, std::clamp(decimals, 0, most));
 }
 
+const char* unit_of(bool angle) {
+  return angle ? "N m" : "N";
+}
+
+std::string range_text(const DriveTorque& d) {
+  if (!d.varying) return "";
+  if (!d.range) return "  (changes with the phase)";
+  return fmt::format("  at the drawn phase; over all phases {:.9g} to {:.9g}, mean {:.9g} {}", d.range->least,
+                     d.range->most, d.range->mean, unit_of(d.angle));
+}
+
+std::string flags(bool varying, bool nonunique) {
+  return std::string(varying ? "  (changes with the phase)" : "") + (nonunique ? "  (not unique)" : "");
+}
+
 std::string stability(const Solution& s) {
   if (!s.stability_reason) return "";
   switch (*s.stability_reason) {
@@ -36,6 +51,17 @@ std::string stability(const Solution& s) {
 }
 
 } // namespace
+
+std::string motion_text(const std::string& label, std::size_t width, const PointMotion& m, bool accelerated) {
+  const auto line = [&](const std::string& name, const char* what, const Vec3& v, const char* unit,
+                        bool size) {
+    std::string text = fmt::format("  {:{}}  {:12}  [{:.9g}, {:.9g}, {:.9g}] {}", name, width, what, v.x(),
+                                   v.y(), v.z(), unit);
+    return text + (size ? fmt::format("  size {:.9g} {}\n", v.norm(), unit) : "\n");
+  };
+  return line(label, "position", m.position, "m", false) + line("", "velocity", m.velocity, "m/s", true) +
+         (accelerated ? line("", "acceleration", m.acceleration, "m/s^2", true) : "");
+}
 
 std::string to_text(const Mechanism& mechanism, const Solution& s) {
   std::string out = fmt::format("{}: {}\n", printable(mechanism.name), printable(s.message));
@@ -60,15 +86,18 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
       continue;
     }
     const double shown = c.angle ? 180 / std::numbers::pi : 1000;
-    out += fmt::format("  {:{}}  {:>22} {:3}  {:>20} {:2}  ± {:.1g} {}\n", name, width,
+    out += fmt::format("  {:{}}  {:>22} {:3}  {:>20} {:2}  ± {:.1g} {}{}\n", name, width,
                        rounded(c.value, c.error, 17), c.angle ? "rad" : "m",
                        rounded(c.value * shown, c.error * shown, 12), c.angle ? "°" : "mm", c.error,
-                       c.angle ? "rad" : "m");
+                       c.angle ? "rad" : "m", c.dependent ? "  closes a loop" : "");
   }
+  if (!s.points.empty()) heading("points, world axes at the drawn phase");
+  for (const PointSolution& p : s.points)
+    out += motion_text(point_label(p.point), width, p.motion);
   if (!s.drive_torques.empty()) heading("drives");
   for (const DriveTorque& d : s.drive_torques)
-    out += fmt::format("  {:{}}  {:>22.9g} {}{}\n", shown_label(d), width, d.value, d.angle ? "N m" : "N",
-                       d.varying ? "  (changes with the phase)" : "");
+    out += fmt::format("  {:{}}  {:>22.9g} {}{}{}\n", shown_label(d), width, d.value, unit_of(d.angle),
+                       range_text(d), d.nonunique ? "  (not unique)" : "");
   if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
   // What is rounding beside the largest reaction is shown as zero.
   double force = 0, torque = 0;
@@ -81,14 +110,19 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   };
   for (const Reaction& raw : s.reactions) {
     const Reaction r{raw.joint, clean(raw.force, force), clean(raw.torque, std::max(torque, force)),
-                     raw.varying};
+                     raw.varying, raw.nonunique};
     out += fmt::format("  {:{}}  force [{:.6g}, {:.6g}, {:.6g}] N  torque [{:.6g}, {:.6g}, {:.6g}] N m{}\n",
                        printable(r.joint), width, r.force.x(), r.force.y(), r.force.z(), r.torque.x(),
-                       r.torque.y(), r.torque.z(), r.varying ? "  (changes with the phase)" : "");
+                       r.torque.y(), r.torque.z(), flags(r.varying, r.nonunique));
   }
   if (s.reactions_nonunique)
     out +=
-        "  The loops are redundant: these are the reactions with the least multipliers of many possible.\n";
+        "  (not unique): the loops are redundant; of many possible ones these have the least multipliers.\n";
+  if (!s.gears.empty())
+    heading("gears, along the coordinates of their two joints, whose reactions include it");
+  for (const GearReaction& g : s.gears)
+    out += fmt::format("  {:{}}  {:.9g} {}  {:.9g} {}{}\n", g.joint, width, g.a, unit_of(g.angle_a), g.b,
+                       unit_of(g.angle_b), flags(g.varying, g.nonunique));
   if (s.floquet) {
     heading("Floquet multipliers");
     out += fmt::format("  {:{}}  {:.10g} s, multipliers to {:.1g}\n", "period", width, s.floquet->period,

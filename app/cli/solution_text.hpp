@@ -12,4 +12,8 @@ namespace flyball::cli {
 std::string to_text(const Mechanism& mechanism, const Solution& solution);
 std::string to_text(const Mechanism& mechanism, const AllSolutions& all);
 
+// Lines of position, velocity and, where it is known, acceleration, with the label in a column of `width`.
+std::string motion_text(const std::string& label, std::size_t width, const PointMotion& motion,
+                        bool accelerated = true);
+
 } // namespace flyball::cli

@@ -6,6 +6,7 @@
 #include "app/cli/solution_text.hpp"
 #include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/validate.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ namespace flyball::cli {
 void add_solve(CLI::App& app, Ending& ending) {
   struct Options {
     SceneArgument scene;
-    std::vector<std::string> start;
+    std::vector<std::string> start, points;
     int modes = 0, starts = 0;
     double search_time = 1;
     bool all = false, nearest = false, json = false;
@@ -50,11 +51,16 @@ void add_solve(CLI::App& app, Ending& ending) {
       ->add_option("--modes", options->modes,
                    "Eigenvalues to print where there are more than 200 coordinates")
       ->check(above_zero());
+  add_points(*command, options->points);
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer("Example: flyball solve governor.json --set joints.spin.drive.speed=12 --json");
   command->callback([options, &ending] {
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
+    const auto with_warnings = [&](nlohmann::ordered_json json) {
+      json["warnings"] = warnings_json(find_warnings(mechanism));
+      return json;
+    };
     SolveOptions solve;
     solve.nearest = options->nearest;
     solve.modes = options->modes;
@@ -63,13 +69,15 @@ void add_solve(CLI::App& app, Ending& ending) {
     solve.search_starts = options->starts;
     for (const std::string& text : options->start)
       solve.start.push_back(parse_assignment("--start", text));
+    for (const std::string& text : options->points)
+      solve.points.push_back(parse_point("--point", text));
     Solution solution;
     try {
       if (options->all) {
         const AllSolutions all = Analysis(mechanism).solve_all(solve);
         progress.reset();
         if (options->json)
-          print_json(to_json(mechanism, all));
+          print_json(with_warnings(to_json(mechanism, all)));
         else
           print_text(to_text(mechanism, all) + "\n");
         ending = end_with(!all.equilibria.empty(), options->scene.file, all.message);
@@ -81,7 +89,7 @@ void add_solve(CLI::App& app, Ending& ending) {
     }
     progress.reset();
     if (options->json)
-      print_json(to_json(mechanism, solution));
+      print_json(with_warnings(to_json(mechanism, solution)));
     else
       print_text(to_text(mechanism, solution));
     ending = end_with(solution.status == Status::converged, options->scene.file, solution.message);

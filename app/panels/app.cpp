@@ -19,6 +19,7 @@ using StartValues = std::vector<std::pair<std::string, double>>;
 void ask(App& app, bool another, bool warm, StartValues start = {}) {
   if (!warm) app.on_branch = false;
   app.mistakes = find_mistakes(app.mechanism());
+  app.warnings = app.mistakes.empty() ? find_warnings(app.mechanism()) : std::vector<SceneError>();
   if (app.mechanism().bodies.empty() || !app.mistakes.empty()) {
     app.answer = {};
     app.poses.clear();

@@ -140,6 +140,7 @@ struct App {
   std::string problem; // why the file last asked for could not be opened
   std::vector<ParameterControl> parameters;
   std::vector<SceneError> mistakes; // of the document; while there are any it is not solved
+  std::vector<SceneError> warnings; // of the document; where there are no mistakes
 
   LiveSolver live;
   LiveAnswer answer;

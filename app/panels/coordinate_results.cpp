@@ -18,8 +18,8 @@ void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
   const UiColors& colors = colors_of(app);
   const double factor = screen_factor(c.angle);
   const char* si = c.angle ? "rad" : "m";
-  row(app, coordinate_label(c), value_text(c.value * factor, c.error * factor, numbers),
-      screen_unit(c.angle));
+  row(app, coordinate_label(c), value_text(c.value * factor, c.error * factor, numbers), screen_unit(c.angle),
+      c.dependent ? "The joint closes a loop: this follows from the other coordinates." : nullptr);
   note_widget(app.widgets, "results/" + coordinate_label(c));
   std::string second = value_text(c.value, c.error, numbers) + " " + si;
   if (c.error > 0) second += "  ± " + magnitude_text(std::max(c.error, numbers.noise), numbers) + " " + si;

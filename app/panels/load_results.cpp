@@ -31,15 +31,50 @@ void drive_torques(App& app) {
   ImGui::Dummy({0, 2 * app.scale});
   if (!section(app, "results/torques", "Drive torques", app.panels.torques)) return;
   double largest = 0;
-  for (const DriveTorque& t : torques)
-    largest = std::max(largest, std::abs(t.value));
-  visible_rows(torques.size(), [&](std::size_t i) {
-    const DriveTorque& t = torques[i];
+  struct Row {
+    const DriveTorque* torque;
+    bool range; // least and greatest, below the mean
+  };
+  std::vector<Row> rows;
+  for (const DriveTorque& t : torques) {
+    largest = std::max({largest, std::abs(t.value), t.range ? t.range->most - t.range->least : 0});
+    rows.push_back({&t, false});
+    if (t.range) rows.push_back({&t, true});
+  }
+  visible_rows(rows.size(), [&](std::size_t i) {
+    const DriveTorque& t = *rows[i].torque;
+    const char* unit = t.angle ? "N m" : "N";
+    const auto text = [&](double value) { return force_text(value, largest, app.options.numbers); };
+    if (rows[i].range)
+      return row(app, "   least … greatest", text(t.range->least) + " … " + text(t.range->most), unit,
+                 "Over all phases of the drives.");
+    std::string help = "By the drive, positive along its coordinate.";
+    if (t.varying)
+      help += "\nChanges as the drives turn; at the drawn phase " + text(t.value) + " " + unit + ".";
+    if (t.nonunique) help += "\nThe loops share it among several drives: the smallest that do it.";
     const std::string name = coordinate_label(t);
-    row(app, t.varying ? name + " (varies)" : name, force_text(t.value, largest, app.options.numbers),
-        t.angle ? "N m" : "N",
-        t.varying ? "Changes as the drives turn; at the drawn phase."
-                  : "By the drive, positive along its coordinate.");
+    row(app,
+        !t.varying ? name
+        : t.range  ? name + " (mean)"
+                   : name + " (varies)",
+        text(t.range ? t.range->mean : t.value), unit, help.c_str());
+  });
+}
+
+// What gears do along the coordinates of their joints, whose reactions include it.
+void gear_reactions(App& app, double force, double torque) {
+  const std::vector<GearReaction>& gears = app.answer.solution.gears;
+  const NumberStyle& numbers = app.options.numbers;
+  visible_rows(2 * gears.size(), [&](std::size_t i) {
+    const GearReaction& g = gears[i / 2];
+    const bool second = i % 2 == 1, angle = second ? g.angle_b : g.angle_a;
+    row(app,
+        second      ? ""
+        : g.varying ? g.joint + " (varies)"
+                    : g.joint,
+        force_text(second ? g.b : g.a, angle ? torque : force, numbers), angle ? "N m" : "N",
+        second ? "The gear on its second joint's child, along that joint's coordinate; part of its reaction."
+               : "The gear on its first joint's child, along that joint's coordinate; part of its reaction.");
   });
 }
 
@@ -48,8 +83,7 @@ void reactions(App& app) {
   if (solution.reactions.empty()) return;
   if (!section(app, "results/reactions", "Reactions", app.panels.reactions)) return;
   paragraph(solution.reactions_nonunique ? "Parent on child: x, y, z of the world. The loops hold more than "
-                                           "they need; these are the smallest "
-                                           "reactions that do it."
+                                           "they need; of those marked ≈ these are the smallest that do it."
                                          : "Parent on child: x, y, z of the world.",
             colors_of(app).dim);
   double force = 0, torque = 0;
@@ -63,9 +97,13 @@ void reactions(App& app) {
   visible_rows(rows * solution.reactions.size(), [&](std::size_t i) {
     const Reaction& r = solution.reactions[i / rows];
     if (i % rows == 1) return row(app, "", vector_text(r.torque, torque), "N m");
-    row(app, r.varying ? r.joint + " (varies)" : r.joint, vector_text(r.force, force), "N",
-        r.varying ? "Changes as the drives turn; at the drawn phase." : nullptr);
+    row(app, std::string(r.nonunique ? "≈ " : "") + r.joint + (r.varying ? " (varies)" : ""),
+        vector_text(r.force, force), "N",
+        r.varying     ? "Changes as the drives turn; at the drawn phase."
+        : r.nonunique ? "The loops hold more than they need; of many possible ones the smallest."
+                      : nullptr);
   });
+  gear_reactions(app, force, torque);
 }
 
 } // namespace

@@ -102,6 +102,7 @@ void curve_choices(App& app) {
                 "The curves on which equilibria meet and vanish, or branches cross."))
     choice.folds = !choice.folds;
   const CoordinateSolution* shown = map_coordinate(app);
+  if (shown && shown->dependent) return; // what follows from the others cannot be asked for
   if (check_row(app, "map/level", "Curve of a constant value", choice.level.has_value(),
                 "The curve on which the coordinate keeps a value.")) {
     if (choice.level)

@@ -51,10 +51,11 @@ std::string advice_for(const SceneError& mistake) {
              : "";
 }
 
-void mistake_row(App& app, const std::string& name, std::size_t index, const ImVec4& color) {
-  const SceneError& mistake = app.mistakes[index];
-  const Part part = part_of(app.mechanism(), mistake);
-  const std::string words = words_for(mistake), widget = name + "/" + std::to_string(index);
+namespace {
+
+void part_row(App& app, const std::string& widget, const SceneError& about, const ImVec4& color) {
+  const Part part = part_of(app.mechanism(), about);
+  const std::string words = words_for(about);
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float height = ImGui::CalcTextSize(words.c_str(), nullptr, false, width).y + 4 * app.scale;
@@ -66,6 +67,19 @@ void mistake_row(App& app, const std::string& name, std::size_t index, const ImV
   ImGui::GetWindowDrawList()->AddText(
       ImGui::GetFont(), ImGui::GetFontSize(), {from.x, from.y + 2 * app.scale},
       packed(lit ? colors_of(app).accent : color), words.c_str(), nullptr, width);
+}
+
+} // namespace
+
+void mistake_row(App& app, const std::string& name, std::size_t index, const ImVec4& color) {
+  part_row(app, name + "/" + std::to_string(index), app.mistakes[index], color);
+}
+
+void warning_rows(App& app, const std::string& name, std::size_t most) {
+  for (std::size_t i = 0; i < std::min(app.warnings.size(), most); ++i)
+    part_row(app, name + "/" + std::to_string(i), app.warnings[i], colors_of(app).warn);
+  if (app.warnings.size() > most)
+    paragraph("and " + std::to_string(app.warnings.size() - most) + " more like it", colors_of(app).dim);
 }
 
 void mistake_rows(App& app, const std::string& name, std::size_t first, std::size_t most) {

@@ -22,4 +22,7 @@ void mistake_row(App& app, const std::string& name, std::size_t index, const ImV
 // how many more there are.
 void mistake_rows(App& app, const std::string& name, std::size_t first, std::size_t most);
 
+// The same for warnings, from the first on.
+void warning_rows(App& app, const std::string& name, std::size_t most);
+
 } // namespace flyball

@@ -23,6 +23,10 @@ SimulationOptions options_of(const App& app, bool damped) {
   options.damped = damped;
   options.start = motion.start;
   options.reactions = true;
+  constexpr std::size_t many = 60; // bodies; their motions would take more memory than they are worth
+  if (app.mechanism().bodies.size() <= many)
+    for (const Body& body : app.mechanism().bodies)
+      options.points.push_back({body.name});
   if (motion.start == Start::state) options.state = motion.saved;
   if (motion.start == Start::equilibrium) {
     const std::vector<std::string> names = free_coordinates(app);
@@ -92,7 +96,7 @@ bool computing_motion(const App& app) {
 std::vector<std::string> free_coordinates(const App& app) {
   std::vector<std::string> names;
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if (!c.driven) names.push_back(coordinate_label(c));
+    if (!c.driven && !c.dependent) names.push_back(coordinate_label(c));
   return names;
 }
 

@@ -5,6 +5,7 @@
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace flyball {
 
@@ -26,6 +27,40 @@ std::vector<double> norms(const std::vector<Vec3>& vectors) {
   out.reserve(vectors.size());
   for (const Vec3& v : vectors)
     out.push_back(v.norm());
+  return out;
+}
+
+// What is told of a body's mass centre: three tracks, each by component and in size.
+struct CentreQuantity {
+  const char* name;
+  std::vector<Vec3> PointTrack::*track;
+  const char* unit;
+  double factor;
+};
+const std::array<CentreQuantity, 3> centre_quantities{
+    {{"position", &PointTrack::position, "mm", 1000},
+     {"velocity", &PointTrack::velocity, "mm/s", 1000},
+     {"acceleration", &PointTrack::acceleration, "m/s²", 1}}};
+constexpr std::array<const char*, 4> components{"x", "y", "z", "size"};
+
+std::string centre_key(const CentreQuantity& quantity, std::size_t component, const std::string& body) {
+  return std::string(quantity.name) + "." + components[component] + " " + body;
+}
+
+std::string centre_title(const CentreQuantity& quantity, std::size_t component, const std::string& body) {
+  if (component < 3) return std::string(components[component]) + " " + quantity.name + " of " + body;
+  if (quantity.track == &PointTrack::position) return "distance of " + body + " from the origin";
+  return (quantity.track == &PointTrack::velocity ? "speed of " : "acceleration of ") + body;
+}
+
+Shown shown_centre(const PointTrack& track, const CentreQuantity& quantity, std::size_t component) {
+  const std::vector<Vec3>& vectors = track.*quantity.track;
+  Shown out{centre_title(quantity, component, track.point.body), quantity.unit, quantity.factor, {}};
+  out.lines.push_back({"", {}});
+  std::vector<double>& values = out.lines.front().values;
+  values.reserve(vectors.size());
+  for (const Vec3& v : vectors)
+    values.push_back(component < 3 ? v[static_cast<Eigen::Index>(component)] : v.norm());
   return out;
 }
 
@@ -56,6 +91,11 @@ Shown shown_quantity(const Run& run, const std::string& key) {
     if (key == "force " + r.joint) return {"force through " + r.joint, "N", 1, {{"", norms(r.force)}}};
     if (key == "torque " + r.joint) return {"torque through " + r.joint, "N m", 1, {{"", norms(r.torque)}}};
   }
+  for (const PointTrack& p : run.points)
+    if (key.ends_with(" " + p.point.body))
+      for (const CentreQuantity& quantity : centre_quantities)
+        for (std::size_t i = 0; i < components.size(); ++i)
+          if (key == centre_key(quantity, i, p.point.body)) return shown_centre(p, quantity, i);
   const EnergyTracks& e = run.energy;
   if (key == "energies") { // less what there was at first, which may be much and says nothing
     out = {"energy since the start",
@@ -110,6 +150,11 @@ std::vector<MotionQuantity> motion_quantities(const Run& run) {
     add("force " + r.joint, "Reactions");
   for (const ReactionTrack& r : run.reactions)
     add("torque " + r.joint, "Reactions");
+  for (const CentreQuantity& quantity : centre_quantities)
+    for (const PointTrack& p : run.points)
+      for (std::size_t i = 0; i < components.size() && !(p.*quantity.track).empty(); ++i)
+        out.push_back(
+            {centre_key(quantity, i, p.point.body), centre_title(quantity, i, p.point.body), "Mass centres"});
   return out;
 }
 

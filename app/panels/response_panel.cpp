@@ -148,7 +148,7 @@ void branch_note(App& app) {
 // The coordinate of the answer that design mode asks for.
 const CoordinateSolution* design_coordinate(const App& app) {
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if (!c.driven && coordinate_label(c) == app.study.response.design.coordinate) return &c;
+    if (!c.driven && !c.dependent && coordinate_label(c) == app.study.response.design.coordinate) return &c;
   return nullptr;
 }
 
@@ -232,7 +232,7 @@ void design_rows(App& app) {
   if (!control) return;
   std::vector<std::string> names;
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if (!c.driven) names.push_back(coordinate_label(c));
+    if (!c.driven && !c.dependent) names.push_back(coordinate_label(c));
   if (names.empty()) return;
   ResponseDesign& design = app.study.response.design;
   if (std::ranges::find(names, design.coordinate) == names.end()) {

@@ -102,8 +102,10 @@ void results_panel(App& app, const PanelRect& rect) {
   } else if (app.answer.ticket) {
     verdict(app);
     remedies(app);
+    warning_rows(app, "results/warnings", 3);
     neutral_joints(app);
     coordinate_results(app);
+    body_results(app);
     // What runs away leaves a residual that says nothing: it is small because everything else is large.
     if (app.answer.solution.unheld.empty()) solver_results(app);
     load_results(app);

@@ -265,9 +265,14 @@ double Equations::velocity_drift() {
   return row_values_.lpNorm<Eigen::Infinity>();
 }
 
-TransmittedForces Equations::reactions() {
+const Kinematics<double>& Equations::accelerated_kinematics() {
   full_a_.head(n_) = a_;
   place(idle_.empty() ? nullptr : &s_, &full_a_);
+  return kinematics_;
+}
+
+TransmittedForces Equations::reactions() {
+  accelerated_kinematics();
   Eigen::VectorXd lambda = lambda_;
   if (static_cast<int>(rows_.size()) < system_.rows) {
     linearize_constraints(model_.system, parameters_, kinematics_, linearization_);

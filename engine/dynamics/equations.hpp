@@ -90,6 +90,8 @@ class Equations {
 
   // The forces that joints transmit at the evaluated state, with least-norm multipliers.
   TransmittedForces reactions();
+  // With the accelerations of the evaluated state, those of what has mass (see MotionState).
+  const Kinematics<double>& accelerated_kinematics();
 
   bool has_massless() const { return !idle_.empty(); }
   // Linearised motion about the evaluated state on the tangent space: M, C, K. For choosing a method.

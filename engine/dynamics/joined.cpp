@@ -1,15 +1,30 @@
 #include "engine/dynamics/joined.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace flyball {
 namespace {
 
-// `to` with all but the first entry of `from` behind its first `count`, each raised by `by`.
-void append(std::vector<double>& to, std::size_t count, const std::vector<double>& from, double by = 0) {
+// `to` with all but the first entry of `from` behind its first `count`.
+template <class T>
+void append(std::vector<T>& to, std::size_t count, const std::vector<T>& from) {
   to.resize(std::min(count, to.size()));
-  for (std::size_t i = 1; i < from.size(); ++i)
-    to.push_back(from[i] + by);
+  to.insert(to.end(), from.begin() + 1, from.end());
+}
+// The same with each raised by `by`.
+void append(std::vector<double>& to, std::size_t count, const std::vector<double>& from, double by) {
+  append(to, count, from);
+  for (std::size_t i = count; i < to.size(); ++i)
+    to[i] += by;
+}
+
+// An angle that is measured begins anew without the whole turns it has made.
+double turns_made(const CoordinateTrack& before, std::size_t last, const CoordinateTrack& after) {
+  if (!after.dependent || !after.turns) return 0;
+  const double away = before.value[last] - after.value.front();
+  return away - std::remainder(away, 2 * std::numbers::pi);
 }
 
 void append_energies(EnergyTracks& to, std::size_t last, const EnergyTracks& from) {
@@ -32,7 +47,8 @@ bool same_coordinates(const Run& a, const Run& b) {
                             [](const CoordinateTrack& x, const CoordinateTrack& y) {
                               return x.joint == y.joint && x.index == y.index;
                             }) &&
-         a.drives.size() == b.drives.size() && a.reactions.size() == b.reactions.size();
+         a.drives.size() == b.drives.size() && a.reactions.size() == b.reactions.size() &&
+         std::ranges::equal(a.points, b.points, {}, &PointTrack::point, &PointTrack::point);
 }
 
 void add(RunStatistics& sum, const RunStatistics& part) {
@@ -66,19 +82,26 @@ Run joined(const Run& before, std::size_t last, const Run& after) {
   out.method_reason = after.method_reason;
   out.notes = after.notes;
   for (std::size_t i = 0; i < out.coordinates.size(); ++i) {
-    append(out.coordinates[i].value, count, after.coordinates[i].value);
+    append(out.coordinates[i].value, count, after.coordinates[i].value,
+           turns_made(before.coordinates[i], last, after.coordinates[i]));
     append(out.coordinates[i].rate, count, after.coordinates[i].rate);
     out.coordinates[i].turns = after.coordinates[i].turns;
   }
   for (std::size_t i = 0; i < out.drives.size(); ++i)
     append(out.drives[i].torque, count, after.drives[i].torque);
   for (std::size_t i = 0; i < out.reactions.size(); ++i)
-    for (const auto track : {&ReactionTrack::force, &ReactionTrack::torque}) {
-      std::vector<Vec3>& to = out.reactions[i].*track;
-      const std::vector<Vec3>& from = after.reactions[i].*track;
-      to.resize(std::min(count, to.size()));
-      to.insert(to.end(), from.begin() + 1, from.end());
-    }
+    for (const auto track : {&ReactionTrack::force, &ReactionTrack::torque})
+      append(out.reactions[i].*track, count, after.reactions[i].*track);
+  for (std::size_t i = 0; i < out.points.size(); ++i) {
+    PointTrack& to = out.points[i];
+    const PointTrack& from = after.points[i];
+    append(to.position, count, from.position);
+    append(to.velocity, count, from.velocity);
+    if (to.acceleration.empty() || from.acceleration.empty())
+      to.acceleration.clear();
+    else
+      append(to.acceleration, count, from.acceleration);
+  }
   append_energies(out.energy, last, after.energy);
   append(out.time, count, after.time);
   std::erase_if(out.stops, [&](const StopEvent& stop) { return stop.time > before.time[last]; });

@@ -1,11 +1,13 @@
 #include "engine/dynamics/recorder.hpp"
 
 #include "engine/equilibrium/report.hpp"
+#include "engine/system/joint_coordinates.hpp"
 #include "engine/system/potential.hpp"
 #include "engine/system/reactions.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace flyball {
 namespace {
@@ -23,21 +25,31 @@ void Recorder::use(std::shared_ptr<const MotionModel> model, Equations& equation
   jacobi_ = has_jacobi() && (run_.time.empty() || !run_.energy.jacobi.empty());
   if (!jacobi_) run_.energy.jacobi.clear();
   if (run_.coordinates.empty() && run_.drives.empty()) lay_out();
+  tracked_.clear();
+  for (const BodyPoint& point : points_)
+    tracked_.push_back(find_point(model_->system, model_->mechanism, model_->parameters, point));
 }
 
 void Recorder::lay_out() {
   const System& system = model_->system;
-  for (const CoordinateInfo& c : system.coordinates) {
-    const TreeJoint& joint = system.tree_joints[at(c.tree_joint)];
-    const Link& link = system.links[at(c.link)];
+  for (const ReportedCoordinate& r : system.reported) {
     CoordinateTrack track;
-    track.joint = joint.name;
-    track.index = c.index;
-    track.count = coordinate_count(joint.type);
-    track.angle = c.angle;
-    track.driven = link.drive >= 0;
-    track.rotation = link.type == LinkType::spherical;
-    track.turns = turns_freely(system, model_->parameters, c.link);
+    track.joint = r.joint;
+    track.index = r.index;
+    track.count = r.count;
+    track.angle = r.angle;
+    if (r.cut >= 0) {
+      const JointType type = system.cuts[at(r.cut)].type;
+      track.dependent = true;
+      track.rotation = is_rotation_vector(type, r.index);
+      track.turns = r.angle && !track.rotation;
+    } else {
+      const CoordinateInfo& c = system.coordinates[at(r.coordinate)];
+      const Link& link = system.links[at(c.link)];
+      track.driven = link.drive >= 0;
+      track.rotation = link.type == LinkType::spherical;
+      track.turns = turns_freely(system, model_->parameters, c.link);
+    }
     run_.coordinates.push_back(std::move(track));
   }
   for (std::size_t d = 0; d < system.drives.size(); ++d) {
@@ -47,6 +59,8 @@ void Recorder::lay_out() {
     run_.drives.push_back(
         {joint.name, link.coordinate, coordinate_count(joint.type), link.type == LinkType::revolute, {}});
   }
+  for (const BodyPoint& point : points_)
+    run_.points.push_back({point, {}, {}, {}});
   if (reactions_)
     for (const Joint& j : model_->mechanism.joints)
       if (j.type != JointType::gear) run_.reactions.push_back({j.name, {}, {}});
@@ -62,11 +76,27 @@ void Recorder::record_coordinates(double t) {
   const System& system = model_->system;
   const Eigen::VectorXd& q = equations_->configuration();
   const Eigen::VectorXd& u = equations_->velocity();
-  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
-    const CoordinateInfo& c = system.coordinates[i];
+  int measured = -1;
+  JointCoordinates joint;
+  RelativeVelocity velocity;
+  for (std::size_t i = 0; i < system.reported.size(); ++i) {
+    const ReportedCoordinate& r = system.reported[i];
+    CoordinateTrack& track = run_.coordinates[i];
+    if (r.cut >= 0) {
+      if (measured != r.cut) {
+        const CutParameters& numbers = model_->parameters.cuts[at(r.cut)];
+        joint = joint_coordinates(system.cuts[at(r.cut)], numbers, equations_->kinematics());
+        velocity = relative_velocity(system.cuts[at(r.cut)], numbers, equations_->kinematics());
+        measured = r.cut;
+      }
+      const double rate = joint.rate.row(r.index) * velocity;
+      track.value.push_back(go_on_from(track, joint.value[at(r.index)], rate));
+      track.rate.push_back(rate);
+      continue;
+    }
+    const CoordinateInfo& c = system.coordinates[at(r.coordinate)];
     const Link& link = system.links[at(c.link)];
     const LinkParameters& p = model_->parameters.links[at(c.link)];
-    CoordinateTrack& track = run_.coordinates[i];
     if (link.drive >= 0) {
       track.value.push_back(p.drawn + (p.start + p.speed * t));
       track.rate.push_back(p.speed);
@@ -79,6 +109,14 @@ void Recorder::record_coordinates(double t) {
       track.rate.push_back(u[link.v]);
     }
   }
+}
+
+// An angle that is measured goes on beyond a turn: with the whole turns that the rates foretell.
+double Recorder::go_on_from(const CoordinateTrack& track, double value, double rate) const {
+  if (!track.turns || track.value.empty()) return value;
+  const double span = run_.time.back() - run_.time[run_.time.size() - 2];
+  const double foretold = track.value.back() + (track.rate.back() + rate) / 2 * span;
+  return foretold + std::remainder(value - foretold, 2 * std::numbers::pi);
 }
 
 // T_2 + U, with U = V - T_0 the amended potential.
@@ -174,6 +212,21 @@ void Recorder::record_reactions() {
   }
 }
 
+void Recorder::record_points() {
+  if (equations_->has_massless())
+    for (PointTrack& track : run_.points)
+      track.acceleration.clear();
+  const Kinematics<double>& kinematics = equations_->accelerated_kinematics();
+  for (std::size_t i = 0; i < tracked_.size(); ++i) {
+    PointTrack& track = run_.points[i];
+    const PointMotion now = point_motion(model_->parameters, kinematics, tracked_[i]);
+    if (track.acceleration.size() == track.position.size() && !equations_->has_massless())
+      track.acceleration.push_back(now.acceleration);
+    track.position.push_back(now.position);
+    track.velocity.push_back(now.velocity);
+  }
+}
+
 void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
   const System& system = model_->system;
   run_.time.push_back(t);
@@ -199,6 +252,7 @@ void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
   run_.states.insert(run_.states.end(), q.data(), q.data() + system.nq);
   run_.states.insert(run_.states.end(), u.data(), u.data() + system.nv);
   if (reactions_) record_reactions();
+  if (!tracked_.empty()) record_points();
 }
 
 } // namespace flyball

@@ -2,14 +2,17 @@
 #pragma once
 
 #include "engine/dynamics/equations.hpp"
+#include "engine/system/point_motion.hpp"
 
 namespace flyball {
 
 class Recorder {
  public:
-  Recorder(Run& run, bool reactions) : run_(run), reactions_(reactions) {}
+  // `reactions` and `points` as in SimulationOptions.
+  Recorder(Run& run, bool reactions, std::vector<BodyPoint> points)
+      : run_(run), reactions_(reactions), points_(std::move(points)) {}
 
-  // What the next samples are of; tracks are laid out at first.
+  // What the next samples are of; tracks are laid out at first. Throws SceneError for points of no body.
   void use(std::shared_ptr<const MotionModel> model, Equations& equations);
 
   // The evaluated state at t, with the integrated energies. `shift`: how far it was put back on the manifold.
@@ -29,13 +32,17 @@ class Recorder {
  private:
   void lay_out();
   void record_coordinates(double t);
+  double go_on_from(const CoordinateTrack& track, double value, double rate) const;
   void record_energies(double t, const Eigen::Vector3d& energies);
   void record_reactions();
+  void record_points();
   double jacobi(double t);
   bool has_jacobi();
 
   Run& run_;
   bool reactions_;
+  std::vector<BodyPoint> points_;
+  std::vector<TrackedPoint> tracked_;
   std::shared_ptr<const MotionModel> model_;
   Equations* equations_ = nullptr;
   double base_ = 0; // J, stored energy that counts as none

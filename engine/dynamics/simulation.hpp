@@ -1,6 +1,7 @@
 // What a simulation of the damped motion (eq. 19) is asked, and what it found, in plain values.
 #pragma once
 
+#include "engine/mechanism/body_point.hpp"
 #include "engine/mechanism/pose.hpp"
 
 #include <atomic>
@@ -61,6 +62,7 @@ struct SimulationOptions {
   std::vector<std::pair<std::string, double>> kick; // joint = rate (rad/s, m/s) over the start's
   SimulationState state;                            // for Start::state
   bool reactions = false;                           // record what all joints transmit
+  std::vector<BodyPoint> points{};                  // record how these move
   long max_steps = 50'000'000;
   double time_limit =
       std::numeric_limits<double>::infinity(); // s by the clock on the wall, for all of the run
@@ -75,6 +77,7 @@ struct CoordinateTrack {
   bool angle = false;       // rad rather than m
   bool driven = false;
   bool rotation = false;           // a component of a rotation vector
+  bool dependent = false;          // of a joint that closes a loop: follows from the others
   bool turns = false;              // whole turns do not matter
   std::vector<double> value, rate; // rad or m; a second
 };
@@ -90,6 +93,14 @@ struct DriveTrack {
 struct ReactionTrack {
   std::string joint;
   std::vector<Vec3> force, torque; // N, N m
+};
+
+// How a point moves, in the world frame.
+struct PointTrack {
+  BodyPoint point;
+  std::vector<Vec3> position, velocity; // m, m/s
+  // m/s^2; empty where bodies without mass are, whose velocities are no states and have no known rates.
+  std::vector<Vec3> acceleration;
 };
 
 // J, by sample.
@@ -143,6 +154,7 @@ struct Run {
   std::vector<CoordinateTrack> coordinates;  // in the scene's order, driven ones included
   std::vector<DriveTrack> drives;
   std::vector<ReactionTrack> reactions; // where asked for
+  std::vector<PointTrack> points;       // those asked for
   EnergyTracks energy;
   std::vector<StopEvent> stops;
   RunStatistics statistics;

@@ -456,7 +456,7 @@ Simulator::Simulator(const Mechanism& mechanism, const SimulationOptions& option
   }
   x.run.notes = x.model->notes;
   x.begin = x.stepped_to;
-  x.recorder = std::make_unique<Recorder>(x.run, options.reactions);
+  x.recorder = std::make_unique<Recorder>(x.run, options.reactions, options.points);
   x.recorder->use(x.model, *x.equations);
   if (!x.record(x.begin)) {
     x.stepper.reset();

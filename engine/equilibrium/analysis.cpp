@@ -14,6 +14,7 @@
 #include "engine/equilibrium/stability.hpp"
 #include "engine/equilibrium/unbounded.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/system/point_motion.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -187,6 +188,8 @@ Solution Analysis::solve(const SolveOptions& options) {
   const bool warm = options.warm && s.answered && options.start.empty();
   s.start = warm ? s.answer : s.drawn;
   set_start(s.system, s.parameters, options.start, s.start);
+  for (const BodyPoint& point : options.points) // throws before anything is computed
+    find_point(s.system, s.mechanism, s.parameters, point);
 
   s.settled = false;
 
@@ -262,7 +265,8 @@ Solution Analysis::solve(const SolveOptions& options) {
     s.error = s.error.cwiseMax(s.workspace.unheld);
   }
   report_progress(options.progress, "reactions");
-  const ReportInput input{s.mechanism, problem, s.found, existence, stability};
+  const ReportInput input{s.mechanism, problem, s.found, existence, stability, options.points};
+  s.error += s.workspace.data_error;
   report(input, s.error, options.details, s.workspace, out);
   if (!is_finite(out)) {
     s.settled = false;
@@ -286,6 +290,8 @@ Solution Analysis::solve(const SolveOptions& options) {
 AllSolutions Analysis::solve_all(const SolveOptions& options) {
   State& s = *state_;
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
+  for (const BodyPoint& point : options.points)
+    find_point(s.system, s.mechanism, s.parameters, point);
   SearchOptions search;
   search.seconds = options.search_time;
   search.starts = options.search_starts;
@@ -341,8 +347,9 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
     entry.solution.status = Status::converged;
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
-    report({s.mechanism, problem, found, existence, stability}, s.error, options.details, s.workspace,
-           entry.solution);
+    s.error += s.workspace.data_error;
+    report({s.mechanism, problem, found, existence, stability, options.points}, s.error, options.details,
+           s.workspace, entry.solution);
     if (s.system.conservative) {
       forward<double>(s.system, s.parameters, found.z.q, 0, s.workspace.kinematics);
       entry.potential = amended_potential(s.system, s.parameters, found.z.q, s.workspace.kinematics).value;

@@ -20,6 +20,7 @@ struct SolveOptions {
   bool warm = false;    // start from this analysis' last converged answer instead of the drawn pose
   bool details = true;  // eigenvalues, reactions and drive torques; not needed by a sweep
   int modes = 0;        // eigenvalues asked for where there are more than 200 coordinates
+  std::vector<BodyPoint> points{};                   // to be told with the solution
   std::vector<std::pair<std::string, double>> start; // "joint" or "joint.index" = value, over the drawn pose
   const std::atomic<bool>* cancel = nullptr;         // looked at all the time; then not_converged
   ReportProgress progress{};
@@ -69,9 +70,10 @@ class Analysis {
   // last answer as a warm start where it still fits.
   void update(const Mechanism& mechanism);
 
+  // Throws SceneError for starts and points that name nothing.
   Solution solve(const SolveOptions& options = {});
 
-  // `options`: details, modes, cancel, search_time, search_starts and progress count.
+  // `options`: details, modes, points, cancel, search_time, search_starts and progress count.
   AllSolutions solve_all(const SolveOptions& options = {});
 
   SystemSummary summary() const;

@@ -1,8 +1,10 @@
 #include "engine/equilibrium/report.hpp"
 
+#include "engine/equilibrium/report_forces.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
-#include "engine/system/reactions.hpp"
+#include "engine/system/joint_coordinates.hpp"
+#include "engine/system/point_motion.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
@@ -11,12 +13,6 @@
 
 namespace flyball {
 namespace {
-
-double wrapped(double angle) {
-  const double turn = 2 * std::numbers::pi;
-  angle = std::remainder(angle, turn);
-  return angle <= -std::numbers::pi ? angle + turn : angle;
-}
 
 std::string cut_name(const ReportInput& in, int cut) {
   return in.mechanism
@@ -33,112 +29,33 @@ double error_of(const System& system, const Parameters& p, const CoordinateInfo&
   return rate.row(c.index - link.coordinate).cwiseAbs().dot(error.segment<3>(link.v));
 }
 
-// Whether a transmitted wrench changes with the drives' phase as seen from both its parts.
-struct Frames {
-  Mat3 parent, child;
+// The coordinates of a joint that closes a loop, and their errors (rad, m).
+struct Measured {
+  int cut = -1;
+  JointCoordinates at;
+  Eigen::Matrix<double, 6, 1> error;
 };
 
-Frames frames_of(const System& system, const Kinematics<double>& k, const TreeJoint& t) {
-  const auto r = [&](int body) {
-    return body < 0 ? Mat3(Mat3::Identity()) : k.at(system.body_link[static_cast<std::size_t>(body)]).R;
-  };
-  return {r(t.parent_body), r(t.child_body)};
-}
-
-// Evaluates the state found at phase t without multipliers, and finds them. Where loops are redundant those
-// of least norm, or in large mechanisms with none on rows that follow from others.
-Unknowns with_reported_multipliers(const ReportInput& in, double t, Workspace& w) {
-  const Problem& problem = in.problem;
-  Unknowns z{in.found.z.q, Eigen::VectorXd::Zero(problem.system.rows)};
-  forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
-  evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
-  if (problem.system.rows == 0) return z;
-  factor_constraints(problem, w);
-  best_multipliers(problem, w, z.lambda);
-  if (problem.is_dense())
-    z.lambda = w.constraints.least_norm_multipliers(w.target).cwiseProduct(problem.scaling.row);
-  return z;
-}
-
-// The first of the states is `z`, which is evaluated.
-void report_forces(const ReportInput& in, const Unknowns& z, Workspace& w, Solution& out) {
-  const System& system = in.problem.system;
-  const Parameters& p = in.problem.parameters;
-  struct Snapshot {
-    TransmittedForces forces;
-    std::vector<Frames> tree, cuts;
-  };
-  const auto snapshot = [&](const Eigen::VectorXd& lambda) {
-    Snapshot s{transmitted_forces(system, p, lambda, w.kinematics, w.residual), {}, {}};
-    for (const TreeJoint& tree : system.tree_joints)
-      s.tree.push_back(frames_of(system, w.kinematics, tree));
-    for (const CutJoint& cut : system.cuts)
-      s.cuts.push_back({w.kinematics.at(cut.ends.a).R, w.kinematics.at(cut.ends.b).R});
-    return s;
-  };
-  const Snapshot drawn = snapshot(z.lambda);
-  std::vector<Snapshot> others;
-  for (double t : sample_phases(system, p))
-    others.push_back(snapshot(with_reported_multipliers(in, t, w).lambda));
-  for (const CutJoint& cut : system.cuts) {
-    JointMultipliers m;
-    m.joint = in.mechanism.joints[static_cast<std::size_t>(cut.joint)].name;
-    for (std::size_t r = 0; r < cut.rows.size(); ++r)
-      m.values.push_back(z.lambda[cut.first_row + static_cast<int>(r)]);
-    out.multipliers.push_back(std::move(m));
-  }
-  double size = 0;
-  for (const JointWrench& x : drawn.forces.tree)
-    size = std::max({size, x.force.norm(), x.torque.norm() / p.length});
-  const auto varies = [&](const JointWrench& a, const Frames& fa, const JointWrench& b, const Frames& fb) {
-    const auto differs = [&](const Mat3& ra, const Mat3& rb) {
-      return (ra.transpose() * a.force - rb.transpose() * b.force).norm() > 1e-7 * size ||
-             (ra.transpose() * a.torque - rb.transpose() * b.torque).norm() > 1e-7 * size * p.length;
-    };
-    return differs(fa.parent, fb.parent) && differs(fa.child, fb.child);
-  };
-  std::vector<int> tree_of(in.mechanism.joints.size(), -1), cut_of(in.mechanism.joints.size(), -1);
-  for (std::size_t i = 0; i < system.tree_joints.size(); ++i)
-    if (const int j = system.tree_joints[i].joint; j >= 0)
-      tree_of[static_cast<std::size_t>(j)] = static_cast<int>(i);
-  for (std::size_t i = 0; i < system.cuts.size(); ++i)
-    cut_of[static_cast<std::size_t>(system.cuts[i].joint)] = static_cast<int>(i);
-  for (std::size_t n = 0; n < in.mechanism.joints.size(); ++n) {
-    const Joint& j = in.mechanism.joints[n];
-    if (j.type == JointType::gear) continue;
-    const auto add = [&](const JointWrench& x, bool varying) {
-      out.reactions.push_back({j.name, x.force, x.torque, varying});
-    };
-    if (tree_of[n] >= 0) {
-      const auto i = static_cast<std::size_t>(tree_of[n]);
-      add(drawn.forces.tree[i], std::ranges::any_of(others, [&](const Snapshot& s) {
-            return varies(drawn.forces.tree[i], drawn.tree[i], s.forces.tree[i], s.tree[i]);
-          }));
-      continue;
-    }
-    if (cut_of[n] < 0) continue;
-    const auto i = static_cast<std::size_t>(cut_of[n]);
-    add(drawn.forces.cuts[i], std::ranges::any_of(others, [&](const Snapshot& s) {
-          return varies(drawn.forces.cuts[i], drawn.cuts[i], s.forces.cuts[i], s.cuts[i]);
-        }));
-  }
-  for (std::size_t d = 0; d < system.drives.size(); ++d) {
-    if (system.drives[d].motor != static_cast<int>(d)) continue;
-    const Link& link = system.links[static_cast<std::size_t>(system.drives[d].link)];
-    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-    DriveTorque torque;
-    torque.joint = joint.name;
-    torque.index = link.coordinate;
-    torque.count = coordinate_count(joint.type);
-    torque.angle = link.type == LinkType::revolute;
-    // Where the tree runs against the joint its axes are turned round and so is nothing else: the coordinate
-    // keeps its sign.
-    torque.value = drawn.forces.drives[d];
-    for (const Snapshot& s : others)
-      if (std::abs(s.forces.drives[d] - torque.value) > 1e-7 * size * (torque.angle ? p.length : 1))
-        torque.varying = true;
-    out.drive_torques.push_back(std::move(torque));
-  }
+// Errors of q_R by the rates of these coordinates, and what rounds along the chains from either body to the
+// other.
+Measured measure(const System& system, const Parameters& p, int c, const Kinematics<double>& k,
+                 const Eigen::VectorXd& error) {
+  const CutJoint& cut = system.cuts[static_cast<std::size_t>(c)];
+  const CutParameters& numbers = p.cuts[static_cast<std::size_t>(c)];
+  Measured out{c, joint_coordinates(cut, numbers, k), Eigen::Matrix<double, 6, 1>::Zero()};
+  for (const SupportColumn& column : cut.ends.support)
+    out.error += (out.at.rate * relative_velocity(cut, numbers, k, column)).cwiseAbs() * error[column.v];
+  const auto depth = [&](int l) { return l < 0 ? 0 : system.links[static_cast<std::size_t>(l)].depth; };
+  const double rounding =
+      (4 + depth(cut.ends.a) + depth(cut.ends.b)) * std::numeric_limits<double>::epsilon();
+  const double reach = k.point(cut.ends.a, numbers.a).norm() + k.point(cut.ends.b, numbers.b).norm();
+  RelativeVelocity noise; // of the relative pose
+  noise << Vec3::Constant(rounding), Vec3::Constant(rounding * reach);
+  out.error += out.at.rate.cwiseAbs() * noise;
+  for (int i = 0; i < 6; ++i)
+    out.error[i] +=
+        2 * std::numeric_limits<double>::epsilon() * std::abs(out.at.value[static_cast<std::size_t>(i)]);
+  return out;
 }
 
 std::string floquet_message(const Floquet& f, std::optional<bool> stable) {
@@ -177,18 +94,29 @@ bool turns_freely(const System& system, const Parameters& p, int l) {
 }
 
 std::vector<CoordinateSolution> coordinate_solutions(const System& system, const Parameters& p,
-                                                     const Eigen::VectorXd& q, const Eigen::VectorXd& error) {
+                                                     const Eigen::VectorXd& q, const Eigen::VectorXd& error,
+                                                     const Kinematics<double>& k) {
   std::vector<CoordinateSolution> out;
-  for (const CoordinateInfo& c : system.coordinates) {
-    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+  out.reserve(system.reported.size());
+  Measured measured;
+  for (const ReportedCoordinate& r : system.reported) {
     CoordinateSolution x;
-    x.joint = joint.name;
-    x.index = c.index;
-    x.count = coordinate_count(joint.type);
-    x.angle = c.angle;
+    x.joint = r.joint;
+    x.index = r.index;
+    x.count = r.count;
+    x.angle = r.angle;
+    if (r.cut >= 0) {
+      if (measured.cut != r.cut) measured = measure(system, p, r.cut, k, error);
+      x.value = measured.at.value[static_cast<std::size_t>(r.index)];
+      x.error = measured.error[r.index];
+      x.dependent = true;
+      out.push_back(std::move(x));
+      continue;
+    }
+    const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(r.coordinate)];
     x.driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
     x.value = coordinate_value(system, p, q, c);
-    if (turns_freely(system, p, c.link)) x.value = wrapped(x.value);
+    if (turns_freely(system, p, c.link)) x.value = wrapped_angle(x.value);
     x.error = error_of(system, p, c, q, error);
     out.push_back(std::move(x));
   }
@@ -198,7 +126,7 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
 std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates) {
   std::vector<std::pair<std::string, double>> values;
   for (const CoordinateSolution& c : coordinates)
-    if (!c.driven) values.emplace_back(coordinate_label(c), c.value);
+    if (!c.driven && !c.dependent) values.emplace_back(coordinate_label(c), c.value);
   return values;
 }
 
@@ -232,13 +160,17 @@ bool is_finite(const Solution& s) {
                  }) &&
          numbers(s.drive_torques, [](const DriveTorque& t) { return t.value; }) &&
          numbers(s.reactions, [](const Reaction& r) { return r.force.sum() + r.torque.sum(); }) &&
+         numbers(s.centres, [](const PointMotion& p) { return p.velocity.sum() + p.acceleration.sum(); }) &&
+         numbers(s.points,
+                 [](const PointSolution& p) {
+                   return p.motion.position.sum() + p.motion.velocity.sum() + p.motion.acceleration.sum();
+                 }) &&
          numbers(s.poses, [](const Pose& p) { return p.position.sum() + p.rotation.coeffs().sum(); });
 }
 
 void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, Workspace& w, Solution& out) {
   const System& system = in.problem.system;
   const Parameters& p = in.problem.parameters;
-  out.coordinates = coordinate_solutions(system, p, in.found.z.q, error);
   out.stable = in.stability.stable;
   out.stability_reason = in.stability.reason;
   out.eigenvalues = in.stability.eigenvalues;
@@ -256,12 +188,18 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
       }
   }
   // The balance with its multipliers, as solved.
-  const Unknowns z = with_reported_multipliers(in, 0, w);
+  const Unknowns z = with_reported_multipliers(in.problem, in.found.z.q, 0, w);
   if (system.rows > 0) evaluate_residual<double>(system, p, z.q, z.lambda, w.kinematics, w.residual);
   evaluate_magnitudes(system, p, z.q, z.lambda, w.kinematics, w.magnitudes);
   const int rank = independent_rows(in.problem, w);
   out.residual = scaled_residual(in.problem, w);
+  out.coordinates = coordinate_solutions(system, p, z.q, error, w.kinematics);
   body_poses(system, in.mechanism, p, w.kinematics, out.poses);
+  for (const BodyPoint& point : in.points)
+    out.points.push_back({point, point_motion(p, w.kinematics, find_point(system, in.mechanism, p, point))});
+  if (details)
+    for (const int l : system.body_link)
+      out.centres.push_back(point_motion(p, w.kinematics, {l, p.links[static_cast<std::size_t>(l)].com}));
   if (details && system.nv > 0 && system.nv <= largest_for_eigenvalues) {
     const Problem whole{system, p, in.problem.scaling, in.problem.cancel};
     factor(whole, z, w);
@@ -277,7 +215,6 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
     }
   }
   if (details) {
-    out.reactions_nonunique = rank < system.rows;
     report_forces(in, z, w, out);
   }
   out.message = in.found.message;
@@ -332,6 +269,11 @@ void set_start(const System& system, const Parameters& parameters,
              (coordinate_count(joint.type) == 1 && name == joint.name);
     };
     const auto c = std::ranges::find_if(system.coordinates, named);
+    if (c == system.coordinates.end() &&
+        std::ranges::any_of(system.reported, [&name = name](const ReportedCoordinate& r) {
+          return r.cut >= 0 && name == coordinate_label(r);
+        }))
+      throw SceneError(name, "closes a loop, so it follows from the other coordinates; a start is for those");
     if (c == system.coordinates.end())
       throw SceneError(name,
                        "is not a free coordinate; use the joint's name, or name.index where it has several");

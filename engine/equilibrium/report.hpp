@@ -14,6 +14,7 @@ struct ReportInput {
   const Found& found;
   const Existence& existence;
   const Stability& stability;
+  std::span<const BodyPoint> points{};
 };
 
 // Why there is no answer, naming the part that is to blame.
@@ -30,9 +31,11 @@ void report(const ReportInput& input, const Eigen::VectorXd& error, bool details
 // Such an angle is told in (-pi, pi].
 bool turns_freely(const System& system, const Parameters& parameters, int link);
 
-// A configuration as its joints label it; `error` by coordinate of q_R (rad, m).
+// A configuration as its joints label it; `error` by coordinate of q_R (rad, m), `kinematics` at the drawn
+// phase.
 std::vector<CoordinateSolution> coordinate_solutions(const System& system, const Parameters& parameters,
-                                                     const Eigen::VectorXd& q, const Eigen::VectorXd& error);
+                                                     const Eigen::VectorXd& q, const Eigen::VectorXd& error,
+                                                     const Kinematics<double>& kinematics);
 
 // Rates of q_R by the names of its coordinates.
 Sensitivity name_rates(const System& system, const std::string& address, const Eigen::VectorXd& rate);

@@ -2,6 +2,7 @@
 // it refers back to the compiled system.
 #pragma once
 
+#include "engine/mechanism/body_point.hpp"
 #include "engine/mechanism/pose.hpp"
 
 #include <complex>
@@ -69,11 +70,17 @@ struct CoordinateSolution {
   bool driven = false;      // then `value` is at the drawn drive phase and `error` is zero
   double value = 0;         // rad or m
   double error = 0;         // estimated absolute error, rad or m
+  bool dependent = false;   // of a joint that closes a loop: follows from the others, and starts nothing
 };
 
 struct JointMultipliers {
   std::string joint;          // a cut joint
   std::vector<double> values; // N or N m, one per constraint equation
+};
+
+// Of what changes with the phase of the drives, over all that they can take.
+struct PhaseRange {
+  double mean = 0, least = 0, most = 0;
 };
 
 struct DriveTorque {
@@ -82,14 +89,35 @@ struct DriveTorque {
   bool angle = true;    // N m rather than N
   double value = 0;     // by the drive, positive along the coordinate
   bool varying = false; // changes with the phase of the drives; `value` is at the drawn phase
+  // Over all phases of the drives, where it varies and they return: nothing at a sliding drive, or with more
+  // than three drives of which no two return together.
+  std::optional<PhaseRange> range{};
+  bool nonunique = false; // loops are redundant, and share it among several drives: the minimum-norm share
 };
 
-// What the parent exerts on the child through a joint, its spring, stop, damper and drive included.
+// What the parent exerts on the child through a joint, its spring, stop, damper, drive and gears included.
 struct Reaction {
   std::string joint;
   Vec3 force = Vec3::Zero();  // N, world axes at the drawn drive phase
   Vec3 torque = Vec3::Zero(); // N m, about `at` as carried by the child
   bool varying = false;       // changes with the phase of the drives
+  bool nonunique = false;     // loops are redundant: the one of the minimum-norm multipliers, of many
+};
+
+// What a gear does, as a torque or force along the coordinates of its two joints: there it is part of the
+// reaction. On each joint's child by its parent.
+struct GearReaction {
+  std::string joint;                                // the gear
+  double a = 0, b = 0;                              // positive along the coordinates
+  bool angle_a = true, angle_b = true;              // N m rather than N
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); // of b as vectors: N, N m, world axes
+  bool varying = false, nonunique = false;          // as of a Reaction
+};
+
+// A point asked for, at the drawn drive phase.
+struct PointSolution {
+  BodyPoint point;
+  PointMotion motion;
 };
 
 // Rates of the coordinates with one parameter: rad or m per its unit. Rotation vectors are left out.
@@ -111,7 +139,7 @@ struct UnheldCoordinate {
   double force = 0;         // generalised, positive along the coordinate: what would have to hold it
 };
 
-// The free ones by name, as SolveOptions::start wants them.
+// The free ones by name, as SolveOptions::start wants them: not driven, not dependent.
 std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates);
 
 struct Solution {
@@ -136,8 +164,11 @@ struct Solution {
   bool unheld_by_weight = false, weight_turns = false;
   std::vector<DriveTorque> drive_torques;
   std::vector<Reaction> reactions;
-  bool reactions_nonunique = false;       // redundant loops: the minimum-norm multipliers
+  std::vector<GearReaction> gears;
+  bool reactions_nonunique = false;       // of any joint: the minimum-norm multipliers
   std::vector<Pose> poses;                // in the order of the bodies, at the drawn drive phase
+  std::vector<PointMotion> centres;       // mass centres likewise; with details only
+  std::vector<PointSolution> points;      // those of SolveOptions::points
   std::vector<Sensitivity> sensitivities; // to the scene's sliders; none at a singular state
   std::optional<double> potential;        // J, amended, where there is one
   std::optional<double> condition;        // 2-norm, of the scaled equations

@@ -12,11 +12,21 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   out.constraint_equations = system.rows;
   Eigen::VectorXd drawn;
   drawn_configuration(system, p, drawn);
-  for (const CoordinateInfo& c : system.coordinates) {
-    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-    out.coordinates.push_back({joint.name, c.index, coordinate_count(joint.type), c.angle,
-                               system.links[static_cast<std::size_t>(c.link)].drive >= 0,
-                               coordinate_value(system, p, drawn, c), 0});
+  for (const ReportedCoordinate& r : system.reported) {
+    CoordinateSolution x;
+    x.joint = r.joint;
+    x.index = r.index;
+    x.count = r.count;
+    x.angle = r.angle;
+    x.dependent = r.cut >= 0;
+    if (x.dependent) {
+      x.value = p.cuts[static_cast<std::size_t>(r.cut)].drawn[static_cast<std::size_t>(r.index)];
+    } else {
+      const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(r.coordinate)];
+      x.driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
+      x.value = coordinate_value(system, p, drawn, c);
+    }
+    out.coordinates.push_back(std::move(x));
   }
   for (const TreeJoint& t : system.tree_joints)
     (t.joint < 0 ? out.implicit_joints : out.tree_joints).push_back(t.name);

@@ -178,6 +178,12 @@ std::vector<SceneError> find_mistakes(const Mechanism& mechanism) {
   return mistakes.all();
 }
 
+std::vector<SceneError> find_warnings(const Mechanism& mechanism) {
+  Mistakes warnings;
+  find_body_warnings(mechanism, warnings);
+  return warnings.all();
+}
+
 void validate(const Mechanism& mechanism) {
   const std::vector<SceneError> mistakes = find_mistakes(mechanism);
   if (!mistakes.empty()) throw mistakes.front();

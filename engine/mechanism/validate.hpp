@@ -15,4 +15,8 @@ std::vector<SceneError> find_mistakes(const Mechanism& mechanism);
 // Throws the first of them.
 void validate(const Mechanism& mechanism);
 
+// What is solved as it stands but is no real mechanism's, and so most likely a slip: one sentence each, with
+// its path as in SceneError. For a mechanism without mistakes.
+std::vector<SceneError> find_warnings(const Mechanism& mechanism);
+
 } // namespace flyball

@@ -113,8 +113,9 @@ class Direct {
       previous = size;
     }
     if (correction.size() == 0) correction.setZero(system_.nv);
-    out.reference =
-        coordinate_solutions(system_, parameters_, reference_.cast<double>(), correction.cwiseAbs());
+    const Eigen::VectorXd q = reference_.cast<double>();
+    forward<double>(system_, parameters_, q, 0, w_.kinematics);
+    out.reference = coordinate_solutions(system_, parameters_, q, correction.cwiseAbs(), w_.kinematics);
   }
 
   // The largest difference from q*, in radians or relative to the reach.

@@ -466,6 +466,22 @@ class Compiler {
       return std::tuple(j < 0 ? joint_count() + c.tree_joint : j, c.index);
     };
     std::ranges::stable_sort(s_.coordinates, [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    std::vector<std::pair<std::tuple<int, int>, ReportedCoordinate>> all;
+    for (std::size_t c = 0; c < s_.coordinates.size(); ++c) {
+      const CoordinateInfo& x = s_.coordinates[c];
+      const TreeJoint& t = s_.tree_joints[static_cast<std::size_t>(x.tree_joint)];
+      all.push_back({key(x), {t.name, x.index, coordinate_count(t.type), x.angle, static_cast<int>(c), -1}});
+    }
+    for (std::size_t c = 0; c < s_.cuts.size(); ++c) {
+      const CutJoint& cut = s_.cuts[c];
+      const int n = cut.type == JointType::fixed ? 0 : coordinate_count(cut.type);
+      for (int k = 0; k < n; ++k)
+        all.push_back(
+            {{cut.joint, k}, {joint(cut.joint).name, k, n, is_angle(cut.type, k), -1, static_cast<int>(c)}});
+    }
+    std::ranges::stable_sort(all, {}, [](const auto& x) { return x.first; });
+    for (auto& [place, coordinate] : all)
+      s_.reported.push_back(std::move(coordinate));
   }
 
   // The drives a link turns with, innermost last; two links with the same ones never move against each other

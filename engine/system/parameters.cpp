@@ -1,17 +1,12 @@
 #include "engine/system/parameters.hpp"
 
+#include "engine/system/joint_coordinates.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
 
 namespace flyball {
 namespace {
-
-Vec3 any_perpendicular(const Vec3& z) {
-  Vec3::Index least = 0;
-  z.cwiseAbs().minCoeff(&least);
-  return z.cross(Vec3::Unit(least)).normalized();
-}
 
 // See Link::axis.
 Vec3 axis_of(const Joint* joint, int axis) {
@@ -210,14 +205,11 @@ class Binder {
     }
     out.a = in_link(j.at, cut.ends.a);
     out.b = in_link(j.at, cut.ends.b);
-    const Vec3 z = cut.type == JointType::fixed || cut.type == JointType::spherical ? Vec3(Vec3::UnitZ())
-                                                                                    : j.axis.normalized();
-    const Vec3 x = any_perpendicular(z);
-    out.frame = {x, z.cross(x), z, Vec3::Zero()};
-    if (cut.type == JointType::universal) {
-      out.frame[3] = j.axis2.normalized();
-      out.constant = z.dot(out.frame[3]);
-    }
+    // Where a twin is welded the cut is a fixed joint, whatever the scene's is.
+    const JointFrame frame = cut.type == JointType::fixed ? joint_frame({}) : joint_frame(j);
+    out.frame = frame.axes;
+    out.drawn = frame.drawn;
+    if (cut.type == JointType::universal) out.constant = out.frame[2].dot(out.frame[3]);
   }
 
   // Half the largest distance from the middle of all points that matter.

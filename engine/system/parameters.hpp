@@ -93,11 +93,12 @@ struct CutDamperParameters {
 };
 
 struct CutParameters {
-  Offset a, b;                  // the joint's point on either end; a distance joint's points
-  std::array<Vec3, 4> frame;    // x, y, z (axis), second axis; drawn pose
-  double constant = 0;          // direction rows of a universal joint
-  double length = 0;            // distance
-  double ratio = 0, offset = 0; // gear
+  Offset a, b;                   // the joint's point on either end; a distance joint's points
+  std::array<Vec3, 4> frame;     // x, y, z (axis), second axis; drawn pose
+  std::array<double, 6> drawn{}; // labels of the drawn pose, rad or m
+  double constant = 0;           // direction rows of a universal joint
+  double length = 0;             // distance
+  double ratio = 0, offset = 0;  // gear
 };
 
 struct Parameters {

@@ -1,11 +1,58 @@
 #include "engine/system/reactions.hpp"
 
+#include <algorithm>
+#include <span>
+
 namespace flyball {
 namespace {
 
 struct Wrench {
   Vec3 moment = Vec3::Zero(), force = Vec3::Zero(); // about the link's origin
 };
+
+void add_gears(const System& system, const Parameters& p, const Eigen::VectorXd& lambda,
+               const std::vector<double>& loads, std::vector<GearForces>& out) {
+  std::vector<int> link_of; // by coordinate of q_R
+  for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+    const CutJoint& cut = system.cuts[c];
+    if (cut.type != JointType::gear) continue;
+    const double multiplier = lambda[cut.first_row]; // of q_b - ratio q_a - offset
+    GearForces g{cut.joint, {-1, p.cuts[c].ratio * multiplier}, {-1, -multiplier}};
+    if (link_of.empty()) {
+      link_of.resize(static_cast<std::size_t>(system.nv), -1);
+      for (std::size_t l = 0; l < system.links.size(); ++l)
+        if (const int v = system.links[l].v; v >= 0)
+          link_of[static_cast<std::size_t>(v)] = static_cast<int>(l);
+    }
+    g.a.link = link_of[static_cast<std::size_t>(cut.gear_va)];
+    g.b.link = link_of[static_cast<std::size_t>(cut.gear_vb)];
+    out.push_back(g);
+  }
+  for (const int joint : system.dropped_gears) {
+    GearForces g{joint, {}, {}};
+    // What lies beyond the gear, as it is felt at its farther end.
+    const DrivenCoordinate *far = nullptr, *near = nullptr;
+    for (const DrivenCoordinate& d : system.drives)
+      if (!d.gears.empty() && d.gears.back() == joint) far = &d;
+    if (far) {
+      const std::span<const int> before(far->gears.data(), far->gears.size() - 1);
+      for (const DrivenCoordinate& d : system.drives)
+        if (d.motor == far->motor && std::ranges::equal(d.gears, before)) near = &d;
+    }
+    if (far && near) {
+      const auto ratio = [&](const DrivenCoordinate& d) {
+        return p.links[static_cast<std::size_t>(d.link)].gear_ratio;
+      };
+      g.a.link = near->link;
+      g.b.link = far->link;
+      for (std::size_t i = 0; i < system.drives.size(); ++i)
+        if (const DrivenCoordinate& d = system.drives[i]; std::ranges::find(d.gears, joint) != d.gears.end())
+          g.b.value += loads[i] * ratio(d) / ratio(*far);
+      g.a.value = -g.b.value * ratio(*far) / ratio(*near);
+    }
+    out.push_back(g);
+  }
+}
 
 } // namespace
 
@@ -100,6 +147,7 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     o.force = sign * w.force;
     o.torque = sign * (w.moment + (k.at(last).o - o.point).cross(w.force));
   }
+  std::vector<double> loads; // of the driven coordinates
   out.drives.assign(system.drives.size(), 0);
   for (const DrivenCoordinate& d : system.drives) {
     const auto l = static_cast<std::size_t>(d.link);
@@ -107,8 +155,10 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     const double carried =
         x.axis.dot(system.links[l].type == LinkType::revolute ? needed[l].moment : needed[l].force) +
         p.links[l].force[0].damping * p.links[l].speed;
+    loads.push_back(carried);
     out.drives[static_cast<std::size_t>(d.motor)] += carried * p.links[l].gear_ratio;
   }
+  add_gears(system, p, lambda, loads, out.gears);
   return out;
 }
 

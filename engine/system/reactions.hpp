@@ -12,6 +12,18 @@ struct JointWrench {
   Vec3 point = Vec3::Zero();  // m, the joint's `at` as carried by the child
 };
 
+// What a gear does along the coordinates of its two joints, on their children, positive along the coordinate.
+// The joints transmit it: it is part of their wrenches.
+struct GearForces {
+  int joint = -1; // in the mechanism
+  struct End {
+    int link = -1;
+    double value = 0; // N m or N
+  };
+  End a, b; // between driven coordinates: b is the farther from the motor, and both lack a link where the
+            // gear has no load because others lead there
+};
+
 struct TransmittedForces {
   // On a joint's child by its parent: springs, stops, dampers and drives of the joint included.
   std::vector<JointWrench> tree; // by System::tree_joints
@@ -19,6 +31,7 @@ struct TransmittedForces {
   // By the motor, positive along its coordinate, gears' loads included: N m or N, by System::drives; zero for
   // coordinates driven through gears.
   std::vector<double> drives;
+  std::vector<GearForces> gears; // those that are cuts, then those between driven coordinates
 };
 
 // `kinematics` and `residual` must be at the same state.

@@ -117,6 +117,16 @@ struct CoordinateInfo {
   int link = 0;
 };
 
+// A coordinate as results list it: of a joint in the tree, or measured on one that closes a loop, whose
+// value follows from the others.
+struct ReportedCoordinate {
+  std::string joint;
+  int index = 0, count = 1; // which of the joint's coordinates
+  bool angle = true;
+  int coordinate = -1; // in System::coordinates, or
+  int cut = -1;        // in System::cuts
+};
+
 // How to choose joints to cut where the mechanism does not say.
 struct CutChoice {
   std::vector<int> cut; // joints of the mechanism to cut, beyond those marked; empty: by preference
@@ -134,7 +144,8 @@ struct System {
   std::vector<TreeJoint> tree_joints;
   std::vector<int> body_link; // by body of the mechanism
   std::vector<DrivenCoordinate> drives;
-  std::vector<CoordinateInfo> coordinates; // all but fixed, in the scene's order, implicit joints last
+  std::vector<CoordinateInfo> coordinates;  // of the tree, in the scene's order, implicit joints last
+  std::vector<ReportedCoordinate> reported; // of all joints, in the same order
   std::vector<PointSpringElement> springs;
   std::vector<BodyForceElement> body_forces;
   std::vector<CutDamperElement> cut_dampers;

@@ -61,7 +61,7 @@ inline std::vector<std::pair<std::string, double>> random_start(const Analysis& 
   if (reach == 0) reach = 1;
   std::vector<std::pair<std::string, double>> start;
   for (const CoordinateSolution& c : analysis.summary().coordinates) {
-    if (c.driven) continue;
+    if (c.driven || c.dependent) continue;
     const double at =
         c.angle ? dice.between(-std::numbers::pi, std::numbers::pi) : c.value + dice.between(-2, 2) * reach;
     start.emplace_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index), at);

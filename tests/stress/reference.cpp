@@ -234,8 +234,9 @@ ReferenceState Reference::settle(const Solution& solution) const {
     previous = size;
   }
 
-  for (std::size_t c = 0; c < system.coordinates.size() && c < out.coordinates.size(); ++c) {
-    const CoordinateInfo& info = system.coordinates[c];
+  for (std::size_t c = 0; c < system.reported.size() && c < out.coordinates.size(); ++c) {
+    if (system.reported[c].cut >= 0) continue; // follows from the others
+    const CoordinateInfo& info = system.coordinates[static_cast<std::size_t>(system.reported[c].coordinate)];
     const Link& link = system.links[static_cast<std::size_t>(info.link)];
     if (link.v < 0) continue;
     const Wide value = solution.coordinates[c].value;

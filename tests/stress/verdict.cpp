@@ -101,7 +101,7 @@ Verdict judge(const Mechanism& mechanism, const SolveOptions& options, const Exp
   for (std::size_t i = 0; i < s.coordinates.size() && !unclear; ++i) {
     const CoordinateSolution& c = s.coordinates[i];
     // Along what nothing resists the answer is one of many, and said to be.
-    if (c.driven || std::ranges::find(s.neutral, c.joint) != s.neutral.end()) continue;
+    if (c.driven || c.dependent || std::ranges::find(s.neutral, c.joint) != s.neutral.end()) continue;
     ReferenceCoordinate r = reference.coordinates[i];
     if (known) {
       const auto at = std::ranges::find(expected.known, label(c), &std::pair<std::string, double>::first);
