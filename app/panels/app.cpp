@@ -206,8 +206,6 @@ void set_parameter_from(App& app, const std::string& address, double value, Star
   const std::string step = "Set " + parameter_phrase(address);
   try {
     const double before = get_parameter(app.mechanism(), address);
-    Mechanism tried = app.mechanism();
-    set_parameter(tried, address, value); // whether it can be
     keep_phase(app, address, before, value);
     if (app.mode == Mode::explore)
       app.document.explore(step, {{address, value}}, app.gesture);

@@ -10,7 +10,6 @@
 
 using namespace flyball;
 using namespace flyball::test;
-using Catch::Matchers::ContainsSubstring;
 
 namespace {
 

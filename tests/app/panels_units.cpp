@@ -8,11 +8,11 @@
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
 
+#include <fstream>
 #include <numbers>
 
 using namespace flyball;
 using namespace flyball::test;
-using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -92,7 +92,7 @@ TEST_CASE("a plot is in the units shown, and its CSV in SI") {
   plot.x = {.label = "speed", .unit = "rad/s", .range = PlotRange{0, 2 * std::numbers::pi}};
   plot.y = {.label = "slide", .unit = "m"};
   plot.curves.push_back({.name = "c", .points = {{std::numbers::pi, 0.25}}});
-  plot.references.push_back({.axis = 1, .at = 0.5});
+  plot.references.push_back({.axis = 1, .at = 0.5, .label = ""});
   show_axis(plot, 0, "rad/s", workshop);
   show_axis(plot, 1, "m", workshop);
   CHECK(plot.x.unit == "rpm");
@@ -107,8 +107,11 @@ TEST_CASE("a plot is in the units shown, and its CSV in SI") {
 
 TEST_CASE("what was chosen is there when the program starts again") {
   const TemporaryFolder folder;
-  const AppOptions options{
-      .mode = LiveSolver::Mode::immediate, .on_news = {}, .scenes = {}, .state = folder.path()};
+  const AppOptions options{.mode = LiveSolver::Mode::immediate,
+                           .on_news = {},
+                           .scenes = {},
+                           .numbers = {},
+                           .state = folder.path()};
   {
     App app(options);
     CHECK(app.units == DisplayUnits{});
