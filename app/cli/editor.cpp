@@ -177,17 +177,22 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
     // A film is drawn all the same.
     const bool hidden = !app.movie.progress && !window.visible();
     const bool waits = hidden || (settling == 0 && !in_motion(app));
-    const double longest = waits ? std::min(idle, next_file_update(app)) : 0;
+    const double longest =
+        waits ? std::min({idle, next_file_update(app), next_notice_change(app), app.tooltip.due}) : 0;
     window.wait_events(longest);
     const auto now = Clock::now();
     const double elapsed = std::chrono::duration<double>(now - last).count();
     last = now;
-    const bool news = update_files(app, elapsed);
+    const bool help = app.tooltip.due <= elapsed; // is due, and takes a frame more to find its size
+    const bool fades = next_notice_change(app) <= elapsed;
+    const bool news = update_files(app, elapsed) || help || fades;
+    age_notice(app, elapsed);
     const bool something = stirred.exchange(false) || news || (hidden && window.visible());
     // Otherwise it was only time to look at the disk.
     settling = something ? settling_frames : std::max(settling - 1, 0);
     // Time spent waiting is no time of the motion's.
     const double seconds = waits ? 0 : std::min(elapsed, 0.1);
+    app.tooltip.clock += elapsed - seconds; // which passes in the window, moving or not
     if (window.should_close()) {
       window.set_should_close(false);
       quit(app);

@@ -124,18 +124,18 @@ void draw_sector(const App& app, const ViewInput& input, const Grab& grab) {
     if (const auto p = rim(angle)) draw_line(app, *center, *p, color, angle == 0 && shown != 0 ? 1.2f : 2.4f);
 }
 
-std::string moved_text(const Grab& grab, double step) {
+std::string moved_text(const Grab& grab, double step, const DisplayUnits& units) {
   const auto free = free_coordinates(grab.handle, grab.normal);
   if (!grab.typed.empty() && std::ranges::count(free, true) > 1)
-    return (grab.point ? "length " : "distance ") + typed_text(grab.typed, "m");
+    return (grab.point ? "length " : "distance ") + typed_text(grab.typed, shown_unit("m", units).text);
   std::string text;
   for (int i = 0; i < 3; ++i) {
     if (!free[static_cast<std::size_t>(i)]) continue;
     text += std::string(text.empty() ? "" : "  ") + "Δ" + letters[i] + " ";
-    if (!grab.typed.empty()) return text + typed_text(grab.typed, "m");
-    text += length_text(grab.by[i], step);
+    if (!grab.typed.empty()) return text + typed_text(grab.typed, shown_unit("m", units).text);
+    text += length_text(grab.by[i], step, units);
   }
-  return text + " m";
+  return text + " " + shown_unit("m", units).text;
 }
 
 } // namespace
@@ -151,9 +151,11 @@ void draw_grabbed(const App& app, const ViewInput& input) {
   const Grab& grab = *app.tool.grab;
   if (is_ring(grab.handle)) {
     draw_sector(app, input, grab);
-    const std::string number = grab.typed.empty() ? short_text(grab.angle * 180 / std::numbers::pi, 4) + "°"
-                                                  : typed_text(grab.typed, "deg");
-    draw_tag(app, input, input.cursor, "", number);
+    const ShownUnit unit = shown_unit("rad", app.units);
+    const std::string space = unit.text == "°" ? "" : " ";
+    draw_tag(app, input, input.cursor, "",
+             grab.typed.empty() ? short_text(unit.shown(grab.angle), 4) + space + unit.text
+                                : typed_text(grab.typed, unit.text));
     return;
   }
   const Vec3 now = grab.centre + grab.by;
@@ -167,7 +169,8 @@ void draw_grabbed(const App& app, const ViewInput& input) {
     if (!grab.what.empty()) draw_dot(app, *to, 7, true);
     if (!grab.point) draw_ball(app, *to, true, 1);
   }
-  draw_tag(app, input, input.cursor, grab.what, moved_text(grab, snaps(app, input) ? grid_step(input) : 0));
+  draw_tag(app, input, input.cursor, grab.what,
+           moved_text(grab, snaps(app, input) ? grid_step(input) : 0, app.units));
 }
 
 } // namespace flyball

@@ -59,7 +59,7 @@ void export_picture(App& app, PixelSize window) {
     replace_file(request.file, encode_png(image));
     app.notice = "Saved " + request.file.string();
   } catch (const std::exception& error) {
-    app.notice = std::string("Not saved: ") + error.what();
+    show_error(app, std::string("Not saved: ") + error.what());
   }
 }
 

@@ -89,7 +89,7 @@ Vec3 direction(const App& app, const ViewInput& input, const Aim& from, const Ai
 Aim second_end(const App& app, const ViewInput& input, const Aim& from, const Aim& seen,
                std::string& mistake) {
   if (app.tool.typed.empty()) return seen;
-  const auto length = typed_length(app.tool.typed, &mistake);
+  const auto length = typed_length(app.tool.typed, app.units, &mistake);
   if (!length) return seen;
   Aim end = seen;
   end.point = from.point + *length * direction(app, input, from, seen);
@@ -122,8 +122,11 @@ void use_connecting(App& app, const ViewInput& input) {
     const Aim& from = *tool.first;
     aim = second_end(app, input, from, aim, mistake);
     draw_between(app, input, from.point, aim.point);
-    std::string head = "length " + (tool.typed.empty() ? short_text((aim.point - from.point).norm(), 4) + " m"
-                                                       : typed_text(tool.typed, "m"));
+    const ShownUnit unit = shown_unit("m", app.units);
+    std::string head =
+        "length " + (tool.typed.empty()
+                         ? short_text(unit.shown((aim.point - from.point).norm()), 4) + " " + unit.text
+                         : typed_text(tool.typed, unit.text));
     if (!aim.what.empty())
       head += ", " + aim.what;
     else if (tool.tool != Tool::rod && aim.body != ground_name)

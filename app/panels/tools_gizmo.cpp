@@ -91,8 +91,9 @@ void turn(App& app, const ViewInput& input, const Gizmo& gizmo) {
   const auto turned_by = turned(gizmo, grab.handle, grab.from, input.ray());
   if (turned_by) grab.swept += std::remainder(*turned_by - grab.swept, 2 * std::numbers::pi);
   double angle = snaps(app, input) ? round_angle(grab.swept) : grab.swept;
-  if (const Quantity typed = parse_quantity(grab.typed, "deg"); !grab.typed.empty() && typed)
-    angle = typed.value * std::numbers::pi / 180;
+  if (const Quantity typed = parse_quantity(grab.typed, "rad", shown_unit("rad", app.units).text);
+      !grab.typed.empty() && typed)
+    angle = typed.value;
   if (angle == grab.angle && grab.shift == input.shift) return;
   grab.angle = angle;
   grab.shift = input.shift;
@@ -111,7 +112,7 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
   const std::array<bool, 3> free = free_coordinates(grab.handle, grab.normal);
   Vec3 target = grab.centre + *by;
   grab.what.clear();
-  const Quantity typed = parse_quantity(grab.typed, "m");
+  const Quantity typed = parse_quantity(grab.typed, "m", shown_unit("m", app.units).text);
   const bool arrow = std::ranges::count(free, true) == 1;
   // Along the arrow; else as far from the other end, or from where it was, on the line to where the hand is.
   const Vec3 origin = other_end(grab).value_or(grab.centre);

@@ -72,10 +72,11 @@ void take_typed_size(NewBody& body, double size, int normal) {
   if (body.form == BodyForm::plate) body.size[normal] = round_to(size / 10, size / 100);
 }
 
-std::string size_text(const NewBody& body, double step) {
-  if (body.form == BodyForm::ball) return "radius " + length_text(body.radius, step) + " m";
-  return short_text(body.size.x(), 4) + " × " + short_text(body.size.y(), 4) + " × " +
-         short_text(body.size.z(), 4) + " m";
+std::string size_text(const NewBody& body, double step, const DisplayUnits& units) {
+  const ShownUnit unit = shown_unit("m", units);
+  if (body.form == BodyForm::ball) return "radius " + length_text(body.radius, step, units) + " " + unit.text;
+  const auto edge = [&](double length) { return short_text(unit.shown(length), 4); };
+  return edge(body.size.x()) + " × " + edge(body.size.y()) + " × " + edge(body.size.z()) + " " + unit.text;
 }
 
 } // namespace
@@ -93,14 +94,15 @@ void use_placing(App& app, const ViewInput& input) {
   NewBody body = drawing ? drawn_out(input, form, from, aim) : of_round_size(input, form, from);
   std::string mistake;
   const bool typing = !tool.typed.empty();
-  if (const auto size = typing ? typed_length(tool.typed, &mistake) : std::nullopt)
+  if (const auto size = typing ? typed_length(tool.typed, app.units, &mistake) : std::nullopt)
     take_typed_size(body, *size, from.plane.normal);
   draw_body_outline(app, input, body);
   if (typing)
     draw_tag(app, input, input.cursor, from.what,
-             (form == BodyForm::ball ? "radius " : "edge ") + typed_text(tool.typed, "m"));
+             (form == BodyForm::ball ? "radius " : "edge ") +
+                 typed_text(tool.typed, shown_unit("m", app.units).text));
   else if (drawing)
-    draw_tag(app, input, input.cursor, aim.what, size_text(body, from.step));
+    draw_tag(app, input, input.cursor, aim.what, size_text(body, from.step, app.units));
   else
     draw_aim(app, input, from);
   if (tool.spent) return;
