@@ -1,5 +1,6 @@
 #include "engine/equilibrium/phase_range.hpp"
 
+#include "engine/equilibrium/floquet.hpp"
 #include "engine/equilibrium/report_forces.hpp"
 #include "engine/system/reactions.hpp"
 
@@ -11,17 +12,6 @@ namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
 constexpr int most_turns = 240; // of a drive in a common period; beyond it there is none
-
-// The greatest common measure of two speeds; zero where there is none that matters.
-double common_measure(double a, double b) {
-  const double size = std::max(a, b);
-  while (b > 1e-9 * size) {
-    a = a - b * std::round(a / b); // the least remainder, of either sign
-    a = std::abs(a);
-    std::swap(a, b);
-  }
-  return a < size / most_turns ? 0 : a;
-}
 
 // Angles of the groups to torques of the motors.
 class Torques {
@@ -142,38 +132,35 @@ std::size_t best_point(const Grid& grid, Eigen::Index motor, double sign) {
 
 std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const Parameters& p) {
   struct Group {
-    double measure;
     std::vector<int> drives;
+    std::vector<double> speeds; // rad/s
+    double period = 0;          // s
   };
   std::vector<Group> groups;
-  const auto speed_of = [&](int d) {
-    return p.links[static_cast<std::size_t>(system.drives[static_cast<std::size_t>(d)].link)].speed;
-  };
   for (int d = 0; d < static_cast<int>(system.drives.size()); ++d) {
-    const double speed = std::abs(speed_of(d));
+    const auto l = static_cast<std::size_t>(system.drives[static_cast<std::size_t>(d)].link);
+    const double speed = p.links[l].speed;
     if (speed == 0) continue;
-    const Link& link =
-        system.links[static_cast<std::size_t>(system.drives[static_cast<std::size_t>(d)].link)];
-    if (link.type != LinkType::revolute) return std::nullopt;
-    const auto group = std::ranges::find_if(groups, [&](Group& g) {
-      const double measure = common_measure(g.measure, speed);
-      if (measure == 0 || std::ranges::any_of(g.drives, [&](int other) {
-            return std::abs(speed_of(other)) > most_turns * measure;
-          }))
-        return false;
-      g.measure = measure;
-      return true;
-    });
-    if (group == groups.end())
-      groups.push_back({speed, {d}});
-    else
-      group->drives.push_back(d);
+    if (system.links[l].type != LinkType::revolute) return std::nullopt;
+    bool found = false;
+    for (Group& g : groups) {
+      std::vector<double> speeds = g.speeds;
+      speeds.push_back(speed);
+      const auto period = common_period(speeds, most_turns);
+      if (!period) continue;
+      g.drives.push_back(d);
+      g.speeds = std::move(speeds);
+      g.period = *period;
+      found = true;
+      break;
+    }
+    if (!found) groups.push_back({{d}, {speed}, turn / std::abs(speed)});
   }
   std::vector<PhaseGroup> out;
   for (const Group& g : groups) {
     out.push_back({g.drives, {}});
-    for (int d : g.drives)
-      out.back().turns.push_back(static_cast<int>(std::lround(speed_of(d) / g.measure)));
+    for (double speed : g.speeds)
+      out.back().turns.push_back(static_cast<int>(std::lround(speed * g.period / turn)));
   }
   return out;
 }
