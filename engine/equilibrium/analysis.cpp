@@ -196,6 +196,7 @@ Solution Analysis::solve(const SolveOptions& options) {
   }
   report_progress(options.progress, "reactions");
   const ReportInput input{s.mechanism, problem, s.found, existence, stability, options.points};
+  s.error += s.workspace.data_error;
   report(input, s.error, options.details, s.workspace, out);
   if (!is_finite(out)) {
     s.settled = false;
@@ -266,6 +267,7 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
     entry.solution.status = Status::converged;
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
+    s.error += s.workspace.data_error;
     report({s.mechanism, problem, found, existence, stability, options.points}, s.error, options.details,
            s.workspace, entry.solution);
     if (s.system.conservative) {

@@ -50,6 +50,43 @@ void add_noise(const Problem& problem, double left, double opening, Workspace& w
   }
 }
 
+// Whether every axis points along one of the world's: then normalising rounds nothing.
+bool has_plain_axes(const Problem& problem) {
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const LinkType type = problem.system.links[l].type;
+    if ((type == LinkType::revolute || type == LinkType::prismatic) &&
+        (problem.parameters.links[l].axis.array() != 0).count() > 1)
+      return false;
+  }
+  return true;
+}
+
+// What the rounding of the scene's numbers on their way into the equations does to each coordinate: axes are
+// normalised, lengths measured and positions subtracted in double precision, which the exact balance of
+// these rounded numbers does not show. Springs of coordinates are taken as they are given.
+void add_rounding_of_data(const Problem& problem, Workspace& w, Eigen::VectorXd& error) {
+  const System& system = problem.system;
+  error.setZero(system.nv);
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  const bool plain = has_plain_axes(problem);
+  if (plain && system.rows == 0) return;
+  for (const unsigned pattern : {0U, 2U}) {
+    w.residual.f.setZero();
+    for (std::size_t l = 0; l < system.links.size() && !plain; ++l) {
+      const Link& link = system.links[l];
+      const int n = link.type == LinkType::spherical ? 3 : 1;
+      const double size =
+          link.type == LinkType::prismatic ? w.magnitudes.link_force[l] : w.magnitudes.link_moment[l];
+      for (int v = link.v; link.v >= 0 && v < link.v + n; ++v)
+        w.residual.f[v] = noise_sign(pattern, v) * rounding * size;
+    }
+    for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
+      w.residual.phi[i] = noise_sign(pattern, i) * rounding * w.magnitudes.phi[i];
+    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+    if (w.scaled_step.allFinite()) error += w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs();
+  }
+}
+
 // The force along a direction without stiffness, some way along it.
 class SoftDirection {
  public:
@@ -213,6 +250,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   const System& system = problem.system;
   error.setZero(system.nv);
   w.unheld.setZero(system.nv);
+  w.data_error.setZero(system.nv);
   if (system.nv == 0) return;
   let_go(problem, w);
   double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
@@ -245,6 +283,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   if (outcome.linear) // to a root of order n the steps shrink by (n - 1) / n: n - 1 of the last are left
     error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
   add_noise(problem, left, opening, w, error);
+  add_rounding_of_data(problem, w, w.data_error);
   error += long_rounding * problem.scaling.column;
   if (problem.is_dense() && w.constraints.rank() < std::min(system.rows, system.nv) &&
       at_singular_loops(problem, z, w))

@@ -34,6 +34,9 @@ struct Workspace {
   Configuration<long double> q_long, lambda_long;
   Unknowns trial, closing;
   Eigen::VectorXd assembled, moved;
+  // By refine(): what the rounding of the scene's own numbers does (rad, m), beside the error of the
+  // solution.
+  Eigen::VectorXd data_error;
   Eigen::VectorXd unheld; // by refine(): how far (rad, m) a state moves in which no force can be told
 };
 
