@@ -72,6 +72,7 @@ class BranchFollower {
     int right = 0; // eigenvalues to the right of the axis
     bool damped = false;
   };
+  void follow(BranchState state, bool tell_progress, FollowedBranch& out);
   Described describe(const BranchState& state);
   template <class Value>
   std::pair<BranchState, double> locate(const BranchState& from, double low, double at_low, double high,

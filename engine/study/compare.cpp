@@ -8,6 +8,7 @@
 #include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
@@ -200,21 +201,24 @@ void find_best(Comparison& c) {
     }
 }
 
-} // namespace
+// The integrators look at the flag themselves, and nothing may be thrown through them.
+Run simulated(const Mechanism& mechanism, const SimulationOptions& options) {
+  const Uninterrupted scope;
+  return simulate(mechanism, options);
+}
 
-Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
-  Comparison out;
+void compare_through(const Mechanism& mechanism, const CompareOptions& options, Comparison& out) {
   const auto cancelled = [&] { return options.cancel && options.cancel->load(std::memory_order_relaxed); };
   SolveOptions solve;
   solve.cancel = options.cancel;
   const Solution steady = Analysis(mechanism).solve(solve);
   out.status = steady.status;
   out.message = steady.message;
-  if (steady.status != Status::converged) return out;
+  if (steady.status != Status::converged) return;
 
   Direct direct(mechanism);
   Unknowns answer;
-  if (direct.answer(answer) != Status::converged) return out; // found above
+  if (direct.answer(answer) != Status::converged) return; // found above
   direct.settle_reference(answer, out);
   out.answer = {direct.iterations(), direct.error_of(answer.q, steady.neutral),
                 time_of(options.repeats, [&] { direct.answer(answer); })};
@@ -246,10 +250,10 @@ Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
         point.tolerance = tolerance;
         std::vector<double> times;
         for (int i = 0; i < options.repeats; ++i) {
-          const Run run = simulate(mechanism, simulation);
+          const Run run = simulated(mechanism, simulation);
           if (cancelled()) {
             out.message = "Cancelled.";
-            return out;
+            return;
           }
           times.push_back(run.statistics.run_time_s);
           if (i > 0) continue;
@@ -269,6 +273,19 @@ Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
       }
     }
   find_best(out);
+}
+
+} // namespace
+
+Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
+  Comparison out;
+  const Interruptible scope(options.cancel);
+  try {
+    compare_through(mechanism, options, out);
+  } catch (const Interrupted&) {
+    out.message = "Cancelled.";
+    std::erase_if(out.motion, [](const MotionCurve& curve) { return curve.points.empty(); });
+  }
   return out;
 }
 
