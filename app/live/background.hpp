@@ -4,6 +4,7 @@
 
 #include "app/live/live_solver.hpp"
 #include "app/live/worker.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/task/progress.hpp"
 
 #include <algorithm>
@@ -47,6 +48,7 @@ class Background {
     if (!after) s.dropped = s.wanted - 1;
     if (s.mode == LiveSolver::Mode::immediate) {
       const std::uint64_t ticket = s.wanted;
+      s.cancel = false;
       lock.unlock();
       s.run(task, ticket);
       return;
@@ -112,6 +114,7 @@ class Background {
       phase = "";
       begun = Clock::now();
       News fresh;
+      const Interruptible scope(&cancel);
       try {
         fresh.result = task(Watch{cancel, [this](const Progress& now) {
                                     phase = now.phase;

@@ -1,4 +1,5 @@
 #include "app/live/live_solver.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <cmath>
@@ -161,6 +162,7 @@ void LiveSolver::State::work(const std::stop_token& stop) {
 }
 
 LiveAnswer LiveSolver::State::solve(const Job& job) {
+  const Interruptible scope(&cancel);
   LiveAnswer out;
   out.ticket = job.ticket;
   out.mechanism = job.request.mechanism;

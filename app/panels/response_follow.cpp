@@ -3,6 +3,7 @@
 #include "engine/equilibrium/branch_follower.hpp"
 #include "engine/equilibrium/existence.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/linear/interruption.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -45,6 +46,8 @@ class Gathering {
     off_crossings();
     return true;
   }
+
+  bool empty() const { return out_.branches.empty(); }
 
   ResponseDiagram take() {
     // A branch that turns back in the crossing itself, as the bent one of a fork does, has no fold of its
@@ -144,8 +147,13 @@ std::optional<ResponseDiagram> follow_through(const Mechanism& mechanism, const 
                                               const BranchOptions& options) {
   if ((state.parameter - from) * (state.parameter - to) > 0) return std::nullopt;
   const auto begin = std::chrono::steady_clock::now();
+  const Interruptible scope(options.cancel);
   Gathering gathering(mechanism, address, from, to, options);
-  if (!gathering.through(state)) return std::nullopt;
+  try {
+    if (!gathering.through(state)) return std::nullopt;
+  } catch (const Interrupted&) {
+    if (gathering.empty()) throw;
+  }
   ResponseDiagram diagram = gathering.take();
   diagram.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return diagram;

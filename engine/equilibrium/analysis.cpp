@@ -13,6 +13,7 @@
 #include "engine/equilibrium/sign_is_open.hpp"
 #include "engine/equilibrium/stability.hpp"
 #include "engine/equilibrium/unbounded.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/system/point_motion.hpp"
 
@@ -183,6 +184,18 @@ void Analysis::update(const Mechanism& mechanism) {
 }
 
 Solution Analysis::solve(const SolveOptions& options) {
+  const Interruptible scope(options.cancel);
+  try {
+    return solve_through(options);
+  } catch (const Interrupted&) {
+    state_->settled = false;
+    Solution cancelled;
+    cancelled.message = "The solve was cancelled.";
+    return cancelled;
+  }
+}
+
+Solution Analysis::solve_through(const SolveOptions& options) {
   State& s = *state_;
   Problem problem{s.system, s.parameters, s.scaling, options.cancel, true};
   const bool warm = options.warm && s.answered && options.start.empty();
@@ -288,6 +301,17 @@ Solution Analysis::solve(const SolveOptions& options) {
 }
 
 AllSolutions Analysis::solve_all(const SolveOptions& options) {
+  const Interruptible scope(options.cancel);
+  try {
+    return solve_all_through(options);
+  } catch (const Interrupted&) {
+    AllSolutions cancelled;
+    cancelled.message = "The search was cancelled.";
+    return cancelled;
+  }
+}
+
+AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   State& s = *state_;
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
   for (const BodyPoint& point : options.points)

@@ -96,6 +96,10 @@ class Analysis {
   std::optional<StabilityEvidence> stability_evidence() const;
 
  private:
+  // The same, to the end or an interruption.
+  Solution solve_through(const SolveOptions& options);
+  AllSolutions solve_all_through(const SolveOptions& options);
+
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -6,6 +6,7 @@
 #include "engine/equilibrium/find_equilibrium.hpp"
 #include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
 
@@ -190,6 +191,19 @@ constexpr double longest_corner = 1e-6;
 
 FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
   FollowedBranch out;
+  const Interruptible scope(options_.cancel);
+  try {
+    follow(std::move(state), tell_progress, out);
+  } catch (const Interrupted&) {
+    out.end = "cancelled"; // what was found until then stays
+    if (out.points.empty()) throw;
+    out.states.resize(std::min(out.points.size(), out.states.size()));
+    out.points.resize(out.states.size());
+  }
+  return out;
+}
+
+void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranch& out) {
   const BranchState origin = state;
   Described now = describe(state);
   out.points.push_back(now.point);
@@ -249,7 +263,6 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
     else
       length = std::min(longest, length * (iterations <= 3 ? 1.5 : iterations > 5 ? 0.6 : 1.));
   }
-  return out;
 }
 
 void BranchFollower::find_specials(const BranchState& state, const BranchState& next, double length,

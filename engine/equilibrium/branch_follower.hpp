@@ -78,6 +78,7 @@ class BranchFollower {
     double low = 0, high = 0;
     int right_low = 0, right_high = 0;
   };
+  void follow(BranchState state, bool tell_progress, FollowedBranch& out);
   Described describe(const BranchState& state);
   template <class Value>
   std::pair<BranchState, double> locate(const BranchState& from, double low, double at_low, double high,

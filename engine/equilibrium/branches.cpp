@@ -6,6 +6,7 @@
 #include "engine/equilibrium/find_equilibrium.hpp"
 #include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -27,11 +28,16 @@ class Diagram {
 
   ResponseDiagram run() {
     const auto begin = std::chrono::steady_clock::now();
-    from_drawn_pose();
-    off_crossings(true);
-    if (options_.all)
-      for (double value : values_to_search())
-        from_all_equilibria(value);
+    const Interruptible scope(options_.cancel);
+    try {
+      from_drawn_pose();
+      off_crossings(true);
+      if (options_.all)
+        for (double value : values_to_search())
+          from_all_equilibria(value);
+    } catch (const Interrupted&) {
+      if (out_.branches.empty()) out_.message = "Cancelled.";
+    }
     if (out_.status == Status::converged && out_.message.empty()) out_.message = summary();
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(out_);

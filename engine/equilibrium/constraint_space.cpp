@@ -1,5 +1,7 @@
 #include "engine/equilibrium/constraint_space.hpp"
 
+#include "engine/linear/interruption.hpp"
+
 namespace flyball {
 
 void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance) {
@@ -20,9 +22,11 @@ void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance) 
   rank_ = static_cast<int>(qr_.rank(tolerance));
   basis_.setZero(n_, n_ - rank_);
   basis_.bottomRows(n_ - rank_).setIdentity();
-  for (int k = rank_ - 1; k >= 0; --k)
+  for (int k = rank_ - 1; k >= 0; --k) {
+    interruption_point();
     basis_.bottomRows(n_ - k).applyHouseholderOnTheLeft(qr_.matrix().col(k).tail(n_ - k - 1),
                                                         qr_.coefficient(k), apply_work_.data());
+  }
 }
 
 void ConstraintSpace::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& y) const {

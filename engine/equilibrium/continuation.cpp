@@ -1,5 +1,6 @@
 #include "engine/equilibrium/continuation.hpp"
 
+#include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
 
@@ -47,6 +48,26 @@ struct Continuation::Bordered {
   }
 };
 
+namespace {
+
+// The two right singular vectors (columns) of [H b] that belong to the smallest singular values, zero among
+// them.
+std::optional<Eigen::MatrixXd> last_right_vectors(const Eigen::MatrixXd& h) {
+  const Eigen::Index k = h.rows();
+  if (k + 1 < large::from) {
+    const auto svd = singular_vectors(h);
+    if (!svd) return {};
+    return Eigen::MatrixXd(svd->right.rightCols(2));
+  }
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(k + 1, k + 1);
+  square.topRows(k) = h;
+  const auto smallest = large::smallest_singular(square, 2);
+  if (!smallest) return {};
+  return Eigen::MatrixXd(smallest->right.rowwise().reverse());
+}
+
+} // namespace
+
 void Continuation::assemble(const Unknowns& z, double parameter, Bordered& out) {
   const Problem problem = family_.problem();
   // Rates in the parameter by central differences; they steer the steps, the balance itself stays exact.
@@ -77,7 +98,7 @@ void Continuation::assemble(const Unknowns& z, double parameter, Bordered& out) 
     w_.constraints.solve(-phi_rate.cwiseProduct(problem.scaling.row), out.r1);
   }
   out.h.resize(k, k + 1);
-  out.h.leftCols(k) = out.basis.transpose() * w_.scaled_stiffness * out.basis;
+  out.h.leftCols(k) = large::projected(w_.scaled_stiffness, out.basis);
   // A state without loads has stiffness only, one without stiffness loads only.
   double size = n > 0 ? w_.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff() : 0;
   if (k > 0) size = std::max(size, out.h.leftCols(k).cwiseAbs().maxCoeff());
@@ -148,6 +169,15 @@ bool Continuation::find_tangent(BranchState& state, const Eigen::VectorXd& previ
   state.turning = state.tangent[state.tangent.size() - 1];
   m.row(k) = b.row(state.tangent);
   // The determinant's sign with the size of its worst factor, so that it can be followed to zero.
+  state.determinant = 0;
+  if (k + 1 >= large::from) {
+    const auto smallest = large::smallest_singular(m, 1);
+    if (!smallest) return false;
+    // The size of the rest only scales it.
+    state.determinant =
+        smallest->sign * smallest->values[0] / m.norm() * std::sqrt(static_cast<double>(k + 1));
+    return true;
+  }
   const auto values = singular_values(m);
   if (!values) return false;
   Lu lu;
@@ -177,13 +207,13 @@ bool Continuation::switch_branch(const BranchState& at, double length, BranchSta
   assemble(at.z, at.parameter, b);
   const Eigen::Index k = b.basis.cols();
   if (k == 0) return false;
-  const auto svd = singular_vectors(b.h);
-  if (!svd) return false;
+  const auto null_directions = last_right_vectors(b.h);
+  if (!null_directions) return false;
   // The null space is spanned by the branch's own tangent and one more direction: take that orthogonal to the
   // tangent.
   Eigen::VectorXd other = Eigen::VectorXd::Zero(at.tangent.size());
-  for (Eigen::Index i : {k - 1, k}) {
-    Eigen::VectorXd v = b.expand(svd->right.col(i), 0);
+  for (Eigen::Index i : {0, 1}) {
+    Eigen::VectorXd v = b.expand(null_directions->col(i), 0);
     v -= at.tangent * at.tangent.dot(v);
     if (v.norm() > other.norm()) other = v;
   }

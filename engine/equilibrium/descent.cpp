@@ -1,6 +1,7 @@
 #include "engine/equilibrium/descent.hpp"
 
 #include "engine/equilibrium/largest.hpp"
+#include "engine/linear/large.hpp"
 
 namespace flyball {
 namespace {
@@ -28,7 +29,7 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
     const Eigen::MatrixXd& basis = w.constraints.basis();
     if (basis.cols() == 0) return {DescentEnd::minimum, i};
     gradient = basis.transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
-    const Eigen::MatrixXd reduced = basis.transpose() * w.scaled_stiffness * basis;
+    const Eigen::MatrixXd reduced = large::projected(w.scaled_stiffness, basis);
     w.noise = Eigen::VectorXd::Zero(basis.cols());
     for (Eigen::Index k = 0; k < basis.cols(); ++k)
       w.noise[k] =

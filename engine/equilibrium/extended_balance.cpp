@@ -1,6 +1,7 @@
 #include "engine/equilibrium/extended_balance.hpp"
 
 #include "engine/equilibrium/coordinate_gradient.hpp"
+#include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
 
@@ -114,7 +115,7 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   const Eigen::VectorXd phi = w_.residual_long.phi.cast<double>().cwiseProduct(scaling_.row);
   Eigen::VectorXd force = w_.residual_long.f.cast<double>().cwiseProduct(scaling_.column);
   if (w_.constraints.rank() > 0) w_.constraints.solve(-phi, out.r0);
-  out.matrix.topLeftCorner(k, k) = basis.transpose() * stiffness * basis / size;
+  out.matrix.topLeftCorner(k, k) = large::projected(stiffness, basis) / size;
   for (Eigen::Index i = 0; i < count; ++i) {
     Eigen::VectorXd force_rate, phi_rate, r1 = Eigen::VectorXd::Zero(n);
     rates(state, static_cast<std::size_t>(i), force_rate, phi_rate);
@@ -238,10 +239,18 @@ void ExtendedBalance::set_borders(const ExtendedState& state) {
   factor_with_multipliers(problem(), z, w_);
   const Eigen::MatrixXd& basis = w_.constraints.basis();
   if (basis.cols() == 0) return;
-  const auto svd = singular_vectors(basis.transpose() * w_.scaled_stiffness * basis);
-  if (!svd) return; // the borders of the state before do, too
-  left_ = basis * svd->left.rightCols(1);
-  right_ = basis * svd->right.rightCols(1);
+  const Eigen::MatrixXd reduced = large::projected(w_.scaled_stiffness, basis);
+  if (reduced.rows() >= large::from) {
+    const auto smallest = large::smallest_singular(reduced, 1);
+    if (!smallest) return;
+    left_ = basis * smallest->left;
+    right_ = basis * smallest->right;
+  } else {
+    const auto svd = singular_vectors(reduced);
+    if (!svd) return;
+    left_ = basis * svd->left.rightCols(1);
+    right_ = basis * svd->right.rightCols(1);
+  }
   size_ = force_size(w_);
 }
 
@@ -249,7 +258,7 @@ Eigen::MatrixXd ExtendedBalance::bordered(const Workspace& w) const {
   const Eigen::MatrixXd& basis = w.constraints.basis();
   const Eigen::Index k = basis.cols();
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(k + 1, k + 1);
-  m.topLeftCorner(k, k) = basis.transpose() * w.scaled_stiffness * basis / size_;
+  m.topLeftCorner(k, k) = large::projected(w.scaled_stiffness, basis) / size_;
   m.col(k).head(k) = basis.transpose() * left_;
   m.row(k).head(k) = right_.transpose() * basis;
   return m;

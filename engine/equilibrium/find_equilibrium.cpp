@@ -6,6 +6,7 @@
 #include "engine/equilibrium/stability.hpp"
 #include "engine/equilibrium/trust_region.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/linear/interruption.hpp"
 
 #include <random>
 
@@ -65,6 +66,11 @@ class Search {
     if (has_descent() && !downhill_first && go_downhill()) return;
     if (p_.cancelled()) return cancelled();
     settle_for_unstable();
+  }
+
+  void cancelled() {
+    found_.status = Status::not_converged;
+    found_.message = "The solve was cancelled.";
   }
 
  private:
@@ -216,11 +222,6 @@ class Search {
     const NewtonOutcome held = newton(p_, found_.z, w_, settings, &history_);
     found_.iterations += held.iterations;
     return held;
-  }
-
-  void cancelled() {
-    found_.status = Status::not_converged;
-    found_.message = "The solve was cancelled.";
   }
 
   // Fills w_.assembled or finds that it cannot be done.
@@ -387,7 +388,13 @@ bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
 
 void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
                       Workspace& w, std::vector<double>& history, Found& found) {
-  Search(problem, start, nearest, warm, w, history, found).run();
+  const Interruptible scope(problem.cancel);
+  Search search(problem, start, nearest, warm, w, history, found);
+  try {
+    search.run();
+  } catch (const Interrupted&) {
+    search.cancelled();
+  }
 }
 
 } // namespace flyball

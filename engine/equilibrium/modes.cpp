@@ -3,6 +3,7 @@
 #include "engine/equilibrium/coordinate_gradient.hpp"
 #include "engine/equilibrium/newton.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 
 #include <algorithm>
@@ -27,9 +28,9 @@ ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspac
   const Eigen::MatrixXd& basis = w.constraints.basis();
   const auto& s = problem.scaling.column;
   ReducedMotion out;
-  out.mass = basis.transpose() * s.asDiagonal() * w.linearization.mass * s.asDiagonal() * basis;
-  out.velocity = basis.transpose() * s.asDiagonal() * w.linearization.velocity * s.asDiagonal() * basis;
-  out.stiffness = basis.transpose() * w.scaled_stiffness * basis;
+  out.mass = large::projected(s.asDiagonal() * w.linearization.mass * s.asDiagonal(), basis);
+  out.velocity = large::projected(s.asDiagonal() * w.linearization.velocity * s.asDiagonal(), basis);
+  out.stiffness = large::projected(w.scaled_stiffness, basis);
   const double m = out.mass.norm(), k = out.stiffness.norm();
   if (m > 0 && k > 0) out.rate = std::sqrt(k / m);
   out.velocity *= out.rate;
@@ -202,7 +203,7 @@ StabilityEvidence stability_evidence(const Problem& problem, const Unknowns& z, 
     w.noise[i] =
         1e-15 * basis.col(i).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
   ReducedHessian energy;
-  energy.factor(basis.transpose() * w.scaled_stiffness * basis, w.noise, out.potential);
+  energy.factor(large::projected(w.scaled_stiffness, basis), w.noise, out.potential);
   out.flat = energy.null_count();
   if (out.potential && !energy.positive_definite() && energy.size() > 0) {
     if (energy.decompose())

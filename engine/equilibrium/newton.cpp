@@ -1,6 +1,8 @@
 #include "engine/equilibrium/newton.hpp"
 
 #include "engine/equilibrium/largest.hpp"
+#include "engine/linear/interruption.hpp"
+#include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/system/constraint_row.hpp"
 
@@ -129,6 +131,7 @@ void step_again(const Problem& problem, double size, Unknowns& z, Workspace& w) 
 } // namespace
 
 void evaluate(const Problem& problem, const Unknowns& z, double t, Workspace& w) {
+  interruption_point();
   forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
   evaluate_forces(problem, z, w);
 }
@@ -210,6 +213,7 @@ bool singular(const Problem& problem, const Workspace& w) {
 }
 
 void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
+  interruption_point();
   if (!problem.is_dense()) {
     Eliminator& eliminator = w.eliminator(problem);
     eliminator.linearize(problem, z, w.kinematics, w.residual, w.magnitudes);
@@ -217,6 +221,7 @@ void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
     return;
   }
   linearize(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.linearization);
+  interruption_point();
   factor_dense_constraints(problem, w);
   const int n = problem.system.nv;
   w.scaled_stiffness.resize(n, n);
@@ -233,8 +238,12 @@ void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
     return;
   }
   const Eigen::MatrixXd& basis = w.constraints.basis();
-  w.product.noalias() = w.scaled_stiffness * basis;
-  w.reduced.noalias() = basis.transpose() * w.product;
+  if (n < large::from) {
+    w.product.noalias() = w.scaled_stiffness * basis;
+    w.reduced.noalias() = basis.transpose() * w.product;
+  } else {
+    w.reduced = large::projected(w.scaled_stiffness, basis);
+  }
   w.noise.resize(basis.cols());
   for (Eigen::Index k = 0; k < basis.cols(); ++k) {
     double size = 0;

@@ -1,5 +1,7 @@
 #include "engine/equilibrium/reduced_hessian.hpp"
 
+#include "engine/linear/large.hpp"
+
 #include <algorithm>
 #include <random>
 
@@ -94,6 +96,11 @@ Eigen::MatrixXd ReducedHessian::null_basis() const {
     for (Eigen::Index k = 0; k < n; ++k)
       if (std::abs(eigen_.values()[k]) <= zero) basis.col(c++) = scale.cwiseProduct(eigen_.vectors().col(k));
     return basis;
+  }
+  if (n >= large::from) {
+    const auto smallest = large::smallest_singular(matrix_, null_);
+    if (!smallest) return Eigen::MatrixXd::Identity(n, n).leftCols(null_);
+    return scale.asDiagonal() * smallest->right.rowwise().reverse();
   }
   const auto svd = singular_vectors(matrix_); // of finite entries, as factor() has seen to
   if (!svd) return Eigen::MatrixXd::Identity(n, n).leftCols(null_);

@@ -5,6 +5,8 @@
 #include "engine/equilibrium/largest.hpp"
 #include "engine/equilibrium/linear_motion.hpp"
 #include "engine/equilibrium/pencil.hpp"
+#include "engine/linear/interruption.hpp"
+#include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 
 #include <algorithm>
@@ -33,7 +35,7 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Matr
     const auto all = orthonormal_completion(basis.transpose() * flat);
     if (!all || all->cols() <= flat.cols()) return false;
     const auto rest = all->rightCols(all->cols() - flat.cols());
-    const auto solved = least_squares(basis.transpose() * w.scaled_stiffness * basis * rest, -left);
+    const auto solved = least_squares(large::projected(w.scaled_stiffness, basis) * rest, -left);
     if (!solved) return false;
     step = basis * (rest * *solved);
     if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
@@ -116,6 +118,7 @@ bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
   const double h = 1e-3;
   bool agrees = true;
   for (int i = 0; i < problem.system.nv && agrees; ++i) {
+    interruption_point();
     const double second = (lagrangian(i, h) - 2 * lagrangian(i, 0) + lagrangian(i, -h)) / (h * h);
     agrees = std::abs(second - k(i, i)) <= 1e-3 * k.norm();
   }
@@ -132,7 +135,7 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   const bool potential = has_potential(problem, z, w);
   const Eigen::MatrixXd basis = w.constraints.basis();
   ReducedHessian energy; // symmetric where there is a potential, whatever Newton used
-  const Eigen::MatrixXd reduced = basis.transpose() * w.scaled_stiffness * basis;
+  const Eigen::MatrixXd reduced = large::projected(w.scaled_stiffness, basis);
   w.noise.resize(basis.cols());
   for (Eigen::Index i = 0; i < basis.cols(); ++i)
     w.noise[i] =
@@ -183,9 +186,9 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.linearization);
   const auto& s = problem.scaling.column;
   const Eigen::MatrixXd mass =
-      basis.transpose() * s.asDiagonal() * w.linearization.mass * s.asDiagonal() * basis;
+      large::projected(s.asDiagonal() * w.linearization.mass * s.asDiagonal(), basis);
   const Eigen::MatrixXd velocity =
-      basis.transpose() * s.asDiagonal() * w.linearization.velocity * s.asDiagonal() * basis;
+      large::projected(s.asDiagonal() * w.linearization.velocity * s.asDiagonal(), basis);
   Eigen::MatrixXd stiffness = reduced;
   if (potential) stiffness = (reduced + reduced.transpose()) / 2;
   out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);

@@ -2,11 +2,16 @@
 // is not finite, an iteration that does not converge) is a value that the caller must handle, so that no
 // result is ever read that was not computed. Instantiated once, which spares every other file the compiling.
 //
+// Large matrices are decomposed with interruption points on the way (large.hpp): where the flag of the thread
+// is set (interruption.hpp) they throw Interrupted.
+//
 // The classes keep their storage: computing again at the same size allocates nothing. Their results may be
 // read after a compute() that returned true, and only then.
 #pragma once
 
+#include "engine/linear/interruption.hpp"
 #include <Eigen/Cholesky>
+
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -19,20 +24,21 @@
 
 namespace flyball {
 
-// Set by another thread to end a long computation; null where nobody may.
-using CancelFlag = const std::atomic<bool>*;
-
 // A = V diag(values) V^T of a symmetric matrix (n, n), by the symmetric QR algorithm (Golub and Van Loan,
 // Matrix Computations, section 8.3). Only the lower triangle is read.
 class SymmetricEigen {
  public:
   // False where there is no entry, one is not finite, or the iteration does not converge.
   [[nodiscard]] bool compute(const Eigen::MatrixXd& a, bool with_vectors = true);
-  const Eigen::VectorXd& values() const { return solver_.eigenvalues(); }   // (n), ascending
-  const Eigen::MatrixXd& vectors() const { return solver_.eigenvectors(); } // (n, n), orthonormal columns
+  const Eigen::VectorXd& values() const { return large_ ? values_ : solver_.eigenvalues(); } // (n), ascending
+  // (n, n), orthonormal columns
+  const Eigen::MatrixXd& vectors() const { return large_ ? vectors_ : solver_.eigenvectors(); }
 
  private:
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver_;
+  bool large_ = false; // then these
+  Eigen::VectorXd values_;
+  Eigen::MatrixXd vectors_;
 };
 
 // A = L L^T of a symmetric positive definite matrix (n, n); the lower triangle is read.
@@ -49,6 +55,8 @@ class Cholesky {
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factors_;
+  bool large_ = false; // then this, in the lower triangle
+  Eigen::MatrixXd lower_;
 };
 
 // A P = Q R with column pivoting (m, n): |R_00| >= |R_11| >= ...; the rank is read off the diagonal of R
@@ -58,17 +66,25 @@ class PivotedQr {
   // False where there is no entry or one is not finite.
   [[nodiscard]] bool compute(const Eigen::MatrixXd& a);
   Eigen::Index rank(double relative_tolerance) const; // pivots above this share of the largest
-  double pivot(Eigen::Index i) const { return std::abs(qr_.matrixQR()(i, i)); }
+  double pivot(Eigen::Index i) const { return std::abs(matrix()(i, i)); }
   // Column i of A P is column permutation()[i] of A.
   const Eigen::PermutationMatrix<Eigen::Dynamic>::IndicesType& permutation() const {
-    return qr_.colsPermutation().indices();
+    return large_ ? order_ : qr_.colsPermutation().indices();
   }
-  const Eigen::MatrixXd& matrix() const { return qr_.matrixQR(); } // R above, Householder vectors below
-  double coefficient(Eigen::Index k) const { return qr_.hCoeffs()[k]; }
+  // R above, Householder vectors below
+  const Eigen::MatrixXd& matrix() const { return large_ ? matrix_ : qr_.matrixQR(); }
+  double coefficient(Eigen::Index k) const { return large_ ? coefficients_[k] : qr_.hCoeffs()[k]; }
   Eigen::MatrixXd q() const; // (m, m)
+  // x = Q x and x = Q^T x by the first `count` reflections, in place.
+  void apply_q(Eigen::VectorXd& x, Eigen::Index count) const;
+  void apply_q_transposed(Eigen::VectorXd& x, Eigen::Index count) const;
 
  private:
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  bool large_ = false; // then these
+  Eigen::MatrixXd matrix_;
+  Eigen::VectorXd coefficients_;
+  Eigen::VectorXi order_;
 };
 
 // A = Q R without pivoting (m, n), m >= n.
@@ -95,9 +111,15 @@ class CompleteOrthogonal {
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
  private:
+  bool compute_large(const Eigen::MatrixXd& a, std::optional<double> relative_tolerance);
+  void solve_large(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
+
   bool empty_ = true;
   Eigen::Index unknowns_ = 0;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition_;
+  bool large_ = false; // then A P = Q R, and where the rank is short R_1^T P' = Q' R' of its first rows
+  PivotedQr qr_, rows_;
+  Eigen::Index rank_ = 0;
 };
 
 // A square matrix (n, n), by LU with partial pivoting.
@@ -111,6 +133,9 @@ class Lu {
 
  private:
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  bool large_ = false; // then these
+  Eigen::MatrixXd factors_;
+  Eigen::VectorXi exchanges_;
 };
 
 // The same of a complex matrix, for blocks of right-hand sides.

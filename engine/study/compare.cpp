@@ -9,6 +9,7 @@
 #include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/stability.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -217,6 +218,12 @@ void find_best(Comparison& c) {
     }
 }
 
+// The integrators look at the flag themselves, and nothing may be thrown through them.
+Run simulated(const Mechanism& mechanism, const SimulationOptions& options) {
+  const Uninterrupted scope;
+  return simulate(mechanism, options);
+}
+
 // The error of where a run ended; not a number where it did not come to its end.
 double end_error(const Run& run, const Direct& direct, const std::vector<std::string>& neutral) {
   if (run.status != RunStatus::completed) return std::numeric_limits<double>::quiet_NaN();
@@ -234,7 +241,7 @@ std::optional<MotionPoint> measure(const Mechanism& mechanism, const SimulationO
   point.tolerance = simulation.tolerance;
   std::vector<double> times;
   for (int i = 0; i < repeats; ++i) {
-    const Run run = simulate(mechanism, simulation);
+    const Run run = simulated(mechanism, simulation);
     if (time.watch.over()) break;
     times.push_back(run.statistics.run_time_s);
     if (i == 0) {
@@ -282,12 +289,7 @@ bool measure_motions(const Mechanism& mechanism, const CompareOptions& options,
   return true;
 }
 
-} // namespace
-
-Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
-  Comparison out;
-  Time time{Watch(options.cancel), options.time_limit};
-  time.watch.allow(options.time_limit);
+void compare_through(const Mechanism& mechanism, const CompareOptions& options, const Time& time, Comparison& out) {
   const auto broken_off = [&] {
     out.complete = false;
     out.message = !time.watch.out_of_time() ? "Cancelled."
@@ -300,13 +302,13 @@ Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
   out.status = steady.status;
   out.message = steady.message;
   if (time.watch.over()) broken_off();
-  if (steady.status != Status::converged || !out.complete) return out;
+  if (steady.status != Status::converged || !out.complete) return;
 
   Direct direct(mechanism, options.cancel);
   Unknowns answer;
   if (direct.answer(answer) != Status::converged) { // found above
     broken_off();
-    return out;
+    return;
   }
   direct.settle_reference(answer, out);
   out.answer = {direct.iterations(), direct.error_of(answer.q, steady.neutral),
@@ -324,6 +326,22 @@ Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
       options.durations.empty() ? natural_durations(steady, mechanism) : options.durations;
   if (!measure_motions(mechanism, options, durations, time, direct, steady.neutral, out)) broken_off();
   find_best(out);
+}
+
+} // namespace
+
+Comparison compare(const Mechanism& mechanism, const CompareOptions& options) {
+  Comparison out;
+  Time time{Watch(options.cancel), options.time_limit};
+  time.watch.allow(options.time_limit);
+  const Interruptible scope(options.cancel);
+  try {
+    compare_through(mechanism, options, time, out);
+  } catch (const Interrupted&) {
+    out.complete = false;
+    out.message = "Cancelled.";
+    std::erase_if(out.motion, [](const MotionCurve& curve) { return curve.points.empty(); });
+  }
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include "engine/equilibrium/extended_balance.hpp"
 #include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/sensitivity.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
@@ -43,8 +44,7 @@ class Designer {
     out_.message = diagram_.message;
     if (!diagram_.branches.empty()) {
       find_range();
-      for (std::size_t b = 0; b < diagram_.branches.size() && !cancelled(); ++b)
-        along(b);
+      solve_along();
       conclude();
     }
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -52,6 +52,18 @@ class Designer {
   }
 
  private:
+  void solve_along() {
+    const Interruptible scope(options_.cancel);
+    try {
+      for (std::size_t b = 0; b < diagram_.branches.size() && !cancelled(); ++b) {
+        report_progress(options_.progress, "solving for the value",
+                        static_cast<double>(b) / static_cast<double>(diagram_.branches.size()));
+        along(b);
+      }
+    } catch (const Interrupted&) { // what was found until then stays
+    }
+  }
+
   bool cancelled() const { return options_.cancel && options_.cancel->load(std::memory_order_relaxed); }
   double unit() const { return wanted_.angle ? 1 : balance_.problem().parameters.length; }
   double away(double value) const {

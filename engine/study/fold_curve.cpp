@@ -5,6 +5,7 @@
 #include "engine/equilibrium/coordinate_gradient.hpp"
 #include "engine/equilibrium/drive_cuts.hpp"
 #include "engine/equilibrium/extended_balance.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/study/design.hpp"
 
@@ -243,9 +244,25 @@ class Plane {
   Mechanism on(const Line& line) const {
     return with_parameter(mechanism_, line.varied == 0 ? y_.address : x_.address, line.value);
   }
-  void progress(std::size_t done) const {
-    report_progress(options_.progress, "following folds",
-           static_cast<double>(done) / static_cast<double>(lines_.size()));
+  // Until it is cancelled; what was found until then stays.
+  template <class Search>
+  void for_lines(const Search& search) {
+    const Interruptible scope(options_.cancel);
+    try {
+      for (std::size_t i = 0; i < lines_.size() && !cancelled(); ++i) {
+        line_ = i;
+        report_progress(options_.progress, "following", part_before());
+        search(lines_[i]);
+      }
+    } catch (const Interrupted&) {
+    }
+  }
+  // Of following the branches along the line that is searched: a part of the whole.
+  ReportProgress along_line() const {
+    return [this](const Progress& now) {
+      const double share = std::clamp(now.part, 0., 1.) / static_cast<double>(lines_.size());
+      report_progress(options_.progress, now.phase, part_before() + share);
+    };
   }
 
   ExtendedBalance balance(std::vector<Condition> conditions, bool unfolded = false) const {
@@ -304,6 +321,8 @@ class Plane {
   }
 
  private:
+  double part_before() const { return static_cast<double>(line_) / static_cast<double>(lines_.size()); }
+
   Mechanism at_corner() const {
     return with_parameter(with_parameter(mechanism_, x_.address, x_.from), y_.address,
                           std::clamp(get_parameter(mechanism_, y_.address), y_.from, y_.to));
@@ -325,6 +344,7 @@ class Plane {
   std::vector<std::string> notes_;
   System system_;
   std::vector<Line> lines_;
+  std::size_t line_ = 0; // that is searched
   std::vector<Traced> traced_;
   PlaneCurves out_;
 };
@@ -344,16 +364,14 @@ PlaneCurves fold_curves(const Mechanism& mechanism, const PlaneAxis& x, const Pl
                         const PlaneOptions& options) {
   Plane plane(mechanism, x, y, options);
   ExtendedBalance folds = plane.balance({balance_is_singular()});
-  std::size_t done = 0;
-  for (const Plane::Line& line : plane.lines()) {
-    if (plane.cancelled()) break;
-    plane.progress(done++);
+  plane.for_lines([&](const Plane::Line& line) {
     const PlaneAxis& along = plane.moving(line);
     BranchOptions follow;
     follow.largest_step = options.largest_step;
     follow.eigenvalues = false;
     follow.all = options.all;
     follow.cancel = options.cancel;
+    follow.progress = plane.along_line();
     const ResponseDiagram d = follow_branches(plane.on(line), along.address, along.from, along.to, follow);
     plane.heard(d.status, d.message);
     ExtendedBalance crossings =
@@ -369,7 +387,7 @@ PlaneCurves fold_curves(const Mechanism& mechanism, const PlaneAxis& x, const Pl
       else if (s.type == SpecialPointType::branch_point)
         plane.add(crossings, PlaneCurveType::branch_point, line, s.at.parameter, s.at.coordinates);
     }
-  }
+  });
   return plane.finish("fold or crossing");
 }
 
@@ -378,15 +396,13 @@ PlaneCurves coordinate_curves(const Mechanism& mechanism, const PlaneAxis& x, co
   Plane plane(mechanism, x, y, options);
   ExtendedBalance balance =
       plane.balance({coordinate_is(free_coordinate(plane.system(), coordinate), value)});
-  std::size_t done = 0;
-  for (const Plane::Line& line : plane.lines()) {
-    if (plane.cancelled()) break;
-    plane.progress(done++);
+  plane.for_lines([&](const Plane::Line& line) {
     const PlaneAxis& along = plane.moving(line);
     DesignOptions ask;
     ask.all = options.all;
     ask.largest_step = options.largest_step;
     ask.cancel = options.cancel;
+    ask.progress = plane.along_line();
     const DesignAnswer answer =
         design(plane.on(line), along.address, along.from, along.to, coordinate, value, ask);
     // Not reaching the value on one line is no failure.
@@ -394,7 +410,7 @@ PlaneCurves coordinate_curves(const Mechanism& mechanism, const PlaneAxis& x, co
     plane.heard(solved ? Status::converged : answer.status, answer.message);
     for (const DesignSolution& s : answer.solutions)
       plane.add(balance, PlaneCurveType::coordinate, line, s.parameter, s.at.coordinates);
-  }
+  });
   return plane.finish("such");
 }
 

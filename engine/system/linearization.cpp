@@ -1,5 +1,6 @@
 #include "engine/system/linearization.hpp"
 
+#include "engine/linear/interruption.hpp"
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/pair_stiffness.hpp"
 #include "engine/system/rotation_vector.hpp"
@@ -119,6 +120,7 @@ template <class WrenchOf, class RowOf, class Apply>
 void fill_tree(const System& system, const Kinematics<double>& k, const std::vector<ScrewRates>& screws,
                Eigen::MatrixXd& out, WrenchOf wrench_of, RowOf row_of, Apply apply) {
   for (std::size_t l = 0; l < system.links.size(); ++l) {
+    interruption_point();
     const Link& link = system.links[l];
     if (link.v < 0) continue;
     const int nearest = nearest_free(system, link.parent);
@@ -174,6 +176,7 @@ void for_coordinates_of(const System& system, int link, Visit visit) {
 void add_body_forces(const System& system, const Parameters& p, const Kinematics<double>& k,
                      const std::vector<ScrewRates>& screws, Eigen::MatrixXd& out) {
   for (std::size_t n = 0; n < system.body_forces.size(); ++n) {
+    interruption_point();
     const BodyForceElement& e = system.body_forces[n];
     const BodyForceParameters& f = p.body_forces[n];
     // A force fixed in the body turns with it, which is what the subtree sums assume.
@@ -253,6 +256,7 @@ void linearize(const System& system, const Parameters& p, const Eigen::VectorXd&
         return apply_inertia(row, s.ddw, s.ddv, arm) + s.dw.dot(row.b);
       });
   for (std::size_t l = 0; l < system.links.size(); ++l) {
+    interruption_point();
     const Link& link = system.links[l];
     if (link.v < 0 || !p.links[l].elastic) continue;
     if (link.type == LinkType::spherical)
@@ -300,6 +304,7 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
 void add_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                  const Kinematics<double>& k, Eigen::MatrixXd& velocity) {
   for (std::size_t l = 0; l < system.links.size(); ++l) {
+    interruption_point();
     const Link& link = system.links[l];
     if (link.v < 0) continue;
     if (link.type == LinkType::spherical)
@@ -308,6 +313,7 @@ void add_damping(const System& system, const Parameters& p, const Eigen::VectorX
       velocity(link.v, link.v) += p.links[l].force[0].damping;
   }
   for (std::size_t n = 0; n < system.body_forces.size(); ++n) {
+    interruption_point();
     const BodyForceElement& e = system.body_forces[n];
     const BodyForceParameters& f = p.body_forces[n];
     if (e.link < 0 || f.type != ForceType::drag) continue;

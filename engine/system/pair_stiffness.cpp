@@ -1,5 +1,7 @@
 #include "engine/system/pair_stiffness.hpp"
 
+#include "engine/linear/interruption.hpp"
+
 namespace flyball {
 namespace {
 
@@ -81,6 +83,7 @@ Vec3 velocity_change(const Part& j, const ScrewRates& s, const Vec3& point, cons
 void add_springs(const System& system, const Parameters& p, const Kinematics<double>& k,
                  const std::vector<ScrewRates>& screws, Eigen::MatrixXd& out) {
   for (std::size_t n = 0; n < system.springs.size(); ++n) {
+    interruption_point();
     const PointSpringElement& e = system.springs[n];
     const PointSpringParameters& f = p.springs[n];
     const SpringState<double> s = spring_state(e, f, k);
@@ -118,6 +121,7 @@ void add_cut_dampers(const System& system, const Parameters& p, const Kinematics
                      const std::vector<ScrewRates>& screws, Eigen::MatrixXd& out) {
   if (!p.moving) return;
   for (std::size_t n = 0; n < system.cut_dampers.size(); ++n) {
+    interruption_point();
     const CutDamperElement& e = system.cut_dampers[n];
     const LinkState<double>&la = k.at(e.ends.a), &lb = k.at(e.ends.b);
     const Vec3 axis = la.R * p.cut_dampers[n].axis, b = k.point(e.ends.b, p.cut_dampers[n].b);
@@ -153,6 +157,7 @@ void add_cut_dampers(const System& system, const Parameters& p, const Kinematics
 void add_constraint_forces(const System& system, const Parameters& p, const Eigen::VectorXd& lambda,
                            const Kinematics<double>& k, Eigen::MatrixXd& out) {
   for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+    interruption_point();
     const CutJoint& cut = system.cuts[c];
     if (cut.type == JointType::gear) continue;
     const CutParameters& f = p.cuts[c];
@@ -191,6 +196,7 @@ void add_pair_stiffness(const System& system, const Parameters& parameters, cons
 void add_pair_damping(const System& system, const Parameters& p, const Kinematics<double>& k,
                       Eigen::MatrixXd& velocity) {
   for (std::size_t n = 0; n < system.springs.size(); ++n) {
+    interruption_point();
     if (p.springs[n].damping == 0) continue;
     const PointSpringElement& e = system.springs[n];
     const SpringState<double> s = spring_state(e, p.springs[n], k);
@@ -201,6 +207,7 @@ void add_pair_damping(const System& system, const Parameters& p, const Kinematic
               [&](const Part& i, const Part& j) { return p.springs[n].damping * along(i) * along(j); });
   }
   for (std::size_t n = 0; n < system.cut_dampers.size(); ++n) {
+    interruption_point();
     const CutDamperElement& e = system.cut_dampers[n];
     const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[n].axis, b = k.point(e.ends.b, p.cut_dampers[n].b);
     for_pairs(e.ends.support, k, velocity, [&](const Part& i, const Part& j) {

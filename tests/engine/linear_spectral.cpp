@@ -1,0 +1,124 @@
+// The same answers from large matrices, which are decomposed by pieces, as Eigen's own decompositions give.
+#include "engine/linear/large.hpp"
+#include "engine/linear/spectral.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <random>
+
+using namespace flyball;
+
+namespace {
+
+Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> any;
+  Eigen::MatrixXd a(rows, columns);
+  for (double& entry : a.reshaped())
+    entry = any(random);
+  return a;
+}
+
+constexpr Eigen::Index n = large::from + 21;
+
+} // namespace
+
+TEST_CASE("a large definite matrix is factored and solved with") {
+  const Eigen::MatrixXd half = random_matrix(n, n, 1);
+  const Eigen::MatrixXd a = half * half.transpose() + Eigen::MatrixXd::Identity(n, n),
+                        b = random_matrix(n, 11, 2);
+  Cholesky cholesky;
+  REQUIRE(cholesky.compute(a));
+  Eigen::VectorXd x = b.col(3);
+  cholesky.solve_in_place(x);
+  CHECK((a * x - b.col(3)).norm() < 1e-9 * b.norm());
+  CHECK((a * cholesky.solve(b) - b).norm() < 1e-9 * b.norm());
+  const Eigen::LLT<Eigen::MatrixXd> eigen(a);
+  CHECK((cholesky.forward(b) - eigen.matrixL().solve(b)).norm() < 1e-10 * b.norm());
+  CHECK(cholesky.smallest_pivot() ==
+        Approx(eigen.matrixLLT().diagonal().cwiseAbs2().minCoeff()).epsilon(1e-10));
+  CHECK_FALSE(cholesky.compute(-a));
+}
+
+TEST_CASE("a large square matrix is solved with, and the sign of its determinant is known") {
+  Eigen::MatrixXd a = random_matrix(n, n, 3);
+  const Eigen::VectorXd b = random_matrix(n, 1, 4);
+  for (int i = 0; i < 2; ++i) {
+    Lu lu;
+    REQUIRE(lu.compute(a));
+    CHECK((a * lu.solve(b) - b).norm() < 1e-9 * b.norm());
+    CHECK((a.transpose() * lu.solve_transposed(b) - b).norm() < 1e-9 * b.norm());
+    const Eigen::PartialPivLU<Eigen::MatrixXd> eigen(a);
+    int sign = eigen.permutationP().determinant() < 0 ? -1 : 1;
+    for (const double pivot : eigen.matrixLU().diagonal())
+      sign *= pivot < 0 ? -1 : 1;
+    CHECK(lu.sign_of_determinant() == sign);
+    CHECK(large::smallest_singular(a, 1)->sign == sign);
+    const auto x = solve_square(a, b);
+    REQUIRE(x);
+    CHECK((a * *x - b).norm() < 1e-9 * b.norm());
+    a.row(7).swap(a.row(90));
+  }
+}
+
+TEST_CASE("least squares of least norm with large matrices of any rank") {
+  for (const Eigen::Index rank : {n, Eigen::Index{100}}) {
+    const Eigen::MatrixXd a = random_matrix(n, rank, 5) * random_matrix(rank, n, 6);
+    const Eigen::MatrixXd b = random_matrix(n, 2, 7);
+    CompleteOrthogonal ours;
+    REQUIRE(ours.compute(a, 1e-10));
+    CHECK(ours.rank() == rank);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> eigen;
+    eigen.setThreshold(1e-10);
+    eigen.compute(a);
+    const Eigen::MatrixXd expected = eigen.solve(b);
+    Eigen::VectorXd x;
+    ours.solve(b.col(0), x);
+    CHECK((x - expected.col(0)).norm() < 1e-6 * expected.norm());
+    CHECK((ours.solve(b) - expected).norm() < 1e-6 * expected.norm());
+  }
+}
+
+TEST_CASE("columns of a large matrix are orthogonalised with pivots") {
+  const Eigen::MatrixXd a = random_matrix(n + 30, 60, 8) * random_matrix(60, n, 9);
+  PivotedQr qr;
+  REQUIRE(qr.compute(a));
+  CHECK(qr.rank(1e-10) == 60);
+  const Eigen::MatrixXd q = qr.q();
+  CHECK((q.transpose() * q - Eigen::MatrixXd::Identity(n + 30, n + 30)).norm() < 1e-11);
+  const Eigen::MatrixXd r = qr.matrix().triangularView<Eigen::Upper>();
+  for (const Eigen::Index i : {0, 59, 100})
+    CHECK((q * r.col(i) - a.col(qr.permutation()[i])).norm() < 1e-10 * a.norm());
+  Eigen::VectorXd x = random_matrix(n + 30, 1, 10);
+  const Eigen::VectorXd before = x;
+  qr.apply_q_transposed(x, 60);
+  qr.apply_q(x, 60);
+  CHECK((x - before).norm() < 1e-11 * before.norm());
+}
+
+TEST_CASE("eigenvalues of large matrices, symmetric and not, are Eigen's") {
+  const Eigen::MatrixXd a = random_matrix(n, n, 11), s = a + a.transpose();
+  SymmetricEigen symmetric;
+  REQUIRE(symmetric.compute(s));
+  CHECK((s * symmetric.vectors() - symmetric.vectors() * symmetric.values().asDiagonal()).norm() <
+        1e-10 * s.norm());
+  const auto found = eigenvalues(a);
+  REQUIRE(found);
+  REQUIRE(found->size() == static_cast<std::size_t>(n));
+  const Eigen::EigenSolver<Eigen::MatrixXd> eigen(a, false);
+  for (const std::complex<double> x : eigen.eigenvalues()) {
+    double nearest = 1e9;
+    for (const std::complex<double> y : *found)
+      nearest = std::min(nearest, std::abs(x - y));
+    CHECK(nearest < 1e-8 * a.norm());
+  }
+}
+
+TEST_CASE("a flag ends the eigenvalues of a large matrix without an answer") {
+  const std::atomic<bool> set{true};
+  CHECK_FALSE(eigenvalues(random_matrix(n, n, 12), &set));
+  const Interruptible scope(&set);
+  CHECK_THROWS_AS(eigenvalues(random_matrix(n, n, 12)), Interrupted);
+  SymmetricEigen symmetric;
+  CHECK_THROWS_AS(symmetric.compute(Eigen::MatrixXd::Identity(n, n)), Interrupted);
+}
