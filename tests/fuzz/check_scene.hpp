@@ -3,12 +3,17 @@
 // refusal in words.
 #pragma once
 
+#include "engine/mechanism/mechanism.hpp"
+
 #include <chrono>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace flyball::fuzz {
+
+// Whether a mechanism solves in milliseconds.
+bool small_enough(const Mechanism& mechanism);
 
 // What does not hold, in words. Mechanisms too large to solve in milliseconds are only loaded and saved; a
 // solve is cancelled after `limit`.

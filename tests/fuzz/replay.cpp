@@ -1,4 +1,5 @@
-// The fuzzer's corpus, replayed: fuzz_corpus FOLDER [FILE ...].
+// The fuzzers' corpus, replayed: fuzz_corpus FOLDER [FILE ...]. Every scene under every analysis.
+#include "tests/fuzz/check_analyses.hpp"
 #include "tests/fuzz/check_scene.hpp"
 
 #include "engine/mechanism/file.hpp"
@@ -18,7 +19,7 @@ int main(int argc, char** argv) try {
       continue;
     }
     for (const fs::directory_entry& entry : fs::directory_iterator(argv[i]))
-      if (entry.is_regular_file()) files.push_back(entry.path());
+      if (entry.is_regular_file() && entry.path().extension() == ".json") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   int wrong = files.empty() ? 1 : 0;
@@ -26,12 +27,16 @@ int main(int argc, char** argv) try {
     const auto begin = std::chrono::steady_clock::now();
     std::optional<std::string> complaint;
     try {
-      complaint = flyball::fuzz::check_scene(flyball::read_bytes(file), std::chrono::seconds(2));
+      const auto bytes = flyball::read_bytes(file);
+      complaint = flyball::fuzz::check_scene(bytes, std::chrono::seconds(2));
+      for (int which = 0; which < flyball::fuzz::analysis_count && !complaint; ++which)
+        complaint = flyball::fuzz::check_analysis(bytes, which, static_cast<unsigned>(which),
+                                                  std::chrono::milliseconds(100));
     } catch (const std::exception& error) {
       complaint = error.what();
     }
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    if (!complaint && spent.count() > 10) complaint = "took " + std::to_string(spent.count()) + " s";
+    if (!complaint && spent.count() > 30) complaint = "took " + std::to_string(spent.count()) + " s";
     if (!complaint) continue;
     ++wrong;
     std::printf("%s: %s\n", file.filename().c_str(), complaint->c_str());

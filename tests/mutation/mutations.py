@@ -1,0 +1,80 @@
+"""The changes that mutate.py makes: signs, dropped terms, results that nobody looks at."""
+from typing import NamedTuple
+
+
+class Mutation(NamedTuple):
+    name: str
+    file: str
+    old: str  # in the file exactly once
+    new: str
+    target: str
+    tests: str = ""  # of Catch2: the tests that ought to catch it; empty: the whole suite
+
+
+MUTATIONS = [
+    Mutation("centripetal force of an offset mass, sign", "engine/system/residual.cpp",
+             "x.dw.cross(c) + x.w.cross(x.w.cross(c))", "x.dw.cross(c) - x.w.cross(x.w.cross(c))", "system_tests"),
+    Mutation("gyroscopic moment w x J w, dropped", "engine/system/residual.cpp",
+             "times_inertia(x.dw) + x.w.cross(times_inertia(x.w))", "times_inertia(x.dw)", "system_tests"),
+    Mutation("quadratic drag, sign", "engine/system/residual.cpp",
+             "-(S(p.linear) + S(p.quadratic) * v.norm()) * v", "-(S(p.linear) - S(p.quadratic) * v.norm()) * v",
+             "system_tests"),
+    Mutation("multipliers in the balance, sign", "engine/system/residual.cpp",
+             "out.f[v] += multiplier * g;", "out.f[v] -= multiplier * g;", "system_tests"),
+    Mutation("Coriolis acceleration of a driven slide, half", "engine/system/kinematics.cpp",
+             "x.dv += parent.w.cross(x.axis) * (2 * speed);", "x.dv += parent.w.cross(x.axis) * speed;", "system_tests"),
+    Mutation("angular acceleration carried along an arm, dropped", "engine/system/kinematics.cpp",
+             "parent.dv + parent.dw.cross(arm) + parent.w.cross(swing)", "parent.dv + parent.w.cross(swing)",
+             "system_tests"),
+    Mutation("rotation vector of a reversed joint, not turned round", "engine/system/kinematics.cpp",
+             "(link.reversed ? d.conjugate() : d) * p.drawn_rotation", "d * p.drawn_rotation", "system_tests"),
+    Mutation("gear's gradient, sign", "engine/system/constraint_row.hpp",
+             "add(cut.gear_va, S(-p.ratio));", "add(cut.gear_va, S(p.ratio));", "system_tests"),
+    Mutation("centrifugal potential, sign", "engine/system/potential.cpp",
+             "add(-w.dot(lp.inertia * w) / 2);", "add(w.dot(lp.inertia * w) / 2);", "system_tests"),
+    Mutation("drag's damping across its speed, sign", "engine/system/linearization.cpp",
+             "if (speed > 0) force += f.quadratic / speed * v * v.dot(dv);\n      for_coordinates_of",
+             "if (speed > 0) force -= f.quadratic / speed * v * v.dot(dv);\n      for_coordinates_of",
+             "dynamics_tests", "*linearised*"),
+    Mutation("momentum in the gyroscopic matrix, sign", "engine/system/linearization.cpp",
+             "u.force -= 2 * b.momentum.cross(s.sw);", "u.force += 2 * b.momentum.cross(s.sw);",
+             "equilibrium_tests", "rotation can hold*,a spinning rotor*,a conical pendulum swings*,the swing pendulum*"),
+    Mutation("reaction of a joint that the tree runs against, sign", "engine/system/reactions.cpp",
+             "o.force = sign * w.force;", "o.force = w.force;", "system_tests"),
+    Mutation("damping in a drive's torque, dropped", "engine/system/reactions.cpp",
+             "p.links[l].force[0].damping * p.links[l].speed;", "0;", "system_tests"),
+    Mutation("existence: forces that vary, let pass", "engine/equilibrium/existence.cpp",
+             "if (left > tolerance * size", "if (left > 1e30 * size", "equilibrium_tests",
+             "weight that turns*,a rotor must be*,forces held by the world*"),
+    Mutation("existence: one phase only", "engine/equilibrium/existence.cpp",
+             "std::array{1.0, 2.3, 3.9, 5.2}", "std::array{6.283185307179586}", "equilibrium_tests",
+             "weight that turns*,a rotor must be*,forces held by the world*"),
+    Mutation("refinement: multipliers not corrected", "engine/equilibrium/refine.cpp",
+             "z.lambda += w.trial.lambda;", "", "equilibrium_tests"),
+    Mutation("refinement: error not widened where steps stop shrinking", "engine/equilibrium/refine.cpp",
+             "error *= 4 * std::max(1., previous / size);", "error *= 0;", "equilibrium_tests"),
+    Mutation("discriminant of two pairs, its size alone", "engine/equilibrium/pair_crossing.cpp",
+             "return 4 * sum.real() / static_cast<double>(cluster.size());",
+             "return 4 * std::abs(sum) / static_cast<double>(cluster.size());", "equilibrium_tests", "[flutter]"),
+    Mutation("damped pairs taken for undamped ones", "engine/equilibrium/pair_crossing.cpp",
+             "if (!mirrored ||", "if (false && !mirrored ||", "equilibrium_tests", "[flutter]"),
+    Mutation("dampers do not disturb a sleeping top", "engine/equilibrium/gyroscopic_stability.cpp",
+             "if (!(size > 0)) return false;", "return false;", "equilibrium_tests", "[gyroscopic]"),
+    Mutation("gyroscopic matrix, symmetric part", "engine/equilibrium/gyroscopic_stability.cpp",
+             "(velocity - velocity.transpose()) / 2", "(velocity + velocity.transpose()) / 2", "equilibrium_tests",
+             "[gyroscopic]"),
+    Mutation("an unstable equilibrium is an answer", "engine/equilibrium/find_equilibrium.cpp",
+             "if (unstable_) return drawn_and_held_by_rotation();", "if (unstable_) return true;", "equilibrium_tests",
+             "[gyroscopic]"),
+    Mutation("branch points go unseen", "engine/equilibrium/branch_follower.cpp",
+             "state.determinant * next.determinant < 0", "state.determinant * next.determinant < -1",
+             "equilibrium_tests", "[branches]"),
+    Mutation("motion: mass factors that fail are used", "engine/dynamics/equations.cpp",
+             "if (!factor()) return false;\n  if (!idle_.empty()) {", "factor();\n  if (!idle_.empty()) {",
+             "dynamics_tests"),
+    Mutation("drive forces of a motion without inertia", "engine/dynamics/equations.cpp",
+             "out.noalias() += mass_.mass.bottomLeftCorner(drives_, n_) * a_;", "", "dynamics_tests"),
+    Mutation("stops touched from the wrong side", "engine/dynamics/simulator.cpp",
+             "touching[i] = stops[i].upper ? value > 0 : value < 0;",
+             "touching[i] = stops[i].upper ? value < 0 : value > 0;", "dynamics_tests"),
+]
