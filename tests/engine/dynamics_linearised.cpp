@@ -25,7 +25,8 @@ std::vector<Complex> eigenvalues_by_differences(const Mechanism& m) {
   o.start = Start::equilibrium;
   Eigen::VectorXd q, u;
   find_start(o, model, q, u);
-  Equations equations(model);
+  const Watch watch;
+  Equations equations(model, watch);
   equations.analyse(0, q, u);
   if (equations.has_massless() || !equations.evaluate(0, q, u)) return {};
   Linearization l;
