@@ -135,6 +135,7 @@ struct ChangeWatch::State {
   }
 };
 
+ChangeWatch::ChangeWatch() = default;
 ChangeWatch::ChangeWatch(std::function<void()> on_change)
     : state_(std::make_unique<State>(std::move(on_change))) {}
 ChangeWatch::~ChangeWatch() = default;

@@ -10,7 +10,7 @@ namespace flyball {
 
 class ChangeWatch {
  public:
-  ChangeWatch() = default; // tells nothing
+  ChangeWatch(); // tells nothing
   // `on_change` is called from a thread of its own, once until take_change().
   explicit ChangeWatch(std::function<void()> on_change);
   ~ChangeWatch();

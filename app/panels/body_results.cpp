@@ -33,13 +33,12 @@ void body_results(App& app) {
     const int b = body_index(app.answer.mechanism, name);
     if (b < 0) continue;
     const PointMotion& centre = solution.centres[static_cast<std::size_t>(b)];
-    const double mm = screen_factor(false);
-    const std::string per_second = std::string(screen_unit(false)) + "/s";
+    const ShownUnit length = coordinate_unit(false, app.units), speed = rate_unit(false, app.units);
     heading(app, ("Mass centre of " + name).c_str());
-    row(app, "Position", components_text(centre.position, mm), screen_unit(false), at_phase);
+    row(app, "Position", components_text(centre.position, length.factor), length.text.c_str(), at_phase);
     note_widget(app.widgets, "results/position/" + name);
-    row(app, "Velocity", components_text(centre.velocity, mm), per_second.c_str(), at_phase);
-    row(app, "Speed", size_text(centre.velocity, mm), per_second.c_str());
+    row(app, "Velocity", components_text(centre.velocity, speed.factor), speed.text.c_str(), at_phase);
+    row(app, "Speed", size_text(centre.velocity, speed.factor), speed.text.c_str());
     note_widget(app.widgets, "results/speed/" + name);
     row(app, "Acceleration", components_text(centre.acceleration, 1), "m/s²", at_phase);
     row(app, "Its size", size_text(centre.acceleration, 1), "m/s²");

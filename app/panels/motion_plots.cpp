@@ -34,12 +34,11 @@ struct CentreQuantity {
   const char* name;
   std::vector<Vec3> PointTrack::*track;
   const char* unit;
-  double factor;
 };
 const std::array<CentreQuantity, 3> centre_quantities{
-    {{"position", &PointTrack::position, "mm", 1000},
-     {"velocity", &PointTrack::velocity, "mm/s", 1000},
-     {"acceleration", &PointTrack::acceleration, "m/s²", 1}}};
+    {{"position", &PointTrack::position, "m"},
+     {"velocity", &PointTrack::velocity, "m/s"},
+     {"acceleration", &PointTrack::acceleration, "m/s²"}}};
 constexpr std::array<const char*, 4> components{"x", "y", "z", "size"};
 
 std::string centre_key(const CentreQuantity& quantity, std::size_t component, const std::string& body) {
@@ -54,7 +53,7 @@ std::string centre_title(const CentreQuantity& quantity, std::size_t component, 
 
 Shown shown_centre(const PointTrack& track, const CentreQuantity& quantity, std::size_t component) {
   const std::vector<Vec3>& vectors = track.*quantity.track;
-  Shown out{centre_title(quantity, component, track.point.body), quantity.unit, quantity.factor, {}};
+  Shown out{centre_title(quantity, component, track.point.body), quantity.unit, {}};
   out.lines.push_back({"", {}});
   std::vector<double>& values = out.lines.front().values;
   values.reserve(vectors.size());

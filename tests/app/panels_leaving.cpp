@@ -1,0 +1,95 @@
+// Studies of a large mechanism are left while they compute: the window does not wait for them.
+#include "large_mechanisms.hpp"
+#include "robot.hpp"
+
+#include "app/live/worker.hpp"
+#include "app/panels/study_panels.hpp"
+#include "tests/catch.hpp"
+
+#include <chrono>
+#include <thread>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// A window on a mechanism, with its computations in the background.
+class Window {
+ public:
+  explicit Window(Mechanism mechanism)
+      : app_({.mode = LiveSolver::Mode::background,
+              .on_news = {},
+              .scenes = {},
+              .theme = Theme::light,
+              .numbers = {},
+              .state = {}}),
+        stage_(app_, 1) {
+    app_.view.samples = 1;
+    open_document(app_, Document(std::move(mechanism)));
+    wait([&] { return converged(app_) && !solving(app_); });
+  }
+
+  App& app() { return app_; }
+  void frame() { stage_.frame(app_, {900, 600}, 0.02); }
+  // A key pressed, and the frame that sees it.
+  void key(int code) {
+    app_.keys.push_back({code, false, false});
+    frame();
+  }
+  template <class Until>
+  void wait(const Until& until) {
+    const auto begin = Clock::now();
+    while (!until() && seconds_since(begin) < 120) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      frame();
+    }
+    REQUIRE(until());
+  }
+
+ private:
+  OffscreenContext context_;
+  App app_;
+  Stage stage_;
+};
+
+} // namespace
+
+TEST_CASE("a study of a long chain is left in the frame that asks for it, and keys act in the next") {
+  // Following its branches takes minutes, and what is waited for is less than the time one frame may take on a
+  // machine that is busy with other things.
+  constexpr double frame_limit = 2; // s
+  Window window(hanging_chain(600));
+  struct Key {
+    int code;
+    Study study;
+  };
+  for (const Key& key : {Key{'C', Study::response}, Key{'E', Study::states}, Key{'P', Study::map}}) {
+    INFO("key " << static_cast<char>(key.code));
+    window.key(key.code);
+    REQUIRE(window.app().study.open == key.study);
+    window.wait([&] { return studying(window.app()); });
+    for (int i = 0; i < 5; ++i) { // it is in the midst of it
+      std::this_thread::sleep_for(std::chrono::milliseconds(40));
+      window.frame();
+    }
+    CHECK(studying(window.app()));
+    auto begin = Clock::now();
+    window.key('M');
+    CHECK(seconds_since(begin) < frame_limit);
+    CHECK(window.app().study.open == Study::motion);
+    begin = Clock::now();
+    window.key('M'); // and away again
+    CHECK(window.app().study.open == Study::none);
+    CHECK_FALSE(studying(window.app()));
+    CHECK(seconds_since(begin) < frame_limit);
+  }
+  // What was left behind ends by itself, soon.
+  CHECK(join_left_behind(60));
+}
