@@ -131,16 +131,20 @@ int run_window(Window& window, const std::filesystem::path& scene, const EditorO
   std::string title, state;
   while (!app.quit) {
     const bool waits = settling == 0 && !in_motion(app);
-    const double longest = waits ? std::min(idle, next_file_update(app)) : 0;
+    const double longest =
+        waits ? std::min({idle, next_file_update(app), next_notice_change(app), app.tooltip.due}) : 0;
     window.wait_events(longest);
     const auto now = Clock::now();
     const double elapsed = std::chrono::duration<double>(now - last).count();
     last = now;
-    const bool news = update_files(app, elapsed);
+    const bool help = app.tooltip.due <= elapsed; // is due, and takes a frame more to find its size
+    const bool news = update_files(app, elapsed) || help;
+    age_notice(app, elapsed);
     // One frame is enough where it was only time to look at the disk.
     settling = waits ? (elapsed < longest || news ? settling_frames : 0) : std::max(settling - 1, 0);
     // Time spent waiting is no time of the motion's.
     const double seconds = waits ? 0 : std::min(elapsed, 0.1);
+    app.tooltip.clock += elapsed - seconds; // which passes in the window, moving or not
     if (window.should_close()) {
       window.set_should_close(false);
       quit(app);

@@ -14,6 +14,7 @@ std::string window_state(const App& app) {
       {"file", app.document.file().string()},
       {"name", app.mechanism().name},
       {"unsaved", app.document.unsaved()},
+      {"explored", app.document.explored().size()},
       {"autosave", app.files.autosave.path().string()},
       {"leftovers", app.files.leftovers.size()},
       {"problem", app.problem},

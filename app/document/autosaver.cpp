@@ -51,11 +51,11 @@ void Autosaver::tick(const Document& document, bool to_lose, std::uint64_t based
     collect();
   }
   if (!to_lose) return remove();
-  if (document.revision() == written_) return;
-  still_ = document.revision() == seen_ ? still_ + seconds : 0;
+  if (document.stored_revision() == written_) return;
+  still_ = document.stored_revision() == seen_ ? still_ + seconds : 0;
   waited_ += seconds;
   hold_ -= seconds;
-  seen_ = document.revision();
+  seen_ = document.stored_revision();
   due_ = std::max({0., std::min(pause - still_, longest - waited_), hold_});
   if (due_ > 0) return;
   start(document, based_on, settings);
@@ -63,7 +63,7 @@ void Autosaver::tick(const Document& document, bool to_lose, std::uint64_t based
 }
 
 void Autosaver::start(const Document& document, std::uint64_t based_on, const AutosaveSettings& settings) {
-  written_ = document.revision();
+  written_ = document.stored_revision();
   still_ = waited_ = 0;
   // Turning thousands of bodies into text and waiting for the disk is nothing for the thread of the
   // interface.

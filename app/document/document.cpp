@@ -1,46 +1,123 @@
 #include "app/document/document.hpp"
 
 #include "app/document/finite.hpp"
+#include "engine/mechanism/address.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flyball {
 
+namespace {
+
+bool is_finite(const Explored& explored) {
+  return std::ranges::all_of(explored, [](const ExploredValue& each) { return std::isfinite(each.value); });
+}
+
+} // namespace
+
 Document::Document(Mechanism mechanism, std::filesystem::path file)
     : file_(std::move(file)), saved_(std::make_shared<const Mechanism>(std::move(mechanism))) {
-  steps_.push_back({"Open", saved_, {}, 0});
+  steps_.push_back({.name = "Open",
+                    .mechanism = saved_,
+                    .selection = {},
+                    .tried = saved_,
+                    .hues = std::make_shared<const BodyHues>(choose_hues(*saved_))});
 }
 
 // Once after every change: comparing thousands of bodies is too much for every frame.
-void Document::compare() {
-  const auto& present = steps_[position_].mechanism;
-  unsaved_ = present != saved_ && *present != *saved_;
+void Document::changed(const Mechanism* stored_before) {
+  ++revision_;
+  if (now().mechanism.get() == stored_before) return;
+  ++stored_revision_;
+  unsaved_ = now().mechanism != saved_ && *now().mechanism != *saved_;
 }
 
-void Document::edit(std::string name, Mechanism next, Selection selection, std::uint64_t gesture) {
-  if (next == mechanism() || !is_finite(next)) return select(std::move(selection));
+void Document::push(Step step) {
+  const std::shared_ptr<const Mechanism> before = now().mechanism; // `last` may be its only owner
   steps_.resize(position_ + 1);
-  selection_ = existing(std::move(selection), next);
-  Step step{std::move(name), std::make_shared<const Mechanism>(std::move(next)), selection_, gesture};
-  ++revision_;
+  selection_ = step.selection = existing(std::move(step.selection), *step.mechanism);
+  step.tried = step.explored.empty()
+                   ? step.mechanism
+                   : std::make_shared<const Mechanism>(with_explored(*step.mechanism, step.explored));
+  step.hues = step.mechanism == before || same_bodies(*before, *step.mechanism)
+                  ? now().hues
+                  : std::make_shared<const BodyHues>(carried_hues(*before, *now().hues, *step.mechanism));
   Step& last = steps_.back();
-  if (gesture != 0 && position_ > 0 && last.gesture == gesture && last.name == step.name) {
-    if (*step.mechanism == *steps_[position_ - 1].mechanism) { // dragged back to where it was
+  if (step.gesture != 0 && position_ > 0 && last.gesture == step.gesture && last.name == step.name) {
+    const Step& former = steps_[position_ - 1];
+    if (step.explored == former.explored && *step.mechanism == *former.mechanism) { // dragged back
       steps_.pop_back();
       --position_;
     } else {
       last = std::move(step);
     }
-    return compare();
+    return changed(before.get());
   }
   steps_.push_back(std::move(step));
   if (steps_.size() > most_steps) steps_.erase(steps_.begin());
   position_ = steps_.size() - 1;
-  compare();
+  changed(before.get());
+}
+
+void Document::edit(std::string name, Mechanism next, Selection selection, std::uint64_t gesture) {
+  if (next == stored() || !flyball::is_finite(next)) return select(std::move(selection));
+  Explored left = carried_explored(now().explored, stored(), next);
+  push({.name = std::move(name),
+        .mechanism = std::make_shared<const Mechanism>(std::move(next)),
+        .selection = std::move(selection),
+        .gesture = gesture,
+        .explored = std::move(left)});
+}
+
+void Document::edit_number(std::string name, const std::string& address, double value,
+                           std::uint64_t gesture) {
+  Mechanism next = stored();
+  set_parameter(next, address, value);
+  if (!flyball::is_finite(next)) return;
+  Explored left = now().explored;
+  std::erase_if(left, [&](const ExploredValue& each) { return each.address == address; });
+  if (next == stored() && left == now().explored) return;
+  push({.name = std::move(name),
+        .mechanism = next == stored() ? now().mechanism : std::make_shared<const Mechanism>(std::move(next)),
+        .selection = selection_,
+        .gesture = gesture,
+        .explored = std::move(left)});
+}
+
+void Document::explore(std::string name, const Explored& values, std::uint64_t gesture) {
+  if (!is_finite(values)) return;
+  Explored next = now().explored;
+  for (const ExploredValue& each : values)
+    explore_value(next, stored(), each.address, each.value);
+  if (next == now().explored) return;
+  push({.name = std::move(name),
+        .mechanism = now().mechanism,
+        .selection = selection_,
+        .gesture = gesture,
+        .explored = std::move(next)});
+}
+
+void Document::keep_explored() {
+  if (now().explored.empty()) return;
+  push({.name = "Keep the explored values", .mechanism = now().tried, .selection = selection_});
+}
+
+void Document::drop_explored() {
+  if (now().explored.empty()) return;
+  push({.name = "Leave the explored values", .mechanism = now().mechanism, .selection = selection_});
+}
+
+bool Document::put_explored_aside(bool aside) {
+  if (aside == aside_) return false;
+  aside_ = aside;
+  if (now().explored.empty()) return false;
+  ++revision_;
+  return true;
 }
 
 void Document::select(Selection selection) {
-  selection_ = existing(std::move(selection), mechanism());
+  selection_ = existing(std::move(selection), stored());
 }
 
 bool Document::undo() {
@@ -58,10 +135,10 @@ bool Document::redo() {
 void Document::go_to(std::size_t step) {
   step = std::min(step, steps_.size() - 1);
   if (step == position_) return;
+  const Mechanism* before = now().mechanism.get();
   position_ = step;
-  selection_ = existing(steps_[step].selection, mechanism());
-  ++revision_;
-  compare();
+  selection_ = existing(steps_[step].selection, stored());
+  changed(before);
 }
 
 void Document::mark_saved(std::filesystem::path file) {

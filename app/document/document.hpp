@@ -1,7 +1,10 @@
 // The open mechanism with its past: every edit is a step that can be undone, and the document knows what of
-// it is in its file.
+// it is in its file. Numbers that are only tried, while exploring, are steps, too, but change nothing of what
+// is stored.
 #pragma once
 
+#include "app/document/body_hues.hpp"
+#include "app/document/explored.hpp"
 #include "app/document/part.hpp"
 
 #include <cstdint>
@@ -17,8 +20,11 @@ namespace flyball {
 struct Step {
   std::string name; // "Move ball 1"
   std::shared_ptr<const Mechanism> mechanism;
-  Selection selection;       // after the edit
-  std::uint64_t gesture = 0; // the hand's movement it belongs to; 0: an edit at one blow
+  Selection selection;                      // after the edit
+  std::uint64_t gesture = 0;                // the hand's movement it belongs to; 0: an edit at one blow
+  Explored explored{};                      // numbers tried beside it
+  std::shared_ptr<const Mechanism> tried{}; // the mechanism with them; the same object where there are none
+  std::shared_ptr<const BodyHues> hues{};
 };
 
 class Document {
@@ -26,18 +32,35 @@ class Document {
   // Nothing in it: the ease of a new drawing. `file` is empty for a document without one.
   explicit Document(Mechanism mechanism = empty_mechanism(), std::filesystem::path file = {});
 
-  const Mechanism& mechanism() const { return *steps_[position_].mechanism; }
+  // What is shown and solved: with the numbers that are explored, unless these are put aside.
+  const Mechanism& mechanism() const { return *(aside_ ? now().mechanism : now().tried); }
+  // What saving writes: without them.
+  const Mechanism& stored() const { return *now().mechanism; }
+  const Explored& explored() const { return now().explored; }
+  const BodyHues& hues() const { return *now().hues; } // of the bodies stored
+  BodyColouring colouring() const { return {now().mechanism, now().hues}; }
   const Selection& selection() const { return selection_; }
   const std::filesystem::path& file() const { return file_; }
   // What is in the file; for a document without one, what it began as.
   const Mechanism& saved() const { return *saved_; }
-  bool unsaved() const { return unsaved_; } // whether it differs from what is in the file
+  bool unsaved() const { return unsaved_; } // whether what is stored differs from what is in the file
   // Rises whenever the mechanism may have changed.
   std::uint64_t revision() const { return revision_; }
+  // Rises whenever what is stored may have changed.
+  std::uint64_t stored_revision() const { return stored_revision_; }
 
   // A new state. An edit of the same gesture (not 0) and name as the last one takes its place in the history,
   // so that a drag is one step. No step where nothing changes. Redo is lost, as everywhere.
+  // `next` is made from what is stored; what is explored stays beside it (see carried_explored).
   void edit(std::string name, Mechanism next, Selection selection, std::uint64_t gesture = 0);
+  // The same of one number of the mechanism, which is explored no longer. Throws SceneError.
+  void edit_number(std::string name, const std::string& address, double value, std::uint64_t gesture = 0);
+  // A step that only tries other numbers: nothing is unsaved by it.
+  void explore(std::string name, const Explored& values, std::uint64_t gesture = 0);
+  void keep_explored(); // they become the document's: an edit
+  void drop_explored(); // back to what is stored
+  // While building, the mechanism is what is stored. Returns whether that made a difference.
+  bool put_explored_aside(bool aside);
   // Selecting is no step.
   void select(Selection selection);
 
@@ -62,15 +85,17 @@ class Document {
   static constexpr std::size_t most_steps = 1000;
 
  private:
-  void compare();
+  const Step& now() const { return steps_[position_]; }
+  void push(Step step);
+  void changed(const Mechanism* stored_before);
 
   std::vector<Step> steps_;
   std::size_t position_ = 0;
   Selection selection_;
   std::filesystem::path file_;
   std::shared_ptr<const Mechanism> saved_;
-  std::uint64_t revision_ = 1;
-  bool unsaved_ = false;
+  std::uint64_t revision_ = 1, stored_revision_ = 1;
+  bool unsaved_ = false, aside_ = false;
 };
 
 } // namespace flyball

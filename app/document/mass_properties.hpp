@@ -19,8 +19,10 @@ double volume(const Shape& shape);
 // with none that has a volume.
 std::optional<MassProperties> mass_properties(const Body& body, double density);
 // Mass, mass centre and inertia (in body axes) of its shapes, which stay where they are; false, and nothing
-// changed, where there is nothing to take.
+// changed, where there is nothing to take. The mass is told in 15 digits.
 bool take_mass_properties(Body& body, double density);
+// The same of shapes of whatever density gives the body this mass, which it then has to the last digit.
+bool take_uniform_mass(Body& body, double mass);
 // kg/m^3: the mass by the volume of its shapes; nothing without a volume.
 std::optional<double> density_of(const Body& body);
 

@@ -182,7 +182,7 @@ void draw_aim(App& app, const ViewInput& input, const Aim& aim, const std::strin
   std::string title = head;
   if (title.empty() && !aim.what.empty()) title = aim.what;
   if (title.empty() && aim.body != ground_name) title = "on " + aim.body;
-  draw_tag(app, input, input.cursor, title, place_text(aim.point, aim.step));
+  draw_tag(app, input, input.cursor, title, place_text(aim.point, aim.step, app.units));
 }
 
 } // namespace flyball

@@ -2,6 +2,7 @@
 
 #include "app/panels/modes_control.hpp"
 #include "app/panels/motion_control.hpp"
+#include "app/panels/settings.hpp"
 #include "app/panels/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
@@ -36,7 +37,7 @@ void ask(App& app, bool another, bool warm, StartValues start = {}) {
 
 // After the document's mechanism has changed.
 void take_document(App& app, bool another, bool warm, StartValues start = {}) {
-  app.parameters = parameter_controls(app.mechanism(), app.document.saved());
+  app.parameters = parameter_controls(app.mechanism(), app.document.stored());
   app.drawn = drawn_poses(app.mechanism());
   app.moved_time = true;
   ask(app, another, warm, std::move(start));
@@ -95,6 +96,9 @@ void fit_view(App& app, ViewSize size) {
 
 App::App(AppOptions chosen)
     : options(std::move(chosen)), live(options.mode, options.on_news), theme(options.theme) {
+  const Settings settings = read_settings(options.state);
+  units = settings.units;
+  panels.legend = settings.legend;
   open_document(*this, Document());
 }
 
@@ -115,6 +119,7 @@ void open_document(App& app, Document document) {
     app.view.fit = true;
     app.view.keep_direction = false;
   }
+  app.document.put_explored_aside(app.mode == Mode::build);
   app.view.hovered = {};
   app.view.scene = app.view.scene_beside = {}; // revisions begin anew
   app.opened = app.asked + 1;
@@ -122,13 +127,12 @@ void open_document(App& app, Document document) {
 }
 
 void edit(App& app, const std::string& name, const std::function<void(Mechanism&, Selection&)>& change) {
-  Mechanism next = app.mechanism();
+  Mechanism next = app.document.stored();
   Selection selection = app.selection();
   try {
     change(next, selection);
   } catch (const SceneError& error) {
-    app.notice = error.what();
-    return;
+    return show_error(app, error.what());
   }
   app.notice.clear();
   const std::uint64_t before = app.document.revision();
@@ -136,16 +140,35 @@ void edit(App& app, const std::string& name, const std::function<void(Mechanism&
   if (app.document.revision() != before) take_document(app, false, false);
 }
 
+namespace {
+
+// Whether a step changes what the present mode shows: while building, what was tried makes no difference.
+bool is_seen(const App& app, std::size_t step) {
+  const std::vector<Step>& steps = app.document.steps();
+  return app.mode == Mode::explore || step == 0 || steps[step].mechanism != steps[step - 1].mechanism;
+}
+
+} // namespace
+
 void undo(App& app) {
-  if (!app.document.can_undo()) return;
-  app.notice = "Undone: " + app.document.steps()[app.document.position()].name;
-  app.document.undo();
+  const Document& document = app.document;
+  if (!document.can_undo()) return;
+  std::size_t step = document.position();
+  while (step > 1 && !is_seen(app, step))
+    --step;
+  app.notice = "Undone: " + document.steps()[step].name;
+  app.document.go_to(step - 1);
   take_document(app, false, false);
 }
 
 void redo(App& app) {
-  if (!app.document.redo()) return;
-  app.notice = "Redone: " + app.document.steps()[app.document.position()].name;
+  const Document& document = app.document;
+  if (!document.can_redo()) return;
+  std::size_t step = document.position() + 1;
+  while (step + 1 < document.steps().size() && !is_seen(app, step))
+    ++step;
+  app.document.go_to(step);
+  app.notice = "Redone: " + document.steps()[step].name;
   take_document(app, false, false);
 }
 
@@ -161,32 +184,67 @@ void select(App& app, Selection selection) {
 
 namespace {
 
-// Sets the number as a step of the history; what was solved last, or `start`, is where solving begins.
-void set_parameter_from(App& app, const std::string& address, double value, StartValues start) {
-  if (!std::isfinite(value)) return;
-  Mechanism next = app.mechanism();
-  try {
-    const double before = get_parameter(next, address);
-    set_parameter(next, address, value);
-    // A lone drive keeps its phase, so that nothing jumps when its speed changes.
-    if (address.ends_with(".speed") && !app.motion.on && app.playback.time != 0 && drive_count(next) == 1 &&
-        value != 0)
-      app.playback.time *= before / value;
-  } catch (const SceneError&) {
-    return;
-  }
-  const std::uint64_t before = app.document.revision();
-  app.document.edit("Set " + parameter_phrase(address), std::move(next), app.selection(), app.gesture);
-  if (app.document.revision() != before)
+// A lone drive keeps its phase, so that nothing jumps when its speed changes.
+void keep_phase(App& app, const std::string& address, double before, double value) {
+  if (address.ends_with(".speed") && !app.motion.on && app.playback.time != 0 &&
+      drive_count(app.mechanism()) == 1 && value != 0)
+    app.playback.time *= before / value;
+}
+
+// After numbers were set; what was solved last, or `start`, is where solving begins.
+void take_numbers(App& app, std::uint64_t revision_before, StartValues start) {
+  if (app.document.revision() != revision_before)
     take_document(app, false, true, std::move(start));
   else if (!start.empty())
     ask(app, false, true, std::move(start));
 }
 
+// Sets the number as a step of the history.
+void set_parameter_from(App& app, const std::string& address, double value, StartValues start) {
+  if (!std::isfinite(value)) return;
+  const std::uint64_t revision = app.document.revision();
+  const std::string step = "Set " + parameter_phrase(address);
+  try {
+    const double before = get_parameter(app.mechanism(), address);
+    keep_phase(app, address, before, value);
+    if (app.mode == Mode::explore)
+      app.document.explore(step, {{address, value}}, app.gesture);
+    else
+      app.document.edit_number(step, address, value, app.gesture);
+  } catch (const SceneError&) {
+    return;
+  }
+  take_numbers(app, revision, std::move(start));
+}
+
 } // namespace
+
+void edit_parameter(App& app, const std::string& address, double value) {
+  const std::uint64_t revision = app.document.revision();
+  try {
+    const double before = get_parameter(app.mechanism(), address);
+    app.document.edit_number("Set " + parameter_phrase(address), address, value, app.gesture);
+    keep_phase(app, address, before, value);
+  } catch (const SceneError& error) {
+    return show_error(app, error.what());
+  }
+  app.notice.clear();
+  if (app.document.revision() != revision) take_document(app, false, app.mode == Mode::explore);
+}
 
 void change_parameter(App& app, const std::string& address, double value) {
   set_parameter_from(app, address, value, {});
+}
+
+void change_parameters(App& app, const std::string& step, const Explored& values) {
+  if (app.mode == Mode::build)
+    return edit(app, step, [&](Mechanism& mechanism, Selection&) {
+      for (const ExploredValue& each : values)
+        set_parameter(mechanism, each.address, each.value);
+    });
+  const std::uint64_t revision = app.document.revision();
+  app.document.explore(step, values, app.gesture);
+  if (app.document.revision() != revision) take_document(app, false, false);
 }
 
 void go_to_state(App& app, const std::string& address, double value, StartValues start) {
@@ -198,19 +256,49 @@ void go_to_state(App& app, const std::string& address, double value, StartValues
     set_parameter_from(app, address, value, std::move(start));
 }
 
-void reset_parameters(App& app) {
-  edit(app, "Reset sliders", [&](Mechanism& mechanism, Selection&) {
-    for (const ParameterControl& control : app.parameters)
-      set_parameter(mechanism, control.address, control.file_value);
-  });
+void keep_explored(App& app) {
+  if (app.document.explored().empty()) return;
+  app.document.keep_explored();
+  app.notice = "The explored values are the document's now.";
+  take_document(app, false, true);
+}
+
+void drop_explored(App& app) {
+  if (app.document.explored().empty()) return;
+  app.document.drop_explored();
+  app.notice.clear();
+  take_document(app, false, false);
+}
+
+std::vector<std::string> explored_words(const App& app) {
+  std::vector<std::string> words;
+  for (const ExploredValue& each : app.document.explored()) {
+    const ShownUnit unit = shown_unit(parameter_unit(app.document.stored(), each.address), app.units);
+    const auto text = [&](double value) {
+      return short_text(unit.shown(value)) + (unit.text.empty() ? "" : " " + unit.text);
+    };
+    words.push_back(parameter_phrase(each.address) + " " + text(each.value) + ", stored is " +
+                    text(get_parameter(app.document.stored(), each.address)));
+  }
+  return words;
 }
 
 void solve_from_drawn_pose(App& app) {
   ask(app, false, false);
 }
 
-void set_mode(App& app, Mode mode) {
+namespace {
+
+// Building shows what is stored.
+void enter_mode(App& app, Mode mode) {
   app.mode = mode;
+  if (app.document.put_explored_aside(mode == Mode::build)) take_document(app, false, mode == Mode::explore);
+}
+
+} // namespace
+
+void set_mode(App& app, Mode mode) {
+  enter_mode(app, mode);
   if (mode == Mode::build) {
     show_motion(app, false);
     play(app, false);
@@ -234,7 +322,7 @@ void look_from(App& app, double azimuth, double elevation) {
 void play(App& app, bool playing) {
   app.playback.playing = playing && !app.mechanism().bodies.empty();
   if (!app.playback.playing) return;
-  app.mode = Mode::explore;
+  enter_mode(app, Mode::explore);
   // From the end, play means again.
   const MotionRun* motion = app.motion.on ? shown_motion(app) : nullptr;
   if (motion && motion->finished && app.playback.time >= motion->run->time.back())
@@ -276,8 +364,10 @@ ViewFrame view_frame(const App& app) {
   if (app.mode == Mode::build) {
     frame.mechanism = &app.mechanism();
     // The answer may still be that to an earlier edit.
-    if (solved && app.view.ghost && app.poses.size() == app.mechanism().bodies.size())
+    if (solved && app.view.ghost && app.poses.size() == app.mechanism().bodies.size()) {
       frame.ghost = app.poses;
+      frame.ghost_pose = GhostPose::steady;
+    }
   } else {
     frame.mechanism = app.answer.ticket ? &app.answer.mechanism : &app.mechanism();
     const bool moves = app.motion.poses.size() == frame.mechanism->bodies.size();
@@ -302,6 +392,7 @@ ViewFrame view_frame(const App& app) {
   frame.selected = find_parts(*frame.mechanism, app.selection());
   frame.hovered = app.view.hovered;
   frame.cut_joints = app.answer.summary.cut_joints;
+  frame.colouring = app.document.colouring();
   return frame;
 }
 

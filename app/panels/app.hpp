@@ -9,12 +9,15 @@
 #include "app/panels/inspector_state.hpp"
 #include "app/panels/motion_state.hpp"
 #include "app/panels/movie_state.hpp"
+#include "app/panels/notice.hpp"
 #include "app/panels/number_text.hpp"
 #include "app/panels/parameter_list.hpp"
 #include "app/panels/shown_rate.hpp"
 #include "app/panels/shown_scene.hpp"
 #include "app/panels/study_state.hpp"
 #include "app/panels/tool_state.hpp"
+#include "app/panels/tooltip.hpp"
+#include "app/panels/units.hpp"
 #include "app/panels/widget_map.hpp"
 #include "app/render/fonts.hpp"
 #include "app/viewport/camera.hpp"
@@ -59,6 +62,7 @@ struct ViewState {
   ShownScene scene, scene_beside;       // see shown_scene()
   unsigned texture = 0;                 // OpenGL's, with the picture of the view
   unsigned texture_beside = 0;          // the same of the motion, where it has a view of its own
+  float lines_top = 0;                  // pixels of the window: above what is written at the view's foot
 };
 
 // Sizes in points, so that they mean the same on every display.
@@ -72,6 +76,7 @@ struct PanelState {
   bool pinned = true, springs = true, drives = true;
   float study_share = 0.42f; // of the height, for the studies below the view
   bool dampers = true;
+  bool legend = true; // of the view
   bool torques = true, reactions = false, eigenvalues = false, system = false;
   std::map<std::string, KeptRates> rates; // by the slider's address
 };
@@ -154,6 +159,7 @@ struct App {
   PanelState panels;
   DialogState dialog;
   Theme theme = Theme::light;
+  DisplayUnits units;
   float scale = 1; // pixels a point has
   UiFonts fonts;
   WidgetMap widgets;
@@ -162,7 +168,9 @@ struct App {
   // Told to whoever runs the loop, who clears them.
   bool quit = false;
   std::optional<ExportRequest> export_request;
-  std::string notice; // what was last done, in words: shown in the view
+  std::string notice; // what was last done, in words: shown in the view for a while, see notice.hpp
+  NoticeAge notice_age;
+  TooltipState tooltip;
 
   const Mechanism& mechanism() const { return document.mechanism(); }
   const Selection& selection() const { return document.selection(); }
@@ -174,23 +182,31 @@ void open_document(App& app, Document document);
 // one as it is.
 void open_scene(App& app, const std::filesystem::path& file);
 
-// An edit: a step that can be undone, solved at once. `change` gets the mechanism and the selection, and may
-// throw SceneError: then nothing has changed and the notice says why. Edits of the same name while a button
-// is held (app.gesture) are one step.
+// An edit: a step that can be undone, solved at once. `change` gets the mechanism as it is stored and the
+// selection, and may throw SceneError: then nothing has changed and the notice says why. Edits of the same
+// name while a button is held (app.gesture) are one step.
 void edit(App& app, const std::string& name, const std::function<void(Mechanism&, Selection&)>& change);
 void undo(App& app);
 void redo(App& app);
 void go_to_step(App& app, std::size_t step);
 void select(App& app, Selection selection);
-// The same address as in a scene file; solves at once from the last answer. Not finite values and unknown
-// addresses are ignored.
+// An edit of one number at an address as in a scene file; while exploring, solved from the last answer.
+void edit_parameter(App& app, const std::string& address, double value);
+// Tries a number while exploring, which changes nothing of what is stored; solves at once from the last
+// answer. While building it is an edit. Not finite values and unknown addresses are ignored.
 void change_parameter(App& app, const std::string& address, double value);
+// The same of several, as one step of this name.
+void change_parameters(App& app, const std::string& step, const Explored& values);
+// What is explored becomes the document's, or goes back to what is stored. Both can be undone.
+void keep_explored(App& app);
+void drop_explored(App& app);
+// "speed of spin 15 rad/s": each value that is explored, and what is stored of it.
+std::vector<std::string> explored_words(const App& app);
 // The same with the mechanism in the equilibrium nearest to these coordinates ("joint" or "joint.index" and
 // rad or m), on whatever branch, stable or not. Sliders then follow that branch, until it ends, the drawn
 // pose is started from again or something else is edited. Without an address no number is changed.
 void go_to_state(App& app, const std::string& address, double value,
                  std::vector<std::pair<std::string, double>> start);
-void reset_parameters(App& app); // sliders back to what the file says
 void solve_from_drawn_pose(App& app);
 
 void set_mode(App& app, Mode mode);

@@ -1,6 +1,7 @@
 // The Campbell diagram as a plot.
 #include "app/panels/campbell.hpp"
 #include "app/panels/modes_control.hpp"
+#include "app/panels/shown_plot.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>
@@ -187,8 +188,9 @@ void draw_campbell(App& app) {
     const double speed = get_parameter(app.mechanism(), found.drive);
     plot.references.push_back({.axis = 0, .at = speed, .label = "now", .color = plot_color::blue});
     if (const VibrationMode* mode = moving_mode(app); mode && modes_are_current(app) && mode->oscillates())
-      plot.marker = PlotMarker{speed, mode->frequency * factor, ""};
+      plot.marker = PlotMarker{speed * shown_unit(unit, app.units).factor, mode->frequency * factor, ""};
   }
+  show_axis(plot, 0, unit, app.units);
   plot.version = ++campbell.plots_made;
   campbell.plot = std::move(plot);
 }

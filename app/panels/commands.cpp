@@ -5,6 +5,7 @@
 #include "app/panels/modes_control.hpp"
 #include "app/panels/motion_control.hpp"
 #include "app/panels/panels.hpp"
+#include "app/panels/settings.hpp"
 #include "app/panels/study_panels.hpp"
 #include "app/panels/ui_style.hpp"
 
@@ -45,6 +46,17 @@ void choose_tool(App& app) {
 template <Tool tool>
 bool tool_chosen(const App& app) {
   return app.tool.tool == tool;
+}
+
+template <auto which, auto unit>
+void show_in(App& app) {
+  DisplayUnits units = app.units;
+  units.*which = unit;
+  choose_units(app, units);
+}
+template <auto which, auto unit>
+bool shown_in(const App& app) {
+  return app.units.*which == unit;
 }
 
 std::string undo_label(const App& app) {
@@ -363,6 +375,44 @@ const std::array table{
                 },
             .checked = [](const App& app) { return app.theme == Theme::dark; },
             .separated = true},
+
+    Command{.id = "units.degrees",
+            .title = "Angles in degrees",
+            .help = "Angles in fields, results and plots; any unit can be typed.",
+            .run = show_in<&DisplayUnits::angle, AngleUnit::degree>,
+            .checked = shown_in<&DisplayUnits::angle, AngleUnit::degree>},
+    Command{.id = "units.radians",
+            .title = "Angles in radians",
+            .help = "Angles in fields, results and plots; any unit can be typed.",
+            .run = show_in<&DisplayUnits::angle, AngleUnit::radian>,
+            .checked = shown_in<&DisplayUnits::angle, AngleUnit::radian>},
+    Command{.id = "units.metres",
+            .title = "Lengths in metres",
+            .help = "Lengths in fields, results and plots; stiffness in N/m.",
+            .run = show_in<&DisplayUnits::length, LengthUnit::metre>,
+            .checked = shown_in<&DisplayUnits::length, LengthUnit::metre>,
+            .separated = true},
+    Command{.id = "units.millimetres",
+            .title = "Lengths in millimetres",
+            .help = "Lengths in fields, results and plots; stiffness in N/mm.",
+            .run = show_in<&DisplayUnits::length, LengthUnit::millimetre>,
+            .checked = shown_in<&DisplayUnits::length, LengthUnit::millimetre>},
+    Command{.id = "units.radians_per_second",
+            .title = "Speeds of turning in rad/s",
+            .help = "Drive speeds and rates of angles, everywhere.",
+            .run = show_in<&DisplayUnits::speed, SpeedUnit::radian>,
+            .checked = shown_in<&DisplayUnits::speed, SpeedUnit::radian>,
+            .separated = true},
+    Command{.id = "units.rpm",
+            .title = "Speeds of turning in rpm",
+            .help = "Drive speeds and rates of angles, everywhere.",
+            .run = show_in<&DisplayUnits::speed, SpeedUnit::rpm>,
+            .checked = shown_in<&DisplayUnits::speed, SpeedUnit::rpm>},
+    Command{.id = "units.degrees_per_second",
+            .title = "Speeds of turning in °/s",
+            .help = "Drive speeds and rates of angles, everywhere.",
+            .run = show_in<&DisplayUnits::speed, SpeedUnit::degree>,
+            .checked = shown_in<&DisplayUnits::speed, SpeedUnit::degree>},
 
     Command{.id = "study.motion",
             .title = "Motion",

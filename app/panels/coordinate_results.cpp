@@ -16,10 +16,10 @@ constexpr int spacious = 8;
 void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
   const NumberStyle& numbers = app.options.numbers;
   const UiColors& colors = colors_of(app);
-  const double factor = screen_factor(c.angle);
+  const ShownUnit unit = coordinate_unit(c.angle, app.units);
   const char* si = c.angle ? "rad" : "m";
-  row(app, coordinate_label(c), value_text(c.value * factor, c.error * factor, numbers),
-      screen_unit(c.angle));
+  row(app, coordinate_label(c), value_text(unit.shown(c.value), c.error * unit.factor, numbers),
+      unit.text.c_str());
   note_widget(app.widgets, "results/" + coordinate_label(c));
   std::string second = value_text(c.value, c.error, numbers) + " " + si;
   if (c.error > 0) second += "  ± " + magnitude_text(std::max(c.error, numbers.noise), numbers) + " " + si;

@@ -4,10 +4,16 @@
 #include "app/document/copies.hpp"
 #include "app/document/create.hpp"
 #include "app/document/remove.hpp"
+#include "app/document/transform.hpp"
 
 #include <imgui.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
+#include <string_view>
+#include <unordered_set>
 
 namespace flyball {
 
@@ -29,10 +35,33 @@ void delete_selected(App& app) {
   });
 }
 
+namespace {
+
+// Far enough for a copy to be seen beside its original, a round number of metres.
+double copy_step(const App& app) {
+  return std::pow(10, std::round(std::log10(app.view.camera.distance / 8)));
+}
+
+// Whether a body of the selection stands where another does.
+bool lies_on_another(const Mechanism& mechanism, const Selection& selection) {
+  const std::vector<std::string> names = selection.names(PartKind::body);
+  const std::unordered_set<std::string_view> selected(names.begin(), names.end());
+  std::set<std::array<double, 3>> others;
+  const auto place = [](const Body& body) {
+    return std::array{body.position.x(), body.position.y(), body.position.z()};
+  };
+  for (const Body& body : mechanism.bodies)
+    if (!selected.contains(body.name)) others.insert(place(body));
+  return std::ranges::any_of(mechanism.bodies, [&](const Body& body) {
+    return selected.contains(body.name) && others.contains(place(body));
+  });
+}
+
+} // namespace
+
 void duplicate_selected(App& app) {
   if (app.selection().empty()) return;
-  // Far enough to be seen, a round number of metres.
-  const double step = std::pow(10, std::round(std::log10(app.view.camera.distance / 8)));
+  const double step = copy_step(app);
   edit(app, "Duplicate " + words_for(app.selection()), [&](Mechanism& mechanism, Selection& selection) {
     selection = duplicate_parts(mechanism, selection, step * Vec3(1, 0, 0));
   });
@@ -44,7 +73,7 @@ void copy_selected(App& app) {
     ImGui::SetClipboardText(copy_text(app.mechanism(), app.selection()).c_str());
     app.notice = "Copied " + words_for(app.selection());
   } catch (const SceneError& error) {
-    app.notice = error.what();
+    show_error(app, error.what());
   }
 }
 
@@ -69,6 +98,9 @@ void paste_parts(App& app) {
     } catch (const SceneError&) {
       throw SceneError("", "What was copied is no part of a mechanism.");
     }
+    constexpr int most = 20; // copies side by side
+    for (int i = 0; i < most && lies_on_another(mechanism, selection); ++i)
+      move_parts(mechanism, selection, copy_step(app) * Vec3(1, 0, 0));
   });
 }
 

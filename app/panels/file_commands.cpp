@@ -83,7 +83,7 @@ void open_file(App& app, const fs::path& file) {
 std::string save_to(App& app, const fs::path& file) {
   const fs::path own = resolved(file);
   try {
-    const std::string text = write_scene(app.mechanism());
+    const std::string text = write_scene(app.document.stored());
     write_bytes(own, text);
     app.files.watch = FileWatch(own, text);
   } catch (const SceneError& error) {
@@ -91,14 +91,18 @@ std::string save_to(App& app, const fs::path& file) {
     return own.filename().string() + " was not saved: " + why + ".";
   }
   app.document.mark_saved(own);
-  app.parameters = parameter_controls(app.mechanism(), app.document.saved());
+  app.parameters = parameter_controls(app.mechanism(), app.document.stored());
   app.problem.clear();
   app.files.conflict = app.files.save_wanted = false;
   app.files.aside.clear();
   app.files.autosave.remove();
   if (!app.options.state.empty()) remove_aside(own, app.options.state);
   note_recent(app, own);
-  app.notice = "Saved " + own.filename().string();
+  const std::size_t tried = app.document.explored().size();
+  app.notice = "Saved " + own.filename().string() +
+               (tried == 0   ? ""
+                : tried == 1 ? " without the explored value; Keep makes it part of it"
+                             : " without the explored values; Keep makes them part of it");
   return {};
 }
 
@@ -135,7 +139,7 @@ void reload_document(App& app) {
     const bool had_edits = app.document.unsaved();
     edit(app, "Reload", [&](Mechanism& mechanism, Selection&) { mechanism = std::move(theirs); });
     app.document.mark_saved(file);
-    app.parameters = parameter_controls(app.mechanism(), app.document.saved());
+    app.parameters = parameter_controls(app.mechanism(), app.document.stored());
     app.problem.clear();
     app.files.watch = FileWatch(file, text);
     app.files.conflict = app.files.save_wanted = false;

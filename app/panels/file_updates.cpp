@@ -16,7 +16,8 @@ bool look_at_disk(App& app) {
   switch (look.news) {
   case FileWatch::News::none: return false;
   case FileWatch::News::vanished:
-    app.notice = document_name(app) + " is no longer on disk. It is still open here; saving writes it anew.";
+    show_error(app,
+               document_name(app) + " is no longer on disk. It is still open here; saving writes it anew.");
     return true;
   case FileWatch::News::changed: break;
   }
@@ -28,7 +29,7 @@ bool look_at_disk(App& app) {
   try {
     parse_scene(look.text);
   } catch (const SceneError& error) {
-    app.notice = document_name(app) + " has changed on disk and cannot be read: " + error.what();
+    show_error(app, document_name(app) + " has changed on disk and cannot be read: " + error.what());
     return true;
   }
   reload_document(app);
@@ -48,7 +49,7 @@ bool update_files(App& app, double seconds) {
   files.autosave.tick(app.document, has_unsaved_work(app), files.watch.hash(),
                       {app.options.state, files.owner}, seconds);
   if (const std::string problem = files.autosave.take_problem(); !problem.empty()) {
-    app.notice = "Unsaved work cannot be kept for after a crash: " + problem;
+    show_error(app, "Unsaved work cannot be kept for after a crash: " + problem);
     news = true;
   }
   return news;

@@ -123,17 +123,17 @@ void draw_sector(const App& app, const ViewInput& input, const Grab& grab) {
     if (const auto p = rim(angle)) draw_line(app, *center, *p, color, angle == 0 && shown != 0 ? 1.2f : 2.4f);
 }
 
-std::string moved_text(const Grab& grab, double step) {
+std::string moved_text(const Grab& grab, double step, const DisplayUnits& units) {
   const auto free = free_coordinates(grab.handle, grab.normal);
   std::string text;
   for (int i = 0; i < 3; ++i) {
     if (!free[static_cast<std::size_t>(i)]) continue;
     const bool arrow = std::ranges::count(free, true) == 1;
     const std::string number =
-        arrow && !grab.typed.empty() ? grab.typed + "_" : length_text(grab.by[i], step);
+        arrow && !grab.typed.empty() ? grab.typed + "_" : length_text(grab.by[i], step, units);
     text += std::string(text.empty() ? "" : "  ") + "Δ" + letters[i] + " " + number;
   }
-  return text + " m";
+  return text + " " + shown_unit("m", units).text;
 }
 
 } // namespace
@@ -149,9 +149,9 @@ void draw_grabbed(const App& app, const ViewInput& input) {
   const Grab& grab = *app.tool.grab;
   if (is_ring(grab.handle)) {
     draw_sector(app, input, grab);
-    const std::string number =
-        grab.typed.empty() ? short_text(grab.angle * 180 / std::numbers::pi, 4) : grab.typed + "_";
-    draw_tag(app, input, input.cursor, "", number + "°");
+    const ShownUnit unit = shown_unit("rad", app.units);
+    const std::string number = grab.typed.empty() ? short_text(unit.shown(grab.angle), 4) : grab.typed + "_";
+    draw_tag(app, input, input.cursor, "", number + (unit.text == "°" ? "" : " ") + unit.text);
     return;
   }
   const Vec3 now = grab.centre + grab.by;
@@ -165,7 +165,8 @@ void draw_grabbed(const App& app, const ViewInput& input) {
     if (!grab.what.empty()) draw_dot(app, *to, 7, true);
     if (!grab.point) draw_ball(app, *to, true, 1);
   }
-  draw_tag(app, input, input.cursor, grab.what, moved_text(grab, snaps(app, input) ? grid_step(input) : 0));
+  draw_tag(app, input, input.cursor, grab.what,
+           moved_text(grab, snaps(app, input) ? grid_step(input) : 0, app.units));
 }
 
 } // namespace flyball

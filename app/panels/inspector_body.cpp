@@ -107,16 +107,25 @@ void inertia_rows(App& app, const Body& body) {
   }
 }
 
+// A density that was typed is shown as typed, not as the mass by the volume comes out.
+double shown_density(const App& app, const Body& body, double density) {
+  const auto given = app.inspector.given_masses.find(body.name);
+  if (given == app.inspector.given_masses.end() || given->second.mass) return density;
+  const double typed = given->second.density;
+  return std::abs(typed - density) <= 1e-13 * typed ? typed : density;
+}
+
 void density_row(App& app, const Body& body) {
   const std::optional<double> density = density_of(body);
   if (!density) return;
   quantity_row(app, "Density",
                {.name = "inspector/density",
-                .value = *density,
+                .value = shown_density(app, body, *density),
                 .unit = "kg/m^3",
                 .help = "The mass by the volume of the shapes; typing it makes the body a uniform solid.",
                 .least = Least::zero,
                 .set = [name = body.name](App& changed, double value) {
+                  changed.inspector.given_masses[name] = {false, value};
                   edit(changed, "Set density of " + name, [&](Mechanism& mechanism, Selection&) {
                     for (Body& same : mechanism.bodies)
                       if (same.name == name) take_mass_properties(same, value);
@@ -155,23 +164,17 @@ void mass_section(App& app, const Body& body) {
                                      : "Mass; zero is allowed.",
                      .least = Least::zero,
                      .address = "bodies." + body.name + ".mass"};
-  if (follows)
-    mass.set = [name = body.name](App& changed, double value) {
-      edit(changed, "Set mass of " + name, [&](Mechanism& mechanism, Selection&) {
-        for (Body& same : mechanism.bodies) {
-          if (same.name != name) continue;
-          const auto density = density_of(same);
-          if (value == 0) { // a drawing without mass: no density says so
-            same.mass = 0;
-            same.inertia = {};
-          } else if (density && same.mass > 0) {
-            take_mass_properties(same, *density / same.mass * value);
-          } else {
-            same.mass = value;
-          }
-        }
-      });
-    };
+  mass.set = [name = body.name, follows](App& changed, double value) {
+    changed.inspector.given_masses[name] = {true, 0};
+    if (!follows) return set_number(changed, "bodies." + name + ".mass", value);
+    edit(changed, "Set mass of " + name, [&](Mechanism& mechanism, Selection&) {
+      for (Body& same : mechanism.bodies) {
+        if (same.name != name || (value > 0 && take_uniform_mass(same, value))) continue;
+        same.mass = value; // a drawing without mass: no density says so
+        same.inertia = {};
+      }
+    });
+  };
   quantity_row(app, "Mass", mass);
   density_row(app, body);
   inertia_rows(app, body);
@@ -186,8 +189,7 @@ void mass_section(App& app, const Body& body) {
       if (follows) return;
       edit(changed, "Make " + part.name + " uniform", [&](Mechanism& mechanism, Selection&) {
         for (Body& same : mechanism.bodies)
-          if (same.name == part.name)
-            if (const auto density = density_of(same)) take_mass_properties(same, *density);
+          if (same.name == part.name) take_uniform_mass(same, same.mass);
       });
     });
 }

@@ -51,6 +51,14 @@ struct CoordinateRows {
     });
   }
 
+  // Beside the one before, where there is room for it.
+  void beside_last(const char* label) const {
+    const float width = ImGui::GetFrameHeight() + ImGui::CalcTextSize(label).x + 10 * app.scale;
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    const float gap = 6 * app.scale;
+    if (ImGui::GetItemRectMax().x + gap + width <= right) ImGui::SameLine(0, gap);
+  }
+
   // A tick; `removed` and `added` edit the coordinate.
   void tick(const std::string& word, const char* label, const char* what, bool on, const char* help,
             const char* refused, const std::function<void(Coordinate&)>& removed,
@@ -75,14 +83,19 @@ struct CoordinateRows {
 
   void settled() const {
     const CoordinateSolution* found = solution();
-    if (!found || found->driven) return;
+    if (!found || found->driven) { // a row all the same, so that those below stay where they are
+      row(app, "Settles at", found ? "driven" : "–", "",
+          found ? "It turns or slides at a constant speed, or is geared to one that does."
+                : "There is no steady state to tell it of.");
+      return;
+    }
     const NumberStyle& numbers = app.options.numbers;
-    const double factor = screen_factor(angle());
+    const ShownUnit unit = coordinate_unit(angle(), app.units);
     std::string help = value_text(found->value, found->error, numbers) + " " + value_unit();
     if (found->error > 0)
       help += " ± " + magnitude_text(std::max(found->error, numbers.noise), numbers) + " " + value_unit();
-    row(app, "Settles at", value_text(found->value * factor, found->error * factor, numbers),
-        screen_unit(angle()), ("In the steady state: " + help + ".").c_str());
+    row(app, "Settles at", value_text(unit.shown(found->value), found->error * unit.factor, numbers),
+        unit.text.c_str(), ("In the steady state: " + help + ".").c_str());
     note_widget(app.widgets, widget(key("settles")));
   }
 
@@ -99,6 +112,9 @@ struct CoordinateRows {
         "drive", "Drive", "drive", coordinate().drive.has_value(),
         "Moves the coordinate at a constant speed.", refused, [](Coordinate& c) { c.drive.reset(); },
         [speed = b.speed](Coordinate& c) { c.drive.emplace().speed = speed; });
+  }
+
+  void drive_numbers() const {
     if (coordinate().drive)
       number("Speed", key("drive") + ".speed", coordinate().drive->speed, value_unit() + "/s",
              "The constant speed of the coordinate; right-handed about or along the axis.");
@@ -122,6 +138,9 @@ struct CoordinateRows {
           c.spring->stiffness = stiffness;
           c.spring->free = c.drawn;
         });
+  }
+
+  void spring_numbers() const {
     if (!coordinate().spring) return;
     number("Stiffness", key("spring") + ".stiffness", coordinate().spring->stiffness, stiffness_unit(),
            angle() ? "Torque by the angle from where the spring is slack."
@@ -136,6 +155,9 @@ struct CoordinateRows {
         "Resists the coordinate's motion; the steady state is the same.", nullptr,
         [](Coordinate& c) { c.damping = 0; },
         [damping = beginning().damping](Coordinate& c) { c.damping = damping; });
+  }
+
+  void damper_numbers() const {
     if (coordinate().damping != 0)
       number("Damping", key("damping"), coordinate().damping, angle() ? "N m s/rad" : "N s/m",
              angle() ? "Torque by the speed of the angle." : "Force by the speed of the slide.", Least::zero);
@@ -177,10 +199,14 @@ struct CoordinateRows {
           c.stop->upper = c.drawn + b.stop_reach;
           c.stop->stiffness = b.stop_stiffness;
         });
+  }
+
+  void stop_numbers() const {
     if (!coordinate().stop) return;
-    limit("Lower", "lower", coordinate().stop->lower, &Stop::lower, -b.stop_reach);
-    limit("Upper", "upper", coordinate().stop->upper, &Stop::upper, b.stop_reach);
-    number("Stiffness", key("stop") + ".stiffness", coordinate().stop->stiffness, stiffness_unit(),
+    const Beginning& b = beginning();
+    limit("Stop from", "lower", coordinate().stop->lower, &Stop::lower, -b.stop_reach);
+    limit("Stop to", "upper", coordinate().stop->upper, &Stop::upper, b.stop_reach);
+    number("Stop stiffness", key("stop") + ".stiffness", coordinate().stop->stiffness, stiffness_unit(),
            "How hard the stop pushes back beyond its limits.", Least::above_zero);
   }
 
@@ -188,10 +214,18 @@ struct CoordinateRows {
     settled();
     number("Drawn as", key("coordinate"), coordinate().drawn, value_unit(),
            "What the coordinate is called in the drawn pose; a label, it moves nothing.");
+    // All that can act in one line, which stays where it is; below it the numbers of what does act.
     drive();
+    beside_last("Spring");
     spring();
+    beside_last("Damper");
     damper();
+    beside_last("Stop");
     stop();
+    drive_numbers();
+    spring_numbers();
+    damper_numbers();
+    stop_numbers();
   }
 
   bool acted_on() const {

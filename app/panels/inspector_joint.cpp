@@ -92,17 +92,34 @@ void cut_row(App& app, const Joint& joint) {
 
 } // namespace
 
-void joint_inspector(App& app, const Joint& joint) {
-  name_row(app, {PartKind::joint, joint.name});
+namespace {
+
+void note_row(App& app, const Joint& joint) {
   text_row(app, "inspector/description", "Note", joint.description, "A note for whoever reads the scene.",
            [name = joint.name](App& changed, const std::string& text) {
              edit_joint(changed, "Describe " + name, name, [text](Joint& same) { same.description = text; });
            });
-  if (joint.type == JointType::gear) return gear_rows(app, joint);
+}
+
+} // namespace
+
+void joint_inspector(App& app, const Joint& joint) {
+  const Part part{PartKind::joint, joint.name};
+  name_row(app, part);
+  if (joint.type == JointType::gear) {
+    note_row(app, joint);
+    return gear_rows(app, joint);
+  }
   type_row(app, joint);
-  if (joint.type == JointType::distance) return distance_rows(app, joint);
-  body_end_row(app, {PartKind::joint, joint.name}, joint.bodies, 0, "Parent");
-  body_end_row(app, {PartKind::joint, joint.name}, joint.bodies, 1, "Child");
+  if (joint.type == JointType::distance) {
+    note_row(app, joint);
+    return distance_rows(app, joint);
+  }
+  // What acts comes first: that is what one needs of every joint, in sight in a low window, too.
+  coordinate_sections(app, joint);
+  if (!inspector_section(app, "inspector/place section", "Place", true)) return;
+  body_end_row(app, part, joint.bodies, 0, "Parent");
+  body_end_row(app, part, joint.bodies, 1, "Child");
   vector_rows(app, "Point",
               {.name = "inspector/at",
                .value = joint.at,
@@ -111,7 +128,7 @@ void joint_inspector(App& app, const Joint& joint) {
                .address = address_of(joint, "at")});
   if (has_axis(joint.type)) axis_rows(app, joint);
   cut_row(app, joint);
-  coordinate_sections(app, joint);
+  note_row(app, joint);
 }
 
 void distance_rows(App& app, const Joint& joint) {

@@ -215,13 +215,20 @@ std::optional<std::string> name_choice_row(App& app, const std::string& name, co
 bool check_row(App& app, const std::string& name, const std::string& label, bool on, const char* help,
                const char* refused) {
   bool now = on;
+  const float row_height = ImGui::GetFrameHeight();
   ImGui::BeginDisabled(refused != nullptr);
   ImGui::PushID(name.c_str());
   ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.f, std::round(app.scale)));
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {8 * app.scale, 1 * app.scale});
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 3 * app.scale);
+  // As high as other rows, so that several can stand in one.
+  const float spare = std::max(row_height - ImGui::GetFrameHeight(), 0.f);
+  ImGui::BeginGroup();
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + spare / 2);
   const bool clicked = ImGui::Checkbox(label.c_str(), &now);
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 3 * app.scale);
+  const float used = ImGui::GetItemRectSize().x;
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y);
+  ImGui::Dummy({used, spare / 2});
+  ImGui::EndGroup();
   ImGui::PopStyleVar(2);
   ImGui::PopID();
   ImGui::EndDisabled();

@@ -76,7 +76,11 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
                 .help = number.help,
                 .least = number.least,
                 .set =
-                    [addresses, label = std::string(number.label)](App& changed, double typed) {
+                    [addresses, names, label = std::string(number.label),
+                     mass = kind == PartKind::body](App& changed, double typed) {
+                      if (mass)
+                        for (const std::string& name : names)
+                          changed.inspector.given_masses[name] = {true, 0};
                       edit(changed, label + " of " + std::to_string(addresses.size()) + " parts",
                            [&](Mechanism& mechanism, Selection&) {
                              for (const std::string& address : addresses)

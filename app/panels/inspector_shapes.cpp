@@ -17,6 +17,18 @@ namespace {
 
 using Change = std::function<void(Body&, Shape&)>;
 
+// Mass or density as before, whichever was typed last; the density where none was.
+void take_again(const App& app, Body& body, double density) {
+  const auto given = app.inspector.given_masses.find(body.name);
+  const bool typed = given != app.inspector.given_masses.end();
+  if (typed && given->second.mass) {
+    take_uniform_mass(body, body.mass);
+    return;
+  }
+  const bool same = typed && std::abs(given->second.density - density) <= 1e-13 * density;
+  take_mass_properties(body, same ? given->second.density : density);
+}
+
 // Edits one shape; the mass follows where it did before.
 void edit_shape(App& app, const std::string& body, std::size_t index, const char* what,
                 const Change& change) {
@@ -24,9 +36,10 @@ void edit_shape(App& app, const std::string& body, std::size_t index, const char
     edit(changed, std::string(what) + " " + body, [&](Mechanism& mechanism, Selection&) {
       for (Body& same : mechanism.bodies) {
         if (same.name != body || index >= same.shapes.size()) continue;
-        const std::optional<double> density = follows_shapes(changed, same) ? density_of(same) : std::nullopt;
+        const bool follows = follows_shapes(changed, same);
+        const std::optional<double> density = density_of(same);
         change(same, same.shapes[index]);
-        if (density) take_mass_properties(same, *density);
+        if (follows && density) take_again(changed, same, *density);
       }
     });
   });

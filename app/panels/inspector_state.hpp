@@ -47,6 +47,13 @@ struct OutlineRows {
   std::array<std::vector<PartId>, 3> listed; // bodies, joints, forces
 };
 
+// What was last typed of a body that is a uniform solid: it stays when a shape changes, and the other
+// follows.
+struct GivenMass {
+  bool mass = false;  // the mass, or else
+  double density = 0; // kg/m^3
+};
+
 struct InspectorState {
   bool history = false;   // the list of steps is shown
   int history_shown = -1; // the step last brought into view there
@@ -63,8 +70,9 @@ struct InspectorState {
   std::string choice_search; // in the open list of names
   Part anchor, revealed;     // where a range of rows begins; the last one brought into view
   Part independent;          // a body whose mass does not follow its shapes, though it could
-  bool mass_alone = false;   // a typed position moves the mass centre alone
-  Part turned;               // whose rotation the angles below are
+  std::map<std::string, GivenMass, std::less<>> given_masses; // by body
+  bool mass_alone = false;                                    // a typed position moves the mass centre alone
+  Part turned;                                                // whose rotation the angles below are
   Quat turned_to = Quat::Identity();
   Vec3 turns = Vec3::Zero(); // deg, about x, y and z
 };

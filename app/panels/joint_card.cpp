@@ -7,8 +7,10 @@
 #include "app/render/icons.hpp"
 #include "app/viewport/work_plane.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace flyball {
 
@@ -178,7 +180,37 @@ void second_axis_row(App& app) {
   }
 }
 
-// Beside the point, rather on the side where less of the mechanism is, and within the view.
+// What the solids of the two bodies cover of the window, a rectangle each.
+std::vector<PanelRect> covered_by_bodies(App& app, const ViewInput& input) {
+  std::vector<PanelRect> covered;
+  const std::array<std::string, 2>& names = app.tool.joint->bodies;
+  for (const Instance& solid : cached_scene(app).instances) {
+    if (solid.part.kind != PartKind::body) continue;
+    const std::string& name = app.mechanism().bodies[static_cast<std::size_t>(solid.part.index)].name;
+    if (name != names[0] && name != names[1]) continue;
+    const Bounds box = instance_bounds(solid);
+    ImVec2 low(1e9f, 1e9f), high(-1e9f, -1e9f);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 at(corner & 1 ? box.upper.x() : box.lower.x(), corner & 2 ? box.upper.y() : box.lower.y(),
+                    corner & 4 ? box.upper.z() : box.lower.z());
+      const auto pixel = input.on_screen(at);
+      if (!pixel) continue;
+      low = {std::min(low.x, pixel->x), std::min(low.y, pixel->y)};
+      high = {std::max(high.x, pixel->x), std::max(high.y, pixel->y)};
+    }
+    if (low.x < high.x) covered.push_back({low.x, low.y, high.x - low.x, high.y - low.y});
+  }
+  return covered;
+}
+
+float common_area(const PanelRect& a, ImVec2 from, ImVec2 size) {
+  const float width = std::min(a.x + a.width, from.x + size.x) - std::max(a.x, from.x);
+  const float height = std::min(a.y + a.height, from.y + size.y) - std::max(a.y, from.y);
+  return std::max(width, 0.f) * std::max(height, 0.f);
+}
+
+// Beside the point, rather on the side where less of the mechanism is, and within the view; in a corner of it
+// where the card would lie on the bodies that are joined.
 void place_card(App& app, const ViewInput& input, ImVec2 size) {
   const float s = app.scale, gap = 28 * s, edge = 8 * s;
   const PanelRect& rect = input.rect;
@@ -189,8 +221,22 @@ void place_card(App& app, const ViewInput& input, ImVec2 size) {
   const float most = rect.x + rect.width - size.x - edge, least = rect.x + edge;
   const bool to_left = left >= least && (at.x < middle.x || right > most);
   ImVec2 from(to_left || (right > most && at.x > rect.x + rect.width / 2) ? left : right, at.y - 100 * s);
+  const float top = rect.y + edge, foot = std::max(top, rect.y + rect.height - size.y - edge);
   from.x = std::clamp(from.x, least, std::max(least, most));
-  from.y = std::clamp(from.y, rect.y + edge, std::max(rect.y + edge, rect.y + rect.height - size.y - edge));
+  from.y = std::clamp(from.y, top, foot);
+  const std::vector<PanelRect> covered = covered_by_bodies(app, input);
+  const auto hidden = [&](ImVec2 place) {
+    float area = 0;
+    for (const PanelRect& each : covered)
+      area += common_area(each, place, size);
+    return area;
+  };
+  const float strip = 52 * s; // the tools
+  const float other = std::clamp(to_left ? right : left, least, std::max(least, most));
+  for (const ImVec2 place :
+       {ImVec2(other, from.y), ImVec2(std::max(least, most), foot), ImVec2(std::max(least, most), top),
+        ImVec2(least + strip, foot), ImVec2(least + strip, top)})
+    if (hidden(place) < 0.8f * hidden(from)) from = place;
   ImGui::SetNextWindowPos({std::round(from.x), std::round(from.y)});
 }
 

@@ -311,11 +311,9 @@ void update_map(App& app) {
 
 void go_to_place(App& app, const std::array<double, 2>& place) {
   const std::array<MapAxis, 2>& axes = app.study.map.choice.axes;
-  edit(app, "Set " + parameter_phrase(axes[0].address) + " and " + parameter_phrase(axes[1].address),
-       [&](Mechanism& mechanism, Selection&) {
-         for (std::size_t i = 0; i < 2; ++i)
-           set_parameter(mechanism, axes[i].address, place[i]);
-       });
+  change_parameters(app,
+                    "Set " + parameter_phrase(axes[0].address) + " and " + parameter_phrase(axes[1].address),
+                    {{axes[0].address, place[0]}, {axes[1].address, place[1]}});
 }
 
 } // namespace flyball

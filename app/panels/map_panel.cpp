@@ -4,12 +4,12 @@
 #include "app/panels/study_panels.hpp"
 #include "app/panels/task_bar.hpp"
 #include "app/panels/typed_field.hpp"
-#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -110,12 +110,10 @@ void curve_choices(App& app) {
       choice.level = shown ? shown->value : 0;
   }
   if (!choice.level || !shown) return;
-  const bool angle = shown->angle;
-  const double factor = angle ? screen_factor(true) : 1;
-  double value = *choice.level * factor;
-  if (plain_quantity_field(app, "map/level/value", "Value", angle ? "deg" : "m",
+  double value = *choice.level;
+  if (plain_quantity_field(app, "map/level/value", "Value", shown->angle ? "rad" : "m",
                            "What the coordinate is on the curve.", value))
-    choice.level = value / factor;
+    choice.level = value;
 }
 
 void words(App& app) {
@@ -183,7 +181,8 @@ void map_panel(App& app) {
     const bool same = map.cells->choice.axes[0].address == map.choice.axes[0].address &&
                       map.cells->choice.axes[1].address == map.choice.axes[1].address;
     if (const auto place = events.dragged_at ? events.dragged_at : events.clicked_at; place && same)
-      later(app, [place = *place](App& then) { go_to_place(then, place); });
+      later(app, [place = std::array{(*place)[0] / map.plot.x.factor, (*place)[1] / map.plot.y.factor}](
+                     App& then) { go_to_place(then, place); });
   }
   ImGui::EndChild();
 }

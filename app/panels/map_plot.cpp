@@ -1,6 +1,6 @@
 // The map as a plot: colours, hatching where it is unstable, the curves in it and the present place.
 #include "app/panels/map_control.hpp"
-#include "app/panels/units.hpp"
+#include "app/panels/shown_plot.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -34,6 +34,10 @@ PlotCurve hatching(const FoundCells& found, const std::vector<double>& x, const 
       hatch.points.push_back({nothing, nothing});
     }
   return hatch;
+}
+
+std::string axis_unit(const App& app, const MapAxis& axis) {
+  return parameter_unit(app.mechanism(), axis.address);
 }
 
 void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level) {
@@ -97,11 +101,16 @@ void draw_map(App& app) {
     if (x >= axes[0].from && x <= axes[0].to && y >= axes[1].from && y <= axes[1].to)
       map.plot.marker = PlotMarker{x, y, ""};
   }
-  if (moved_only) return;
+  const auto show_marker = [&] {
+    if (!map.plot.marker) return;
+    map.plot.marker->x *= map.plot.x.factor;
+    map.plot.marker->y *= map.plot.y.factor;
+  };
+  if (moved_only) return show_marker();
   Plot plot;
   const auto axis_for = [&](const MapAxis& axis) {
     return PlotAxis{.label = parameter_phrase(axis.address),
-                    .unit = parameter_unit(app.mechanism(), axis.address),
+                    .unit = axis_unit(app, axis),
                     .range = PlotRange{axis.from, axis.to},
                     .room = 0};
   };
@@ -111,26 +120,31 @@ void draw_map(App& app) {
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
     if (coordinate_label(c) == found.choice.coordinate) shown = &c;
   const bool angle = shown && shown->angle;
-  const double factor = screen_factor(angle);
+  const std::string coordinate = angle ? "rad" : "m";
+  const ShownUnit unit = coordinate_unit(angle, app.units);
   PlotHeat heat{.x = values_of(axes[0]),
                 .y = values_of(axes[1]),
                 .values = {},
                 .label = found.choice.coordinate,
-                .unit = screen_unit(angle)};
+                .unit = coordinate};
   heat.values.reserve(found.cells.size());
   for (const MapCell& cell : found.cells)
-    heat.values.push_back(cell.value * factor);
+    heat.values.push_back(cell.value);
   if (PlotCurve hatch = hatching(found, heat.x, heat.y); !hatch.points.empty())
     plot.curves.push_back(std::move(hatch));
+  show_heat(heat, coordinate, app.units);
   plot.heat = std::move(heat);
   if (map.curves && map.curves->folds) add_curves(plot, *map.curves->folds, "");
   if (map.curves && map.curves->level && map.choice.level)
     add_curves(plot, *map.curves->level,
-               found.choice.coordinate + " = " + short_text(*map.choice.level * factor, 5) +
-                   (angle ? "" : " ") + screen_unit(angle));
+               found.choice.coordinate + " = " + short_text(unit.shown(*map.choice.level), 5) + " " +
+                   unit.text);
+  show_axis(plot, 0, axis_unit(app, axes[0]), app.units);
+  show_axis(plot, 1, axis_unit(app, axes[1]), app.units);
   plot.marker = map.plot.marker;
   plot.version = ++map.plots_made;
   map.plot = std::move(plot);
+  show_marker();
 }
 
 } // namespace flyball

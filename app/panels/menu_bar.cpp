@@ -13,7 +13,8 @@ struct Menu {
   std::string_view prefix; // of its commands' ids
 };
 constexpr std::array menus{Menu{"File", "file."}, Menu{"Edit", "edit."},   Menu{"Insert", "insert."},
-                           Menu{"View", "view."}, Menu{"Study", "study."}, Menu{"Help", "help."}};
+                           Menu{"View", "view."}, Menu{"Units", "units."}, Menu{"Study", "study."},
+                           Menu{"Help", "help."}};
 
 void recent_menu(App& app) {
   const auto& files = recent_files(app);

@@ -145,9 +145,10 @@ std::string largest_movement(const App& app, const VibrationMode& mode) {
   // An angle of 1 is as much as a slide can be, for the largest is 1 in radians or reaches.
   const ModeAmplitude* most = angle && (std::abs(angle->value) > 0.5 || !slide) ? angle : slide;
   if (!most) return {};
-  const double movement = app.study.modes.amplitude * std::abs(most->value) * screen_factor(most->angle);
-  return coordinate_label(*most) + " ± " + short_text(movement, 3) + (most->angle ? "" : " ") +
-         screen_unit(most->angle);
+  const double movement = app.study.modes.amplitude * std::abs(most->value);
+  const ShownUnit unit = coordinate_unit(most->angle, app.units);
+  return coordinate_label(*most) + " ± " + short_text(unit.shown(movement), 3) +
+         (unit.text == "°" ? "" : " ") + unit.text;
 }
 
 std::string speed_words(const VibrationMode& mode) {

@@ -1,7 +1,7 @@
 // What plots over time can show, and how it becomes one.
 #include "app/panels/motion_control.hpp"
+#include "app/panels/shown_plot.hpp"
 #include "app/panels/study_panels.hpp"
-#include "app/panels/units.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -11,8 +11,7 @@ namespace flyball {
 namespace {
 
 struct Shown {
-  std::string title, unit;
-  double factor = 1;
+  std::string title, unit; // in SI units
   // One curve for each of these, by name in the legend.
   struct Line {
     std::string name;
@@ -40,35 +39,31 @@ Shown shown_quantity(const Run& run, const std::string& key) {
   Shown out;
   for (const CoordinateTrack& c : run.coordinates) {
     const std::string name = coordinate_label(c);
-    if (key == "value " + name) return {name, screen_unit(c.angle), screen_factor(c.angle), {{"", c.value}}};
-    if (key == "rate " + name)
-      return {"rate of " + name, c.angle ? "°/s" : "mm/s", screen_factor(c.angle), {{"", c.rate}}};
+    if (key == "value " + name) return {name, c.angle ? "rad" : "m", {{"", c.value}}};
+    if (key == "rate " + name) return {"rate of " + name, c.angle ? "rad/s" : "m/s", {{"", c.rate}}};
   }
   for (const DriveTrack& d : run.drives) {
     const std::string name = coordinate_label(d);
     if (key == "drive " + name)
-      return {(d.angle ? "drive torque of " : "drive force of ") + name,
-              d.angle ? "N m" : "N",
-              1,
-              {{"", d.torque}}};
+      return {
+          (d.angle ? "drive torque of " : "drive force of ") + name, d.angle ? "N m" : "N", {{"", d.torque}}};
   }
   for (const ReactionTrack& r : run.reactions) {
-    if (key == "force " + r.joint) return {"force through " + r.joint, "N", 1, {{"", norms(r.force)}}};
-    if (key == "torque " + r.joint) return {"torque through " + r.joint, "N m", 1, {{"", norms(r.torque)}}};
+    if (key == "force " + r.joint) return {"force through " + r.joint, "N", {{"", norms(r.force)}}};
+    if (key == "torque " + r.joint) return {"torque through " + r.joint, "N m", {{"", norms(r.torque)}}};
   }
   const EnergyTracks& e = run.energy;
   if (key == "energies") { // less what there was at first, which may be much and says nothing
     out = {"energy since the start",
            "J",
-           1,
            {{"kinetic", changes(e.kinetic)}, {"potential", changes(e.potential)}}};
     if (!e.jacobi.empty()) out.lines.push_back({"T₂ + V - T₀", changes(e.jacobi)});
     out.lines.push_back({"dissipated", e.dissipated});
     if (!run.drives.empty()) out.lines.push_back({"delivered by the drives", e.delivered});
   } else if (key == "jacobi" && !e.jacobi.empty()) {
-    out = {"T₂ + V - T₀", "J", 1, {{"", e.jacobi}}};
+    out = {"T₂ + V - T₀", "J", {{"", e.jacobi}}};
   } else if (key == "balance") {
-    out = {"energy balance", "J", 1, {{"", e.balance}}};
+    out = {"energy balance", "J", {{"", e.balance}}};
   }
   return out;
 }
@@ -143,13 +138,13 @@ Plot motion_plot(const App& app, const std::string& quantity) {
       const std::vector<double>& values = shown.lines[l].values;
       curve.points.reserve(values.size());
       for (std::size_t i = 0; i < values.size() && i < run.time.size(); ++i)
-        curve.points.push_back({run.time[i], values[i] * shown.factor});
+        curve.points.push_back({run.time[i], values[i]});
       plot.curves.push_back(std::move(curve));
     }
     if (const auto steady = steady_value(app, quantity); steady && plot.references.empty())
-      plot.references.push_back(
-          {.axis = 1, .at = *steady * shown.factor, .label = "steady", .color = plot_color::blue});
+      plot.references.push_back({.axis = 1, .at = *steady, .label = "steady", .color = plot_color::blue});
   }
+  show_axis(plot, 1, plot.y.unit, app.units);
   // The undamped run lies below the damped one.
   std::ranges::stable_sort(plot.curves, {}, [](const PlotCurve& c) { return c.width; });
   return plot;

@@ -97,7 +97,7 @@ void keep_rows(App& app) {
   kept.revision = app.document.revision();
   kept.theme = app.theme;
   kept.search = search;
-  kept.colours = body_colors(app.mechanism(), app.theme);
+  kept.colours = body_colors(app.document.hues(), app.theme);
   for (std::size_t i = 0; i < sections.size(); ++i) {
     kept.listed[i].clear();
     const int count = static_cast<int>(count_of(app.mechanism(), sections[i].kind));

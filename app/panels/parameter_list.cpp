@@ -202,7 +202,7 @@ std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, con
     if (!pinned.contains(control.address)) controls.push_back(std::move(control));
   for (ParameterControl& control : controls) {
     const double span = std::abs(control.to - control.from);
-    if (!control.log && span > 0) control.step = std::pow(10, std::floor(std::log10(span / 200)));
+    if (!control.log && span > 0) control.step = slider_step(span);
   }
   std::ranges::stable_sort(controls, {}, &ParameterControl::group);
   return controls;
@@ -224,6 +224,10 @@ std::string parameter_phrase(std::string_view address) {
   std::string what = what_of(parts);
   std::ranges::replace(what, '_', ' ');
   return what + " of " + (parts.size() > 2 ? parts[1] : parts[0]);
+}
+
+double slider_step(double span) {
+  return std::pow(10, std::floor(std::log10(span / 200)));
 }
 
 double slider_place(const ParameterControl& control, double value) {

@@ -35,6 +35,8 @@ Slider slider_for(const Mechanism& mechanism, const std::string& address);
 // "speed of spin", "mass of ball1", "y of gravity".
 std::string parameter_phrase(std::string_view address);
 
+// What a slider of a linear range stops at: about a two-hundredth of it, a power of ten.
+double slider_step(double span);
 // The control's place on a slider from 0 to 1, and back to a value rounded to what a hand can set.
 double slider_place(const ParameterControl& control, double value);
 double slider_value(const ParameterControl& control, double place, bool fine);

@@ -3,6 +3,7 @@
 #include "app/panels/quantity_field.hpp"
 #include "app/panels/sensitivity_line.hpp"
 #include "app/panels/typed_field.hpp"
+#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
 
@@ -121,6 +122,7 @@ void parameter(App& app, const ParameterControl& control) {
   const float value_width = std::min((room - icon_width) * 0.5f, 150 * s);
   const float value_at = room - value_width - icon_width;
   const bool changed = control.value != control.file_value;
+  const ShownUnit unit = shown_unit(control.unit, app.units);
   const auto set = [address = control.address](App& app_then, double value) {
     change_parameter(app_then, address, value);
   };
@@ -128,7 +130,8 @@ void parameter(App& app, const ParameterControl& control) {
   control_label(app, control, value_at - (changed ? icon_width : 0) - 4 * s);
   if (changed) {
     ImGui::SetCursorPosX(start + value_at - icon_width);
-    const std::string help = "Back to the file's " + short_text(control.file_value) + " " + control.unit;
+    const std::string help =
+        "Back to the stored " + short_text(unit.shown(control.file_value)) + " " + unit.text;
     if (small_icon(app, name + "/reset", icon::undo, help.c_str(), true, icon_width))
       later(app, [set, value = control.file_value](App& app_then) { set(app_then, value); });
     ImGui::SameLine();
@@ -153,7 +156,7 @@ void parameter(App& app, const ParameterControl& control) {
     later(app, [set, value](App& app_then) { set(app_then, value); });
   if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) ImGui::OpenPopup("range");
   if (type_value)
-    later(app, [field = name + "/value", text = short_text(control.value, 12) + " " + control.unit](
+    later(app, [field = name + "/value", text = short_text(unit.shown(control.value), 12) + " " + unit.text](
                    App& app_then) { start_typing(app_then, field, text); });
   range_menu(app, control);
   if (control.group == ParameterGroup::pinned) sensitivity_line(app, control);
@@ -194,7 +197,7 @@ void parameters_panel(App& app, const PanelRect& rect) {
                   "elsewhere.");
     if (sliders_moved(app)) {
       ImGui::SameLine();
-      if (text_button(app, "parameters/reset", "Reset all")) later(app, reset_parameters);
+      if (text_button(app, "parameters/reset", "Reset all")) later(app, drop_explored);
     }
     app.panels.parameters_height = (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / app.scale;
   } else {

@@ -104,7 +104,7 @@ class Parser {
     Value& plain = left.dimension.none() ? left : right;
     const Value& other = left.dimension.none() ? right : left;
     if (plain.dimension.none() && other.dimension == field_.dimension) {
-      plain = {plain.number * field_.number, field_.dimension};
+      plain = {times_unit(plain.number, field_.number), field_.dimension};
       return;
     }
     throw Mistake{"A sum of " + dimension_words(left.dimension) + " and " + dimension_words(right.dimension) +
@@ -147,7 +147,8 @@ class Parser {
     }
     if (!next_unit()) return value;
     const Value unit = units();
-    return {value.number * unit.number, value.dimension + unit.dimension, number_comes ? unit.number : 0};
+    return {times_unit(value.number, unit.number), value.dimension + unit.dimension,
+            number_comes ? unit.number : 0};
   }
 
   double exponent() {
@@ -339,13 +340,20 @@ bool fits(const Dimension& value, const Dimension& field) {
 } // namespace
 
 Quantity parse_quantity(std::string_view text, std::string_view unit) {
+  return parse_quantity(text, unit, unit);
+}
+
+Quantity parse_quantity(std::string_view text, std::string_view unit, std::string_view shown) {
   try {
-    const std::string field_text = plain_signs(unit);
-    const Value field = unit.empty() ? Value{1, {}} : Parser(field_text, {1, {}}).whole();
+    const auto value_of = [](std::string_view of) {
+      return of.empty() ? Value{1, {}} : Parser(plain_signs(of), {1, {}}).whole();
+    };
+    const Value field = value_of(unit), plain = value_of(shown);
     const std::string typed = plain_signs(text);
-    const Value value = Parser(typed, field).whole();
+    const Value value = Parser(typed, plain).whole();
     if (!std::isfinite(value.number)) return {0, "That is no finite number."};
-    if (value.dimension.none()) return {value.number, {}};
+    if (value.dimension.none())
+      return {unit == shown ? value.number : times_unit(value.number, plain.number) / field.number, {}};
     if (!fits(value.dimension, field.dimension)) return {0, "Expected " + expected_quantity(unit) + "."};
     return {value.number / field.number, {}};
   } catch (const Mistake& mistake) {

@@ -19,6 +19,8 @@ struct Quantity {
 
 // `unit` is the field's ("rad/s", "kg m^2", "" for a plain number). The value is finite.
 Quantity parse_quantity(std::string_view text, std::string_view unit);
+// The same of a field that is shown in another unit than its value has: a plain number is in `shown`.
+Quantity parse_quantity(std::string_view text, std::string_view unit, std::string_view shown);
 
 // "a length, e.g. 0.1 m or 100 mm": what a field of this unit expects.
 std::string expected_quantity(std::string_view unit);

@@ -3,6 +3,7 @@
 #include "app/panels/parameter_list.hpp"
 #include "app/panels/quantity.hpp"
 #include "app/panels/typed_field.hpp"
+#include "app/panels/units.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
 #include "engine/mechanism/address.hpp"
@@ -33,8 +34,21 @@ std::string too_small(double value, Least least) {
   return {};
 }
 
-std::string mistake_in(const std::string& text, const QuantityField& field) {
-  const Quantity typed = parse_quantity(text, field.unit);
+// The field's number as it is shown and typed, in the unit that the person has chosen.
+struct Shown {
+  ShownUnit unit;
+  double value = 0;
+
+  Shown(const App& app, const QuantityField& field)
+      : unit(shown_unit(field.unit, app.units)), value(unit.shown(field.value)) {}
+};
+
+Quantity typed_quantity(const App& app, const std::string& text, const QuantityField& field) {
+  return parse_quantity(text, field.unit, shown_unit(field.unit, app.units).text);
+}
+
+std::string mistake_in(const App& app, const std::string& text, const QuantityField& field) {
+  const Quantity typed = typed_quantity(app, text, field);
   return typed ? too_small(typed.value, field.least) : typed.mistake;
 }
 
@@ -55,6 +69,7 @@ void set(App& app, const QuantityField& field, double value) {
 
 struct Stepping {
   const QuantityField& field;
+  const Shown& shown;
   bool stepped = false;
 };
 
@@ -62,12 +77,13 @@ struct Stepping {
 int step_typed(ImGuiInputTextCallbackData* data) {
   auto& stepping = *static_cast<Stepping*>(data->UserData);
   const QuantityField& field = stepping.field;
-  const Quantity typed = parse_quantity({data->Buf, static_cast<std::size_t>(data->BufTextLen)}, field.unit);
+  const ShownUnit& unit = stepping.shown.unit;
+  const Quantity typed = parse_quantity({data->Buf, static_cast<std::size_t>(data->BufTextLen)}, unit.text);
   if (!typed) return 0;
-  const double step = hand_step(field.value, field.unit);
+  const double step = hand_step(stepping.shown.value, unit.text);
   const double next = rounded(typed.value + (data->EventKey == ImGuiKey_UpArrow ? step : -step));
   if (!too_small(next, field.least).empty()) return 0;
-  const std::string text = with_unit(number_text(next), field.unit);
+  const std::string text = with_unit(number_text(next), unit.text);
   data->DeleteChars(0, data->BufTextLen);
   data->InsertChars(0, text.c_str());
   data->SelectAll();
@@ -91,13 +107,13 @@ std::string fitting_text(const App& app, double value, float room) {
 }
 
 // The number over the field at rest.
-void draw_resting(const App& app, const QuantityField& field, float padding) {
+void draw_resting(const App& app, const QuantityField& field, const Shown& shown, float padding) {
   const UiColors& colors = colors_of(app);
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   const float right = to.x - padding, gap = 5 * app.scale;
-  const float unit_width = field.unit.empty() ? 0 : ImGui::CalcTextSize(field.unit.c_str()).x + gap;
+  const float unit_width = shown.unit.text.empty() ? 0 : ImGui::CalcTextSize(shown.unit.text.c_str()).x + gap;
   const float room = right - from.x - padding - unit_width;
-  const std::string text = field.various.empty() ? fitting_text(app, field.value, room) : std::string();
+  const std::string text = field.various.empty() ? fitting_text(app, shown.value, room) : std::string();
   const float y = from.y + (to.y - from.y - ImGui::GetFontSize()) / 2;
   const float x = field.framed ? from.x + padding : right - unit_width - digits_width(app, text);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -109,18 +125,22 @@ void draw_resting(const App& app, const QuantityField& field, float padding) {
     list.AddText(app.fonts.digits, app.fonts.digits->FontSize, {x, y + digits_drop(app)}, packed(color),
                  text.c_str());
   if (unit_width > 0 && (!field.framed || digits_width(app, text) <= room))
-    list.AddText({right - unit_width + gap, y}, packed(colors.dim), field.unit.c_str());
+    list.AddText({right - unit_width + gap, y}, packed(colors.dim), shown.unit.text.c_str());
   list.PopClipRect();
 }
 
-std::string tooltip(const QuantityField& field) {
+std::string tooltip(const QuantityField& field, const Shown& shown) {
   std::string text = field.help;
   const auto line = [&](const std::string& more) { text += (text.empty() ? "" : "\n") + more; };
   if (field.various.empty()) {
     constexpr double degrees = 180 / std::numbers::pi;
-    std::string exact = with_unit(number_text(field.value), field.unit);
-    if (field.unit == "rad") exact += " = " + short_text(field.value * degrees, 9) + "°";
-    if (field.unit == "rad/s") exact += " = " + short_text(field.value * degrees / 6, 9) + " rpm";
+    std::string exact = with_unit(number_text(shown.value), shown.unit.text);
+    if (shown.unit.text != field.unit)
+      exact += " = " + with_unit(number_text(field.value), field.unit);
+    else if (field.unit == "rad")
+      exact += " = " + short_text(field.value * degrees, 9) + "°";
+    else if (field.unit == "rad/s")
+      exact += " = " + short_text(field.value * degrees / 6, 9) + " rpm";
     line(exact + (field.standard ? ", as the scene does not say otherwise" : ""));
   }
   if (!field.address.empty()) line(field.address);
@@ -160,14 +180,15 @@ void scrub_label(App& app, const std::string& label, const QuantityField& field,
   const bool active = ImGui::IsItemActive(), draggable = field.various.empty();
   const bool lit = draggable && (active || ImGui::IsItemHovered());
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-  if (!active) help_on_hover(tooltip(field).c_str());
+  const Shown shown(app, field);
+  if (!active) help_on_hover(tooltip(field, shown).c_str());
   Scrub& scrub = app.inspector.scrub;
-  if (ImGui::IsItemActivated()) scrub = {name, field.value, hand_step(field.value, field.unit), 0};
+  if (ImGui::IsItemActivated()) scrub = {name, shown.value, hand_step(shown.value, shown.unit.text), 0};
   if (active && draggable && scrub.name == name && ImGui::GetIO().MouseDelta.x != 0) {
     scrub.travelled += ImGui::GetIO().MouseDelta.x;
     const double steps = std::round(static_cast<double>(scrub.travelled / (pixels_a_step * app.scale)));
-    const double next =
-        rounded(scrub.start + steps * (ImGui::GetIO().KeyShift ? scrub.step / 10 : scrub.step));
+    const double next = shown.unit.si(
+        rounded(scrub.start + steps * (ImGui::GetIO().KeyShift ? scrub.step / 10 : scrub.step)));
     if (next != field.value && too_small(next, field.least).empty()) set(app, field, next);
   }
   const UiColors& colors = colors_of(app);
@@ -193,7 +214,8 @@ double hand_step(double value, const std::string& unit) {
   if (value != 0) return std::pow(10, std::floor(std::log10(std::abs(value)) + 1e-9) - 2);
   if (unit == "m") return 1e-3;
   if (unit == "rad/s" || unit == "m/s^2" || unit == "rad") return 0.1;
-  if (unit == "deg" || unit == "N/m" || unit == "N") return 1;
+  constexpr std::array<std::string_view, 8> by_one{"deg", "°", "°/s", "rpm", "mm", "mm/s", "N/m", "N"};
+  if (std::ranges::find(by_one, unit) != by_one.end()) return 1;
   return 0.01;
 }
 
@@ -221,13 +243,14 @@ float label_width(const App& app) {
 void quantity_field(App& app, const QuantityField& field, float width) {
   const UiColors& colors = colors_of(app);
   const float height = ImGui::GetFrameHeight(), padding = 6 * app.scale;
-  Stepping stepping{field};
+  const Shown shown(app, field);
+  Stepping stepping{field, shown};
   TextField text{.name = field.name,
-                 .text = field.various.empty() ? with_unit(number_text(field.value), field.unit) : "",
-                 .check = [field](const std::string& typed) { return mistake_in(typed, field); },
+                 .text = field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text) : "",
+                 .check = [&app, field](const std::string& typed) { return mistake_in(app, typed, field); },
                  .take =
                      [field](App& changed, const std::string& typed) {
-                       const double value = parse_quantity(typed, field.unit).value;
+                       const double value = typed_quantity(changed, typed, field).value;
                        if (field.set)
                          field.set(changed, value);
                        else
@@ -248,10 +271,10 @@ void quantity_field(App& app, const QuantityField& field, float width) {
   ImGui::PopFont();
   if (bare) ImGui::PopStyleColor(2);
   if (!typing) {
-    draw_resting(app, field, padding);
-    help_on_hover(tooltip(field).c_str());
+    draw_resting(app, field, shown, padding);
+    help_on_hover(tooltip(field, shown).c_str());
   } else if (stepping.stepped) {
-    if (const Quantity typed = parse_quantity(app.inspector.typing.text, field.unit))
+    if (const Quantity typed = typed_quantity(app, app.inspector.typing.text, field))
       set(app, field, typed.value);
   }
 }
@@ -297,9 +320,7 @@ bool plain_quantity_field(App& app, const std::string& name, const char* label, 
 }
 
 void set_number(App& app, const std::string& address, double value) {
-  if (app.mode == Mode::explore) return change_parameter(app, address, value);
-  edit(app, "Set " + parameter_phrase(address),
-       [&](Mechanism& mechanism, Selection&) { set_parameter(mechanism, address, value); });
+  edit_parameter(app, address, value);
 }
 
 bool is_pinned(const Mechanism& mechanism, const std::string& address) {

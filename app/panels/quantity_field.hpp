@@ -13,7 +13,7 @@ enum class Least { any, zero, above_zero }; // what a number may be
 
 struct QuantityField {
   std::string name; // of the widget
-  double value = 0;
+  double value = 0; // in `unit`; shown and typed in what the person has chosen for that
   std::string unit; // "" where it has none
   std::string help; // one sentence
   Least least = Least::any;
@@ -35,7 +35,7 @@ void quantity_row(App& app, const std::string& label, const QuantityField& field
 bool plain_quantity_field(App& app, const std::string& name, const char* label, const char* unit,
                           const char* help, double& value, Least least = Least::any);
 
-// Edits the number at the address: from the last answer while exploring.
+// Edits the number at the address, see edit_parameter(): what is typed or dragged in the inspector is meant.
 void set_number(App& app, const std::string& address, double value);
 // Makes the number a slider, or none.
 void pin(App& app, const std::string& address, bool pinned);

@@ -31,7 +31,7 @@ void recover_now(App& app, const Leftover& leftover) {
   }
   app.problem.clear();
   if (!app.files.autosave.adopt(leftover.path, file, {app.options.state, app.files.owner})) {
-    app.notice = "What was left is no longer there; another window may have recovered it.";
+    show_error(app, "What was left is no longer there; another window may have recovered it.");
     return;
   }
   const bool was_empty = app.mechanism().bodies.empty();
@@ -50,7 +50,7 @@ void discard(App& app, const Leftover& leftover) {
   try {
     app.files.aside = put_aside(leftover.path);
   } catch (const SceneError& error) {
-    app.notice = error.what();
+    show_error(app, error.what());
   }
   std::erase_if(app.files.leftovers, [&](const Leftover& one) { return one.path == leftover.path; });
 }
@@ -59,7 +59,7 @@ void bring_back_discarded(App& app) {
   try {
     bring_back(app.files.aside);
   } catch (const SceneError& error) {
-    app.notice = error.what();
+    show_error(app, error.what());
   }
   app.files.aside.clear();
   begin_files(app);

@@ -1,5 +1,7 @@
 #include "app/panels/response_control.hpp"
 
+#include "app/panels/shown_plot.hpp"
+
 #include "app/panels/response_follow.hpp"
 #include "app/plot/axis.hpp"
 #include "engine/mechanism/address.hpp"
@@ -162,7 +164,7 @@ void choose_first_quantity(App& app) {
   // Without an answer not everything is offered that may be so again.
   if (all.empty() || (!state.quantity.empty() && !converged(app))) return;
   const auto length = std::ranges::find_if(
-      all, [](const ResponseQuantity& each) { return each.unit == "mm" && each.key.starts_with("value "); });
+      all, [](const ResponseQuantity& each) { return each.unit == "m" && each.key.starts_with("value "); });
   state.shown = length == all.end() ? all.front() : *length;
   state.quantity = state.shown.key;
   ++state.version;
@@ -343,7 +345,8 @@ void go_to_response(App& app, const PlotHit& hit, bool dragged) {
   const double span = std::abs(state.to - state.from);
   double step = std::pow(10, std::floor(std::log10(span)) - 4);
   // A logarithmic range needs more digits at its lower end.
-  if (state.logarithmic && hit.x > 0) step = std::pow(10, std::floor(std::log10(hit.x)) - 4);
+  if (const double x = hit.x / state.plot.x.factor; state.logarithmic && x > 0)
+    step = std::pow(10, std::floor(std::log10(x)) - 4);
   const ResponsePoint point = rounded_point(line, static_cast<double>(piece.first) + hit.index, step);
   // A hand that rests on the marker asks for nothing new.
   const bool there =
@@ -391,7 +394,7 @@ void draw_response(App& app) {
   if (state.plotted != state.version && told) {
     const std::optional<PlotRange> before = state.plot.y.range;
     const bool same = state.plot.y.label == quantity.title;
-    state.plot = response_plot(*state.result, quantity, state.pieces);
+    state.plot = response_plot(*state.result, quantity, app.units, state.pieces);
     if (const auto& answer = state.design.answer; answer && "value " + answer->coordinate == state.quantity &&
                                                   answer->of.address == state.result->of.address) {
       state.plot.references.push_back(
@@ -402,6 +405,8 @@ void draw_response(App& app) {
                                     .shape = PlotShape::diamond,
                                     .color = plot_color::green});
     }
+    show_axis(state.plot, 0, state.plot.x.unit, app.units);
+    show_axis(state.plot, 1, quantity.unit, app.units);
     // While one slider is dragged the axis only grows: a curve that moves is seen against it.
     PlotRange range = axis_range(state.plot, {}, 1);
     if (before && same && state.plot_gesture == app.gesture)
@@ -416,7 +421,8 @@ void draw_response(App& app) {
   const std::optional<ResponsePoint> now = present_point(app, state.result->of.address);
   if (!now) return;
   if (const auto y = quantity_mark(*now, state.quantity))
-    state.plot.marker = PlotMarker{now->parameter, *y * quantity.factor, ""};
+    state.plot.marker =
+        PlotMarker{now->parameter * state.plot.x.factor, *y * quantity.factor * state.plot.y.factor, ""};
 }
 
 } // namespace flyball

@@ -40,7 +40,8 @@ void go_to_design(App& app, const DesignSolution& solution);
 std::vector<ResponseLine> response_lines(ResponseDiagram& diagram);
 
 // Curves of one quantity over the parameter: stable solid, unstable dashed, undecided dotted.
-Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantity,
+// In SI units; `units` are for labels.
+Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantity, const DisplayUnits& units,
                    std::vector<ResponsePiece>& pieces);
 
 } // namespace flyball

@@ -164,14 +164,18 @@ void choose_design(App& app, const std::string& name) {
   design.answer.reset();
   ++app.study.response.version;
   const CoordinateSolution* c = design_coordinate(app);
-  const double factor = screen_factor(c && c->angle);
-  design.value = std::round(present_value(app, name) * factor) / factor;
+  // The nearest whole degree, millimetre or hundredth of a radian.
+  const ShownUnit unit = coordinate_unit(c && c->angle, app.units);
+  const double digits = unit.text == "rad" ? 100 : unit.text == "m" ? 1000 : 1;
+  design.value = unit.si(std::round(unit.shown(present_value(app, name)) * digits) / digits);
 }
 
 void solution_row(App& app, const DesignAnswer& answer, const DesignSolution& s, std::size_t i,
-                  const std::string& unit) {
+                  const std::string& si_unit) {
   const UiColors& colors = colors_of(app);
   const NumberStyle& numbers = app.options.numbers;
+  const ShownUnit parameter = shown_unit(si_unit, app.units);
+  const std::string& unit = parameter.text;
   const std::string name = "response/solution/" + std::to_string(i + 1);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetFrameHeight();
@@ -182,7 +186,8 @@ void solution_row(App& app, const DesignAnswer& answer, const DesignSolution& s,
   list.AddRectFilled(from, {from.x + width, from.y + height},
                      packed(ImGui::IsItemHovered() ? colors.border : colors.raised),
                      ImGui::GetStyle().FrameRounding);
-  const std::string value = value_text(s.parameter, std::max(s.parameter_error, numbers.noise), numbers);
+  const std::string value = value_text(
+      parameter.shown(s.parameter), std::max(s.parameter_error, numbers.noise) * parameter.factor, numbers);
   float x = from.x + 8 * s1;
   list.PushClipRect(from, {from.x + width, from.y + height}, true);
   list.AddText(app.fonts.digits, app.fonts.digits->FontSize, {x, y + digits_drop(app)}, packed(colors.text),
@@ -193,17 +198,21 @@ void solution_row(App& app, const DesignAnswer& answer, const DesignSolution& s,
   const ImVec4& color = !s.at.stable ? colors.dim : *s.at.stable ? colors.good : colors.warn;
   list.AddText({from.x + width - 8 * s1 - ImGui::CalcTextSize(kind).x, y}, packed(color), kind);
   list.PopClipRect();
-  std::string help = "Click to go there.\nError estimate " + magnitude_text(s.parameter_error, numbers) +
-                     " " + unit + ", " + std::to_string(s.iterations) + " iterations.";
-  if (s.rate)
-    help += "\nThe coordinate changes by " + short_text(*s.rate * screen_factor(answer.coordinate.angle), 4) +
-            (answer.coordinate.angle ? " °" : " mm") + " per " + (unit.empty() ? "unit." : unit + ".");
+  std::string help = "Click to go there.\nError estimate " +
+                     magnitude_text(s.parameter_error * parameter.factor, numbers) + " " + unit + ", " +
+                     std::to_string(s.iterations) + " iterations.";
+  if (s.rate) {
+    const ShownUnit coordinate = coordinate_unit(answer.coordinate.angle, app.units);
+    help += "\nThe coordinate changes by " + short_text(*s.rate * coordinate.factor / parameter.factor, 4) +
+            " " + coordinate.text + " per " + (unit.empty() ? "unit." : unit + ".");
+  }
   constexpr std::size_t most_told = 8;
   for (std::size_t k = 0; k < s.at.coordinates.size() && k < most_told; ++k) {
     const CoordinateSolution& c = s.at.coordinates[k];
-    if (!c.driven)
-      help += "\n" + coordinate_label(c) + "  " + short_text(c.value * screen_factor(c.angle), 6) +
-              (c.angle ? " °" : " mm");
+    if (c.driven) continue;
+    const ShownUnit coordinate = coordinate_unit(c.angle, app.units);
+    help +=
+        "\n" + coordinate_label(c) + "  " + short_text(coordinate.shown(c.value), 6) + " " + coordinate.text;
   }
   help_on_hover(help.c_str());
   if (clicked) later(app, [solution = s](App& then) { go_to_design(then, solution); });
@@ -248,17 +257,16 @@ void design_rows(App& app) {
     choose_design(app, *chosen);
   const CoordinateSolution* c = design_coordinate(app);
   const bool angle = c && c->angle;
-  const double factor = screen_factor(angle);
   const float width = row_label(app, "is", "Where it is wanted.");
   const float button = 62 * app.scale, gap = 6 * app.scale;
   quantity_field(app,
                  {.name = "response/value",
-                  .value = std::round(design.value * factor * 1e9) / 1e9,
-                  .unit = angle ? "deg" : "mm",
+                  .value = design.value,
+                  .unit = angle ? "rad" : "m",
                   .help = "Where it is wanted.",
                   .set =
-                      [factor](App& changed, double typed) {
-                        changed.study.response.design.value = typed / factor;
+                      [](App& changed, double typed) {
+                        changed.study.response.design.value = typed;
                         find_design(changed);
                       },
                   .at_once = true},

@@ -86,7 +86,7 @@ Kind kind_between(const ResponseLine& line, std::size_t i) {
 
 // An angle that is told in (-pi, pi] goes round between the two.
 bool goes_round(double a, double b, const std::string& key, const ResponseQuantity& quantity) {
-  return key.starts_with("value ") && quantity.unit == "°" && std::abs(a - b) > std::numbers::pi;
+  return key.starts_with("value ") && quantity.unit == "rad" && std::abs(a - b) > std::numbers::pi;
 }
 
 bool same_points(const PlotCurve& a, const PlotCurve& b) {
@@ -145,11 +145,12 @@ void add_line(const ResponseLine& line, std::size_t index, const ResponseQuantit
   }
 }
 
-std::string mark_label(const SpecialPoint& special, const std::string& unit) {
+std::string mark_label(const SpecialPoint& special, const ShownUnit& unit) {
   std::string label(word(special.type));
   std::ranges::replace(label, '_', ' ');
   if (special.type == SpecialPointType::hopf) label = "Hopf";
-  return label + " " + short_text(special.at.parameter, 6) + (unit.empty() ? "" : " " + unit);
+  return label + " " + short_text(unit.shown(special.at.parameter), 6) +
+         (unit.text.empty() ? "" : " " + unit.text);
 }
 
 } // namespace
@@ -179,7 +180,7 @@ std::vector<ResponseLine> response_lines(ResponseDiagram& diagram) {
   return lines;
 }
 
-Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantity,
+Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantity, const DisplayUnits& units,
                    std::vector<ResponsePiece>& pieces) {
   Plot plot;
   pieces.clear();
@@ -198,7 +199,7 @@ Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantit
     if (const auto y = quantity_mark(special.at, quantity.key))
       plot.marks.push_back(
           {.at = {special.at.parameter, *y * quantity.factor},
-           .label = mark_label(special, unit),
+           .label = mark_label(special, shown_unit(unit, units)),
            .shape = special.type == SpecialPointType::branch_point ? PlotShape::diamond : PlotShape::circle});
   return plot;
 }

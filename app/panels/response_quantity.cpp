@@ -1,5 +1,4 @@
 #include "app/panels/response_quantity.hpp"
-#include "app/panels/units.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -47,8 +46,8 @@ std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point) {
   std::vector<ResponseQuantity> out;
   for (const CoordinateSolution& c : point.coordinates)
     if (!c.driven)
-      out.push_back({"value " + coordinate_label(c), coordinate_label(c), "Coordinates", screen_unit(c.angle),
-                     screen_factor(c.angle)});
+      out.push_back(
+          {"value " + coordinate_label(c), coordinate_label(c), "Coordinates", c.angle ? "rad" : "m", 1});
   for (const DriveTorque& d : point.drive_torques)
     if (!d.varying)
       out.push_back({"drive " + coordinate_label(d),

@@ -12,8 +12,8 @@ struct ResponseQuantity {
   std::string key;   // "value theta"
   std::string title; // "theta"
   std::string group; // "Coordinates"
-  std::string unit;  // on the screen: "°", "mm", "N m"
-  double factor = 1; // from SI units to these
+  std::string unit;  // before a person's choice (see units.hpp): "rad", "m", "N m", "Hz"
+  double factor = 1; // from SI units to this
 };
 
 // A steady state as a point of a curve.

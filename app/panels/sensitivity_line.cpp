@@ -77,8 +77,9 @@ std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
     from = c;
     ShownRate shown;
     shown.name = coordinate_label(rate);
-    shown.value = rate.value * screen_factor(c->angle);
-    shown.unit = per(screen_unit(c->angle), control->unit);
+    const ShownUnit of = coordinate_unit(c->angle, app.units), by = shown_unit(control->unit, app.units);
+    shown.value = rate.value * of.factor / by.factor;
+    shown.unit = per(of.text, by.text);
     shown.share = std::abs(rate.value) / (c->angle ? 1 : size);
     out.push_back(std::move(shown));
   }

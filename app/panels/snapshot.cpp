@@ -58,7 +58,7 @@ void export_picture(App& app, PixelSize window) {
     write_png(request.file, image);
     app.notice = "Saved " + request.file.string();
   } catch (const std::exception& error) {
-    app.notice = std::string("Not saved: ") + error.what();
+    show_error(app, std::string("Not saved: ") + error.what());
   }
 }
 

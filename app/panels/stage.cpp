@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flyball {
 
@@ -81,6 +82,9 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {width, height};
   io.DisplayFramebufferScale = {1, 1};
+  io.UserData = &app.tooltip;
+  app.tooltip.clock += seconds;
+  app.tooltip.due = std::numeric_limits<double>::infinity();
   io.DeltaTime = std::max(static_cast<float>(seconds), 1.f / 60); // shades behind dialogs fade in with it
   ImGui::NewFrame();
   build_gui(app);

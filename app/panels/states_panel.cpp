@@ -61,9 +61,10 @@ void search_bounds(App& app, const FoundStates& found) {
             colors.dim);
   note_widget(app.widgets, "states/search");
   for (const AllSolutions::Bound& b : found.all.bounds) {
-    const double factor = screen_factor(b.angle);
-    row(app, coordinate_label(b), short_text(b.lower * factor, 5) + " … " + short_text(b.upper * factor, 5),
-        screen_unit(b.angle), "Where starts lay. What was found a range's width further out was kept, too.");
+    const ShownUnit unit = coordinate_unit(b.angle, app.units);
+    row(app, coordinate_label(b),
+        short_text(unit.shown(b.lower), 5) + " … " + short_text(unit.shown(b.upper), 5), unit.text.c_str(),
+        "Where starts lay. What was found a range's width further out was kept, too.");
   }
   if (app.options.numbers.run_times)
     row(app, "Run time", duration_text(found.run_time_s, app.options.numbers), "");
@@ -106,13 +107,13 @@ struct Line {
   std::vector<std::string> values, details; // of the free coordinates; details: in SI with the error
 };
 
-Line line_of(const Solution& solution, const NumberStyle& numbers) {
+Line line_of(const Solution& solution, const NumberStyle& numbers, const DisplayUnits& units) {
   Line line;
   line.potential = solution.potential ? short_text(*solution.potential, 8) : "–";
   for (const CoordinateSolution& c : solution.coordinates) {
     if (c.driven || line.values.size() == most_coordinates) continue;
-    const double factor = screen_factor(c.angle);
-    line.values.push_back(value_text(c.value * factor, c.error * factor, numbers));
+    const ShownUnit shown = coordinate_unit(c.angle, units);
+    line.values.push_back(value_text(shown.shown(c.value), c.error * shown.factor, numbers));
     const std::string unit = c.angle ? " rad" : " m";
     std::string detail = coordinate_label(c) + ": " + value_text(c.value, c.error, numbers) + unit;
     if (c.error > 0) detail += " ± " + magnitude_text(std::max(c.error, numbers.noise), numbers) + unit;
@@ -186,7 +187,7 @@ std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
        0}};
   for (const CoordinateSolution& c : all.front().coordinates)
     if (!c.driven && columns.size() < 3 + most_coordinates)
-      columns.push_back({coordinate_label(c) + " [" + screen_unit(c.angle) + "]", "", 0});
+      columns.push_back({coordinate_label(c) + " [" + coordinate_unit(c.angle, app.units).text + "]", "", 0});
   for (std::size_t i = 2; i < columns.size(); ++i) {
     float& width = columns[i].width;
     width = ImGui::CalcTextSize(columns[i].title.c_str()).x;
@@ -205,7 +206,7 @@ void table(App& app) {
   std::vector<Line> lines;
   lines.reserve(all.size());
   for (const Solution& solution : all)
-    lines.push_back(line_of(solution, app.options.numbers));
+    lines.push_back(line_of(solution, app.options.numbers, app.units));
   const std::vector<Column> columns = columns_of(app, all, lines);
   ImGui::PushID(static_cast<int>(states.lists)); // new widths with every list
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {6 * app.scale, 3 * app.scale});

@@ -2,6 +2,7 @@
 #include "app/panels/commands.hpp"
 #include "app/panels/tool_glyphs.hpp"
 #include "app/panels/tools.hpp"
+#include "app/panels/tooltip.hpp"
 #include "app/panels/widgets.hpp"
 
 #include <array>
@@ -39,7 +40,7 @@ constexpr float side = 26, pad = 4, group_gap = 7;
 
 // What it is and how to call it, beside the strip.
 void tell(const App& app, const char* id) {
-  if (!ImGui::IsItemHovered()) return;
+  if (!ImGui::IsItemHovered() || !pointed_long()) return;
   const Command& wanted = command(id);
   ImGui::BeginTooltip();
   ImGui::PushFont(app.fonts.strong);

@@ -84,7 +84,9 @@ void use_connecting(App& app, const ViewInput& input) {
   if (tool.first) {
     const Aim& from = *tool.first;
     draw_between(app, input, from.point, aim.point);
-    std::string head = "length " + short_text((aim.point - from.point).norm(), 4) + " m";
+    const ShownUnit unit = shown_unit("m", app.units);
+    std::string head =
+        "length " + short_text(unit.shown((aim.point - from.point).norm()), 4) + " " + unit.text;
     if (!aim.what.empty())
       head += ", " + aim.what;
     else if (tool.tool != Tool::rod && aim.body != ground_name)

@@ -84,7 +84,8 @@ void turn(App& app, const ViewInput& input, const Gizmo& gizmo) {
   const auto turned_by = turned(gizmo, grab.handle, grab.from, input.ray());
   if (turned_by) grab.swept += std::remainder(*turned_by - grab.swept, 2 * std::numbers::pi);
   double angle = snaps(app, input) ? round_angle(grab.swept) : grab.swept;
-  if (const Quantity typed = parse_quantity(grab.typed + " deg", "rad"); !grab.typed.empty() && typed)
+  if (const Quantity typed = parse_quantity(grab.typed, "rad", shown_unit("rad", app.units).text);
+      !grab.typed.empty() && typed)
     angle = typed.value;
   if (angle == grab.angle) return;
   grab.angle = angle;
@@ -101,7 +102,7 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
   const std::array<bool, 3> free = free_coordinates(grab.handle, grab.normal);
   Vec3 target = grab.centre + *by;
   grab.what.clear();
-  const auto typed = parse_quantity(grab.typed, "m");
+  const auto typed = parse_quantity(grab.typed, "m", shown_unit("m", app.units).text);
   const bool arrow = std::ranges::count(free, true) == 1;
   if (arrow && !grab.typed.empty() && typed) {
     target = grab.centre + typed.value * Vec3::Unit(axis_of(grab.handle));

@@ -63,10 +63,11 @@ NewBody drawn_out(const ViewInput& input, BodyForm form, const Aim& from, const 
   return body;
 }
 
-std::string size_text(const NewBody& body, double step) {
-  if (body.form == BodyForm::ball) return "radius " + length_text(body.radius, step) + " m";
-  return short_text(body.size.x(), 4) + " × " + short_text(body.size.y(), 4) + " × " +
-         short_text(body.size.z(), 4) + " m";
+std::string size_text(const NewBody& body, double step, const DisplayUnits& units) {
+  const ShownUnit unit = shown_unit("m", units);
+  if (body.form == BodyForm::ball) return "radius " + length_text(body.radius, step, units) + " " + unit.text;
+  const auto edge = [&](double length) { return short_text(unit.shown(length), 4); };
+  return edge(body.size.x()) + " × " + edge(body.size.y()) + " × " + edge(body.size.z()) + " " + unit.text;
 }
 
 } // namespace
@@ -83,7 +84,7 @@ void use_placing(App& app, const ViewInput& input) {
   const NewBody body = drawing ? drawn_out(input, form, from, aim) : of_round_size(input, form, from);
   draw_body_outline(app, input, body);
   if (drawing)
-    draw_tag(app, input, input.cursor, aim.what, size_text(body, from.step));
+    draw_tag(app, input, input.cursor, aim.what, size_text(body, from.step, app.units));
   else
     draw_aim(app, input, from);
   if (tool.spent) return;

@@ -23,7 +23,7 @@ void leave(App& app, bool at_once) {
   const Typing typing = std::exchange(app.inspector.typing, {});
   if (typing.text == typing.original || !typing.take) return;
   if (!typing.mistake.empty()) {
-    app.notice = "“" + typing.text + "” was not taken. " + typing.mistake;
+    show_error(app, "“" + typing.text + "” was not taken. " + typing.mistake);
     return;
   }
   if (at_once) return typing.take(app, typing.text);

@@ -1,7 +1,11 @@
 #include "app/panels/units.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 namespace flyball {
@@ -76,12 +80,43 @@ std::span<const std::string_view> unit_names() {
   return names;
 }
 
-const char* screen_unit(bool angle) {
-  return angle ? "°" : "mm";
+double times_unit(double number, double unit) {
+  const double parts = std::round(1 / unit);
+  const bool whole = unit < 1 && std::abs(1 / unit - parts) <= 1e-12 * parts;
+  return whole ? number / parts : number * unit;
 }
 
-double screen_factor(bool angle) {
-  return angle ? 180 / std::numbers::pi : 1000;
+double ShownUnit::si(double shown) const {
+  return times_unit(shown, inverse);
+}
+
+double ShownUnit::shown(double value) const {
+  if (factor == 1) return value;
+  const double product = value * factor;
+  const double tidy = std::strtod(fmt::format("{:.15g}", product).c_str(), nullptr);
+  return std::abs(si(tidy) - value) <= 4e-16 * std::abs(value) ? tidy : product;
+}
+
+ShownUnit shown_unit(std::string_view si, const DisplayUnits& units) {
+  const bool mm = units.length == LengthUnit::millimetre;
+  if (si == "m" && mm) return {"mm", 1e3, 1e-3};
+  if (si == "m/s" && mm) return {"mm/s", 1e3, 1e-3};
+  if (si == "N/m" && mm) return {"N/mm", 1e-3, 1e3};
+  if (si == "N s/m" && mm) return {"N s/mm", 1e-3, 1e3};
+  if (si == "deg")
+    return units.angle == AngleUnit::degree ? ShownUnit{"°", 1, 1} : ShownUnit{"rad", degree, 1 / degree};
+  if (si == "rad" && units.angle == AngleUnit::degree) return {"°", 1 / degree, degree};
+  if (si == "rad/s" && units.speed == SpeedUnit::degree) return {"°/s", 1 / degree, degree};
+  if (si == "rad/s" && units.speed == SpeedUnit::rpm) return {"rpm", 60 / turn, turn / 60};
+  return {std::string(si), 1, 1};
+}
+
+ShownUnit coordinate_unit(bool angle, const DisplayUnits& units) {
+  return shown_unit(angle ? "rad" : "m", units);
+}
+
+ShownUnit rate_unit(bool angle, const DisplayUnits& units) {
+  return shown_unit(angle ? "rad/s" : "m/s", units);
 }
 
 } // namespace flyball

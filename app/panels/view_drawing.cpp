@@ -103,17 +103,19 @@ void draw_tag(const App& app, const ViewInput& input, Vec2 beside, const std::st
                  packed(words.empty() ? colors.text : colors.dim), numbers.c_str());
 }
 
-std::string length_text(double metres, double step) {
+std::string length_text(double metres, double step, const DisplayUnits& units) {
+  const ShownUnit unit = shown_unit("m", units);
+  const double length = unit.shown(metres), grid = unit.shown(step);
   if (metres == 0 || !(step > 0) || std::abs(metres - round_to(metres, step)) > 1e-9 * step)
-    return short_text(metres, 4);
+    return short_text(length, 4);
   // On the grid always as many digits, so that the label keeps its width.
-  const int places = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-  return fmt::format("{:.{}f}", metres, places);
+  const int places = std::max(0, static_cast<int>(std::ceil(-std::log10(grid) - 1e-9)));
+  return fmt::format("{:.{}f}", length, places);
 }
 
-std::string place_text(const Vec3& point, double step) {
-  return "x " + length_text(point.x(), step) + "  y " + length_text(point.y(), step) + "  z " +
-         length_text(point.z(), step) + " m";
+std::string place_text(const Vec3& point, double step, const DisplayUnits& units) {
+  return "x " + length_text(point.x(), step, units) + "  y " + length_text(point.y(), step, units) + "  z " +
+         length_text(point.z(), step, units) + " " + shown_unit("m", units).text;
 }
 
 } // namespace flyball

@@ -27,9 +27,9 @@ void draw_tag(const App& app, const ViewInput& input, Vec2 beside, const std::st
 
 // "x 0.10  y -0.20  z 0 m", with the digits that a grid of this step (m) calls for; 0: three significant of
 // them.
-std::string place_text(const Vec3& point, double step);
+std::string place_text(const Vec3& point, double step, const DisplayUnits& units);
 // A multiple of the grid's step (m) with the digits that the step has, anything else with four significant
-// ones.
-std::string length_text(double metres, double step);
+// ones; without the unit, which is shown_unit("m").
+std::string length_text(double metres, double step, const DisplayUnits& units);
 
 } // namespace flyball

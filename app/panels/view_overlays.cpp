@@ -4,8 +4,10 @@
 #include "app/panels/file_commands.hpp"
 #include "app/panels/motion_control.hpp"
 #include "app/panels/tools.hpp"
+#include "app/panels/typed_field.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
+#include "engine/mechanism/address.hpp"
 
 #include <cmath>
 
@@ -13,23 +15,9 @@ namespace flyball {
 
 namespace {
 
-// Which is which of the two that are drawn at one place.
-void draw_legend(const App& app, ImVec2 at) {
-  const UiColors& colors = colors_of(app);
-  const float side = std::round(ImGui::GetFontSize() * 0.6f), line = ImGui::GetTextLineHeight();
-  const float top = at.y + std::round((line - side) / 2);
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled({at.x, top}, {at.x + side, top + side}, packed(to_imgui(palette(app.theme).motion)),
-                     2 * app.scale);
-  const MotionRun* shown = shown_motion(app);
-  const bool damped = !shown || shown->run->damped;
-  list.AddText({at.x + side + 6 * app.scale, at.y}, packed(colors.dim),
-               damped ? "the damped motion" : "the motion without dampers");
-}
-
 // A line on a plate of its own, above the status, in the middle of the view's width.
-void draw_line(const App& app, const PanelRect& rect, const std::string& text, const ImVec4& color,
-               float& y) {
+void draw_line(const App& app, const PanelRect& rect, const std::string& text, ImVec4 color, float& y,
+               float strength = 1) {
   if (text.empty()) return;
   const UiColors& colors = colors_of(app);
   const float s = app.scale, pad = 9 * s;
@@ -41,7 +29,8 @@ void draw_line(const App& app, const PanelRect& rect, const std::string& text, c
   y -= size.y + 8 * s;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImVec4 plate = colors.panel;
-  plate.w = 0.9f;
+  plate.w = 0.9f * strength;
+  color.w *= strength;
   list.AddRectFilled({x - pad, y - 3 * s}, {x + size.x + pad, y + size.y + 3 * s}, packed(plate), 5 * s);
   list.AddText(app.fonts.text, ImGui::GetFontSize(), {x, y}, packed(color), text.c_str(), nullptr, room);
   y -= 4 * s;
@@ -87,17 +76,10 @@ void caption(App& app, const PanelRect& rect) {
   list.AddText(app.fonts.strong, big, {x, y}, packed(colors.text), app.mechanism().name.c_str());
   y += big + 4 * s;
   const bool solved = converged(app);
-  std::string state;
-  if (app.mode == Mode::build ? !app.mechanism().bodies.empty() : app.answer.ticket && !solved)
-    state = "Drawn pose";
+  std::string state; // which pose it is, the legend says
   if (app.playback.time != 0 && solved)
     state = "t = " + short_text(std::floor(app.playback.time * 100) / 100, 6) + " s after the drawn phase";
-  if (!state.empty()) {
-    list.AddText({x, y}, packed(colors.dim), state.c_str());
-    y += ImGui::GetTextLineHeightWithSpacing();
-  }
-  if (solved && !app.motion.poses.empty() && !motion_beside(app) && app.mode == Mode::explore)
-    draw_legend(app, {x, y});
+  if (!state.empty()) list.AddText({x, y}, packed(colors.dim), state.c_str());
   list.PopClipRect();
 }
 
@@ -116,7 +98,85 @@ void view_lines(App& app, const PanelRect& rect) {
   const UiColors& colors = colors_of(app);
   float y = rect.y + rect.height - 42 * app.scale;
   draw_line(app, rect, tool_hint(app), colors.text, y);
-  draw_line(app, rect, app.notice, colors.dim, y);
+  app.view.lines_top = y;
+  if (!is_error(app)) draw_line(app, rect, app.notice, colors.dim, y, notice_strength(app));
+}
+
+void error_line(App& app, const PanelRect& rect) {
+  if (!is_error(app)) return;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, width = std::min(560 * s, std::max(rect.width - 2 * 96 * s, 160 * s));
+  ImGui::SetNextWindowPos({std::round(rect.x + rect.width / 2), std::round(app.view.lines_top)},
+                          ImGuiCond_Always, {0.5f, 1});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {9 * s, 5 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::Begin("error", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleVar(3);
+  const float button = ImGui::GetFrameHeight();
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushTextWrapPos(ImGui::GetContentRegionAvail().x - button);
+  ImGui::TextColored(colors.bad, "%s", icon::warning);
+  ImGui::SameLine(0, 7 * s);
+  ImGui::TextUnformatted(app.notice.c_str());
+  ImGui::PopTextWrapPos();
+  note_widget(app.widgets, "error");
+  ImGui::SameLine(width - button - 5 * s);
+  if (text_button(app, "error/close", icon::close)) app.notice.clear();
+  ImGui::End();
+}
+
+namespace {
+
+// "speed of spin 15 rad/s is tried", or how many are.
+std::string tried_text(const App& app) {
+  const Explored& explored = app.document.explored();
+  if (explored.size() > 1) return std::to_string(explored.size()) + " explored values";
+  const ShownUnit unit =
+      shown_unit(parameter_unit(app.document.stored(), explored.front().address), app.units);
+  return "Explored: " + parameter_phrase(explored.front().address) + " " +
+         short_text(unit.shown(explored.front().value)) + (unit.text.empty() ? "" : " " + unit.text);
+}
+
+} // namespace
+
+void explored_chip(App& app, const PanelRect& view) {
+  if (app.document.explored().empty() || app.dialog.showing || view.width < 300 * app.scale) return;
+  const float s = app.scale;
+  const auto status = app.widgets.find("status");
+  const float bottom =
+      status == app.widgets.end() ? view.y + view.height - 10 * s : status->second.from.y - 6 * s;
+  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(bottom)}, ImGuiCond_Always,
+                          {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 4 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::Begin("explored", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleVar(4);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(tried_text(app).c_str());
+  note_widget(app.widgets, "explored");
+  std::string help = app.mode == Mode::build
+                         ? "Tried while exploring and put aside while building; saving leaves it out."
+                         : "Tried, and not part of the document: saving leaves it out.";
+  for (const std::string& each : explored_words(app))
+    help += "\n" + each;
+  help_on_hover(help.c_str());
+  ImGui::SameLine(0, 8 * s);
+  if (text_button(app, "explored/keep", "Keep")) later(app, keep_explored);
+  help_on_hover("Makes the explored values the document's; an edit that can be undone.");
+  ImGui::SameLine(0, 4 * s);
+  if (text_button(app, "explored/back", "Back")) later(app, drop_explored);
+  help_on_hover("Back to the values that are stored.");
+  ImGui::End();
 }
 
 void problem_banner(App& app, const PanelRect& rect) {

@@ -1,3 +1,4 @@
+#include "app/panels/legend.hpp"
 #include "app/panels/panels.hpp"
 #include "app/panels/tools.hpp"
 #include "app/panels/view_overlays.hpp"
@@ -54,6 +55,9 @@ void viewport_panel(App& app, const PanelRect& rect) {
   ImGui::End();
   part_label(app);
   tool_strip(app, rect);
+  legend(app, rect);
+  explored_chip(app, rect);
+  error_line(app, rect);
   joint_card(app, input);
   problem_banner(app, rect);
 }

@@ -23,8 +23,8 @@ constexpr std::array first_steps{
               "Click the point where two bodies meet, or a body and the ground.",
               {"insert.joint", "insert.spring", "insert.distance"}},
     FirstStep{"3  Drive and explore",
-              "Select a joint and switch its drive on; press Tab and move the sliders.",
-              {"view.mode", nullptr, nullptr}},
+              "Select a joint and tick Drive; Tab goes to Explore, where sliders try other values, and back.",
+              {nullptr, nullptr, nullptr}},
 };
 
 } // namespace

@@ -1,5 +1,8 @@
 #include "app/panels/widgets.hpp"
 
+#include "app/panels/tooltip.hpp"
+#include "app/panels/units.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +22,8 @@ void text_in(ImFont* font, const ImVec4& color, const std::string& text) {
 } // namespace
 
 void help_on_hover(const char* help) {
-  if (help && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+  if (help && *help && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && pointed_long()) {
+    place_beside_window();
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
     ImGui::TextUnformatted(help);
@@ -153,8 +157,25 @@ void clipped_text(const std::string& text, float width) {
   help_on_hover(text.c_str());
 }
 
-bool slider(App& app, const std::string& name, const ParameterControl& control, double& value,
+namespace {
+
+// In the unit it is shown in, where the hand's steps are to be round.
+ParameterControl shown_control(ParameterControl control, const ShownUnit& unit) {
+  if (unit.factor == 1) return control;
+  for (double* number : {&control.value, &control.file_value, &control.from, &control.to})
+    *number = unit.shown(*number);
+  const double span = std::abs(control.to - control.from);
+  if (control.step > 0 && span > 0) control.step = slider_step(span);
+  return control;
+}
+
+} // namespace
+
+bool slider(App& app, const std::string& name, const ParameterControl& si_control, double& si_value,
             bool& type_value) {
+  const ShownUnit unit = shown_unit(si_control.unit, app.units);
+  const ParameterControl control = shown_control(si_control, unit);
+  double value = unit.shown(si_value);
   const UiColors& colors = colors_of(app);
   const float s = app.scale, height = 18 * s, radius = 6.5f * s;
   const ImVec2 from = ImGui::GetCursorScreenPos();
@@ -175,6 +196,7 @@ bool slider(App& app, const std::string& name, const ParameterControl& control, 
     const double next = slider_value(control, place, io.KeyShift);
     moved = next != value;
     value = next;
+    if (moved) si_value = unit.si(next);
   }
 
   ImDrawList& list = *ImGui::GetWindowDrawList();

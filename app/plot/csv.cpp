@@ -14,8 +14,10 @@ std::string number(double value) {
   return std::isfinite(value) ? number_text(value) : "";
 }
 
-std::string header_of(const PlotAxis& axis, const char* otherwise) {
-  const std::string text = axis_text(axis.label, axis.unit);
+// Of an axis or the values of a map.
+template <class Scale>
+std::string header_of(const Scale& axis, const char* otherwise) {
+  const std::string text = axis_text(axis.label, axis.si_unit.empty() ? axis.unit : axis.si_unit);
   return csv_field(text.empty() ? otherwise : text);
 }
 
@@ -25,17 +27,14 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
   const bool heat = plot.heat && plot.heat->values.size() == plot.heat->x.size() * plot.heat->y.size();
   const char* end = heat ? ",\r\n" : "\r\n";
   std::string out = "curve," + header_of(plot.x, "x") + "," + header_of(plot.y, "y");
-  if (heat) {
-    const std::string text = axis_text(plot.heat->label, plot.heat->unit);
-    out += "," + csv_field(text.empty() ? "value" : text);
-  }
+  if (heat) out += "," + header_of(*plot.heat, "value");
   out += "\r\n";
   const auto row = [&](const std::string& name, double x, double y) {
     out += name;
     out += ',';
-    out += number(x);
+    out += number(x / plot.x.factor);
     out += ',';
-    out += number(y);
+    out += number(y / plot.y.factor);
   };
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const PlotCurve& curve = plot.curves[i];
@@ -54,7 +53,7 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
   for (std::size_t j = 0; j < plot.heat->y.size(); ++j)
     for (std::size_t i = 0; i < plot.heat->x.size(); ++i) {
       row("map", plot.heat->x[i], plot.heat->y[j]);
-      out += "," + number(plot.heat->values[j * plot.heat->x.size() + i]) + "\r\n";
+      out += "," + number(plot.heat->values[j * plot.heat->x.size() + i] / plot.heat->factor) + "\r\n";
     }
   return out;
 }

@@ -30,7 +30,8 @@ struct Builder {
   const PlotMetrics& metrics;
   PlotLayout out;
   Detail detail = Detail::all;
-  int rows = 0; // of the legend
+  int rows = 0;         // of the legend
+  bool y_above = false; // the label of y lies above the frame
 
   double s() const { return metrics.scale; }
   double line(PlotFont font) const { return metrics.height_of(font); }
@@ -70,9 +71,8 @@ struct Builder {
                                  const Place& place, std::vector<double>* minor) const {
     const double length = std::abs(ruler.to - ruler.from);
     std::vector<PlotTick> ticks;
-    // One number says little: a short axis gets its numbers closer.
-    const int least = std::clamp(static_cast<int>(length / (0.6 * spacing)), 1, 4);
-    for (int wanted = std::clamp(static_cast<int>(length / spacing), least, 12); wanted >= 1; --wanted) {
+    // Fills in so many ticks, or about; returns whether their labels have room.
+    const auto fits = [&](int wanted) {
       const AxisTicks found = axis_ticks(ruler.lower, ruler.upper, wanted, ruler.logarithmic);
       ticks.clear();
       for (std::size_t i = 0; i < found.major.size(); ++i) {
@@ -87,7 +87,21 @@ struct Builder {
           for (double value : found.minor)
             minor->push_back(ruler.pixel(value));
       }
-      if (!overlap(ticks, gap_x, gap_y)) return ticks;
+      return !overlap(ticks, gap_x, gap_y);
+    };
+    // One number says little: a short axis gets its numbers closer.
+    constexpr int most = 12;
+    constexpr std::size_t enough = 3; // numbers; fewer do not say what the scale is
+    const int least = std::clamp(static_cast<int>(length / (0.6 * spacing)), 1, 4);
+    int wanted = std::clamp(static_cast<int>(length / spacing), least, most);
+    while (wanted > 1 && !fits(wanted))
+      --wanted;
+    if (wanted > 1 || fits(1)) {
+      if (ticks.size() >= enough) return ticks;
+      for (int more = wanted + 1; more <= most; ++more)
+        if (fits(more) && ticks.size() >= enough) return ticks;
+      fits(wanted);
+      return ticks;
     }
     for (std::size_t i = 1; i < ticks.size(); ++i)
       ticks[i].label.reset();
@@ -153,13 +167,16 @@ struct Builder {
     const double x_labels = std::max(8 * s(), digits / 2 + s()); // below the frame
     const double bottom =
         out.height - x_labels - digits - (x_words.empty() ? 0.6 * pad : 0.6 * pad + words_height + 3 * s());
+    // A label too long to stand beside a low frame lies above it.
+    y_above = !y_words.empty() && metrics.width_of(PlotFont::words, y_words) > bottom - top;
+    if (y_above) top += words_height + 3 * s();
     const PlotRange rx = axis_range(plot, look, 0), ry = axis_range(plot, look, 1);
     out.y = {ry[0], ry[1], bottom, top, is_logarithmic(plot, look, 1)};
     // Their labels say how far left the frame can begin.
     out.y_ticks.clear();
     if (bottom - top > 1) out.y_ticks = vertical_ticks(out.y, 0, 1, &out.y_minor);
     double left = 0.8 * pad + widest(out.y_ticks) + 8 * s();
-    if (!y_words.empty()) left += words_height + 5 * s();
+    if (!y_words.empty() && !y_above) left += words_height + 5 * s();
     for (PlotTick& tick : out.y_ticks)
       if (tick.label) {
         tick.label->box.left += left - 8 * s();
@@ -206,7 +223,10 @@ struct Builder {
     if (!x_words.empty())
       out.x_label = text(PlotFont::words, cut_text(metrics, PlotFont::words, x_words, area.width()),
                          (area.left + area.right) / 2, out.height - 0.6 * pad - line(PlotFont::words), 0);
-    if (!y_words.empty())
+    if (y_above)
+      out.y_label = text(PlotFont::words, cut_text(metrics, PlotFont::words, y_words, out.width - area.left),
+                         area.left, area.top - line(PlotFont::words) - 3 * s(), -1);
+    else if (!y_words.empty())
       out.y_label = upright(y_words, 0.8 * pad + line(PlotFont::words) / 2, (area.top + area.bottom) / 2,
                             area.height());
   }

@@ -20,6 +20,9 @@ struct PlotAxis {
   std::optional<PlotRange> range{}; // fixed; otherwise all that is there
   double room = 0.04;               // of the range, left free at either end; time axes want 0
   double noise = 1e-15;             // a narrower linear range is rounding and drawn flat
+  // CSV files are in SI units: what `unit` is then, where it is another, and how many of `unit` make one.
+  std::string si_unit{};
+  double factor = 1;
 };
 
 enum class PlotLine { none, solid, dashed, dotted };
@@ -67,6 +70,8 @@ struct PlotHeat {
   std::string label, unit;    // of the colour bar
   bool logarithmic = false;
   std::optional<PlotRange> range{};
+  std::string si_unit{}; // see PlotAxis
+  double factor = 1;
 };
 
 // Where the present state stands; a person can drag it along the curves.

@@ -5,17 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <string>
+#include <tuple>
+#include <type_traits>
 
 namespace flyball {
 
 namespace {
-
-std::string_view stem(std::string_view name) {
-  const std::size_t end = name.find_last_not_of("0123456789_- ");
-  return end == std::string_view::npos ? name : name.substr(0, end + 1);
-}
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 along = b - a;
@@ -171,20 +166,13 @@ void derive(Sketch& sketch, const Assembly& assembly, std::size_t index) {
 
 } // namespace
 
-std::vector<Color> body_colors(const Mechanism& mechanism, Theme theme) {
-  const auto& hues = palette(theme).bodies;
-  struct Family {
-    std::size_t hue;
-    int members;
-  };
-  std::map<std::string_view, Family> families;
+std::vector<Color> body_colors(const BodyHues& hues, Theme theme) {
+  const auto& all = palette(theme).bodies;
+  static_assert(std::tuple_size_v<std::remove_cvref_t<decltype(all)>> == body_hue_count * body_shade_count);
   std::vector<Color> colors;
-  for (const Body& body : mechanism.bodies) {
-    const auto found = families.try_emplace(stem(body.name), Family{families.size(), 0}).first;
-    const Color hue = hues[found->second.hue % hues.size()];
-    // Neighbours of one family differ a little in lightness.
-    colors.push_back(found->second.members++ % 2 ? mix(hue, rgb(0xFFFFFF), 0.16f) : hue);
-  }
+  colors.reserve(hues.size());
+  for (const std::uint8_t hue : hues)
+    colors.push_back(all[hue % all.size()]);
   return colors;
 }
 

@@ -93,7 +93,7 @@ SceneList build_scene(const Mechanism& mechanism, std::span<const Pose> poses, c
   const Palette& colors = palette(options.theme);
   SceneList scene;
   scene.scale = assembly.scale;
-  add_bodies(assembly, body_colors(mechanism, options.theme), scene.instances);
+  add_bodies(assembly, body_colors(hues_for(mechanism, options.colouring), options.theme), scene.instances);
   Sketch sketch(scene.instances);
   const std::unordered_set<std::string_view> cut(options.cut_joints.begin(), options.cut_joints.end());
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
@@ -116,19 +116,47 @@ SceneList build_scene(const Mechanism& mechanism, std::span<const Pose> poses, c
 }
 
 std::vector<Instance> build_ghost(const Mechanism& mechanism, std::span<const Pose> poses, Color color) {
+  return build_ghost(mechanism, poses, {std::vector<Color>(mechanism.bodies.size(), color), color}, {});
+}
+
+namespace {
+
+// By body, whether it stands in the same place in both, as far as one can see.
+std::vector<char> standing(std::span<const Pose> a, std::span<const Pose> b, double unit) {
+  std::vector<char> same(a.size(), 0);
+  if (a.size() != b.size()) return same;
+  constexpr double little = 1e-3; // of the glyphs' size, or rad
+  for (std::size_t i = 0; i < a.size(); ++i)
+    same[i] = (a[i].position - b[i].position).norm() < little * unit &&
+              a[i].rotation.angularDistance(b[i].rotation) < little;
+  return same;
+}
+
+} // namespace
+
+std::vector<Instance> build_ghost(const Mechanism& mechanism, std::span<const Pose> poses,
+                                  const GhostColors& colors, std::span<const Pose> beside) {
   std::vector<Instance> list;
   if (poses.size() != mechanism.bodies.size()) return list;
   Assembly assembly(mechanism, poses);
-  add_bodies(assembly, std::vector<Color>(mechanism.bodies.size(), color), list);
+  add_bodies(assembly, colors.bodies, list);
+  const std::size_t links = list.size();
   Sketch sketch(list);
-  const Palette& colors = palette(Theme::light);
+  const Palette& any = palette(Theme::light);
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
-    if (mechanism.joints[j].type == JointType::distance) draw_joint(sketch, assembly, j, colors);
-  std::erase_if(list, [](const Instance& i) { return !finite(i) || i.role == Role::anchor; });
-  for (Instance& instance : list) {
-    instance.color = color;
-    instance.surface = Surface::plain;
+    if (mechanism.joints[j].type == JointType::distance) draw_joint(sketch, assembly, j, any);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    list[i].color = i < links ? colors.bodies[static_cast<std::size_t>(list[i].part.index)] : colors.links;
+    list[i].surface = Surface::plain;
   }
+  const std::vector<char> same = standing(poses, beside, assembly.scale.unit);
+  const auto stays = [&](int body) { return body < 0 || same[static_cast<std::size_t>(body)] != 0; };
+  std::erase_if(list, [&](const Instance& i) {
+    if (!finite(i) || i.role == Role::anchor) return true;
+    if (i.part.kind == PartKind::body) return stays(i.part.index);
+    const auto& ends = assembly.joint_bodies[static_cast<std::size_t>(i.part.index)];
+    return stays(ends[0]) && stays(ends[1]) && !beside.empty();
+  });
   return list;
 }
 

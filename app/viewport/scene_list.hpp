@@ -2,6 +2,7 @@
 // and picking see exactly what the renderer sees.
 #pragma once
 
+#include "app/document/body_hues.hpp"
 #include "app/document/part.hpp"
 #include "app/viewport/bounds.hpp"
 #include "app/viewport/theme.hpp"
@@ -72,6 +73,7 @@ struct SceneOptions {
   Theme theme = Theme::light;
   bool joints = true, drives = true, forces = true; // forces: springs and dampers too
   std::span<const std::string> cut_joints{};        // names, to be marked
+  BodyColouring colouring{};
 };
 
 struct SceneList {
@@ -87,6 +89,14 @@ SceneList build_scene(const Mechanism& mechanism, std::span<const Pose> poses,
                       const SceneOptions& options = {});
 // Bodies and distance links only, in one colour: the drawn pose or the damped motion behind the solid one.
 std::vector<Instance> build_ghost(const Mechanism& mechanism, std::span<const Pose> poses, Color color);
+// The same with a colour for each body, that of links, and without those bodies (and links between them)
+// that stand in the poses `beside` as well.
+struct GhostColors {
+  std::vector<Color> bodies;
+  Color links;
+};
+std::vector<Instance> build_ghost(const Mechanism& mechanism, std::span<const Pose> poses,
+                                  const GhostColors& colors, std::span<const Pose> beside);
 
 // Box around one instance, world coordinates.
 Bounds instance_bounds(const Instance& instance);

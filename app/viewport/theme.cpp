@@ -4,8 +4,18 @@ namespace flyball {
 
 namespace {
 
-constexpr std::array<Color, 6> body_colors = {okabe_ito::green,  okabe_ito::orange, okabe_ito::sky_blue,
-                                              okabe_ito::yellow, okabe_ito::purple, rgb(0x9AA3AD)};
+constexpr std::array<Color, 6> hues = {okabe_ito::green,  okabe_ito::sky_blue,   okabe_ito::purple,
+                                       okabe_ito::yellow, okabe_ito::vermillion, rgb(0x7B8794)};
+
+// Each hue, then each in a darker shade.
+constexpr std::array<Color, 12> body_colors = [] {
+  std::array<Color, 12> all;
+  for (std::size_t i = 0; i < hues.size(); ++i) {
+    all[i] = hues[i];
+    all[i + hues.size()] = mix(hues[i], okabe_ito::black, 0.38f);
+  }
+  return all;
+}();
 
 constexpr Palette light = {
     .background_top = rgb(0xFBFCFD),
@@ -14,7 +24,7 @@ constexpr Palette light = {
     .accent = okabe_ito::blue,
     .metal = rgb(0xA9B1BA),
     .metal_dark = rgb(0x59626D),
-    .ghost = rgb(0x6C7681, 0.36f),
+    .drawn = rgb(0x3A434D),
     .motion = rgb(0xE69F00, 0.42f),
     .tension = okabe_ito::vermillion,
     .compression = okabe_ito::blue,
@@ -34,7 +44,7 @@ constexpr Palette dark = {
     .accent = rgb(0x4DA6E8),
     .metal = rgb(0xAEB6BF),
     .metal_dark = rgb(0x66707B),
-    .ghost = rgb(0xB6C0CA, 0.22f),
+    .drawn = rgb(0xC9D2DB),
     .motion = rgb(0xE69F00, 0.40f),
     .tension = rgb(0xE8762B),
     .compression = rgb(0x3E93D6),

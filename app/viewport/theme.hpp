@@ -36,12 +36,12 @@ struct Palette {
   Color accent;                      // drives, selection: the one accent colour
   Color metal;                       // joints
   Color metal_dark;                  // their housings, ground anchors
-  Color ghost;                       // the drawn pose, translucent
-  Color motion;                      // the damped motion, translucent amber
+  Color drawn;                       // the drawn pose's dashed outline
+  Color motion;                      // the motion, translucent amber: no body's colour
   Color tension, compression, slack; // springs
   Color cut;                         // mark of a cut joint
   Color force;                       // forces and torques
-  std::array<Color, 6> bodies;
+  std::array<Color, 12> bodies;      // by number, see body_hues.hpp
   Color axis_x, axis_y, axis_z;
 };
 

@@ -118,8 +118,10 @@ struct ViewRenderer::State {
   void set_shadow(const ShaderProgram& program, const Stage& stage, bool on) const;
   void use_lit(const Stage& stage, const ViewFrame& frame, const SceneList& scene, bool shadowed, bool glass);
   int draw_lit(const InstanceBatches& batches, bool draft);
+  void use_outline(const Stage& stage, const ViewFrame& frame, Color ink, float width, float dash);
   void draw_outline(const Stage& stage, const ViewFrame& frame, std::span<const Instance> part, Color ink,
                     float width);
+  void draw_drawn(const Stage& stage, const ViewFrame& frame, const SceneList& scene, const ViewScene& shown);
   void draw_floor(const Stage& stage, const ViewFrame& frame, bool shadowed);
   void draw_translucent(const Stage& stage, const ViewFrame& frame, const SceneList& scene,
                         std::span<const Instance> list, float push);
@@ -196,24 +198,67 @@ int ViewRenderer::State::draw_lit(const InstanceBatches& batches, bool draft) {
   return calls;
 }
 
-void ViewRenderer::State::draw_outline(const Stage& stage, const ViewFrame& frame,
-                                       std::span<const Instance> part, Color ink, float width) {
-  if (part.empty()) return;
-  constexpr std::size_t many = 2000;
-  marked.set(part, stage.units, stage.sight, part.size() > many);
+// `dash`: points from one dash to the next; 0 for a line without gaps.
+void ViewRenderer::State::use_outline(const Stage& stage, const ViewFrame& frame, Color ink, float width,
+                                      float dash) {
   outline.use();
   set_matrix(outline, "view_projection", stage.view_projection);
   set_vector(outline, "eye", stage.camera.eye());
   outline.set("perspective", stage.camera.orthographic ? 0.f : 1.f);
   outline.set("pixel", float(stage.camera.pixel_size(stage.size)));
   outline.set("width", width * frame.options.scale);
+  outline.set("viewport", float(stage.size.width), float(stage.size.height));
+  outline.set("dash", dash * frame.options.scale);
   set_color(outline, "ink", ink);
+}
+
+void ViewRenderer::State::draw_outline(const Stage& stage, const ViewFrame& frame,
+                                       std::span<const Instance> part, Color ink, float width) {
+  if (part.empty()) return;
+  constexpr std::size_t many = 2000;
+  marked.set(part, stage.units, stage.sight, part.size() > many);
+  use_outline(stage, frame, ink, width, 0);
   glEnable(GL_CULL_FACE);
   glCullFace(GL_FRONT);
   report.draw_calls += meshes.draw(marked, last_flat_detail + 1);
   glDisable(GL_CULL_FACE);
   report.draw_calls += meshes.draw(marked, 0, last_flat_detail); // specks are covered with the colour
   if (report.passes.back() != "outline") report.passes.push_back("outline");
+}
+
+// The drawn pose as a dashed outline. Where nothing else is drawn of it, its depth alone tells what of the
+// outline is hidden.
+void ViewRenderer::State::draw_drawn(const Stage& stage, const ViewFrame& frame, const SceneList& scene,
+                                     const ViewScene& shown) {
+  constexpr float width = 1.4f, dash = 9; // points
+  constexpr float speck = 0.35f;          // alpha of what is too small for an outline
+  translucent.set(shown.drawn, stage.units, stage.sight);
+  if (!shown.drawn_is_solid) {
+    use_lit(stage, frame, scene, false, true);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1, 4);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    report.draw_calls += draw_lit(translucent, frame.options.draft);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+  }
+  use_outline(stage, frame, stage.colors->drawn, width, dash);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT);
+  report.draw_calls += meshes.draw(translucent, last_flat_detail + 1);
+  glDisable(GL_CULL_FACE);
+  Color faint = stage.colors->drawn;
+  faint.a = speck;
+  use_outline(stage, frame, faint, 0, 0);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  if (!shown.drawn_is_solid) {
+    glDepthFunc(GL_LEQUAL);
+    report.draw_calls += meshes.draw(translucent, 0, last_flat_detail);
+    glDepthFunc(GL_LESS);
+  }
+  glDisable(GL_BLEND);
+  report.passes.push_back("drawn");
 }
 
 void ViewRenderer::State::draw_floor(const Stage& stage, const ViewFrame& frame, bool shadowed) {
@@ -347,6 +392,7 @@ ViewReport ViewRenderer::draw(const ViewFrame& frame, const std::shared_ptr<cons
     s.draw_translucent(stage, frame, scene, shown->ghost, 2);
     s.report.passes.push_back("ghost");
   }
+  if (!shown->drawn.empty()) s.draw_drawn(stage, frame, scene, *shown);
   if (frame.options.triad) s.draw_triad(stage, frame, scene);
   glDisable(GL_DEPTH_TEST);
   check_gl("drawing the view");

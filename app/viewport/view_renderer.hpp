@@ -13,7 +13,7 @@ namespace flyball {
 // What was done, and by omission what was not needed.
 struct ViewReport {
   std::vector<std::string_view> passes; // of "background", "shadow", "solid", "outline", "grid", "motion",
-                                        // "ghost", "triad", in the order drawn
+                                        // "ghost", "drawn", "triad", in the order drawn
   int instances = 0;                    // solids of the scene, each counted once
   int drawn = 0;                        // of them, those in view and not too small to be seen
   int draw_calls = 0;

@@ -20,12 +20,19 @@ struct ViewOptions {
   float scale = 1;    // pixels a point has: widths of lines that do not scale with the mechanism
 };
 
+// Which pose is shown beside the solid one. The drawn pose is always told by a dashed outline, the steady
+// state by the bodies' colours: beside a steady state only the drawn pose's outline is drawn, beside the
+// drawn pose, outlined like that, the steady state is of coloured glass.
+enum class GhostPose { drawn, steady };
+
 // All that one picture shows. Spans must live until it is drawn.
 struct ViewFrame {
   const Mechanism* mechanism = nullptr; // null: an empty view
-  std::span<const Pose> poses;          // solid: the equilibrium; empty: the drawn pose
-  std::span<const Pose> ghost;          // grey, translucent: the drawn pose; may be empty
-  std::span<const Pose> motion;         // amber, translucent: the damped motion; may be empty
+  std::span<const Pose> poses;          // solid; empty: the drawn pose
+  std::span<const Pose> ghost;          // beside it; may be empty
+  GhostPose ghost_pose = GhostPose::drawn;
+  std::span<const Pose> motion; // amber, translucent: the motion; may be empty
+  BodyColouring colouring;      // without: as the mechanism alone says
   ViewCamera camera;
   Theme theme = Theme::light;
   ViewOptions options;
@@ -37,7 +44,10 @@ struct ViewFrame {
 // Of a frame, whatever its camera, selection and lines.
 struct ViewScene {
   SceneList solid;
-  std::vector<Instance> ghost, motion;
+  std::vector<Instance> ghost, motion; // of glass
+  // Outlined by dashes: solids of the drawn pose, of those bodies that stand elsewhere in the other pose.
+  std::vector<Instance> drawn;
+  bool drawn_is_solid = false; // they are among the solids; else there is nothing of them but the outline
 };
 ViewScene view_scene(const ViewFrame& frame);
 // The solid list alone, for picking.

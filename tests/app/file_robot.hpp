@@ -40,7 +40,7 @@ class FileRobot : public Robot {
   }
   void set_speed(double value) {
     ++app.gesture;
-    change_parameter(app, speed, value);
+    edit_parameter(app, speed, value);
     frames(1);
   }
   double speed_now() const { return get_parameter(app.mechanism(), speed); }

@@ -164,7 +164,7 @@ TEST_CASE("mass and inertia follow the size of a uniform solid until they are ty
   hand.one_step([&] { hand.fill("inspector/density", "1 g/cm^3"); });
   CHECK(density_of(ball()) == Approx(1000));
   hand.one_step([&] { hand.fill("inspector/mass", "2"); });
-  CHECK(ball().mass == Approx(2));
+  CHECK(ball().mass == 2);
   CHECK(ball().inertia[0] == Approx(0.4 * 2 * 0.01));
   CHECK(is_uniform_solid(ball()));
 
@@ -186,7 +186,7 @@ TEST_CASE("mass and inertia follow the size of a uniform solid until they are ty
     hand.one_step([&] { hand.choose_from("inspector/shapes/0/type", "box"); });
     CHECK(ball().shapes[0].type == ShapeType::box);
     CHECK(ball().shapes[0].size == Vec3(0.2, 0.2, 0.2));
-    CHECK(ball().mass == Approx(1000 * 0.008 * (2 / (1000 * 4.0 / 3 * 3.141592653589793 * 0.001))));
+    CHECK(ball().mass == 2); // as typed; the density follows
     hand.one_step([&] { hand.fill("inspector/shapes/0/size/y", "0.4"); });
     CHECK(ball().shapes[0].size.y() == 0.4);
     hand.one_step([&] { hand.choose_from("inspector/shapes/0/type", "cylinder"); });

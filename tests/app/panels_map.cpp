@@ -72,7 +72,7 @@ TEST_CASE("every place of the map is what a solve of its own gives") {
       CHECK(std::isnan(found.cells[i].value));
     } else {
       CHECK(found.cells[i].value == Approx(expected).epsilon(1e-12));
-      CHECK(plot.heat->values[i] == Approx(expected * (plot.heat->unit == "mm" ? 1000 : 57.29577951308232)));
+      CHECK(plot.heat->values[i] == Approx(expected * (plot.heat->unit == "m" ? 1 : 57.29577951308232)));
     }
   }
   CHECK_FALSE(plot.heat->unit.empty());

@@ -178,17 +178,17 @@ TEST_CASE("plots show the motion, the motion without dampers, and the steady val
   const Run& run = run_of(app);
   const Plot plot = motion_plot(app, "value slide");
   REQUIRE(plot.curves.size() == 2);
-  CHECK(plot.y.unit == "mm");
+  CHECK(plot.y.unit == "m");
   REQUIRE(plot.references.size() == 1);
   double steady = NAN;
   for (const CoordinateSolution& c : app.answer.solution.coordinates)
     if (c.joint == "slide") steady = c.value;
-  CHECK(plot.references[0].at == Approx(1000 * steady));
+  CHECK(plot.references[0].at == Approx(steady));
   for (const PlotCurve& curve : plot.curves) {
     if (curve.name != "damped") continue;
     REQUIRE(curve.points.size() == run.time.size());
     CHECK(curve.points[7][0] == run.time[7]);
-    CHECK(curve.points[7][1] == Approx(1000 * track(run, "slide").value[7]));
+    CHECK(curve.points[7][1] == Approx(track(run, "slide").value[7]));
   }
   // Everything that is offered can be drawn.
   for (const MotionQuantity& each : motion_quantities(run)) {

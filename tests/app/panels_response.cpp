@@ -92,7 +92,7 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
   REQUIRE(state.result);
   CHECK(state.address == speed);
   CHECK(state.quantity == "value slide");
-  CHECK(state.plot.y.unit == "mm");
+  CHECK(state.plot.y.unit == "m");
   Analysis analysis(robot.app.mechanism());
   for (const double at : {2.0, 9.0, 11.0174, 16.0, 25.0}) {
     Mechanism mechanism = robot.app.mechanism();
@@ -103,7 +103,7 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
     const std::vector<double> found =
         crossings(state.plot, solution.stable == true ? "stable" : "unstable", at);
     REQUIRE(found.size() == 1);
-    CHECK(found[0] == Approx(1000 * coordinate(solution.coordinates, "slide")).margin(0.5));
+    CHECK(found[0] == Approx(coordinate(solution.coordinates, "slide")).margin(5e-4));
   }
   // At its points the curve is exact.
   for (std::size_t i = 0; i < state.result->lines[0].points.size(); i += 7) {
@@ -154,18 +154,18 @@ TEST_CASE("the varied slider moves the marker alone, another one the curve") {
   CHECK(state.version == version);
   CHECK(state.plots_made == made);
   CHECK(state.plot.marker->x > x + 2);
-  CHECK(state.plot.marker->y == Approx(1000 * present(app, "slide")));
+  CHECK(state.plot.marker->y == Approx(present(app, "slide")));
 
   const double before = crossings(state.plot, "stable", 20).at(0);
   robot.drag("parameters/" + stiffness, {0.5f, 0.5f}, {0.7f, 0.5f});
   CHECK(state.version > version);
-  CHECK(std::abs(crossings(state.plot, "stable", 20).at(0) - before) > 1);
+  CHECK(std::abs(crossings(state.plot, "stable", 20).at(0) - before) > 1e-3);
   CHECK(crossings(state.plot, "stable", state.plot.marker->x).at(0) ==
-        Approx(state.plot.marker->y).margin(0.5));
+        Approx(state.plot.marker->y).margin(5e-4));
   // Back with undo.
   undo(app);
   robot.frames(2);
-  CHECK(crossings(state.plot, "stable", 20).at(0) == Approx(before).margin(0.1));
+  CHECK(crossings(state.plot, "stable", 20).at(0) == Approx(before).margin(1e-4));
 }
 
 TEST_CASE("the marker dragged along the curve moves parameter and mechanism as one step") {
@@ -180,7 +180,7 @@ TEST_CASE("the marker dragged along the curve moves parameter and mechanism as o
   const double now = get_parameter(app.mechanism(), speed);
   CHECK(now == Approx(18).margin(0.3));
   CHECK(std::abs(present(app, "slide") - before) > 0.002);
-  CHECK(1000 * present(app, "slide") == Approx(crossings(state.plot, "stable", now).at(0)).margin(0.5));
+  CHECK(present(app, "slide") == Approx(crossings(state.plot, "stable", now).at(0)).margin(5e-4));
   // What the hand sets has digits that a hand can mean.
   CHECK(now * 1000 == Approx(std::round(now * 1000)).margin(1e-9));
   undo(app);
@@ -375,9 +375,9 @@ TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
     for (const ShownRate& rate : rates) {
       const bool angle = rate.name != "slide";
       const double expected = (coordinate(above, rate.name) - coordinate(below, rate.name)) / (2 * step) *
-                              (angle ? 180 / std::numbers::pi : 1000);
+                              (angle ? 180 / std::numbers::pi : 1);
       CHECK(rate.value == Approx(expected).epsilon(1e-6));
-      CHECK(rate.unit == std::string(angle ? "°" : "mm") + (address == speed ? "/(rad/s)" : "/(N/m)"));
+      CHECK(rate.unit == std::string(angle ? "°" : "m") + (address == speed ? "/(rad/s)" : "/(N/m)"));
     }
   }
   // Where there is no steady state there is nothing to tell.

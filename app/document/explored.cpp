@@ -1,0 +1,76 @@
+#include "app/document/explored.hpp"
+
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace flyball {
+
+namespace {
+
+std::optional<double> number_at(const Mechanism& mechanism, const std::string& address) {
+  try {
+    return get_parameter(mechanism, address);
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
+// The part's name in the list after the edit, where only names have changed there.
+template <class Part>
+std::string renamed(const std::string& name, const std::vector<Part>& before,
+                    const std::vector<Part>& after) {
+  if (before.size() != after.size() || std::ranges::find(after, name, &Part::name) != after.end())
+    return name;
+  const auto at = std::ranges::find(before, name, &Part::name);
+  return at == before.end() ? name : after[static_cast<std::size_t>(at - before.begin())].name;
+}
+
+std::string renamed_address(const std::string& address, const Mechanism& before, const Mechanism& after) {
+  const std::size_t begin = address.find('.'), end = address.find('.', begin + 1);
+  if (begin == std::string::npos || end == std::string::npos) return address;
+  const std::string list = address.substr(0, begin), name = address.substr(begin + 1, end - begin - 1);
+  std::string now = name;
+  if (list == "bodies") now = renamed(name, before.bodies, after.bodies);
+  if (list == "joints") now = renamed(name, before.joints, after.joints);
+  if (list == "forces") now = renamed(name, before.forces, after.forces);
+  return list + "." + now + address.substr(end);
+}
+
+} // namespace
+
+void explore_value(Explored& explored, const Mechanism& mechanism, const std::string& address, double value) {
+  const std::optional<double> present = number_at(mechanism, address);
+  const auto found = std::ranges::find(explored, address, &ExploredValue::address);
+  if (!present || *present == value) {
+    if (found != explored.end()) explored.erase(found);
+  } else if (found != explored.end()) {
+    found->value = value;
+  } else {
+    explored.push_back({address, value});
+  }
+}
+
+Mechanism with_explored(Mechanism mechanism, const Explored& explored) {
+  for (const ExploredValue& each : explored) {
+    try {
+      set_parameter(mechanism, each.address, each.value);
+    } catch (const SceneError&) { // nothing there to be explored
+    }
+  }
+  return mechanism;
+}
+
+Explored carried_explored(const Explored& explored, const Mechanism& before, const Mechanism& after) {
+  Explored left;
+  for (const ExploredValue& each : explored) {
+    const std::string address = renamed_address(each.address, before, after);
+    if (number_at(before, each.address) == number_at(after, address))
+      explore_value(left, after, address, each.value);
+  }
+  return left;
+}
+
+} // namespace flyball

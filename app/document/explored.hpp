@@ -1,0 +1,30 @@
+// Numbers that were tried while exploring: they stand beside the document's mechanism, which they do not
+// change until a person keeps them.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+struct ExploredValue {
+  std::string address; // as in a scene file: "joints.spin.drive.speed"
+  double value = 0;
+  bool operator==(const ExploredValue&) const = default;
+};
+using Explored = std::vector<ExploredValue>; // each address once
+
+// With one more number, in its place where the address is there; without the address where the mechanism has
+// this value anyway, or has no such number.
+void explore_value(Explored& explored, const Mechanism& mechanism, const std::string& address, double value);
+
+// The mechanism with these numbers. Those it does not have are ignored.
+Mechanism with_explored(Mechanism mechanism, const Explored& explored);
+
+// What is left of them after an edit: a number that the edit has set counts from then on, what is gone is
+// gone, and a part that was renamed in its place keeps what is explored of it.
+Explored carried_explored(const Explored& explored, const Mechanism& before, const Mechanism& after);
+
+} // namespace flyball

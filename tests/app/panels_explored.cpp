@@ -1,0 +1,133 @@
+// Trying values while exploring changes nothing of the document, until they are kept.
+#include "app/panels/file_commands.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/file.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "file_robot.hpp"
+#include "robot.hpp"
+#include "temporary_folder.hpp"
+#include "tests/catch.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+double in_file(const fs::path& file) {
+  return get_parameter(load_scene(file), speed);
+}
+
+void drag_speed(Robot& robot) {
+  robot.drag(std::string("parameters/") + speed, {0.4f, 0.5f}, {0.8f, 0.5f});
+}
+
+} // namespace
+
+TEST_CASE("a slider that is moved leaves nothing to be saved") {
+  const TemporaryFolder folder;
+  FileRobot robot(folder);
+  App& app = robot.app;
+  const fs::path file = governor_in(folder);
+  robot.open(file);
+  const Solution before = app.answer.solution;
+  drag_speed(robot);
+  const double tried = robot.speed_now();
+  REQUIRE(tried > 15);
+  CHECK(app.answer.solution.coordinates.back().value != before.coordinates.back().value);
+  CHECK_FALSE(app.document.unsaved());
+  CHECK_FALSE(has_unsaved_work(app));
+  CHECK(robot.shows("explored/keep"));
+
+  SECTION("closing asks nothing, and the file is as it was") {
+    robot.pass(6);
+    CHECK(app.files.autosave.path().empty());
+    quit(app);
+    CHECK(app.quit);
+    CHECK_FALSE(app.dialog.showing);
+    CHECK(in_file(file) == 11.0174);
+  }
+  SECTION("saving writes the stored value, and says so") {
+    const std::string text = read_bytes(file);
+    robot.key('S', true);
+    CHECK(in_file(file) == 11.0174);
+    CHECK_THAT(app.notice, ContainsSubstring("without the explored value"));
+    CHECK(robot.speed_now() == tried);
+    CHECK(robot.shows("explored/keep"));
+  }
+  SECTION("kept, it is an edit") {
+    robot.click("explored/keep");
+    CHECK(app.document.unsaved());
+    CHECK(robot.speed_now() == tried);
+    CHECK_FALSE(robot.shows("explored/keep"));
+    robot.key('S', true);
+    CHECK(in_file(file) == tried);
+  }
+  SECTION("and back, it is gone") {
+    robot.click("explored/back");
+    CHECK(robot.speed_now() == 11.0174);
+    CHECK(app.document.explored().empty());
+    robot.key('Z', true);
+    CHECK(robot.speed_now() == tried);
+    robot.key('Z', true);
+    CHECK(robot.speed_now() == 11.0174);
+  }
+  SECTION("building shows the stored value, and edits it") {
+    set_mode(app, Mode::build);
+    robot.frames(3);
+    CHECK(robot.speed_now() == 11.0174);
+    CHECK(robot.shows("explored/keep"));
+    edit_parameter(app, "bodies.collar.mass", 2);
+    CHECK(app.document.unsaved());
+    CHECK(robot.speed_now() == 11.0174);
+    // Undoing takes back what is seen.
+    undo(app);
+    CHECK_FALSE(app.document.unsaved());
+    redo(app);
+    set_mode(app, Mode::explore);
+    robot.frames(3);
+    CHECK(robot.speed_now() == tried);
+    CHECK(get_parameter(app.mechanism(), "bodies.collar.mass") == 2);
+  }
+  SECTION("what another program writes is read at once, beside it") {
+    Mechanism theirs = load_scene(file);
+    set_parameter(theirs, "bodies.collar.mass", 4);
+    write_bytes(file, write_scene(theirs));
+    robot.pass(3);
+    CHECK_FALSE(app.files.conflict);
+    CHECK(get_parameter(app.mechanism(), "bodies.collar.mass") == 4);
+    CHECK(robot.speed_now() == tried);
+    CHECK_FALSE(app.document.unsaved());
+  }
+}
+
+TEST_CASE("what is typed in the inspector is an edit while exploring, too") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  drag_speed(robot);
+  select(app, {{{PartKind::joint, "spin"}}});
+  robot.frames(3);
+  robot.click("inspector/drive/speed");
+  robot.type("12 rad/s");
+  robot.key(key_enter);
+  CHECK(get_parameter(app.document.stored(), speed) == 12);
+  CHECK(get_parameter(app.mechanism(), speed) == 12);
+  CHECK(app.document.explored().empty());
+}
+
+TEST_CASE("after a crash unsaved edits come back, and explored values are as stored") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  {
+    FileRobot robot(folder);
+    robot.open(file);
+    edit_parameter(robot.app, "bodies.collar.mass", 3);
+    change_parameter(robot.app, speed, 20);
+    robot.pass(6);
+    REQUIRE_FALSE(robot.app.files.autosave.path().empty());
+    robot.app.files.autosave.wait();
+    const Autosave kept = parse_autosave(read_bytes(robot.app.files.autosave.path()));
+    const Mechanism recovered = parse_scene(kept.scene);
+    CHECK(get_parameter(recovered, "bodies.collar.mass") == 3);
+    CHECK(get_parameter(recovered, speed) == 11.0174);
+  }
+}

@@ -1,0 +1,56 @@
+// What was last done is told for a while.
+#include "app/panels/notice.hpp"
+#include "robot.hpp"
+#include "tests/catch.hpp"
+
+#include <cmath>
+
+using namespace flyball;
+using namespace flyball::test;
+
+TEST_CASE("a notice fades, and then nothing has to be drawn for it") {
+  Robot robot;
+  App& app = robot.app;
+  CHECK(std::isinf(next_notice_change(app)));
+  app.notice = "Copied ball1";
+  age_notice(app, 0.1);
+  CHECK(notice_strength(app) == 1);
+  CHECK(next_notice_change(app) > 4);
+  age_notice(app, notice_life(app.notice) - notice_fade / 2);
+  CHECK(notice_strength(app) < 0.6f);
+  CHECK(notice_strength(app) > 0.4f);
+  CHECK(next_notice_change(app) < 0.1);
+  age_notice(app, notice_fade);
+  CHECK(app.notice.empty());
+  CHECK(std::isinf(next_notice_change(app)));
+  // The view itself was not drawn again for any of it.
+  const int drawn = robot.stage.views_drawn();
+  robot.frames(5);
+  CHECK(robot.stage.views_drawn() == drawn);
+}
+
+TEST_CASE("the same notice again is told anew") {
+  Robot robot;
+  App& app = robot.app;
+  app.notice = "Saved";
+  age_notice(app, 0);
+  age_notice(app, 4);
+  app.notice = "Undone: Move";
+  age_notice(app, 4);
+  CHECK(app.notice == "Undone: Move");
+  CHECK(notice_strength(app) == 1);
+}
+
+TEST_CASE("what went wrong stays until it is put away") {
+  Robot robot;
+  App& app = robot.app;
+  show_error(app, "Not saved: the disk is full");
+  for (int i = 0; i < 100; ++i)
+    age_notice(app, 1);
+  robot.frames(2);
+  CHECK(is_error(app));
+  CHECK(std::isinf(next_notice_change(app)));
+  robot.click("error/close");
+  CHECK(app.notice.empty());
+  CHECK(app.widgets.count("error/close") == 0);
+}

@@ -1,0 +1,132 @@
+// Numbers are shown in the units a person has chosen, in fields, results and plots alike; files stay in SI.
+#include "app/panels/quantity.hpp"
+#include "app/panels/settings.hpp"
+#include "app/panels/shown_plot.hpp"
+#include "app/plot/csv.hpp"
+#include "engine/mechanism/address.hpp"
+#include "robot.hpp"
+#include "temporary_folder.hpp"
+#include "tests/catch.hpp"
+
+#include <fstream>
+#include <numbers>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr const char* speed = "joints.spin.drive.speed";
+constexpr DisplayUnits workshop{AngleUnit::degree, LengthUnit::millimetre, SpeedUnit::rpm};
+constexpr DisplayUnits si{AngleUnit::radian, LengthUnit::metre, SpeedUnit::radian};
+
+} // namespace
+
+TEST_CASE("shown and typed back, a number is the same to the last digit") {
+  for (const DisplayUnits& units : {workshop, si, DisplayUnits{}})
+    for (const char* unit : {"m", "rad", "rad/s", "m/s", "N/m", "N s/m", "kg", "m/s^2", "deg", ""})
+      for (const double value : {0.0011, 1.1, 0.7, -35e-4, 11.0174, 1e-9, 12345.678}) {
+        CAPTURE(unit, value);
+        const ShownUnit shown = shown_unit(unit, units);
+        CHECK(shown.si(shown.shown(value)) == Approx(value).epsilon(1e-15));
+        if (units.length == LengthUnit::millimetre && std::string(unit) == "m")
+          CHECK(shown.si(shown.shown(value)) == value);
+      }
+  CHECK(shown_unit("m", workshop).shown(0.0011) == 1.1);
+  CHECK(shown_unit("rad", workshop).shown(std::numbers::pi / 4) == 45);
+  CHECK(shown_unit("rad/s", workshop).shown(2 * std::numbers::pi) == 60);
+}
+
+TEST_CASE("a plain number is in the unit shown, and any unit can be typed") {
+  CHECK(parse_quantity("35", "m", "mm").value == 0.035);
+  CHECK(parse_quantity("1.1", "m", "mm").value == 0.0011);
+  CHECK(parse_quantity("0.2 m", "m", "mm").value == 0.2);
+  CHECK(parse_quantity("30 + 0.1 m", "m", "mm").value == Approx(0.13));
+  CHECK(parse_quantity("90", "rad", "°").value == std::numbers::pi / 2);
+  CHECK(parse_quantity("60", "rad/s", "rpm").value == Approx(2 * std::numbers::pi).epsilon(1e-15));
+  CHECK(parse_quantity("3 rad/s", "rad/s", "rpm").value == 3);
+  CHECK(parse_quantity("2", "N/m", "N/mm").value == 2000);
+  CHECK_FALSE(parse_quantity("2 kg", "m", "mm"));
+  // A typed number of a smaller unit is the nearest there is, not its product with one that is rounded.
+  CHECK(parse_quantity("5.1 mm", "m").value == 0.0051);
+  CHECK(parse_quantity("1.1 g", "kg").value == 0.0011);
+}
+
+TEST_CASE("fields, sliders and results show one and the same unit") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  choose_units(app, workshop);
+  robot.frames(2);
+  robot.click(std::string("parameters/") + speed + "/value");
+  CHECK_THAT(app.inspector.typing.text, ContainsSubstring("rpm"));
+  robot.type("120");
+  robot.key(key_enter);
+  CHECK(get_parameter(app.mechanism(), speed) == Approx(4 * std::numbers::pi).epsilon(1e-15));
+  select(app, {{{PartKind::body, "collar"}}});
+  set_mode(app, Mode::build);
+  robot.frames(3);
+  robot.click("inspector/position/x");
+  CHECK_THAT(app.inspector.typing.text, ContainsSubstring("mm"));
+  robot.type("12.5");
+  robot.key(key_enter);
+  CHECK(app.document.stored().bodies.back().position.x() == 0.0125);
+  // Enter without typing changes nothing.
+  const std::size_t steps = app.document.position();
+  robot.click("inspector/position/y");
+  robot.key(key_enter);
+  CHECK(app.document.position() == steps);
+}
+
+TEST_CASE("the hand's steps on a slider are round in the unit shown") {
+  Robot robot;
+  App& app = robot.app;
+  choose_units(app, workshop);
+  robot.frames(2);
+  robot.drag(std::string("parameters/") + speed, {0.4f, 0.5f}, {0.71f, 0.5f});
+  const double rpm = get_parameter(app.mechanism(), speed) * 30 / std::numbers::pi;
+  CHECK(rpm == Approx(std::round(rpm)).margin(1e-9));
+}
+
+TEST_CASE("a plot is in the units shown, and its CSV in SI") {
+  Plot plot;
+  plot.x = {.label = "speed", .unit = "rad/s", .range = PlotRange{0, 2 * std::numbers::pi}};
+  plot.y = {.label = "slide", .unit = "m"};
+  plot.curves.push_back({.name = "c", .points = {{std::numbers::pi, 0.25}}});
+  plot.references.push_back({.axis = 1, .at = 0.5, .label = ""});
+  show_axis(plot, 0, "rad/s", workshop);
+  show_axis(plot, 1, "m", workshop);
+  CHECK(plot.x.unit == "rpm");
+  CHECK((*plot.x.range)[1] == Approx(60));
+  CHECK(plot.curves[0].points[0][0] == Approx(30));
+  CHECK(plot.curves[0].points[0][1] == Approx(250));
+  CHECK(plot.references[0].at == Approx(500));
+  const std::string csv = to_csv(plot, {});
+  CHECK_THAT(csv, ContainsSubstring("curve,speed [rad/s],slide [m]"));
+  CHECK_THAT(csv, ContainsSubstring(",0.25"));
+}
+
+TEST_CASE("what was chosen is there when the program starts again") {
+  const TemporaryFolder folder;
+  const AppOptions options{.mode = LiveSolver::Mode::immediate,
+                           .on_news = {},
+                           .scenes = {},
+                           .numbers = {},
+                           .state = folder.path()};
+  {
+    App app(options);
+    CHECK(app.units == DisplayUnits{});
+    choose_units(app, workshop);
+    open_legend(app, false);
+  }
+  App again(options);
+  CHECK(again.units == workshop);
+  CHECK_FALSE(again.panels.legend);
+}
+
+TEST_CASE("settings that cannot be read are as at first") {
+  const TemporaryFolder folder;
+  for (const char* text : {"", "[]", "{\"angle\": 3, \"length\": \"parsec\"}", "{\"angle\": \"rad\""}) {
+    std::ofstream(folder / "settings.json") << text;
+    CHECK(read_settings(folder.path()) == Settings{});
+  }
+}
