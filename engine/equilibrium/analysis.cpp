@@ -142,12 +142,19 @@ struct Analysis::State {
     const Problem whole{system, parameters, scaling, problem.cancel};
     AnswerSearch other = search_answer(whole, start, phases, seconds, workspace);
     if (!other.answer) return describe(other);
+    const std::size_t recorded = history.size();
     Found first = std::exchange(found, std::move(*other.answer));
-    found.iterations += first.iterations;
     evaluate(problem, found.z, 0, workspace);
     history.push_back(scaled_residual(problem, workspace));
     factor(problem, found.z, workspace);
     refine(problem, found.z, found.newton, workspace, error);
+    constexpr double most_error = 1e-6; // scaled: what is found from afar and known no better is no answer
+    if (largest(error.cwiseQuotient(scaling.column)) > most_error) {
+      history.resize(recorded);
+      found = std::move(first);
+      return describe(other);
+    }
+    found.iterations += first.iterations;
     existence = exists(problem, found.z, phases);
     found.message = (fails_later ? "The equilibrium next to the start holds at one phase of the drives only"
                                  : "Newton-Raphson and its nets led nowhere from the start") +
@@ -307,6 +314,7 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
   } catch (const Interrupted&) {
     AllSolutions cancelled;
     cancelled.message = "The search was cancelled.";
+    cancelled.end = SearchEnd::cancelled;
     return cancelled;
   }
 }

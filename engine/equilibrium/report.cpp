@@ -34,6 +34,8 @@ struct Measured {
   int cut = -1;
   JointCoordinates at;
   Eigen::Matrix<double, 6, 1> error;
+  Eigen::Matrix<double, 6, 1> rate; // rad/s or m/s, in the steady state
+  double fastest = 0;               // of the drives, rad/s
 };
 
 // Errors of q_R by the rates of these coordinates, and what rounds along the chains from either body to the
@@ -42,7 +44,14 @@ Measured measure(const System& system, const Parameters& p, int c, const Kinemat
                  const Eigen::VectorXd& error) {
   const CutJoint& cut = system.cuts[static_cast<std::size_t>(c)];
   const CutParameters& numbers = p.cuts[static_cast<std::size_t>(c)];
-  Measured out{c, joint_coordinates(cut, numbers, k), Eigen::Matrix<double, 6, 1>::Zero()};
+  Measured out{c, joint_coordinates(cut, numbers, k), Eigen::Matrix<double, 6, 1>::Zero(),
+               Eigen::Matrix<double, 6, 1>::Zero()};
+  out.rate = out.at.rate * relative_velocity(cut, numbers, k);
+  for (const DrivenCoordinate& d : system.drives) {
+    const auto l = static_cast<std::size_t>(d.link);
+    const double unit = system.links[l].type == LinkType::revolute ? 1 : p.length;
+    out.fastest = std::max(out.fastest, std::abs(p.links[l].speed) / unit);
+  }
   for (const SupportColumn& column : cut.ends.support)
     out.error += (out.at.rate * relative_velocity(cut, numbers, k, column)).cwiseAbs() * error[column.v];
   const auto depth = [&](int l) { return l < 0 ? 0 : system.links[static_cast<std::size_t>(l)].depth; };
@@ -110,6 +119,9 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
       x.value = measured.at.value[static_cast<std::size_t>(r.index)];
       x.error = measured.error[r.index];
       x.dependent = true;
+      // A loop joint that turns or slides with the drives is driven, too.
+      x.driven = std::abs(measured.rate[r.index]) > 1e-9 * measured.fastest * (r.angle ? 1 : p.length);
+      if (x.driven) x.error = 0;
       out.push_back(std::move(x));
       continue;
     }

@@ -123,7 +123,7 @@ TEST_CASE("a branch agrees with a sweep that knows nothing of it", "[branches]")
       SolveOptions solve;
       solve.nearest = true;
       for (const CoordinateSolution& c : p.coordinates)
-        if (!c.driven)
+        if (!c.driven && !c.dependent)
           solve.start.push_back({c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index), c.value});
       const Solution s = Analysis(there).solve(solve);
       REQUIRE(s.status == Status::converged);
@@ -337,7 +337,8 @@ TEST_CASE("where nothing resists a direction no crossings are made up", "[branch
     SolveOptions options;
     options.nearest = true;
     for (const CoordinateSolution& c : p.coordinates)
-      if (!c.driven) options.start.push_back({c.joint + "." + std::to_string(c.index), c.value});
+      if (!c.driven && !c.dependent)
+        options.start.push_back({c.joint + "." + std::to_string(c.index), c.value});
     const Solution s = Analysis(there).solve(options);
     REQUIRE(s.status == Status::converged);
     for (std::size_t c = 0; c < s.coordinates.size(); ++c)
