@@ -84,6 +84,8 @@ struct CoordinateRows {
   // Always in its place, so that nothing below it moves with what is ticked there or found meanwhile.
   void settled() const {
     const CoordinateSolution* found = solution();
+    // Words and digits are of different heights.
+    const float next = ImGui::GetCursorPosY() + ImGui::GetTextLineHeightWithSpacing() + std::round(app.scale);
     if (coordinate().drive || (found && found->driven)) {
       no_value("driven", "It moves at a constant speed, so there is no place where it settles.");
     } else if (!found) {
@@ -98,6 +100,7 @@ struct CoordinateRows {
           unit.text.c_str(), ("In the steady state: " + help + ".").c_str());
     }
     note_widget(app.widgets, widget(key("settles")));
+    ImGui::SetCursorPosY(next);
   }
 
   // The row of a value that there is not.

@@ -83,7 +83,11 @@ std::span<const std::string_view> unit_names() {
 double times_unit(double number, double unit) {
   const double parts = std::round(1 / unit);
   const bool whole = unit < 1 && std::abs(1 / unit - parts) <= 1e-12 * parts;
-  return whole ? number / parts : number * unit;
+  if (!whole) return number * unit;
+  // 5.1 mm is 0.0051 m and not the neighbour that rounding twice may give.
+  const double quotient = number / parts;
+  const double tidy = std::strtod(fmt::format("{:.15g}", quotient).c_str(), nullptr);
+  return std::abs(tidy - quotient) <= 4e-16 * std::abs(quotient) ? tidy : quotient;
 }
 
 double ShownUnit::si(double shown) const {

@@ -18,7 +18,9 @@ double distance_from(const Run& run, std::size_t sample, const Solution& steady)
     const CoordinateTrack& track = run.coordinates[i];
     const CoordinateSolution& there = steady.coordinates[i];
     if (track.joint != there.joint || track.index != there.index) return infinity;
-    if (track.driven || std::ranges::find(steady.neutral, track.joint) != steady.neutral.end()) continue;
+    if (track.driven || there.driven ||
+        std::ranges::find(steady.neutral, track.joint) != steady.neutral.end())
+      continue;
     if (track.rotation) { // three components together, as the turn between the two
       Vec3 a, b;
       for (std::size_t k = 0; k < 3; ++k) {

@@ -133,7 +133,7 @@ void build_pendulum(Robot& robot, const OnStep& on_step) {
   b.joint({1, 0, 0}, "crank", "arm", "revolute", "z", "theta");
   b.tick("spring");
   b.fill("spring/stiffness", "300");
-  b.fill("spring/free", "1.0472");
+  b.fill("spring/free", "1.0472 rad");
   b.tick("damper");
   b.fill("damping", "10");
   b.joint({2.1, 0, 0}, "arm", "weight", "prismatic", "x", "d");
@@ -155,7 +155,7 @@ void build_governor(Robot& robot, const OnStep& on_step) {
   b.rod({0, 0.2, 0}, {-0.16, 0.2, 0}, "arm1");
   b.mass_and_inertia("0", "0", "0", "0");
   b.ball({-0.16, 0.2, 0}, "ball1");
-  b.fill("mass", "1 kg");
+  b.fill("mass", "1");
   b.step("bodies");
   b.key('K', false, true);
   b.click_at({0, 0.1, 0});

@@ -400,6 +400,7 @@ TEST_CASE("changes of a file are told, however they are made") {
   std::atomic<int> calls = 0;
   ChangeWatch watch([&] { ++calls; });
   const auto told = [&](const auto& change) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20)); // the last of what the change before set off
     watch.take_change();
     watch.watch(link);
     calls = 0;

@@ -61,7 +61,7 @@ struct Hand : Robot {
   // Beside everything in the inspector.
   void miss_in_inspector() {
     const WidgetRect name = widget("inspector/name");
-    click({name.to.x + 3, name.to.y + 1});
+    click(ImVec2{name.to.x + 3, name.to.y + 1});
     REQUIRE(app.inspector.typing.name.empty());
   }
 };
@@ -95,7 +95,7 @@ TEST_CASE("what is typed after a click that missed a field changes nothing") {
     CHECK(hand.app.view.camera.azimuth == 0);
   }
   SECTION("or the view is clicked") {
-    hand.click({hand.widget("view").from.x + 150, hand.widget("view").to.y - 60});
+    hand.click(ImVec2{hand.widget("view").from.x + 150, hand.widget("view").to.y - 60});
     hand.key('J');
     CHECK(hand.app.tool.tool == Tool::joint);
   }
@@ -125,7 +125,7 @@ TEST_CASE("among plots letters are commands, but not those of a number's unit") 
   open_study(hand.app, Study::response);
   hand.frames(3);
   const WidgetRect close = hand.widget("study/close");
-  hand.click({close.from.x - 30, close.center().y});
+  hand.click(ImVec2{close.from.x - 30, close.center().y});
   SECTION("a letter") {
     hand.key('M');
     CHECK(hand.app.study.open == Study::motion);
@@ -197,7 +197,7 @@ TEST_CASE("the sheet of keys has the keys, and goes with Escape") {
   if (way == 0) hand.key(key_escape);
   if (way == 1) hand.key('?');
   if (way == 2) hand.click("shortcuts/close");
-  if (way == 3) hand.click({5, 400}); // beside it: that closes it and selects nothing behind
+  if (way == 3) hand.click(ImVec2{5, 400}); // beside it: that closes it and selects nothing behind
   hand.frames(2);
   CHECK_FALSE(hand.app.commands.shortcuts);
   CHECK(look(hand.app) == before);
@@ -294,7 +294,7 @@ TEST_CASE("one click on a slider's track moves the knob there once it cannot bec
   // On the knob a click moves nothing, not by the pixels between it and the middle either.
   const WidgetRect rect = robot.widget(slider);
   const double value = get_parameter(robot.app.mechanism(), speed);
-  robot.click({rect.center().x + 3, rect.center().y});
+  robot.click(ImVec2{rect.center().x + 3, rect.center().y});
   robot.frames(30);
   CHECK(get_parameter(robot.app.mechanism(), speed) == value);
 }

@@ -44,7 +44,6 @@ TEST_CASE("passes that are not needed are left out") {
   frame.ghost = frame.motion = drawn;
   frame.selected = {{PartKind::body, 1}, {PartKind::joint, 2}};
   report = renderer.draw(frame, target);
-  CHECK(has(report, "ghost"));
   CHECK(has(report, "motion"));
   CHECK(has(report, "outline"));
   CHECK(mean_difference(plain, target.read()) > 0.05);
