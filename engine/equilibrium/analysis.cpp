@@ -54,8 +54,6 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
 constexpr double phase_rounding = 64 * std::numeric_limits<double>::epsilon();
 constexpr double most_phase_variation = 1e-2; // scaled; what moves further with the drives does not stand
 
-constexpr int largest_for_second_thoughts = 120; // coordinates; a refusal then takes a second or two
-
 // Eigenvalues need the matrices; beyond a size the pivots have to do.
 bool pivots_decide(const Problem& problem, int modes) {
   return problem.system.nv > largest_for_eigenvalues && modes == 0 && !problem.is_dense();
@@ -130,13 +128,19 @@ struct Analysis::State {
     return existence;
   }
 
+  // What is found from afar and known no better than this is no answer.
+  bool known(const Eigen::VectorXd& e) const {
+    constexpr double most = 1e-6; // scaled
+    return !(largest(e.cwiseQuotient(scaling.column)) > most);
+  }
+
   // The last net. What it tried, in words, where `found` stays as it is.
   std::string search(const Problem& problem, const std::vector<double>& phases, double seconds,
                      Existence& existence) {
     const bool fails_later = found.status == Status::converged;
     const std::string only = fails_later ? "That is said of the equilibrium found from this start alone; "
                                          : "No other start was tried; ";
-    if (!(seconds > 0) || system.nv > largest_for_second_thoughts)
+    if (!(seconds > 0) || system.nv > largest_for_answer_search)
       return only + "solve --all looks for others.";
     if (system.nv == 0) return "";
     const Problem whole{system, parameters, scaling, problem.cancel};
@@ -148,8 +152,7 @@ struct Analysis::State {
     history.push_back(scaled_residual(problem, workspace));
     factor(problem, found.z, workspace);
     refine(problem, found.z, found.newton, workspace, error);
-    constexpr double most_error = 1e-6; // scaled: what is found from afar and known no better is no answer
-    if (largest(error.cwiseQuotient(scaling.column)) > most_error) {
+    if (!known(error)) {
       history.resize(recorded);
       found = std::move(first);
       return describe(other);
@@ -225,12 +228,18 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   }
   // The dense equations catch some that elimination does not.
   if (s.found.status == Status::not_converged && !problem.is_dense() &&
-      s.system.nv <= largest_for_second_thoughts && !problem.cancelled()) {
+      s.system.nv <= largest_for_answer_search && !problem.cancelled()) {
     problem.eliminated = false;
     find_equilibrium(problem, s.start, options.nearest, false, s.workspace, s.history, s.found);
   }
   const std::vector<double> phases = sample_phases(s.system, s.parameters);
-  if (s.found.status == Status::converged) refine(problem, s.found.z, s.found.newton, s.workspace, s.error);
+  if (s.found.status == Status::converged) {
+    refine(problem, s.found.z, s.found.newton, s.workspace, s.error);
+    if (s.found.fell && !s.known(s.error)) {
+      s.found.status = Status::not_converged;
+      s.found.message = "The potential falls on, hundreds of times the mechanism's reach away.";
+    }
+  }
   Existence existence;
   if (s.found.status == Status::converged) existence = s.exists(problem, s.found.z, phases);
   std::string tried; // beside the run that is refused
@@ -288,6 +297,8 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   const ReportInput input{s.mechanism, problem, s.found, existence, stability, options.points};
   s.error += s.workspace.data_error;
   report(input, s.error, options.details, s.workspace, out);
+  if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
+    explain_unbounded(problem, s.start, s.workspace, out);
   if (!is_finite(out)) {
     s.settled = false;
     Solution refused;

@@ -10,6 +10,9 @@
 
 namespace flyball {
 
+// Coordinates; with more of them a refusal would take longer than a second or two.
+constexpr int largest_for_answer_search = 120;
+
 struct AnswerSearch {
   std::optional<Found> answer; // holds at every phase
   Existence existence;         // of the answer

@@ -5,8 +5,8 @@
 #include "engine/equilibrium/homotopy.hpp"
 #include "engine/equilibrium/stability.hpp"
 #include "engine/equilibrium/trust_region.hpp"
-#include "engine/mechanism/text.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <random>
 
@@ -27,7 +27,7 @@ class Search {
     found_.net.reset();
     found_.iterations = 0;
     found_.open_cut = -1;
-    found_.minimum = false;
+    found_.minimum = found_.fell = false;
     history_.clear();
     if (p_.system.conservative && !nearest_ && !warm_) { // first, since closing loops takes the factors
       w_.assembled = start_;
@@ -290,6 +290,7 @@ class Search {
     if (!outcome.converged || (outcome.largest_step > 0.2 && !fell_) ||
         !closed_the_right_way(p_, w_.kinematics) || (fell_ && !fell_below_assembled()))
       return false;
+    found_.fell = fell_;
     fell_ = false;
     found_.newton = outcome;
     const bool left_unstable = arrived_ && unstable_;
@@ -331,6 +332,7 @@ class Search {
       found_.newton = candidate_outcome_;
       found_.net = candidate_net_;
       found_.status = Status::converged;
+      found_.fell = fell_;
       found_.message =
           unstable_ ? fell_
                           ? "The potential falls on, hundreds of times the mechanism's reach away; no stable "

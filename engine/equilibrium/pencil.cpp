@@ -82,6 +82,40 @@ std::optional<Eigen::MatrixXd> felt(const Eigen::MatrixXd& z, const Eigen::Matri
   return Eigen::MatrixXd(z * qr.q().leftCols(rank));
 }
 
+// With directions z that have neither mass nor damping, beside the rest r. Where they have stiffness they
+// follow statically; where they have none, but forces couple them with the rest, they hold it like the
+// multipliers of a constraint: no motion of the rest may change the forces along them.
+Eigenvalues condensed_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                                  const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& z,
+                                  const Eigen::MatrixXd& r, CancelFlag cancel) {
+  Eigen::MatrixXd m = onto(r, mass), d = onto(r, velocity), k = onto(r, stiffness);
+  if (z.cols() == 0) return regular_eigenvalues(m, d, k, cancel);
+  const auto shape = singular_vectors(onto(z, stiffness));
+  if (!shape) return {};
+  const Eigen::MatrixXd left = shape->left.transpose() * z.transpose() * stiffness * r,
+                        right = r.transpose() * stiffness * z * shape->right;
+  constexpr double none = 1e-12; // beside the coupling
+  Eigen::Index stiff = 0;
+  while (stiff < z.cols() && shape->values[stiff] > 0 &&
+         shape->values[stiff] > none * std::max(left.row(stiff).norm(), right.col(stiff).norm()))
+    ++stiff;
+  k -= right.leftCols(stiff) * shape->values.head(stiff).cwiseInverse().asDiagonal() * left.topRows(stiff);
+  const Eigen::Index holding = z.cols() - stiff;
+  if (holding == 0) return regular_eigenvalues(m, d, k, cancel);
+  const bool symmetric = (stiffness - stiffness.transpose()).norm() <= 1e-12 * stiffness.norm();
+  const auto along = null_space(left.bottomRows(holding));
+  const auto across = symmetric ? along : null_space(right.rightCols(holding).transpose());
+  if (!along || !across || along->cols() != across->cols()) return {};
+  if (along->cols() == 0) return std::vector<Complex>();
+  const auto reduced = [&](const Eigen::MatrixXd& a) {
+    return Eigen::MatrixXd(across->transpose() * a * *along);
+  };
+  m = reduced(m);
+  if ((m - m.transpose()).norm() > 1e-12 * m.norm())
+    return singular_eigenvalues(m, reduced(d), reduced(k), cancel);
+  return regular_eigenvalues((m + m.transpose()) / 2, reduced(d), reduced(k), cancel);
+}
+
 } // namespace
 
 Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
@@ -112,16 +146,12 @@ Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixX
     const Eigen::MatrixXd& z = *felt_directions;
     const Eigen::MatrixXd r = shape.vectors().rightCols(m1.rows() - massless);
     const bool damped = (d1 * z).norm() + (z.transpose() * d1).norm() > 1e-13 * (d1.norm() + 1);
-    CompleteOrthogonal condensed;
-    if (!condensed.compute(onto(z, k1))) return {};
-    if (!damped && condensed.rank() == z.cols()) {
-      Eigen::MatrixXd kc = r.transpose() * k1 * r;
-      if (z.cols() > 0) kc -= r.transpose() * k1 * z * condensed.solve(z.transpose() * k1 * r);
-      s = regular_eigenvalues(r.transpose() * m1 * r, r.transpose() * d1 * r, kc, cancel);
-    } else {
+    if (damped) {
       Eigen::MatrixXd all(m1.rows(), z.cols() + r.cols());
       all << z, r;
       s = singular_eigenvalues(onto(all, m1), onto(all, d1), onto(all, k1), cancel);
+    } else {
+      s = condensed_eigenvalues(m1, d1, k1, z, r, cancel);
     }
   }
   if (!s) return {};

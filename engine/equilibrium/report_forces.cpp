@@ -12,6 +12,7 @@ namespace {
 // Relative to the largest forces of all: what changes less does not change, and what multipliers that balance
 // among themselves move less they do not move.
 constexpr double varying_reaction = 1e-7, varying_torque = 1e-9, touched = 1e-7;
+constexpr double rounding = 1e-13; // of the loads
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -53,6 +54,19 @@ double size_of(const TransmittedForces& forces, double length) {
     for (const JointWrench& x : *list)
       size = std::max({size, x.force.norm(), x.torque.norm() / length});
   return size;
+}
+
+// What the weights and inertial loads come to, each by its size (N, moments by the mechanism's reach): the
+// forces that balance them are rounded by a part of this, however small they are themselves.
+double loads_on(const Problem& problem, const Kinematics<double>& k) {
+  const Parameters& p = problem.parameters;
+  double sum = 0;
+  for (std::size_t i = 0; i < k.links.size(); ++i) {
+    const double rate = k.links[i].w.squaredNorm();
+    sum += p.links[i].mass * (k.links[i].dv.norm() + rate * p.links[i].com.norm()) +
+           p.links[i].inertia.norm() * rate / p.length;
+  }
+  return sum;
 }
 
 // Multipliers that balance among themselves, Phi_q^T lambda = 0, with part of every direction of that null
@@ -131,7 +145,7 @@ class ForceReport {
   ForceReport(const ReportInput& in, const Unknowns& z, Workspace& w)
       : in_(in), system_(in.problem.system), p_(in.problem.parameters),
         drawn_(snapshot(in.problem, z.lambda, w)), touched_(find_touched(in.problem, drawn_.forces, z, w)),
-        size_(size_of(drawn_.forces, p_.length)) {
+        size_(size_of(drawn_.forces, p_.length)), loads_(loads_on(in.problem, w.kinematics)) {
     for (double t : sample_phases(system_, p_))
       others_.push_back(snapshot(in.problem, with_reported_multipliers(in.problem, z.q, t, w).lambda, w));
   }
@@ -218,7 +232,7 @@ class ForceReport {
 
  private:
   bool varies(const JointWrench& a, const Frames& fa, const JointWrench& b, const Frames& fb) const {
-    const double least = varying_reaction * size_;
+    const double least = std::max(varying_reaction * size_, rounding * loads_);
     const auto differs = [&](const Mat3& ra, const Mat3& rb) {
       return (ra.transpose() * a.force - rb.transpose() * b.force).norm() > least ||
              (ra.transpose() * a.torque - rb.transpose() * b.torque).norm() > least * p_.length;
@@ -226,7 +240,9 @@ class ForceReport {
     return differs(fa.parent, fb.parent) && differs(fa.child, fb.child);
   }
 
-  double torque_tolerance(bool angle) const { return varying_torque * size_ * (angle ? p_.length : 1); }
+  double torque_tolerance(bool angle) const {
+    return std::max(varying_torque * size_, rounding * loads_) * (angle ? p_.length : 1);
+  }
 
   bool is_end(const Joint& gear, std::size_t end, int l) const {
     const Link& link = system_.links[at(l)];
@@ -239,7 +255,7 @@ class ForceReport {
   const Parameters& p_;
   Snapshot drawn_;
   Touched touched_;
-  double size_; // N
+  double size_, loads_; // N
   std::vector<Snapshot> others_;
 };
 

@@ -92,6 +92,34 @@ void judge_by_multipliers(const Problem& problem, const Unknowns& z, int neutral
   if (inside || apart) out.stable = true;
 }
 
+// Whether directions without mass and damping tip over at once: no finite eigenvalue tells of it. They do
+// where their own stiffness is negative, and where it vanishes while they are coupled with directions that
+// have mass: with a mass e of theirs, e s^2 and m s^2 on the diagonal and c beside it, s^2 = +-c / sqrt(e m).
+std::optional<bool> massless_directions_tip(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                                            const Eigen::MatrixXd& stiffness) {
+  if (mass.rows() == 0) return false;
+  SymmetricEigen shape;
+  if (!shape.compute((mass + mass.transpose()) / 2)) return {};
+  Eigen::Index massless = 0;
+  while (massless < mass.rows() && shape.values()[massless] < 1e-13 * std::max(mass.norm(), 1e-300))
+    ++massless;
+  if (massless == 0) return false;
+  const Eigen::MatrixXd z = shape.vectors().leftCols(massless),
+                        r = shape.vectors().rightCols(mass.rows() - massless);
+  SymmetricEigen local;
+  if (!local.compute(z.transpose() * (stiffness + stiffness.transpose()) * z / 2)) return {};
+  const double size = std::max(stiffness.norm(), 1e-300);
+  if (local.values()[0] < -1e-10 * size) return true;
+  for (Eigen::Index i = 0; i < massless && local.values()[i] < 1e-10 * size; ++i) {
+    const Eigen::VectorXd direction = z * local.vectors().col(i);
+    if ((velocity * direction).norm() > 1e-10 * velocity.norm()) continue;
+    const double coupling = std::min((r.transpose() * stiffness * direction).norm(),
+                                     (direction.transpose() * stiffness * r).norm());
+    if (coupling > 1e-8 * size && coupling * coupling > 100 * std::abs(local.values()[i]) * size) return true;
+  }
+  return false;
+}
+
 } // namespace
 
 bool can_compare_phases(const System& system) {
@@ -208,20 +236,9 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
     if (x.real() > tolerance) right = true;
     if (x.real() >= -tolerance) left = false;
   }
-  // A massless direction with negative stiffness has no finite eigenvalue to tell of it.
-  if (mass.rows() > 0) {
-    SymmetricEigen shape;
-    if (!shape.compute((mass + mass.transpose()) / 2)) return out;
-    Eigen::Index massless = 0;
-    while (massless < mass.rows() && shape.values()[massless] < 1e-13 * std::max(mass.norm(), 1e-300))
-      ++massless;
-    if (massless > 0) {
-      const Eigen::MatrixXd zz = shape.vectors().leftCols(massless);
-      const auto local = symmetric_eigenvalues(zz.transpose() * (stiffness + stiffness.transpose()) * zz);
-      if (!local) return out;
-      if ((*local)[0] < -1e-10 * std::max(stiffness.norm(), 1e-300)) right = true;
-    }
-  }
+  const auto tipping = massless_directions_tip(mass, velocity, stiffness);
+  if (!tipping) return out;
+  if (*tipping) right = true;
   // Where the energy falls nowhere it grows nowhere either, whatever rounding makes of the eigenvalues.
   const bool falls = !potential || most_negative < -ReducedHessian::zero;
   if (right && falls) {

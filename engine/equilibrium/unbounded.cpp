@@ -183,20 +183,23 @@ Unbounded find_unbounded(const Problem& problem, const Eigen::VectorXd& start, W
 }
 
 void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w, Solution& out) {
-  if (out.status != Status::not_converged || problem.cancelled()) return;
+  const bool unstable = out.status == Status::converged && out.stable == false;
+  if ((out.status != Status::not_converged && !unstable) || problem.cancelled()) return;
   const Unbounded found = find_unbounded(problem, start, w);
   if (found.coordinates.empty() || problem.cancelled()) return;
   out.unheld = found.coordinates;
   out.unheld_by_weight = found.by_weight;
   const bool one = found.coordinates.size() == 1;
-  out.message = "Nothing holds " + names_of(found) + " against " +
-                (found.by_weight    ? "the weight"
-                 : found.by_inertia ? "the centrifugal force"
-                                    : "the forces on it") +
-                ": " + (one ? "it goes" : "they go") +
-                " on without end, so there is no steady state to find. " +
-                (one ? "It needs a spring or a stop" : "They need springs or stops") +
-                (found.by_weight ? ", or no gravity." : ".");
+  const std::string words =
+      "Nothing holds " + names_of(found) + " against " +
+      (found.by_weight    ? "the weight"
+       : found.by_inertia ? "the centrifugal force"
+                          : "the forces on it") +
+      ": " + (one ? "it goes" : "they go") + " on without end" +
+      (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +
+      (one ? "It needs a spring or a stop" : "They need springs or stops") +
+      (found.by_weight ? ", or no gravity." : ".");
+  out.message = unstable ? out.message + " " + words : words;
 }
 
 bool weight_turns(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w) {

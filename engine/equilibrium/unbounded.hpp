@@ -23,7 +23,8 @@ struct Unbounded {
 Unbounded find_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w);
 
 // The two in one place: names them in `out.unheld`, and in `out.message` what holds nothing and what would
-// mend it. Leaves `out` alone where nothing runs away.
+// mend it; of an unstable answer beside what the message says already. Leaves `out` alone where nothing runs
+// away.
 void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w, Solution& out);
 
 // Of a state that balances at one phase of the drives and not at the phase `t` (s): whether that is gravity's

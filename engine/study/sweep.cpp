@@ -28,6 +28,7 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
   std::vector<SweepPoint> points(total);
   for (std::size_t i = 0; i < total; ++i) {
     points[i].parameters.resize(variations.size());
+    points[i].solution.message = "The sweep was cancelled before this point.";
     std::size_t rest = i;
     for (std::size_t v = variations.size(); v-- > 0;) {
       const auto count = static_cast<std::size_t>(std::max(1, variations[v].count));

@@ -31,7 +31,7 @@ def speed_kept(folder):
 
 def drag_without_pause(window):
     """The button stays down; returns the speed that the window shows."""
-    window.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
+    window.build()
     slider = "parameters/" + SPEED
     window.do("mousemove", *window.place(slider, 0.4))
     window.do("mousedown", 1)
@@ -102,6 +102,7 @@ def pipes(window, pipe):
 
 
 def save_onto_pipe(window, copy):
+    window.build()
     window.drag_speed()
     copy.unlink()
     os.mkfifo(copy)
@@ -136,6 +137,7 @@ def main():
 
             for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
                 window, copy = begin(number.name)
+                window.build()
                 _, moved = window.drag_speed()
                 window.program.send_signal(number)
                 ends_and_keeps(window, copy.parent, -number, moved["parameters"][SPEED], number.name)
@@ -151,6 +153,7 @@ def main():
                     if part.endswith("dragging"):
                         value = drag_without_pause(window)
                     else:
+                        window.build()
                         value = window.drag_speed()[1]["parameters"][SPEED]
                 finally:
                     doomed.kill()

@@ -83,6 +83,12 @@ class Window:
         self.do("mousedown", 1)
         self.do("mouseup", 1)
 
+    def build(self):
+        """To where the sliders edit what is stored."""
+        self.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
+        self.do("key", "Tab")
+        self.wait("the tools", lambda s: "tools/joint" in s["widgets"])
+
     def drag_speed(self):
         """Waits for the first answer, drags the slider and returns the states before and after."""
         first = self.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
@@ -118,9 +124,9 @@ def explore(window, folder):
         raise SystemExit(f"{picture} is no PNG of the wanted size: {size}")
 
     watch_motion(window)
-    window.do("key", "ctrl+q")
-    window.wait("a question", lambda s: s["unsaved"] and "unsaved/discard" in s["widgets"])
-    window.click("unsaved/discard")
+    if window.state()["unsaved"]:
+        raise SystemExit("what was tried counts as an edit")
+    window.do("key", "ctrl+q")  # nothing to ask
     window.ends_well()
 
 
@@ -147,8 +153,10 @@ def hidden_files(folder):
 
 
 def crash(window):
-    """Edits, and dies without a word three seconds later; returns the value that would be lost."""
+    """Keeps what was tried, and dies without a word three seconds later; returns the value that would be lost."""
     window.drag_speed()
+    window.click("explored/keep")
+    window.wait("an edit", lambda s: s["unsaved"])
     time.sleep(3)
     value = window.state()["parameters"][SPEED]
     window.program.kill()

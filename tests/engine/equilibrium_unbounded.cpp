@@ -77,7 +77,7 @@ TEST_CASE("a slide that nothing holds is named, with the weight on it") {
   }
 }
 
-TEST_CASE("a pendulum half built: the slide on its arm has no spring yet", "[!mayfail]") {
+TEST_CASE("a pendulum half built: the slide on its arm has no spring yet") {
   const double angle = GENERATE(0., 0.4, 1.5707963267948966);
   const Vec3 along(std::cos(angle), -std::sin(angle), 0);
   const double speed = GENERATE(0., 20.);
@@ -88,12 +88,11 @@ TEST_CASE("a pendulum half built: the slide on its arm has no spring yet", "[!ma
   m.joints[0].coordinates[0].drive->speed = speed;
   if (speed != 0) m.gravity.setZero(); // it would turn with the drive
   const Solution s = solve(m);
-  if (s.status == Status::converged) {
-    CHECK(s.stable != true); // a balance on the axis, which nothing keeps
-    return;
-  }
   REQUIRE(unheld(s) == Names{"d"});
   CHECK(s.unheld_by_weight == (speed == 0));
+  CHECK_THAT(s.message, ContainsSubstring("Nothing holds d against"));
+  // With the weight on the hinge, where the arm has no inertia, it balances; nothing keeps it there.
+  if (s.status == Status::converged) CHECK(s.stable == false);
 }
 
 TEST_CASE("several things that run away are all named, and nothing else") {
@@ -138,7 +137,7 @@ TEST_CASE("a torque that nothing resists turns a hinge for ever") {
   CHECK(solve(m).status == Status::converged);
 }
 
-TEST_CASE("a loop that falls as a whole names what it falls along", "[!mayfail]") {
+TEST_CASE("a loop that falls as a whole names what it falls along") {
   // A bar between two vertical slides on the ground.
   Mechanism m = heavy(
       {body("left", 1, {-1, 0, 0}), body("right", 1, {1, 0, 0}), body("bar", 1, {0, 0, 0}, {0.1, 0.1, 0.1})},
