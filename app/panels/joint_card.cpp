@@ -271,7 +271,8 @@ void joint_card(App& app, const ViewInput& input) {
       app.tool.joint.reset();
     }
   }
-  app.tool.card_height = ImGui::GetWindowHeight();
+  // Its place is chosen for the tallest it was: a type with fewer rows does not move what is clicked next.
+  app.tool.card_height = std::max(app.tool.card_height, ImGui::GetWindowHeight());
   ImGui::End();
 }
 

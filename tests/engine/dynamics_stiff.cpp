@@ -70,7 +70,7 @@ double matrix_error(const Mechanism& mechanism, double stir, double gamma) {
 
 } // namespace
 
-TEST_CASE("the matrix of implicit steps is the derivative of the motion's rates", "[!mayfail]") {
+TEST_CASE("the matrix of implicit steps is the derivative of the motion's rates") {
   for (const double gamma : {1e-4, 1e-2, 0.3}) {
     CAPTURE(gamma);
     CHECK(matrix_error(springy_chain(6, 20, 0.3), 1, gamma) < 1e-5); // of which the quotients have most
@@ -89,7 +89,9 @@ TEST_CASE("the fastest rates of a motion are those of its pencil") {
     Motion m(springy_chain(20, 10, damping), 0.1);
     const Equations::Pencil p = m.equations.pencil();
     double largest = 0, found = 0;
-    for (const std::complex<double>& rate : pencil_eigenvalues(p.mass, p.velocity, p.stiffness).value())
+    const auto rates = pencil_eigenvalues(p.mass, p.velocity, p.stiffness);
+    REQUIRE(rates);
+    for (const std::complex<double>& rate : *rates)
       largest = std::max(largest, std::abs(rate));
     for (const std::complex<double>& rate : fastest_rates(m.equations, 0, m.q, m.s))
       found = std::max(found, std::abs(rate));
