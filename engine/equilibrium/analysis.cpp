@@ -128,10 +128,14 @@ struct Analysis::State {
     return existence;
   }
 
-  // What is found from afar and known no better than this is no answer.
-  bool known(const Eigen::VectorXd& e) const {
-    constexpr double most = 1e-6; // scaled
-    return !(largest(e.cwiseQuotient(scaling.column)) > most);
+  // What is found from afar, or far away, and known no better than this is no answer.
+  bool known(const Eigen::VectorXd& q, const Eigen::VectorXd& e) const {
+    constexpr double most = 1e-6; // of the reach, or of the way where it is longer
+    double way = 1;
+    for (const Link& link : system.links)
+      if (link.v >= 0 && link.type != LinkType::spherical)
+        way = std::max(way, std::abs(q[link.q] - drawn[link.q]) / scaling.column[link.v]);
+    return !(largest(e.cwiseQuotient(scaling.column)) > most * way);
   }
 
   // The last net. What it tried, in words, where `found` stays as it is.
@@ -152,7 +156,7 @@ struct Analysis::State {
     history.push_back(scaled_residual(problem, workspace));
     factor(problem, found.z, workspace);
     refine(problem, found.z, found.newton, workspace, error);
-    if (!known(error)) {
+    if (!known(found.z.q, error)) {
       history.resize(recorded);
       found = std::move(first);
       return describe(other);
@@ -235,7 +239,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   const std::vector<double> phases = sample_phases(s.system, s.parameters);
   if (s.found.status == Status::converged) {
     refine(problem, s.found.z, s.found.newton, s.workspace, s.error);
-    if (s.found.fell && !s.known(s.error)) {
+    if (s.found.fell && !s.known(s.found.z.q, s.error)) {
       s.found.status = Status::not_converged;
       s.found.message = "The potential falls on, hundreds of times the mechanism's reach away.";
     }

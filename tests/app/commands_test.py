@@ -89,7 +89,7 @@ def tables(folder):
     """Cells are text or numbers, never formulas; what is no number is empty."""
     governor = json.loads(pathlib.Path(SCENE).read_text())
     text = json.dumps(governor).replace('"arm1"', json.dumps('=cmd|"/C calc"!A0')).replace(
-        '"slide"', '"@s,lide"').replace('"arm2"', '"-arm"')
+        '"slide"', '"@s,lide"').replace('"arm2"', '"-arm"').replace("joints.slide.", "joints.@s,lide.")
     file = folder / "formulas.json"
     file.write_text(text)
     address = "joints.spin.drive.speed"

@@ -114,7 +114,7 @@ def build(window):
     b.joint(1, 0, "revolute", "z", "theta")
     b.click("inspector/spring")
     b.fill("spring/stiffness", "300")
-    b.fill("spring/free", "1.0472")
+    b.fill("spring/free", "1.0472 rad")
     b.joint(2.1, 0, "prismatic", "x", "d")
     b.fill("coordinate", "1.1")
     b.click("inspector/spring")

@@ -20,32 +20,59 @@ def fail(words):
     raise SystemExit("failed: " + words)
 
 
-def speed_kept(folder):
-    """The speed in the only autosave of the folder."""
+def kept_scene(folder, how):
+    """The scene in the only autosave of the folder."""
     kept = [folder / name for name in hidden_files(folder)]
     if len(kept) != 1:
-        fail(f"one autosave is left, but {kept}")
-    scene = json.loads(kept[0].read_text().split("\n", 1)[1])
+        fail(f"{how}: one autosave is left, but {kept}")
+    return json.loads(kept[0].read_text().split("\n", 1)[1])
+
+
+def speed_of(scene):
     return next(joint for joint in scene["joints"] if joint["name"] == "spin")["drive"]["speed"]
 
 
+def position_of_ball(scene):
+    return next(body for body in scene["bodies"] if body["name"] == "ball1")["position"]
+
+
+def keep_another_speed(window):
+    """Tries another speed and makes it the document's; returns it."""
+    window.drag_speed()
+    window.click("explored/keep")
+    return window.wait("an edit", lambda s: s["unsaved"])["parameters"][SPEED]
+
+
 def drag_without_pause(window):
-    """The button stays down; returns the speed that the window shows."""
-    window.build()
-    slider = "parameters/" + SPEED
-    window.do("mousemove", *window.place(slider, 0.4))
+    """Moves a ball, and the button stays down."""
+    window.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
+    window.do("key", "Tab")
+    window.wait("the tools", lambda s: "tools/joint" in s["widgets"])
+    window.click("outline/bodies/ball1")
+    x, y = window.place("gizmo/x")
+    window.do("mousemove", x, y)
     window.do("mousedown", 1)
-    for share in (0.45, 0.5, 0.55, 0.6):
-        window.do("mousemove", *window.place(slider, share))
-    return window.wait("another speed", lambda s: s["parameters"][SPEED] > 15)["parameters"][SPEED]
+    for step in range(1, 5):
+        window.do("mousemove", x + 6 * step, y)
+    window.wait("an edit", lambda s: s["unsaved"])
 
 
-def ends_and_keeps(window, folder, wanted, value, how):
+def ends_and_keeps_speed(window, folder, wanted, speed, how):
+    ends(window, wanted, how)
+    if (kept := speed_of(kept_scene(folder, how))) != speed:
+        fail(f"{how}: {kept} was kept for {speed}")
+
+
+def ends_and_keeps_move(window, copy, wanted, how):
+    ends(window, wanted, how)
+    if position_of_ball(kept_scene(copy.parent, how)) == position_of_ball(json.loads(copy.read_text())):
+        fail(f"{how}: the ball is where it was")
+
+
+def ends(window, wanted, how):
     code = window.program.wait(LIMIT)
     if code != wanted:
         fail(f"{how}: the program ended with {code}")
-    if (kept := speed_kept(folder)) != value:
-        fail(f"{how}: {kept} was kept for {value}")
 
 
 def ticks(process):
@@ -102,8 +129,7 @@ def pipes(window, pipe):
 
 
 def save_onto_pipe(window, copy):
-    window.build()
-    window.drag_speed()
+    keep_another_speed(window)
     copy.unlink()
     os.mkfifo(copy)
     window.do("key", "ctrl+s")
@@ -137,28 +163,27 @@ def main():
 
             for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
                 window, copy = begin(number.name)
-                window.build()
-                _, moved = window.drag_speed()
+                speed = keep_another_speed(window)
                 window.program.send_signal(number)
-                ends_and_keeps(window, copy.parent, -number, moved["parameters"][SPEED], number.name)
+                ends_and_keeps_speed(window, copy.parent, -number, speed, number.name)
             window, copy = begin("dragging")
-            value = drag_without_pause(window)
+            drag_without_pause(window)
             window.program.send_signal(signal.SIGTERM)
-            ends_and_keeps(window, copy.parent, -signal.SIGTERM, value, "while dragging")
+            ends_and_keeps_move(window, copy, -signal.SIGTERM, "while dragging")
             subprocess.run(["xdotool", "mouseup", "1"], env=window.environment, check=True)
             for part in ("display lost", "display lost while dragging"):
+                dragging = part.endswith("dragging")
                 doomed, its_display = start_display()
                 try:
                     window, copy = begin(part, its_display)
-                    if part.endswith("dragging"):
-                        value = drag_without_pause(window)
-                    else:
-                        window.build()
-                        value = window.drag_speed()[1]["parameters"][SPEED]
+                    speed = drag_without_pause(window) if dragging else keep_another_speed(window)
                 finally:
                     doomed.kill()
                     doomed.wait()
-                ends_and_keeps(window, copy.parent, 1, value, part)
+                if dragging:
+                    ends_and_keeps_move(window, copy, 1, part)
+                else:
+                    ends_and_keeps_speed(window, copy.parent, 1, speed, part)
             rest_and_watch(*begin("rest"))
             windows[-1].end()
             pipes(begin("pipe", file="pipe")[0], None)

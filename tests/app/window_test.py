@@ -83,12 +83,6 @@ class Window:
         self.do("mousedown", 1)
         self.do("mouseup", 1)
 
-    def build(self):
-        """To where the sliders edit what is stored."""
-        self.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
-        self.do("key", "Tab")
-        self.wait("the tools", lambda s: "tools/joint" in s["widgets"])
-
     def drag_speed(self):
         """Waits for the first answer, drags the slider and returns the states before and after."""
         first = self.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
