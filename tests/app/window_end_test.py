@@ -88,6 +88,7 @@ def share_of_core(window, seconds):
 
 def rests(window, what):
     """Nothing is drawn, and hardly anything done, while nothing happens."""
+    window.wait("the notice fades", lambda s: not s["notice"])
     time.sleep(2)
     frame = window.state()["frame"]
     share = share_of_core(window, 4)
