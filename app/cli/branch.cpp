@@ -27,9 +27,11 @@ using Json = nlohmann::ordered_json;
 Json point_json(const ResponsePoint& p) {
   Json out = {{"parameter", p.parameter}, {"coordinates", coordinates_json(p.coordinates)}};
   out["stable"] = p.stable ? Json(*p.stable) : Json(nullptr);
+  out["stability_reason"] = p.stability_reason ? Json(word(*p.stability_reason)) : Json(nullptr);
   out["eigenvalues"] = Json::array();
   for (const auto& e : p.eigenvalues)
     out["eigenvalues"].push_back({e.real(), e.imag()});
+  if (p.floquet) out["floquet"] = floquet_json(*p.floquet);
   return out;
 }
 
@@ -200,7 +202,7 @@ void add_branch(CLI::App& app, Ending& ending) {
     if (!options->csv.empty() && !diagram.branches.empty())
       write_bytes(options->csv, diagram_csv(range.address, diagram));
     if (options->json)
-      print_json(diagram_json(diagram));
+      print_json(with_warnings(diagram_json(diagram), mechanism));
     else if (options->csv.empty() && options->svg != "-" && options->png != "-") // else it is theirs
       print_text(diagram_text(mechanism, range.address, diagram));
     ending = end_with(any, options->scene.file, diagram.message);

@@ -3,6 +3,7 @@
 #include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
+#include "app/cli/solution_json.hpp"
 #include "app/cli/time_limit.hpp"
 #include "app/plot/comparison_plot.hpp"
 #include "app/plot/svg.hpp"
@@ -162,7 +163,7 @@ Ending run_compare(const Options& options) {
     write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison)));
   if (any && !options.csv.empty()) write_bytes(options.csv, comparison_csv(comparison));
   if (options.json)
-    print_json(to_json(comparison));
+    print_json(with_warnings(to_json(comparison), mechanism));
   else if (options.csv != "-" && options.svg != "-") // else standard output is theirs
     print_text(to_text(mechanism, comparison));
   return end_with(comparison.status == Status::converged && comparison.complete, options.scene.file,

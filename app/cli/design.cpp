@@ -97,7 +97,7 @@ void add_design(CLI::App& app, Ending& ending) {
     }
     progress.reset();
     if (options->json)
-      print_json(answer_json(range.address, coordinate, answer));
+      print_json(with_warnings(answer_json(range.address, coordinate, answer), mechanism));
     else
       print_text(answer_text(mechanism, range.address, answer));
     ending = end_with(answer.status == Status::converged, options->scene.file, answer.message);

@@ -316,7 +316,11 @@ Ending run_simulate(const Options& options) {
     else
       steady.reset();
   } catch (const SceneError& error) {
-    throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
+    if (!error.where().empty())
+      throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
+    run = {}; // nothing is wrong with the scene as it is written: it has no such motion
+    run.status = RunStatus::diverged;
+    run.message = "There is no motion: " + error.expected();
   }
   progress.reset();
   const bool any = !run.time.empty();
@@ -325,7 +329,7 @@ Ending run_simulate(const Options& options) {
   if (any && !options.csv.empty()) write_bytes(options.csv, to_csv(run));
   if (any && !movie.file.empty()) draw_movie(mechanism, std::make_shared<const Run>(run), steady, movie);
   if (options.json)
-    print_json(run_json(run, settled));
+    print_json(with_warnings(run_json(run, settled), mechanism));
   else if (any && options.csv != "-") // then standard output is the table's
     print_text(run_text(mechanism, run, settled));
   std::string message = run.message;

@@ -1,5 +1,7 @@
 #include "app/cli/solution_json.hpp"
 
+#include "engine/mechanism/validate.hpp"
+
 #include <cmath>
 
 namespace flyball::cli {
@@ -27,6 +29,22 @@ void put(Json& object, const std::string& joint, int index, int count, Json valu
 }
 
 } // namespace
+
+Json with_warnings(Json answer, const Mechanism& mechanism) {
+  answer["warnings"] = warnings_json(find_warnings(mechanism));
+  return answer;
+}
+
+Json floquet_json(const Floquet& f) {
+  Json out = {{"period_s", number(f.period)}, {"error", number(f.error)}};
+  out["multipliers"] = Json::array();
+  for (const auto& mu : f.multipliers)
+    out["multipliers"].push_back({number(mu.real()), number(mu.imag())});
+  out["growth_rates"] = Json::array();
+  for (const double growth : f.growth)
+    out["growth_rates"].push_back(number(growth));
+  return out;
+}
 
 Json to_json(const PointMotion& motion) {
   return {{"position", array(motion.position)},
@@ -83,16 +101,7 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
     for (const auto& e : *s.eigenvalues)
       out["eigenvalues"].push_back({number(e.real()), number(e.imag())});
   }
-  if (s.floquet) {
-    Json floquet = {{"period_s", number(s.floquet->period)}, {"error", number(s.floquet->error)}};
-    floquet["multipliers"] = Json::array();
-    for (const auto& mu : s.floquet->multipliers)
-      floquet["multipliers"].push_back({number(mu.real()), number(mu.imag())});
-    floquet["growth_rates"] = Json::array();
-    for (const double growth : s.floquet->growth)
-      floquet["growth_rates"].push_back(number(growth));
-    out["floquet"] = std::move(floquet);
-  }
+  if (s.floquet) out["floquet"] = floquet_json(*s.floquet);
   out["neutral"] = s.neutral;
   out["drive_torques"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)

@@ -15,11 +15,16 @@ namespace flyball::cli {
 // joints include it.
 nlohmann::ordered_json to_json(const Mechanism& mechanism, const Solution& solution);
 
+// {"period_s", "error", "multipliers": [[re, im]], "growth_rates": [1/s]}.
+nlohmann::ordered_json floquet_json(const Floquet& floquet);
+
 // {"position", "velocity", "acceleration"}: m, m/s, m/s^2, world frame.
 nlohmann::ordered_json to_json(const PointMotion& motion);
 
 // [{"where": path, "message": sentence}].
 nlohmann::ordered_json warnings_json(const std::vector<SceneError>& warnings);
+// A command's answer with what is to be said of the mechanism, as "warnings".
+nlohmann::ordered_json with_warnings(nlohmann::ordered_json answer, const Mechanism& mechanism);
 
 // {joint: value or array}, driven ones left out.
 nlohmann::ordered_json coordinates_json(const std::vector<CoordinateSolution>& coordinates);

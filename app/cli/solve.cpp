@@ -57,10 +57,6 @@ void add_solve(CLI::App& app, Ending& ending) {
   command->callback([options, &ending] {
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
-    const auto with_warnings = [&](nlohmann::ordered_json json) {
-      json["warnings"] = warnings_json(find_warnings(mechanism));
-      return json;
-    };
     SolveOptions solve;
     solve.nearest = options->nearest;
     solve.modes = options->modes;
@@ -77,7 +73,7 @@ void add_solve(CLI::App& app, Ending& ending) {
         const AllSolutions all = Analysis(mechanism).solve_all(solve);
         progress.reset();
         if (options->json)
-          print_json(with_warnings(to_json(mechanism, all)));
+          print_json(with_warnings(to_json(mechanism, all), mechanism));
         else
           print_text(to_text(mechanism, all) + "\n");
         ending = end_with(!all.equilibria.empty(), options->scene.file, all.message);
@@ -89,7 +85,7 @@ void add_solve(CLI::App& app, Ending& ending) {
     }
     progress.reset();
     if (options->json)
-      print_json(with_warnings(to_json(mechanism, solution)));
+      print_json(with_warnings(to_json(mechanism, solution), mechanism));
     else
       print_text(to_text(mechanism, solution));
     ending = end_with(solution.status == Status::converged, options->scene.file, solution.message);

@@ -3,6 +3,7 @@
 #include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
+#include "app/cli/solution_json.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
@@ -75,6 +76,10 @@ nlohmann::ordered_json to_json(const std::vector<Variation>& variations,
       if (!c.driven) row["coordinates"][ColumnName{c.joint, c.count == 1 ? -1 : c.index}.text()] = c.value;
     row["stable"] =
         p.solution.stable ? nlohmann::ordered_json(*p.solution.stable) : nlohmann::ordered_json(nullptr);
+    row["stability_reason"] = p.solution.stability_reason
+                                  ? nlohmann::ordered_json(word(*p.solution.stability_reason))
+                                  : nlohmann::ordered_json(nullptr);
+    if (p.solution.floquet) row["floquet"] = floquet_json(*p.solution.floquet);
     row["residual"] = std::isfinite(p.solution.residual) ? nlohmann::ordered_json(p.solution.residual)
                                                          : nlohmann::ordered_json(nullptr);
     row["run_time_s"] = p.solution.run_time_s;
@@ -177,7 +182,7 @@ void add_sweep(CLI::App& app, Ending& ending) {
     if (!options->csv.empty())
       write_bytes(options->csv, to_csv(mechanism, variations, points));
     else if (options->json)
-      print_json(to_json(variations, points));
+      print_json(with_warnings(to_json(variations, points), mechanism));
     else
       print_text(to_table(mechanism, variations, points));
     const bool any = std::ranges::any_of(

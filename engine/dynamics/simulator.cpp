@@ -383,6 +383,7 @@ struct Simulator::State {
     if (choice.method == method) return;
     fastest = choice.fastest;
     run.notes.push_back("From t = " + rounded_text(stepped_to, 4) + " s on: " + choice.reason);
+    run.method_reason += " From t = " + rounded_text(stepped_to, 4) + " s on " + choice.reason;
     stepper->count(run.statistics);
     use_method(choice.method);
     start_stepper(stepped_to);

@@ -2,9 +2,6 @@
 
 #include "engine/equilibrium/analysis.hpp"
 #include "engine/equilibrium/answer_search.hpp"
-#include "engine/equilibrium/existence.hpp"
-#include "engine/equilibrium/find_equilibrium.hpp"
-#include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/report.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
@@ -81,30 +78,17 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
   u += step.cwiseProduct(column);
 }
 
-// The steady state that `solve` answers with: by Newton-Raphson and its nets, at last by a search from afar.
+// The steady state that `solve` answers with.
 void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q) {
   const Problem problem{model.system, model.parameters, model.scaling, options.cancel};
-  const std::vector<double> phases = sample_phases(model.system, model.parameters);
   Workspace w;
-  Found found;
-  std::vector<double> history;
-  const auto stands = [&] {
-    if (found.status != Status::converged) return false;
-    Eigen::VectorXd error;
-    refine(problem, found.z, found.newton, w, error);
-    return check_existence(problem, found.z.q, phases, w).holds;
-  };
-  find_equilibrium(problem, q, false, false, w, history, found);
-  if (!stands()) {
-    const std::string why = found.status == Status::converged ? "the balance turns with the drives"
-                            : found.message.empty()           ? std::string(word(found.status))
-                                                              : found.message;
-    if (model.system.nv > 0 && model.system.nv <= largest_for_answer_search && !problem.cancelled())
-      if (auto other = search_answer(problem, q, phases, SolveOptions{}.search, w); other.answer)
-        found = std::move(*other.answer);
-    if (!stands()) throw SceneError("", "there is no steady state to start from: " + why);
+  const SteadyState steady = find_steady_state(problem, q, SolveOptions{}.search, w);
+  if (!steady.holds) {
+    const Stability unknown;
+    const ReportInput input{model.mechanism, problem, steady.found, steady.existence, unknown};
+    throw SceneError("", "there is no steady state to start from: " + failure_message(input, w));
   }
-  q = found.z.q;
+  q = steady.found.z.q;
 }
 
 std::vector<int> apply_kick(const SimulationOptions& options, const MotionModel& model,

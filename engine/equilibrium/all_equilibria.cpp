@@ -130,7 +130,8 @@ class Searcher {
       if (same_but_for_turns(p_, other.q, z.q, within)) return true;
       if (families_[i].neutral.empty()) continue;
       if (!family.known) family = family_of(z, outcome);
-      if (family.neutral == families_[i].neutral && same_potential(family, families_[i]) &&
+      if (family.neutral == families_[i].neutral &&
+          same_potential(family.potential, families_[i].potential) &&
           same_pose(p_, other.q, z.q, alike, family.neutral))
         return true;
     }
@@ -160,11 +161,6 @@ class Searcher {
     for (int v = 0; v < p_.system.nv; ++v)
       if (largest_size(flat.row(v)) > 1e-6 * largest_size(flat)) out.neutral.push_back(v);
     return out;
-  }
-
-  static bool same_potential(const Family& a, const Family& b) {
-    return std::abs(a.potential.value - b.potential.value) <=
-           1e-9 * (a.potential.magnitude + b.potential.magnitude);
   }
 
   // Runs plainly, then damped. True where that leads to an equilibrium in the ranges.

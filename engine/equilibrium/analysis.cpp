@@ -163,7 +163,7 @@ struct Analysis::State {
     }
     found.iterations += first.iterations;
     existence = exists(problem, found.z, phases);
-    found.message = (fails_later ? "The equilibrium next to the start holds at one phase of the drives only"
+    found.message = (fails_later ? "The equilibrium found first holds at one phase of the drives only"
                                  : "Newton-Raphson and its nets led nowhere from the start") +
                     std::string("; a search all over the coordinates' ranges found this steady state") +
                     (other.steady > 1 ? ", the nearest of " + std::to_string(other.steady) + "." : ".");
@@ -357,7 +357,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
         {joint.name, info.index, coordinate_count(joint.type), info.angle, r.lower, r.upper});
   }
   struct Entry {
-    double potential;
+    Potential potential;
     Solution solution;
     Eigen::VectorXd q;
     std::vector<int> neutral;
@@ -384,28 +384,29 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     const bool many = s.system.nv > largest_for_eigenvalues && options.modes == 0;
     const Stability stability = find_stability(problem, found.z, !many, s.workspace);
     // A family along a direction that nothing resists is one entry.
+    Potential potential;
+    if (s.system.conservative) {
+      forward<double>(s.system, s.parameters, found.z.q, 0, s.workspace.kinematics);
+      potential = amended_potential(s.system, s.parameters, found.z.q, s.workspace.kinematics);
+    }
     if (!stability.neutral.empty() && std::ranges::any_of(entries, [&](const Entry& e) {
-          return e.neutral == stability.neutral &&
+          return e.neutral == stability.neutral && same_potential(e.potential, potential) &&
                  same_pose(problem, e.q, found.z.q, 1e-6, stability.neutral);
         }))
       continue;
     const auto end = std::chrono::steady_clock::now();
-    Entry entry{0, {}, found.z.q, stability.neutral};
+    Entry entry{potential, {}, found.z.q, stability.neutral};
     entry.solution.status = Status::converged;
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
     s.error += s.workspace.data_error;
     report({s.mechanism, problem, found, existence, stability, options.points}, s.error, options.details,
            s.workspace, entry.solution);
-    if (s.system.conservative) {
-      forward<double>(s.system, s.parameters, found.z.q, 0, s.workspace.kinematics);
-      entry.potential = amended_potential(s.system, s.parameters, found.z.q, s.workspace.kinematics).value;
-      entry.solution.potential = entry.potential;
-    }
+    if (s.system.conservative) entry.solution.potential = potential.value;
     if (!is_finite(entry.solution)) continue;
     entries.push_back(std::move(entry));
   }
-  std::ranges::stable_sort(entries, {}, &Entry::potential);
+  std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.potential.value; });
   for (Entry& e : entries)
     out.equilibria.push_back(std::move(e.solution));
   out.message = search_message(out);

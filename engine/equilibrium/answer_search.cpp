@@ -1,5 +1,6 @@
 #include "engine/equilibrium/answer_search.hpp"
 
+#include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/stability.hpp"
 
 #include <algorithm>
@@ -47,6 +48,33 @@ AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
     evaluate(problem, out.answer->z, 0, w);
     factor(problem, out.answer->z, w);
   }
+  return out;
+}
+
+SteadyState find_steady_state(const Problem& problem, const Eigen::VectorXd& start, double seconds,
+                              Workspace& w) {
+  const std::vector<double> phases = sample_phases(problem.system, problem.parameters);
+  SteadyState out;
+  std::vector<double> history;
+  Eigen::VectorXd error;
+  const auto judge = [&] {
+    if (out.found.status != Status::converged) return;
+    refine(problem, out.found.z, out.found.newton, w, error);
+    out.existence = check_existence(problem, out.found.z.q, phases, w);
+    out.holds = out.existence.holds;
+  };
+  find_equilibrium(problem, start, false, false, w, history, out.found);
+  judge();
+  const int nv = problem.system.nv;
+  if (out.holds || problem.cancelled() || nv == 0 || nv > largest_for_answer_search) return out;
+  AnswerSearch other = search_answer(problem, start, phases, seconds, w);
+  if (!other.answer) {
+    out.tried = describe(other);
+    return out;
+  }
+  other.answer->iterations += out.found.iterations;
+  out.found = std::move(*other.answer);
+  judge();
   return out;
 }
 

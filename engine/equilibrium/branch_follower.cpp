@@ -42,6 +42,7 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
   ResponsePoint point;
   const Stability stability = find_stability(problem, z, details.eigenvalues, w);
   point.stable = stability.stable;
+  point.floquet = stability.floquet;
   point.stability_reason = stability.reason;
   if (stability.eigenvalues) point.eigenvalues = *stability.eigenvalues;
   Found found;

@@ -1,6 +1,8 @@
 #include "engine/equilibrium/branches.hpp"
 
 #include "engine/equilibrium/all_equilibria.hpp"
+#include "engine/equilibrium/analysis.hpp"
+#include "engine/equilibrium/answer_search.hpp"
 #include "engine/equilibrium/branch_follower.hpp"
 #include "engine/equilibrium/existence.hpp"
 #include "engine/equilibrium/find_equilibrium.hpp"
@@ -39,6 +41,8 @@ class Diagram {
       if (out_.branches.empty()) out_.message = "Cancelled.";
     }
     if (out_.status == Status::converged && out_.message.empty()) out_.message = summary();
+    for (const std::string& note : {begun_, bands()})
+      if (out_.status == Status::converged && !note.empty()) out_.message += " " + note;
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(out_);
   }
@@ -59,12 +63,25 @@ class Diagram {
     Existence existence;
     if (found.status == Status::converged)
       existence = check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters), w);
+    std::string tried;
+    if ((found.status != Status::converged || !existence.holds) && !problem.cancelled()) {
+      SteadyState other = find_steady_state(problem, start, SolveOptions{}.search, w);
+      tried = std::move(other.tried);
+      if (other.holds) {
+        begun_ = "It begins at a steady state that a search found: the drawn pose leads to none.";
+        found = std::move(other.found);
+        existence = other.existence;
+        evaluate(problem, found.z, 0, w);
+        factor(problem, found.z, w);
+      }
+    }
     if (found.status != Status::converged || !existence.holds) {
       const Stability none;
       out_.status = found.status == Status::converged ? Status::no_steady_state : found.status;
       const std::string unit = parameter_unit(mechanism_, address_);
       out_.message = "At " + address_ + " = " + rounded_text(from_, 6) + (unit.empty() ? "" : " " + unit) +
-                     ": " + failure_message({follower_.mechanism(), problem, found, existence, none}, w);
+                     ": " + failure_message({follower_.mechanism(), problem, found, existence, none}, w) +
+                     (tried.empty() ? "" : " " + tried);
       return;
     }
     out_.status = Status::converged;
@@ -90,6 +107,18 @@ class Diagram {
     if (!first || known(*first)) return;
     add(follower_.follow(*first, out_.branches.empty()), true);
     out_.message.clear();
+  }
+
+  // Bands of parametric instability may be narrower than the points lie apart.
+  std::string bands() const {
+    double widest = 0;
+    for (const ResponseBranch& branch : out_.branches)
+      for (std::size_t i = 1; i < branch.points.size(); ++i)
+        if (branch.points[i].stability_reason == StabilityReason::floquet)
+          widest = std::max(widest, std::abs(branch.points[i].parameter - branch.points[i - 1].parameter));
+    if (!(widest > 0)) return "";
+    return "Where Floquet's multipliers judge, points lie up to " + rounded_text(widest, 2) +
+           " apart: narrower bands of instability between them go unseen, a smaller range shows them.";
   }
 
   void add(FollowedBranch branch, bool connected, std::string begin = {}) {
@@ -221,6 +250,7 @@ class Diagram {
   std::vector<FollowedBranch> followed_;
   std::vector<BranchState> crossings_, found_;
   ResponseDiagram out_;
+  std::string begun_; // where the drawn pose leads to no steady state
 };
 
 } // namespace

@@ -16,6 +16,7 @@ struct ResponsePoint {
   std::optional<bool> stable;
   std::optional<StabilityReason> stability_reason;
   std::vector<std::complex<double>> eigenvalues; // 1/s, each point's in their own order
+  std::optional<Floquet> floquet;                // where the linearised motion turns with the drives
   std::vector<Reaction> reactions;               // where BranchOptions::reactions asks for them
   std::vector<DriveTorque> drive_torques;        // likewise
 };

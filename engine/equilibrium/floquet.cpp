@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <variant>
 
 namespace flyball {
 namespace {
@@ -15,7 +16,7 @@ using Complex = std::complex<double>;
 
 constexpr int usual_turns = 64;  // of the fastest drive in a period
 constexpr int most_turns = 1024; // where the drives have a common period at all
-constexpr int most_steps = 1 << 14;
+constexpr int most_steps = 1 << 17;
 constexpr double accuracy = 1e-11; // of multipliers, relative to the largest
 
 Eigen::MatrixXd commutator(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -69,25 +70,29 @@ struct Monodromy {
   double log_scale = 0; // the true one is e^log_scale times as large
 };
 
-std::optional<Monodromy> monodromy(const PeriodicMotion& motion, int steps, CancelFlag cancel) {
+// A failure: singular where the equations of motion cannot be solved for the accelerations at some phase,
+// unresolved where the steps are too long for what moves.
+using MonodromyOutcome = std::variant<Monodromy, FloquetFailure>;
+
+MonodromyOutcome monodromy(const PeriodicMotion& motion, int steps, CancelFlag cancel) {
   const double h = motion.period() / steps;
   const double node = std::sqrt(15.) / 10; // of Gauss' rule with three nodes
   Monodromy out{Eigen::MatrixXd::Identity(motion.size(), motion.size()), 0};
   for (int i = 0; i < steps; ++i) {
-    if (cancel && cancel->load(std::memory_order_relaxed)) return {};
+    if (cancel && cancel->load(std::memory_order_relaxed)) return FloquetFailure::cancelled;
     const double middle = (i + 0.5) * h;
     const auto a1 = motion.state_matrix(middle - node * h), a2 = motion.state_matrix(middle),
                a3 = motion.state_matrix(middle + node * h);
-    if (!a1 || !a2 || !a3) return {};
+    if (!a1 || !a2 || !a3) return FloquetFailure::singular;
     const Eigen::MatrixXd b1 = h * *a2, b2 = std::sqrt(15.) / 3 * h * (*a3 - *a1),
                           b3 = 10. / 3 * h * (*a3 - 2 * *a2 + *a1);
     const Eigen::MatrixXd c1 = commutator(b1, b2), c2 = -1. / 60 * commutator(b1, 2 * b3 + c1);
     const Eigen::MatrixXd omega = b1 + b3 / 12 + 1. / 240 * commutator(-20 * b1 - b3 + c1, b2 + c2);
     const auto step = matrix_exponential(omega);
-    if (!step) return {};
+    if (!step) return FloquetFailure::unresolved;
     out.matrix = (*step * out.matrix).eval();
     const double size = out.matrix.cwiseAbs().maxCoeff();
-    if (!std::isfinite(size) || size == 0) return {};
+    if (!std::isfinite(size) || size == 0) return FloquetFailure::unresolved;
     if (size > 1e100 || size < 1e-100) {
       out.matrix /= size;
       out.log_scale += std::log(size);
@@ -139,12 +144,23 @@ FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Wo
   const std::vector<double> speeds = turning_speeds(problem);
   const int turns = static_cast<int>(std::ceil(speeds.back() * *period / (2 * std::numbers::pi) - 0.5));
   const auto motion = PeriodicMotion::sample(problem, q, *period, turns, w);
-  if (!motion) return fail(FloquetFailure::singular);
+  if (!motion) return fail(FloquetFailure::unresolved);
+  if (motion->singular()) return fail(FloquetFailure::singular);
   std::optional<std::vector<Complex>> coarse;
   double previous = std::numeric_limits<double>::infinity();
-  for (int steps = 8 * std::max(1, turns); steps <= most_steps; steps *= 2) {
-    const auto phi = monodromy(*motion, steps, problem.cancel);
-    if (!phi) return fail(FloquetFailure::singular);
+  // So many that the fastest motion makes no more than about a radian in a step.
+  const auto drawn = motion->state_matrix(0);
+  if (!drawn) return fail(FloquetFailure::singular);
+  const auto rates = eigenvalues(*drawn, problem.cancel);
+  double fastest = 0;
+  for (const Complex rate : rates.value_or(std::vector<Complex>()))
+    fastest = std::max(fastest, std::abs(rate));
+  const double needed = std::max(8. * std::max(1, turns), fastest * *period);
+  if (!(needed <= most_steps)) return fail(FloquetFailure::unresolved);
+  for (int steps = static_cast<int>(needed); steps <= most_steps; steps *= 2) {
+    const MonodromyOutcome outcome = monodromy(*motion, steps, problem.cancel);
+    const auto* phi = std::get_if<Monodromy>(&outcome);
+    if (!phi) return fail(std::get<FloquetFailure>(outcome));
     auto multipliers = eigenvalues(phi->matrix, problem.cancel);
     if (!multipliers) return fail(FloquetFailure::unresolved);
     if (phi->log_scale != 0) {

@@ -20,7 +20,9 @@ bool is_gyroscopically_stable(const Problem& problem, const Unknowns& z, Workspa
   const Eigen::MatrixXd velocity = basis.transpose() * w.linearization.velocity * basis;
   const double rounding = 1e-14 * basis.squaredNorm() * w.linearization.velocity.norm();
   if ((velocity - velocity.transpose()).norm() <= rounding) return false;
-  return find_stability(whole, z, false, w).reason == StabilityReason::gyroscopic_only;
+  const Stability stability = find_stability(whole, z, false, w);
+  return stability.reason == StabilityReason::gyroscopic_only ||
+         (stability.reason == StabilityReason::floquet && stability.stable == true);
 }
 
 std::optional<bool> damping_destabilizes(const Problem& problem, const Eigen::VectorXd& q,

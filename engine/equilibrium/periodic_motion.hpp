@@ -11,12 +11,14 @@ class PeriodicMotion {
   // Samples linear_motion() over `period` (s), in which the fastest drive makes `turns` turns, until the
   // series gives the matrices between the samples, too. The coordinates are those of a null space basis N(t)
   // of the constraints beside that of the drawn phase: with delta = N p the motion has N^T [M N p'' + (2 M N'
-  // + D N) p' + (M N'' + D N' + K N) p] = 0. Nothing where the null space turns too far, a direction loses
-  // its mass at some phases only, or the series does not end.
+  // + D N) p' + (M N'' + D N' + K N) p] = 0. Nothing where the null space turns too far or the series does
+  // not end.
   static std::optional<PeriodicMotion> sample(const Problem& problem, const Eigen::VectorXd& q, double period,
                                               int turns, Workspace& w);
 
   double period() const { return period_; }
+  // Whether some direction has neither mass nor damping nor stiffness at all phases.
+  bool singular() const { return singular_; }
   // Of the state x = (p of what has mass, its rate in units of rate(), p of what is damped only). What has
   // neither mass nor damping is condensed statically.
   Eigen::Index size() const { return 2 * massive_.cols() + damped_.cols(); }
@@ -32,6 +34,7 @@ class PeriodicMotion {
 
   double period_ = 0, rate_ = 1; // s; 1/s
   Eigen::Index k_ = 0;
+  bool singular_ = false;
   Eigen::MatrixXd series_;                      // (3 k^2, harmonics): mean, then cosine and sine of each
   Eigen::MatrixXd massive_, damped_, standing_; // directions of p, columns
 };

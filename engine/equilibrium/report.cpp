@@ -29,6 +29,30 @@ double error_of(const System& system, const Parameters& p, const CoordinateInfo&
   return rate.row(c.index - link.coordinate).cwiseAbs().dot(error.segment<3>(link.v));
 }
 
+// The motion of the state q as the drives turn; those that stand turn slowly, so that what is driven does not
+// depend on their speeds.
+Kinematics<double> turning_motion(const System& system, const Parameters& p, const Eigen::VectorXd& q) {
+  Parameters turning = p;
+  double fastest = 0;
+  for (const DrivenCoordinate& d : system.drives)
+    fastest = std::max(fastest, std::abs(p.links[static_cast<std::size_t>(d.link)].speed));
+  for (const DrivenCoordinate& d : system.drives) {
+    LinkParameters& link = turning.links[static_cast<std::size_t>(d.link)];
+    if (link.speed == 0) link.speed = link.gear_ratio * (fastest > 0 ? 0.37 * fastest : 1);
+  }
+  turning.moving = !system.drives.empty();
+  turning.speed_scale = 1;
+  Kinematics<double> k;
+  forward<double>(system, turning, q, 0, k);
+  return k;
+}
+
+bool all_drives_turn(const System& system, const Parameters& p) {
+  return p.moving && std::ranges::all_of(system.drives, [&](const DrivenCoordinate& d) {
+           return p.links[static_cast<std::size_t>(d.link)].speed != 0;
+         });
+}
+
 // The coordinates of a joint that closes a loop, and their errors (rad, m).
 struct Measured {
   int cut = -1;
@@ -41,17 +65,15 @@ struct Measured {
 // Errors of q_R by the rates of these coordinates, and what rounds along the chains from either body to the
 // other.
 Measured measure(const System& system, const Parameters& p, int c, const Kinematics<double>& k,
-                 const Eigen::VectorXd& error) {
+                 const Kinematics<double>& turning, const Eigen::VectorXd& error) {
   const CutJoint& cut = system.cuts[static_cast<std::size_t>(c)];
   const CutParameters& numbers = p.cuts[static_cast<std::size_t>(c)];
   Measured out{c, joint_coordinates(cut, numbers, k), Eigen::Matrix<double, 6, 1>::Zero(),
                Eigen::Matrix<double, 6, 1>::Zero()};
-  out.rate = out.at.rate * relative_velocity(cut, numbers, k);
-  for (const DrivenCoordinate& d : system.drives) {
-    const auto l = static_cast<std::size_t>(d.link);
-    const double unit = system.links[l].type == LinkType::revolute ? 1 : p.length;
-    out.fastest = std::max(out.fastest, std::abs(p.links[l].speed) / unit);
-  }
+  out.rate = out.at.rate * relative_velocity(cut, numbers, turning);
+  for (const DrivenCoordinate& d : system.drives)
+    out.fastest = std::max(out.fastest, turning.at(d.link).w.norm() +
+                                            turning.at(d.link).v.norm() / std::max(p.length, 1e-300));
   for (const SupportColumn& column : cut.ends.support)
     out.error += (out.at.rate * relative_velocity(cut, numbers, k, column)).cwiseAbs() * error[column.v];
   const auto depth = [&](int l) { return l < 0 ? 0 : system.links[static_cast<std::size_t>(l)].depth; };
@@ -82,11 +104,14 @@ std::string floquet_message(FloquetFailure failure) {
   const std::string begin =
       " Whether it is stable is not known: the linearised motion turns with the drives, ";
   switch (failure) {
-  case FloquetFailure::no_period: return begin + "and their speeds have no common period.";
+  case FloquetFailure::no_period:
+    return begin + "and their speeds have no common period, or one of more than a thousand turns.";
   case FloquetFailure::singular:
     return begin +
            "and a direction in which it moves has neither mass nor damping nor stiffness at some phase.";
-  case FloquetFailure::unresolved: return begin + "and is too large or too stiff to follow through a period.";
+  case FloquetFailure::unresolved:
+    return begin +
+           "and is too large, too stiff or too slow in its period beside its own oscillations to follow.";
   case FloquetFailure::cancelled: return begin + "and looking for its multipliers was cancelled.";
   }
   return "";
@@ -108,6 +133,7 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
   std::vector<CoordinateSolution> out;
   out.reserve(system.reported.size());
   Measured measured;
+  std::optional<Kinematics<double>> turning; // where some drive stands
   for (const ReportedCoordinate& r : system.reported) {
     CoordinateSolution x;
     x.joint = r.joint;
@@ -115,7 +141,9 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
     x.count = r.count;
     x.angle = r.angle;
     if (r.cut >= 0) {
-      if (measured.cut != r.cut) measured = measure(system, p, r.cut, k, error);
+      if (!turning && !system.drives.empty() && !all_drives_turn(system, p))
+        turning = turning_motion(system, p, q);
+      if (measured.cut != r.cut) measured = measure(system, p, r.cut, k, turning ? *turning : k, error);
       x.value = measured.at.value[static_cast<std::size_t>(r.index)];
       x.error = measured.error[r.index];
       x.dependent = true;

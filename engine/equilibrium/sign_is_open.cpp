@@ -9,8 +9,12 @@ bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::Vector
   if (minimum && away < 1e-11) return false;
   Unknowns here = z;
   factor_with_multipliers(problem, here, w);
-  if (w.hessian.singular()) return true;
   if (w.hessian.size() == 0) return false;
+  if (w.hessian.singular()) {
+    // Whatever is left open in a direction without stiffness, another one may fall for certain.
+    constexpr double certain = 1e-6;
+    return !(w.hessian.decompose() && w.hessian.eigenvalues()[0] < -certain);
+  }
   if (!w.hessian.decompose()) return true;
   Eigen::Index softest = 0;
   w.hessian.eigenvalues().cwiseAbs().minCoeff(&softest);

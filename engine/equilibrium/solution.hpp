@@ -45,8 +45,8 @@ enum class StabilityReason {
 struct Floquet {
   double period = 0;                             // s, common to the drives
   std::vector<std::complex<double>> multipliers; // of the monodromy matrix, the largest first
-  std::vector<double> growth;                    // 1/s, ln|multiplier| / period; without those of rounding size
-  double error = 0;                              // estimated, absolute, of the largest multiplier
+  std::vector<double> growth; // 1/s, ln|multiplier| / period; without those of rounding size
+  double error = 0;           // estimated, absolute, of the largest multiplier
 };
 
 // Why a search for all equilibria stopped (all_equilibria.hpp).
@@ -156,7 +156,7 @@ struct Solution {
   std::optional<StabilityReason> stability_reason;
   // 1/s, of the linearised motion; with `floquet` its exponents ln(multiplier) / period.
   std::optional<std::vector<std::complex<double>>> eigenvalues;
-  std::optional<Floquet> floquet; // where the linearised motion turns with the drives
+  std::optional<Floquet> floquet;   // where the linearised motion turns with the drives
   std::vector<std::string> neutral; // joints that take part in a direction nothing resists
   // Without an answer: what runs away, and whether it would not without gravity; whether what turns with the
   // drives is the weight alone.

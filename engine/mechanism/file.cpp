@@ -7,12 +7,14 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/stat.h>
+#include <thread>
 #include <tuple>
 #include <unistd.h>
 #include <utility>
@@ -155,6 +157,24 @@ std::string read_bytes(const fs::path& file, std::optional<double> patience) {
   return read_all(file, in.get(), S_ISREG(found.st_mode) ? std::nullopt : patience);
 }
 
+namespace {
+
+// A pipe without a reader would hold the program for ever: it has a second to come.
+int open_for_writing(const fs::path& file, const fs::path& target, bool pipe) {
+  for (int tries = 0;; ++tries) {
+    const int opened = ::open(target.c_str(), O_WRONLY | O_CLOEXEC | (pipe ? O_NONBLOCK : 0));
+    if (opened >= 0) {
+      if (pipe) ::fcntl(opened, F_SETFL, O_WRONLY);
+      return opened;
+    }
+    if (!pipe || errno != ENXIO) fail(file, "write", errno);
+    if (tries == 20) throw SceneError(file.string(), "cannot write: it is a pipe that no program reads from");
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+} // namespace
+
 void write_bytes(const fs::path& file, std::string_view bytes) {
   if (const int own = own_descriptor(file, STDOUT_FILENO); own >= 0) {
     std::fflush(nullptr);
@@ -165,8 +185,7 @@ void write_bytes(const fs::path& file, std::string_view bytes) {
   const bool exists = ::stat(target.c_str(), &old) == 0;
   if (exists && S_ISDIR(old.st_mode)) fail(file, "write", EISDIR);
   if (!exists || S_ISREG(old.st_mode)) return replace_regular(file, target, exists ? &old : nullptr, bytes);
-  Descriptor out(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-  if (out.get() < 0) fail(file, "write", errno);
+  Descriptor out(open_for_writing(file, target, S_ISFIFO(old.st_mode)));
   write_all(file, out.get(), bytes);
   if (!out.close()) fail(file, "write", errno);
 }

@@ -22,7 +22,8 @@ std::string coordinate_label(const Coordinate& c) {
   return coordinate_label(c.joint, c.index, c.count);
 }
 
-// A text cell of a CSV table (RFC 4180); what would be a formula gets an apostrophe before it (safe_text.hpp).
+// A text cell of a CSV table (RFC 4180); what would be a formula gets an apostrophe before it
+// (safe_text.hpp).
 std::string csv_field(std::string_view text);
 
 // The candidate a person most likely meant by `word`, or "" where none is close.

@@ -3,10 +3,8 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/dynamics/watch.hpp"
 #include "engine/equilibrium/analysis.hpp"
+#include "engine/equilibrium/answer_search.hpp"
 #include "engine/equilibrium/drive_cuts.hpp"
-#include "engine/equilibrium/existence.hpp"
-#include "engine/equilibrium/find_equilibrium.hpp"
-#include "engine/equilibrium/refine.hpp"
 #include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/stability.hpp"
 #include "engine/linear/interruption.hpp"
@@ -74,19 +72,15 @@ class Direct {
   const System& system() const { return system_; }
 
   // From the drawn pose to an answer that is known to exist and be stable, as Analysis::solve does.
-  Status answer(Unknowns& z) {
-    std::vector<double>& history = history_;
-    find_equilibrium(problem(), drawn_, false, false, w_, history, found_);
-    if (found_.status != Status::converged) return found_.status;
-    refine(problem(), found_.z, found_.newton, w_, error_);
-    const std::vector<double> phases = sample_phases(system_, parameters_);
-    const bool holds = check_existence(problem(), found_.z.q, phases, w_).holds;
-    if (holds && (!found_.minimum || !phases.empty()))
-      stability_ = find_stability(problem(), found_.z, false, w_);
-    z = found_.z;
-    return holds ? Status::converged : Status::no_steady_state;
+  bool answer(Unknowns& z) {
+    steady_ = find_steady_state(problem(), drawn_, SolveOptions{}.search, w_);
+    if (!steady_.holds) return false;
+    const bool moving = !sample_phases(system_, parameters_).empty();
+    if (!steady_.found.minimum || moving) stability_ = find_stability(problem(), steady_.found.z, false, w_);
+    z = steady_.found.z;
+    return true;
   }
-  int iterations() const { return found_.iterations; }
+  int iterations() const { return steady_.found.iterations; }
 
   // q* by Newton's steps on the balance in extended precision, from an answer, until nothing moves.
   void settle_reference(const Unknowns& answer, Comparison& out) {
@@ -172,11 +166,10 @@ class Direct {
   System system_;
   Parameters parameters_;
   Scaling scaling_;
-  Eigen::VectorXd drawn_, error_;
+  Eigen::VectorXd drawn_;
   Workspace w_;
-  Found found_;
+  SteadyState steady_;
   Stability stability_;
-  std::vector<double> history_;
   LongVector reference_;
 };
 
@@ -289,7 +282,8 @@ bool measure_motions(const Mechanism& mechanism, const CompareOptions& options,
   return true;
 }
 
-void compare_through(const Mechanism& mechanism, const CompareOptions& options, const Time& time, Comparison& out) {
+void compare_through(const Mechanism& mechanism, const CompareOptions& options, const Time& time,
+                     Comparison& out) {
   const auto broken_off = [&] {
     out.complete = false;
     out.message = !time.watch.out_of_time() ? "Cancelled."
@@ -306,7 +300,7 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
 
   Direct direct(mechanism, options.cancel);
   Unknowns answer;
-  if (direct.answer(answer) != Status::converged) { // found above
+  if (!direct.answer(answer)) { // found above, unless it is all too long
     broken_off();
     return;
   }

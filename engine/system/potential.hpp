@@ -9,12 +9,19 @@
 
 #include "engine/system/kinematics.hpp"
 
+#include <cmath>
+
 namespace flyball {
 
 struct Potential {
   double value = 0;     // J
   double magnitude = 0; // J, sum of the terms' sizes, for the rounding error
 };
+// Whether two differ by no more than rounding, as the states of a family do along which nothing resists.
+inline bool same_potential(const Potential& a, const Potential& b) {
+  return std::abs(a.value - b.value) <= 1e-9 * (a.magnitude + b.magnitude);
+}
+
 Potential amended_potential(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                             const Kinematics<double>& kinematics);
 

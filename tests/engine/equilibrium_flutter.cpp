@@ -4,6 +4,7 @@
 
 #include "engine/equilibrium/branches.hpp"
 #include "engine/equilibrium/pair_crossing.hpp"
+#include "engine/mechanism/address.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -265,6 +266,20 @@ TEST_CASE("a sleeping top stays where it is drawn", "[gyroscopic]") {
       CHECK(s.message.find("downhill") == std::string::npos);
       check_value(s, "tip", 0, 1e-12, 0);
     }
+}
+
+TEST_CASE("a sleeping top of unequal moments stays, too: its multipliers judge", "[gyroscopic][floquet]") {
+  const Solution s = solve(load_scene(FLYBALL_ASSETS "/../tests/cases/asymmetric_sleeping_top.json"));
+  CAPTURE(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stability_reason == StabilityReason::floquet);
+  CHECK(s.stable == true);
+  CHECK_FALSE(s.net.has_value());
+  Mechanism slow = load_scene(FLYBALL_ASSETS "/../tests/cases/asymmetric_sleeping_top.json");
+  set_parameter(slow, "joints.s.drive.speed", 20);
+  const Solution fallen = solve(slow);
+  CAPTURE(fallen.message);
+  CHECK(fallen.poses.back().position.z() < 0);
 }
 
 TEST_CASE("a top too slow to sleep goes downhill", "[gyroscopic]") {

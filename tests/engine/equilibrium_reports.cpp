@@ -3,7 +3,9 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/equilibrium/branches.hpp"
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/study/sweep.hpp"
 
 using namespace flyball;
@@ -155,6 +157,18 @@ TEST_CASE("the piston of a slider-crank has a stroke, in branches and sweeps as 
     CHECK(p.solution.coordinates.size() == 4);
 }
 
+TEST_CASE("what is driven does not depend on the speed") {
+  for (const double speed : {0., 1e-9, 20.}) {
+    Mechanism m = shipped("governor_bearing");
+    set_parameter(m, "joints.spin.drive.speed", speed);
+    std::vector<std::string> driven;
+    for (const CoordinateSolution& c : solve(m).coordinates)
+      if (c.driven) driven.push_back(coordinate_label(c.joint, c.index, c.count));
+    CAPTURE(speed);
+    CHECK(driven == std::vector<std::string>{"spin", "bearing"});
+  }
+}
+
 TEST_CASE("points move as the drives carry them") {
   Mechanism m = dragged_arms({5});
   SolveOptions options;
@@ -209,6 +223,18 @@ TEST_CASE("drive torques that vary have their mean and range over all phases") {
     REQUIRE(s.status == Status::converged);
     CHECK(torque(s, "out").varying);
     CHECK_FALSE(torque(s, "out").range);
+  }
+  SECTION("rounding does not count") {
+    Mechanism m;
+    m.name = "wheel";
+    m.gravity.setZero();
+    m.bodies = {body("wheel", 3, {0.1, 0.2, 0}, {0.1, 0.1, 0.2}),
+                body("mate", 3, {-0.1, -0.2, 0}, {0.1, 0.1, 0.2})};
+    m.joints = {driven(revolute("axle", "ground", "wheel", Vec3::Zero(), Vec3::UnitZ()), 30),
+                joint(JointType::fixed, "weld", "wheel", "mate", Vec3::Zero())};
+    const Solution s = solve(m);
+    REQUIRE(s.status == Status::converged);
+    CHECK_FALSE(torque(s, "axle").varying);
   }
   SECTION("one that does not vary has none") {
     const Solution s = solve(shipped("governor"));

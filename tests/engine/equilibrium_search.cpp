@@ -2,6 +2,9 @@
 // start leads to none that holds.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
+#include "engine/equilibrium/branches.hpp"
+#include "engine/mechanism/address.hpp"
+
 #include <cstring>
 
 using namespace flyball;
@@ -117,6 +120,56 @@ TEST_CASE("where Newton-Raphson and its nets lead nowhere a search may", "[searc
   SolveOptions cancelled;
   cancelled.cancel = &cancel;
   CHECK(solve(test_case("five_bodies_from_afar"), cancelled).status == Status::not_converged);
+}
+
+TEST_CASE("branches begin where solving answers, though the drawn pose leads to nothing", "[search]") {
+  for (const char* name : {"five_bodies_from_afar", "steady_at_another_root"}) {
+    const Mechanism m = test_case(name);
+    const std::string speed = "joints." + m.joints.front().name + ".drive.speed";
+    const double now = get_parameter(m, speed);
+    BranchOptions few;
+    few.max_points = 5;
+    const ResponseDiagram d = follow_branches(m, speed, now, 1.02 * now, few);
+    CAPTURE(name, d.message);
+    REQUIRE(d.status == Status::converged);
+    CHECK_THAT(d.message, ContainsSubstring("a search found"));
+    const Solution s = solve(m);
+    REQUIRE(s.coordinates.size() == d.branches.front().points.front().coordinates.size());
+    for (std::size_t i = 0; i < s.coordinates.size(); ++i)
+      CHECK(std::abs(d.branches.front().points.front().coordinates[i].value - s.coordinates[i].value) < 1e-8);
+  }
+}
+
+TEST_CASE("a pendulum on a ball joint hangs and stands", "[all]") {
+  Mechanism m;
+  m.name = "ball";
+  m.gravity = -standard_gravity * Vec3::UnitZ();
+  m.bodies = {body("bob", 1, -Vec3::UnitZ())};
+  m.joints = {joint(JointType::spherical, "h", "ground", "bob", Vec3::Zero())};
+  const AllSolutions all = Analysis(m).solve_all();
+  CAPTURE(all.message);
+  REQUIRE(all.equilibria.size() == 2);
+  CHECK(all.equilibria[0].potential.value() == Approx(-standard_gravity));
+  CHECK(all.equilibria[1].potential.value() == Approx(standard_gravity));
+  CHECK(all.equilibria[1].stable == false);
+}
+
+TEST_CASE("what falls for certain is unstable, whatever another direction leaves open", "[search]") {
+  // A pendulum on a cart that nothing holds along its rail.
+  Mechanism m;
+  m.name = "cart";
+  m.gravity = -standard_gravity * Vec3::UnitZ();
+  m.bodies = {body("cart", 1, Vec3::Zero()), body("bob", 1, -Vec3::UnitZ(), {0.01, 0.01, 0.01})};
+  m.joints = {prismatic("x", "ground", "cart", Vec3::Zero(), Vec3::UnitY()),
+              revolute("p", "cart", "bob", Vec3::Zero(), Vec3::UnitX())};
+  SolveOptions upright;
+  upright.nearest = true;
+  upright.start = {{"p", GENERATE(3.1, 3.1415926, std::numbers::pi)}};
+  const Solution s = solve(m, upright);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == false);
+  CHECK(s.stability_reason == StabilityReason::unstable);
+  CHECK(s.neutral == std::vector<std::string>{"x"});
 }
 
 TEST_CASE("what a state leaves at other phases counts in its error", "[search]") {

@@ -370,6 +370,29 @@ TEST_CASE("only asked for its sign, stability says the same") {
   }
 }
 
+TEST_CASE("massless directions without stiffness hold what they are coupled with") {
+  // x'' = -4 x + c y with 0 = c x for y: nothing moves; z swings on its own, at 3 rad/s.
+  std::mt19937 random(5);
+  std::normal_distribution<double> any;
+  Eigen::MatrixXd mass = Eigen::Vector3d(1, 0, 2).asDiagonal(),
+                  stiffness = Eigen::Vector3d(4, 0, 18).asDiagonal();
+  stiffness(0, 1) = stiffness(1, 0) = 7;
+  for (const double rounding : {0., 1e-15, -1e-15}) {
+    stiffness(1, 1) = rounding;
+    Eigen::MatrixXd a(3, 3);
+    for (double& x : a.reshaped())
+      x = any(random);
+    const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(a).householderQ();
+    for (const Eigen::MatrixXd& turn : {Eigen::MatrixXd(Eigen::MatrixXd::Identity(3, 3)), q}) {
+      const auto s = pencil_eigenvalues(turn * mass * turn.transpose(), Eigen::MatrixXd::Zero(3, 3),
+                                        turn * stiffness * turn.transpose());
+      REQUIRE(s.has_value());
+      REQUIRE(s->size() == 2);
+      CHECK(std::abs(s->at(0) - Complex(0, 3)) < 1e-7);
+    }
+  }
+}
+
 TEST_CASE("what feels neither mass nor spring nor damper has no eigenvalue") {
   // A body on a spring beside coordinates without an equation of motion, all turned against the axes.
   std::mt19937 random(3);

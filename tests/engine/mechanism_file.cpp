@@ -200,6 +200,7 @@ TEST_CASE("A pipe without a writer is not waited for longer than asked, and none
   CHECK_THAT(message_of([&] { replace_file(pipe, "text"); }), ContainsSubstring("no regular file"));
   CHECK_THAT(message_of([&] { replace_file("/dev/null", "text"); }), ContainsSubstring("no regular file"));
   CHECK_THAT(message_of([&] { replace_file("-", "text"); }), ContainsSubstring("no regular file"));
+  CHECK_THAT(message_of([&] { write_bytes(pipe, "text"); }), ContainsSubstring("no program reads from"));
   std::string read;
   std::thread reader([&] { read = read_bytes(pipe); });
   write_bytes(pipe, "through the pipe");

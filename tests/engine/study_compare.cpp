@@ -107,6 +107,16 @@ TEST_CASE("what is asked for is what is measured") {
   CHECK(c.motion[1].points[1].tolerance == 1e-6);
 }
 
+TEST_CASE("a state that only a search finds is compared like any other") {
+  CompareOptions o = quick();
+  o.durations = {0.05};
+  const Comparison c = compare(load_scene(FLYBALL_ASSETS "/../tests/cases/five_bodies_from_afar.json"), o);
+  CAPTURE(c.message);
+  CHECK(c.status == Status::converged);
+  CHECK(c.answer.error < 1e-9);
+  CHECK_FALSE(c.motion.empty());
+}
+
 TEST_CASE("a comparison may be cancelled, and says where there is nothing to compare") {
   std::atomic<bool> cancel = false;
   CompareOptions o = quick();
