@@ -3,6 +3,7 @@
 #include "engine/equilibrium/linear_motion.hpp"
 #include "engine/linear/spectral.hpp"
 
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -37,10 +38,15 @@ Eigen::MatrixXd fourier(const Eigen::MatrixXd& samples) {
 Eigen::VectorXd waves_at(double x, Eigen::Index columns, int order = 0) {
   Eigen::VectorXd out(columns);
   out[0] = order == 0 ? 1 : 0;
+  const std::complex<double> once = std::polar(1., x), quarter(0, 1);
+  std::complex<double> turned = 1; // exp(i h x): products cost less than sines, and this is the inner loop
   for (Eigen::Index h = 1; 2 * h < columns; ++h) {
-    const double n = static_cast<double>(h), turn = n * x + order * std::numbers::pi / 2;
-    out[2 * h - 1] = std::pow(n, order) * std::cos(turn);
-    out[2 * h] = std::pow(n, order) * std::sin(turn);
+    turned *= once;
+    std::complex<double> wave = turned;
+    for (int d = 0; d < order; ++d)
+      wave *= quarter * static_cast<double>(h);
+    out[2 * h - 1] = wave.real();
+    out[2 * h] = wave.imag();
   }
   return out;
 }

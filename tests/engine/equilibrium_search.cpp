@@ -65,7 +65,7 @@ void check_list(const AllSolutions& all) {
 } // namespace
 
 TEST_CASE("a steady state that the way from the start misses is found before solving refuses", "[search]") {
-  const Solution shipped_case = solve(test_case("gimbal_along_the_shaft"));
+  const Solution shipped_case = solve(test_case("steady_at_another_root"));
   INFO(shipped_case.message);
   REQUIRE(shipped_case.status == Status::converged);
   CHECK(shipped_case.net == Net::search);
