@@ -16,7 +16,8 @@ double parse_number(std::string_view option, std::string_view text) {
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc() || rest != end || !std::isfinite(value))
-    throw SceneError(std::string(option), "expected a finite number, not \"" + std::string(text) + "\"");
+    throw SceneError(std::string(option), "expected a finite number in SI units (m, rad, kg, s, N), not \"" +
+                                              std::string(text) + "\"");
   return value;
 }
 

@@ -35,6 +35,7 @@ void Document::changed(const Mechanism* stored_before) {
 
 void Document::push(Step step) {
   const std::shared_ptr<const Mechanism> before = now().mechanism; // `last` may be its only owner
+  steps_[position_].selection = selection_;
   steps_.resize(position_ + 1);
   selection_ = step.selection = existing(std::move(step.selection), *step.mechanism);
   step.tried = step.explored.empty()
@@ -136,8 +137,16 @@ void Document::go_to(std::size_t step) {
   step = std::min(step, steps_.size() - 1);
   if (step == position_) return;
   const Mechanism* before = now().mechanism.get();
+  steps_[position_].selection = selection_;
   position_ = step;
-  selection_ = existing(steps_[step].selection, stored());
+  Selection kept = existing(selection_, stored());
+  if (kept.empty()) {
+    kept = existing(steps_[step].selection, stored());
+    if (selection_.empty())
+      std::erase_if(kept.parts,
+                    [&](const Part& part) { return find_part(*before, part).kind != PartKind::none; });
+  }
+  selection_ = std::move(kept);
   changed(before);
 }
 

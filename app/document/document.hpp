@@ -20,7 +20,7 @@ namespace flyball {
 struct Step {
   std::string name; // "Move ball 1"
   std::shared_ptr<const Mechanism> mechanism;
-  Selection selection;                      // after the edit
+  Selection selection;                      // after the edit; later, when it was last left
   std::uint64_t gesture = 0;                // the hand's movement it belongs to; 0: an edit at one blow
   Explored explored{};                      // numbers tried beside it
   std::shared_ptr<const Mechanism> tried{}; // the mechanism with them; the same object where there are none
@@ -61,7 +61,9 @@ class Document {
   void drop_explored(); // back to what is stored
   // While building, the mechanism is what is stored. Returns whether that made a difference.
   bool put_explored_aside(bool aside);
-  // Selecting is no step.
+  // Selecting is no step. Going to another step keeps what is selected as far as it exists there, so that
+  // nothing changes under the hand. Where nothing is left of it, what was selected there is; where nothing
+  // was selected at all, those of them that come back.
   void select(Selection selection);
 
   bool can_undo() const { return position_ > 0; }

@@ -197,6 +197,7 @@ Solution LiveSolver::State::solve_nearest(const LiveRequest& request, bool& left
   options.warm = request.warm;
   options.nearest = request.nearest;
   options.start = request.start;
+  options.points = request.points;
   // Analysis goes back to the drawn pose from a state that is no minimum; a branch is followed through those.
   if (request.nearest && request.warm && request.start.empty()) options.start = last;
   Solution found = analysis->solve(options);

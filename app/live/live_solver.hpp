@@ -35,6 +35,7 @@ struct LiveRequest {
   bool nearest = false;
   // "joint" or "joint.index" and rad or m: starts there, rather than from the last answer.
   std::vector<std::pair<std::string, double>> start{};
+  std::vector<BodyPoint> points{}; // of its bodies, to be told with the solution
 };
 
 struct LiveAnswer {

@@ -33,7 +33,8 @@ void ask(App& app, bool another, bool warm, StartValues start = {}) {
                                           .another = another,
                                           .warm = warm,
                                           .nearest = app.on_branch,
-                                          .start = std::move(start)});
+                                          .start = std::move(start),
+                                          .points = told_points(app)});
 }
 
 // After the document's mechanism has changed.
@@ -112,6 +113,7 @@ void open_document(App& app, Document document) {
   app.poses.clear();
   InspectorState fresh;
   fresh.history = app.inspector.history;
+  if (same_file) fresh.points = std::move(app.inspector.points);
   app.inspector = std::move(fresh);
   app.tool = {.snap = app.tool.snap};
   if (!same_file) {
@@ -276,7 +278,7 @@ std::vector<std::string> explored_words(const App& app) {
   for (const ExploredValue& each : app.document.explored()) {
     const ShownUnit unit = shown_unit(parameter_unit(app.document.stored(), each.address), app.units);
     const auto text = [&](double value) {
-      return short_text(unit.shown(value)) + (unit.text.empty() ? "" : " " + unit.text);
+      return short_text(unit.shown(value), 9) + (unit.text.empty() ? "" : " " + unit.text);
     };
     words.push_back(parameter_phrase(each.address) + " " + text(each.value) + ", stored is " +
                     text(get_parameter(app.document.stored(), each.address)));
@@ -286,6 +288,23 @@ std::vector<std::string> explored_words(const App& app) {
 
 void solve_from_drawn_pose(App& app) {
   ask(app, false, false);
+}
+
+void tell_point(App& app, const std::string& body, const std::optional<Vec3>& at) {
+  if (at && !at->allFinite()) return;
+  if (at)
+    app.inspector.points.insert_or_assign(body, *at);
+  else
+    app.inspector.points.erase(body);
+  ask(app, false, true); // from the last answer: what is shown stays
+  retell_motion(app);
+}
+
+std::vector<BodyPoint> told_points(const App& app) {
+  std::vector<BodyPoint> points;
+  for (const auto& [body, at] : app.inspector.points)
+    if (body_index(app.mechanism(), body) >= 0) points.push_back({body, at});
+  return points;
 }
 
 namespace {

@@ -221,6 +221,11 @@ std::vector<std::string> explored_words(const App& app);
 void go_to_state(App& app, const std::string& address, double value,
                  std::vector<std::pair<std::string, double>> start);
 void solve_from_drawn_pose(App& app);
+// A point of the body that is told of beside its mass centre, in the results and in the motion (see
+// ToldPoints); none: its mass centre alone. No edit.
+void tell_point(App& app, const std::string& body, const std::optional<Vec3>& at);
+// Those of the bodies that there are.
+std::vector<BodyPoint> told_points(const App& app);
 
 void set_mode(App& app, Mode mode);
 void set_tool(App& app, Tool tool);

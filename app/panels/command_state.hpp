@@ -18,7 +18,9 @@ struct CopyChoice {
 struct KeyFocus {
   bool in_panel = false;     // the last click was in a panel, or one types there
   bool among_fields = false; // in one of numbers and words, rather than a list of parts
-  bool letters = false;      // which are commands all the same, as long as no number is begun
+  // Letters are commands all the same, as long as no number is begun: among plots, and once one has been a
+  // command in the view.
+  bool letters = false;
   bool number_begun = false; // a digit or sign was pressed there outside of any field
 };
 

@@ -5,6 +5,7 @@
 #include "app/document/create.hpp"
 #include "app/document/remove.hpp"
 #include "app/document/transform.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <imgui.h>
 
@@ -25,14 +26,38 @@ std::string words_for(const Selection& selection) {
   return std::to_string(selection.parts.size()) + " parts";
 }
 
-} // namespace
+// "joints arm1 and knee1, force push": what goes with the selected parts though it is not selected.
+std::string dependents_words(const App& app) {
+  Selection more = with_dependents(app.document.stored(), app.selection());
+  std::erase_if(more.parts, [&](const Part& part) { return app.selection().has(part); });
+  std::string words;
+  for (const auto& [kind, word] :
+       {std::pair(PartKind::joint, "joint"), std::pair(PartKind::force, "force")}) {
+    const std::vector<std::string> names = more.names(kind);
+    if (names.empty()) continue;
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    words += (words.empty() ? "" : ", ") + std::string(word) + (names.size() > 1 ? "s " : " ") +
+             word_list(views, "and");
+  }
+  return words;
+}
 
-void delete_selected(App& app) {
-  if (app.selection().empty()) return;
-  edit(app, "Delete " + words_for(app.selection()), [](Mechanism& mechanism, Selection& selection) {
+// Takes the selected parts out, and says what went with them.
+void remove_selected(App& app, const std::string& step, const std::string& done) {
+  const std::string what = words_for(app.selection()), along = dependents_words(app);
+  const std::uint64_t before = app.document.revision();
+  edit(app, step + " " + what, [](Mechanism& mechanism, Selection& selection) {
     remove_parts(mechanism, selection);
     selection = {};
   });
+  if (!along.empty() && app.document.revision() != before)
+    app.notice = done + " " + what + " together with " + along + ".";
+}
+
+} // namespace
+
+void delete_selected(App& app) {
+  if (!app.selection().empty()) remove_selected(app, "Delete", "Deleted");
 }
 
 namespace {
@@ -79,11 +104,7 @@ void copy_selected(App& app) {
 
 void cut_selected(App& app) {
   copy_selected(app);
-  if (app.selection().empty()) return;
-  edit(app, "Cut " + words_for(app.selection()), [](Mechanism& mechanism, Selection& selection) {
-    remove_parts(mechanism, selection);
-    selection = {};
-  });
+  if (!app.selection().empty()) remove_selected(app, "Cut", "Cut");
 }
 
 void paste_parts(App& app) {

@@ -46,6 +46,15 @@ bool begin_choice(App& app, const std::string& name, const std::string& label, c
   return open;
 }
 
+// A body's point keeps being told of.
+void rename_told_point(App& app, const Part& part, const std::string& name) {
+  if (part.kind != PartKind::body) return;
+  if (auto told = app.inspector.points.extract(part.name)) {
+    told.key() = name;
+    app.inspector.points.insert(std::move(told));
+  }
+}
+
 // Of a joint or force, whose fields are called the same.
 template <class Change>
 void change_bodies(App& app, const Part& part, const Change& change) {
@@ -157,6 +166,7 @@ bool name_field(App& app, const std::string& widget, const Part& part, float wid
                       },
                   .take =
                       [part](App& changed, const std::string& typed) {
+                        rename_told_point(changed, part, typed);
                         edit(changed, "Rename " + part.name + " to " + typed,
                              [&](Mechanism& mechanism, Selection& selection) {
                                rename_part(mechanism, part, typed);

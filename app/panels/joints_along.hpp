@@ -8,8 +8,8 @@ namespace flyball {
 
 // As chosen in the inspector; `opposite` while Shift is held in the view.
 OuterJoints joints_of_moved(const App& app, bool opposite);
-// Tells which joints went along with the selected bodies, or were left. After the edit; nothing where they
-// have none to what stays.
+// Tells which joints went along with the selected bodies and what they are joined to that stays, or which
+// joints were left. After the edit; nothing where they have none to what stays.
 void tell_joints(App& app, const Selection& moved, bool opposite);
 
 } // namespace flyball

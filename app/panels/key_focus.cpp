@@ -79,6 +79,7 @@ bool may_command(App& app, const KeyPress& key) {
   } else if (is_letter(key.key) || key.key == ' ') {
     // "150 rpm" is no word of commands wherever the pointer is.
     typed = focus.number_begun || !(focus.letters || pointer_in_view());
+    focus.letters = focus.letters || !typed; // the command may bring a panel under the pointer
   } else if (is_printable(key.key)) {
     typed = key.key != '?';
     focus.number_begun = focus.number_begun || typed;

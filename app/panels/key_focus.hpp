@@ -2,8 +2,9 @@
 //
 // The last click decides, as it does for a text field. After a click in a panel, or once one has typed there,
 // what can be typed into a field is no command, so that a click that missed a field does no harm; letters are
-// commands again as soon as the pointer works in the view, everything once the view is clicked or Escape is
-// pressed. Among plots and tables of results letters stay commands, since only numbers are typed there.
+// commands again as soon as the pointer works in the view, and stay so once one was a command there, whatever
+// that brings under the pointer; everything is once the view is clicked or Escape is pressed. Among plots and
+// tables of results letters stay commands, since only numbers are typed there.
 #pragma once
 
 #include "app/panels/app.hpp"

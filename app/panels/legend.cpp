@@ -14,8 +14,7 @@ namespace {
 
 std::string motion_words(const App& app) {
   if (moving_mode(app)) return "Swinging in mode " + std::to_string(*app.study.modes.chosen + 1);
-  const MotionRun* shown = shown_motion(app);
-  return !shown || shown->run->damped ? "Motion, damped" : "Motion, without dampers";
+  return motion_words(app, shown_motion(app));
 }
 
 // A dashed frame, as the drawn pose has.
@@ -40,7 +39,7 @@ void draw_mark(const App& app, LegendMark mark, ImVec2 from, ImVec2 to) {
   };
   if (mark == LegendMark::solid || mark == LegendMark::outlined) fill(body, 1);
   if (mark == LegendMark::glass) fill(body, 0.45f);
-  if (mark == LegendMark::motion) fill(colors.motion, 0.75f);
+  if (mark == LegendMark::motion) fill(colors.motion, colors.motion.a);
   if (mark == LegendMark::outlined || mark == LegendMark::dashed)
     dashes(list, from, to, packed(to_imgui(colors.drawn)), app.scale);
 }

@@ -27,6 +27,8 @@ SimulationOptions options_of(const App& app, bool damped) {
   if (app.mechanism().bodies.size() <= many)
     for (const Body& body : app.mechanism().bodies)
       options.points.push_back({body.name});
+  for (BodyPoint& point : told_points(app))
+    options.points.push_back(std::move(point));
   if (motion.start == Start::state) options.state = motion.saved;
   if (motion.start == Start::equilibrium) {
     const std::vector<std::string> names = free_coordinates(app);
@@ -93,6 +95,23 @@ bool computing_motion(const App& app) {
          });
 }
 
+std::optional<double> computed_motion(const App& app) {
+  if (!computing_motion(app)) return std::nullopt;
+  double least = app.motion.duration;
+  for (const MotionRun& motion : app.motion.runs) {
+    if (motion.asked == 0 || !motion.live || motion.finished) continue;
+    // Until something of the new run has come, what there is may be another's.
+    const bool any = motion.answered == motion.asked && motion.run && !motion.run->time.empty();
+    least = std::min(least, any ? motion.run->time.back() - motion.run->time.front() : 0);
+  }
+  return least;
+}
+
+std::string motion_words(const App& app, const MotionRun* motion) {
+  if (!has_dampers(app.mechanism())) return "Motion";
+  return !motion || !motion->run || motion->run->damped ? "Motion, damped" : "Motion, without dampers";
+}
+
 std::vector<std::string> free_coordinates(const App& app) {
   std::vector<std::string> names;
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
@@ -145,6 +164,12 @@ void follow_motion(App& app, bool another) {
     seek_motion(app, app.motion.start == Start::state ? app.motion.saved.time : 0);
 }
 
+void retell_motion(App& app) {
+  if (!app.motion.on) return;
+  ask(app, false);
+  if (app.playback.playing) seek_motion(app, app.motion.start == Start::state ? app.motion.saved.time : 0);
+}
+
 void update_motion(App& app) {
   MotionState& motion = app.motion;
   if (!motion.on) return;
@@ -154,6 +179,7 @@ void update_motion(App& app) {
     std::optional<MotionNews> taken = run.live->take();
     if (!taken || taken->ticket != run.asked) continue;
     news = true;
+    run.answered = taken->ticket;
     run.finished = taken->finished;
     run.problem = taken->error.value_or("");
     run.run = std::move(taken->run);

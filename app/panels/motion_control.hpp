@@ -12,6 +12,8 @@ void restart_motion(App& app);
 void stop_motion(App& app); // computing; what there is stays
 // After the document's mechanism has changed.
 void follow_motion(App& app, bool another);
+// The same run again, with what is to be told of it now.
+void retell_motion(App& app);
 // Takes what was computed, moves nothing.
 void update_motion(App& app);
 // Moves playback.time on by `seconds` of motion, as far as the run goes.
@@ -25,6 +27,10 @@ void step_motion(App& app, int samples);
 const MotionRun* shown_motion(const App& app);
 // Whether the motion is being computed.
 bool computing_motion(const App& app);
+// How much of the run that is being computed is there, s; none where nothing is computed.
+std::optional<double> computed_motion(const App& app);
+// "Motion, damped": only dampers make that difference.
+std::string motion_words(const App& app, const MotionRun* motion);
 // Whether there are dampers to be left out.
 bool has_dampers(const Mechanism& mechanism);
 // The names of the free coordinates, for a kick.

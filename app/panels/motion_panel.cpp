@@ -150,7 +150,8 @@ void accuracy(App& app) {
   const EnergyTracks& e = run.energy;
   row(app, "Energy balance", "± " + magnitude_text(greatest(e.balance), numbers), "J",
       "Stored and dissipated energy less what the drives delivered: what the integrator has lost or made.");
-  row(app, "of", magnitude_text(std::max(greatest(e.kinetic), greatest(e.delivered)), numbers), "J at play");
+  row(app, "Energy at play", magnitude_text(std::max(greatest(e.kinetic), greatest(e.delivered)), numbers),
+      "J", "The largest kinetic or delivered energy, beside which the balance is to be seen.");
   for (const MotionRun& motion : app.motion.runs)
     if (motion.wanted && motion.run && !motion.run->damped && !motion.run->energy.jacobi.empty()) {
       const auto [least, most] = std::ranges::minmax(motion.run->energy.jacobi);
@@ -168,12 +169,24 @@ void accuracy(App& app) {
   if (numbers.run_times) row(app, "Run time", duration_text(s.run_time_s, numbers), "");
 }
 
+// "0.12 of 5 s", in the room beside the buttons.
+void progress_bar(App& app) {
+  const double whole = app.motion.duration, done = computed_motion(app).value_or(0);
+  const std::string words = short_text(done, 2) + " of " + short_text(whole, 4) + " s";
+  ImGui::ProgressBar(static_cast<float>(std::clamp(done / whole, 0., 1.)),
+                     {std::max(ImGui::GetContentRegionAvail().x, 1.f), 0}, words.c_str());
+  note_widget(app.widgets, "motion/progress");
+  help_on_hover(("Computed so far: " + words + ".").c_str());
+}
+
 void choices(App& app) {
   const bool computing = computing_motion(app);
   if (text_button(app, "motion/run", computing ? "Restart" : "Run again", true)) anew(app);
   if (computing) {
     ImGui::SameLine();
     if (text_button(app, "motion/stop", "Stop")) stop_motion(app);
+    ImGui::SameLine();
+    progress_bar(app);
   } else if (shown_motion(app)) {
     ImGui::SameLine();
     if (text_button(app, "motion/keep", "Keep state")) keep_motion_state(app);

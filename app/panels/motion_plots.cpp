@@ -29,31 +29,34 @@ std::vector<double> norms(const std::vector<Vec3>& vectors) {
   return out;
 }
 
-// What is told of a body's mass centre: three tracks, each by component and in size.
-struct CentreQuantity {
+// What is told of a point of a body: three tracks, each by component and in size.
+struct PointQuantity {
   const char* name;
   std::vector<Vec3> PointTrack::*track;
   const char* unit;
 };
-const std::array<CentreQuantity, 3> centre_quantities{
-    {{"position", &PointTrack::position, "m"},
-     {"velocity", &PointTrack::velocity, "m/s"},
-     {"acceleration", &PointTrack::acceleration, "m/s²"}}};
+const std::array<PointQuantity, 3> point_quantities{{{"position", &PointTrack::position, "m"},
+                                                     {"velocity", &PointTrack::velocity, "m/s"},
+                                                     {"acceleration", &PointTrack::acceleration, "m/s²"}}};
 constexpr std::array<const char*, 4> components{"x", "y", "z", "size"};
 
-std::string centre_key(const CentreQuantity& quantity, std::size_t component, const std::string& body) {
-  return std::string(quantity.name) + "." + components[component] + " " + body;
+// The same for every point of a body that is not its mass centre, so that a plot stays with it when it is
+// typed anew.
+std::string point_key(const PointQuantity& quantity, std::size_t component, const BodyPoint& point) {
+  return (point.at ? "point " : "") + std::string(quantity.name) + "." + components[component] + " " +
+         point.body;
 }
 
-std::string centre_title(const CentreQuantity& quantity, std::size_t component, const std::string& body) {
-  if (component < 3) return std::string(components[component]) + " " + quantity.name + " of " + body;
-  if (quantity.track == &PointTrack::position) return "distance of " + body + " from the origin";
-  return (quantity.track == &PointTrack::velocity ? "speed of " : "acceleration of ") + body;
+std::string point_title(const PointQuantity& quantity, std::size_t component, const BodyPoint& point) {
+  const std::string whose = (point.at ? "the point of " : "") + point.body;
+  if (component < 3) return std::string(components[component]) + " " + quantity.name + " of " + whose;
+  if (quantity.track == &PointTrack::position) return "distance of " + whose + " from the origin";
+  return (quantity.track == &PointTrack::velocity ? "speed of " : "acceleration of ") + whose;
 }
 
-Shown shown_centre(const PointTrack& track, const CentreQuantity& quantity, std::size_t component) {
+Shown shown_point(const PointTrack& track, const PointQuantity& quantity, std::size_t component) {
   const std::vector<Vec3>& vectors = track.*quantity.track;
-  Shown out{centre_title(quantity, component, track.point.body), quantity.unit, {}};
+  Shown out{point_title(quantity, component, track.point), quantity.unit, {}};
   out.lines.push_back({"", {}});
   std::vector<double>& values = out.lines.front().values;
   values.reserve(vectors.size());
@@ -88,9 +91,9 @@ Shown shown_quantity(const Run& run, const std::string& key) {
   }
   for (const PointTrack& p : run.points)
     if (key.ends_with(" " + p.point.body))
-      for (const CentreQuantity& quantity : centre_quantities)
+      for (const PointQuantity& quantity : point_quantities)
         for (std::size_t i = 0; i < components.size(); ++i)
-          if (key == centre_key(quantity, i, p.point.body)) return shown_centre(p, quantity, i);
+          if (key == point_key(quantity, i, p.point)) return shown_point(p, quantity, i);
   const EnergyTracks& e = run.energy;
   if (key == "energies") { // less what there was at first, which may be much and says nothing
     out = {"energy since the start",
@@ -144,11 +147,13 @@ std::vector<MotionQuantity> motion_quantities(const Run& run) {
     add("force " + r.joint, "Reactions");
   for (const ReactionTrack& r : run.reactions)
     add("torque " + r.joint, "Reactions");
-  for (const CentreQuantity& quantity : centre_quantities)
-    for (const PointTrack& p : run.points)
-      for (std::size_t i = 0; i < components.size() && !(p.*quantity.track).empty(); ++i)
-        out.push_back(
-            {centre_key(quantity, i, p.point.body), centre_title(quantity, i, p.point.body), "Mass centres"});
+  for (const bool centres : {true, false})
+    for (const PointQuantity& quantity : point_quantities)
+      for (const PointTrack& p : run.points)
+        for (std::size_t i = 0; i < components.size() && !(p.*quantity.track).empty(); ++i)
+          if (centres == !p.point.at)
+            out.push_back({point_key(quantity, i, p.point), point_title(quantity, i, p.point),
+                           centres ? "Mass centres" : "Points"});
   return out;
 }
 
@@ -158,6 +163,7 @@ Plot motion_plot(const App& app, const std::string& quantity) {
   plot.version = app.motion.version;
   const bool both =
       std::ranges::all_of(app.motion.runs, [](const MotionRun& r) { return r.wanted && r.run; });
+  const bool dampers = has_dampers(app.mechanism());
   for (const MotionRun& motion : app.motion.runs) {
     if (!motion.wanted || !motion.run) continue;
     const Run& run = *motion.run;
@@ -168,7 +174,7 @@ Plot motion_plot(const App& app, const std::string& quantity) {
     }
     // Several energies of two runs would be too much to look at.
     if (both && !run.damped && shown.lines.size() > 1) continue;
-    const char* whose = run.damped ? "damped" : "undamped";
+    const char* whose = !dampers ? "motion" : run.damped ? "damped" : "undamped";
     for (std::size_t l = 0; l < shown.lines.size(); ++l) {
       PlotCurve curve;
       const std::string& name = shown.lines[l].name;

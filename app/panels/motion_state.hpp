@@ -15,6 +15,7 @@ struct MotionRun {
   bool wanted = true;
   std::unique_ptr<LiveMotion> live;
   std::uint64_t asked = 0;        // ticket; 0: nothing asked for yet
+  std::uint64_t answered = 0;     // the newest ticket of which anything has come
   std::shared_ptr<const Run> run; // may still be that of an earlier request; null: none
   bool finished = false;
   std::string problem; // why there is no run, or no more of it

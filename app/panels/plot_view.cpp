@@ -69,8 +69,8 @@ PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Pl
     draw_box(frame);
   }
   const bool held = view.drag == PlotView::Drag::marker;
-  if (reading) show_plot_reading(frame);
   draw_marker(pen, plot, *layout, held);
+  if (reading) show_plot_reading(frame); // its card lies over everything
   pen.list.PopClipRect();
   plot_menu(frame);
   ImGui::SetCursorScreenPos(at);

@@ -43,8 +43,17 @@ struct Shown {
       : unit(shown_unit(field.unit, app.units)), value(unit.shown(field.value)) {}
 };
 
+// A double click selects the number alone, and whoever types another with its unit over it leaves the former
+// unit behind that: "1 kg kg". Then it gives way.
+Quantity typed_quantity(std::string_view text, const std::string& unit, const std::string& shown) {
+  const Quantity typed = parse_quantity(text, unit, shown);
+  if (typed || shown.empty() || !text.ends_with(" " + shown)) return typed;
+  const Quantity without = parse_quantity(text.substr(0, text.size() - shown.size()), unit, shown);
+  return without ? without : typed;
+}
+
 Quantity typed_quantity(const App& app, const std::string& text, const QuantityField& field) {
-  return parse_quantity(text, field.unit, shown_unit(field.unit, app.units).text);
+  return typed_quantity(text, field.unit, shown_unit(field.unit, app.units).text);
 }
 
 std::string mistake_in(const App& app, const std::string& text, const QuantityField& field) {
@@ -95,7 +104,8 @@ int step_typed(ImGuiInputTextCallbackData* data) {
   }
   const QuantityField& field = stepping.field;
   const ShownUnit& unit = stepping.shown.unit;
-  const Quantity typed = parse_quantity({data->Buf, static_cast<std::size_t>(data->BufTextLen)}, unit.text);
+  const Quantity typed =
+      typed_quantity({data->Buf, static_cast<std::size_t>(data->BufTextLen)}, unit.text, unit.text);
   if (!typed) return 0;
   const double step = hand_step(stepping.shown.value, unit.text);
   const double next = rounded(typed.value + (data->EventKey == ImGuiKey_UpArrow ? step : -step));
@@ -152,8 +162,8 @@ std::string tooltip(const QuantityField& field, const Shown& shown) {
   if (field.various.empty()) {
     constexpr double degrees = 180 / std::numbers::pi;
     std::string exact = with_unit(number_text(shown.value), shown.unit.text);
-    if (shown.unit.text != field.unit)
-      exact += " = " + with_unit(number_text(field.value), field.unit);
+    if (const std::string own = written_unit(field.unit); shown.unit.text != own)
+      exact += " = " + with_unit(number_text(field.value), own);
     else if (field.unit == "rad")
       exact += " = " + short_text(field.value * degrees, 9) + "°";
     else if (field.unit == "rad/s")
@@ -230,7 +240,7 @@ void draw_letter(const App& app, int axis, const ImVec2& at) {
 double hand_step(double value, const std::string& unit) {
   if (value != 0) return std::pow(10, std::floor(std::log10(std::abs(value)) + 1e-9) - 2);
   if (unit == "m") return 1e-3;
-  if (unit == "rad/s" || unit == "m/s^2" || unit == "rad") return 0.1;
+  if (unit == "rad/s" || unit == "m/s²" || unit == "rad") return 0.1;
   constexpr std::array<std::string_view, 8> by_one{"deg", "°", "°/s", "rpm", "mm", "mm/s", "N/m", "N"};
   if (std::ranges::find(by_one, unit) != by_one.end()) return 1;
   return 0.01;

@@ -5,7 +5,9 @@
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace flyball {
 
@@ -86,10 +88,37 @@ void refusal(App& app) {
   mistake_rows(app, "results/mistakes", 1, most);
 }
 
+// Below an inspector its numbers would be read as part of it: a title of their own stays where it is while
+// they scroll. Returns what is left for them.
+PanelRect below_title(App& app, const PanelRect& rect) {
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  if (layout_of(app, window.x, window.y).inspector.height <= 0) return rect;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, pad = ImGui::GetStyle().WindowPadding.x;
+  PanelRect title = rect, rest = rect;
+  title.height = std::min(std::round(ImGui::GetFontSize() + 9 * s), rect.height);
+  rest.y += title.height;
+  rest.height = std::max(rect.height - title.height, 1.f);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  begin_panel("results title", title, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled({title.x, title.y}, {title.x + title.width, title.y + title.height},
+                     packed(colors.raised));
+  list.AddText(app.fonts.strong, app.fonts.strong->FontSize,
+               {title.x + pad, std::round(title.y + (title.height - app.fonts.strong->FontSize) / 2)},
+               packed(colors.text), "Results");
+  app.widgets["results/title"] = {{title.x, title.y}, {title.x + title.width, title.y + title.height}};
+  ImGui::End();
+  return rest;
+}
+
 } // namespace
 
 void results_panel(App& app, const PanelRect& rect) {
-  begin_panel("results", rect);
+  // As in the inspector, Tab is a field's only while one is typed in.
+  begin_panel("results", below_title(app, rect),
+              app.inspector.typing.name.empty() ? static_cast<int>(ImGuiWindowFlags_NoNavInputs) : 0);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 4 * app.scale});
   if (app.mechanism().bodies.empty()) {
     paragraph("Place a body and join it to the ground: where everything settles is told here, at every step.",

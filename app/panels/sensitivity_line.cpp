@@ -50,8 +50,9 @@ bool has_rates(const App& app) {
 const std::vector<ShownRate>& kept_rates(App& app, const ParameterControl& control) {
   KeptRates& kept = app.panels.rates[control.address];
   if (kept.ticket != app.answer.ticket || kept.value != control.value || kept.from != control.from ||
-      kept.to != control.to)
-    kept = {app.answer.ticket, control.value, control.from, control.to, shown_rates(app, control.address)};
+      kept.to != control.to || kept.units != app.units)
+    kept = {app.answer.ticket, control.value, control.from,
+            control.to,        app.units,     shown_rates(app, control.address)};
   return kept.rates;
 }
 

@@ -23,7 +23,7 @@ constexpr std::array mouse{
     Line{"Double-click", "All in view"},
     Line{"Double-click a slider", "Type its value"},
     Line{"Shift+drag a slider", "Finer"},
-    Line{"Digits while placing", "Length or size, with a unit"},
+    Line{"Digits while placing", "Length or size, with unit"},
 };
 
 void line(App& app, const std::string& keys, const std::string& does) {
@@ -33,12 +33,23 @@ void line(App& app, const std::string& keys, const std::string& does) {
   ImGui::TextUnformatted(keys.c_str());
   ImGui::PopStyleColor();
   ImGui::TableNextColumn();
+  ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(does.c_str());
+  ImGui::PopTextWrapPos();
+  note_widget(app.widgets, "shortcuts/" + keys);
+}
+
+// Keys as wide as they are, and the rest for the words, so that none is cut.
+bool begin_lines(const char* name) {
+  if (!ImGui::BeginTable(name, 2)) return false;
+  ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed);
+  ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch);
+  return true;
 }
 
 void lines(App& app, const char* title, std::string_view prefix) {
   heading(app, title);
-  if (!ImGui::BeginTable(title, 2, ImGuiTableFlags_SizingFixedFit)) return;
+  if (!begin_lines(title)) return;
   for (const Command& command : commands()) {
     if (!std::string_view(command.id).starts_with(prefix) || command.key.key == 0) continue;
     const std::string also = key_text(command.also);
@@ -81,7 +92,7 @@ void shortcut_sheet(App& app) {
     ImGui::TableNextColumn();
     lines(app, "View", "view.");
     heading(app, "Mouse in the view");
-    if (ImGui::BeginTable("mouse", 2, ImGuiTableFlags_SizingFixedFit)) {
+    if (begin_lines("mouse")) {
       for (const Line& entry : mouse)
         line(app, entry.keys, entry.does);
       ImGui::EndTable();

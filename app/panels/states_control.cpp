@@ -13,6 +13,7 @@ constexpr double no_time = 0.3; // s
 FoundStates find_states(const Mechanism& mechanism, const Background<FoundStates>::Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
   FoundStates found;
+  report_progress(watch.progress, "preparing");
   Analysis analysis(mechanism);
   SolveOptions options;
   options.details = false;

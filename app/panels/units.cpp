@@ -101,6 +101,20 @@ double ShownUnit::shown(double value) const {
   return std::abs(si(tidy) - value) <= 4e-16 * std::abs(value) ? tidy : product;
 }
 
+std::string written_unit(std::string_view unit) {
+  std::string written;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const std::string_view power = unit.substr(i, 2);
+    if (power == "^2" || power == "^3") {
+      written += power == "^2" ? "²" : "³";
+      ++i;
+    } else {
+      written += unit[i];
+    }
+  }
+  return written;
+}
+
 ShownUnit shown_unit(std::string_view si, const DisplayUnits& units) {
   const bool mm = units.length == LengthUnit::millimetre;
   if (si == "m" && mm) return {"mm", 1e3, 1e-3};
@@ -112,7 +126,7 @@ ShownUnit shown_unit(std::string_view si, const DisplayUnits& units) {
   if (si == "rad" && units.angle == AngleUnit::degree) return {"°", 1 / degree, degree};
   if (si == "rad/s" && units.speed == SpeedUnit::degree) return {"°/s", 1 / degree, degree};
   if (si == "rad/s" && units.speed == SpeedUnit::rpm) return {"rpm", 60 / turn, turn / 60};
-  return {std::string(si), 1, 1};
+  return {written_unit(si), 1, 1};
 }
 
 ShownUnit coordinate_unit(bool angle, const DisplayUnits& units) {

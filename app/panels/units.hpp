@@ -45,13 +45,16 @@ struct DisplayUnits {
 
 // A unit on the screen, and how many of it the SI unit is.
 struct ShownUnit {
-  std::string text; // as it can be typed, too: "°", "N/mm"
+  std::string text; // as it can be typed, too: "°", "N/mm", "m/s²"
   double factor = 1;
   double inverse = 1;
 
   double shown(double si) const; // without the last digit's dust, so that a typed 1.1 mm is shown so
   double si(double shown) const;
 };
+
+// The unit with powers set high: "m/s²" for m/s^2.
+std::string written_unit(std::string_view unit);
 
 // For numbers in the unit `si` ("rad/s", "N/m"), which is also what it is where there is no choice.
 ShownUnit shown_unit(std::string_view si, const DisplayUnits& units);

@@ -79,7 +79,15 @@ void caption(App& app, const PanelRect& rect) {
   std::string state; // which pose it is, the legend says
   if (app.playback.time != 0 && solved)
     state = "t = " + short_text(std::floor(app.playback.time * 100) / 100, 6) + " s after the drawn phase";
-  if (!state.empty()) list.AddText({x, y}, packed(colors.dim), state.c_str());
+  if (!state.empty()) {
+    const ImVec2 size = ImGui::CalcTextSize(state.c_str());
+    const ImVec2 from(x - 5 * s, y - 2 * s), to(x + size.x + 5 * s, y + size.y + 2 * s);
+    ImVec4 plate = colors.panel; // nothing of the picture crosses the words
+    plate.w = 0.9f;
+    list.AddRectFilled(from, to, packed(plate), 4 * s);
+    list.AddText({x, y}, packed(colors.dim), state.c_str());
+    app.widgets["view/time"] = {from, to};
+  }
   list.PopClipRect();
 }
 
@@ -90,7 +98,7 @@ void motion_caption(App& app, const PanelRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddText(app.fonts.strong, big, at, packed(colors.text), "Motion");
   const MotionRun* shown = shown_motion(app);
-  const std::string what = !shown ? "Computing…" : shown->run->damped ? "damped" : "without dampers";
+  const std::string words = motion_words(app, shown), what = shown ? words.substr(6) : "Computing…";
   list.AddText({at.x, at.y + big + 4 * s}, packed(colors.dim), what.c_str());
 }
 
@@ -139,7 +147,7 @@ std::string tried_text(const App& app) {
   const ShownUnit unit =
       shown_unit(parameter_unit(app.document.stored(), explored.front().address), app.units);
   return "Explored: " + parameter_phrase(explored.front().address) + " " +
-         short_text(unit.shown(explored.front().value)) + (unit.text.empty() ? "" : " " + unit.text);
+         short_text(unit.shown(explored.front().value), 9) + (unit.text.empty() ? "" : " " + unit.text);
 }
 
 } // namespace

@@ -13,6 +13,19 @@ Mechanism with_gravity(double down) {
   return m;
 }
 
+Mechanism with_bodies(std::initializer_list<const char*> names) {
+  Mechanism m = Document::empty_mechanism();
+  for (const char* name : names) {
+    m.bodies.emplace_back();
+    m.bodies.back().name = name;
+  }
+  return m;
+}
+
+Selection body(const char* name) {
+  return {{{PartKind::body, name}}};
+}
+
 } // namespace
 
 TEST_CASE("an edit is a step, and nothing is none") {
@@ -65,4 +78,65 @@ TEST_CASE("the oldest steps are dropped, the rest stays exact") {
   CHECK(document.mechanism() == with_gravity(501));
   document.go_to(5000);
   CHECK(document.mechanism() == with_gravity(1500));
+}
+
+TEST_CASE("undoing keeps what is selected as far as it exists") {
+  Document document(with_bodies({"a", "b"}));
+  document.select(body("a"));
+  Mechanism heavy = document.stored();
+  heavy.bodies[0].mass = 2;
+  document.edit("Set mass", heavy, document.selection());
+  SECTION("though the step before knew of no selection") {
+    document.undo();
+    CHECK(document.selection() == body("a"));
+    document.redo();
+    CHECK(document.selection() == body("a"));
+  }
+  SECTION("also where another part was selected since") {
+    document.select(body("b"));
+    document.undo();
+    CHECK(document.selection() == body("b"));
+    document.redo();
+    CHECK(document.selection() == body("b"));
+  }
+  SECTION("and nothing stays nothing") {
+    document.select({});
+    document.undo();
+    CHECK(document.selection().empty());
+    document.redo();
+    CHECK(document.selection().empty());
+  }
+}
+
+TEST_CASE(
+    "undoing selects what it brings back, and what was selected before where all that is selected goes") {
+  Document document(with_bodies({"a", "b"}));
+  document.select(body("b"));
+  document.edit("Delete b", with_bodies({"a"}), {});
+  CHECK(document.selection().empty());
+  SECTION("what comes back") {
+    document.undo();
+    CHECK(document.selection() == body("b"));
+    document.redo();
+    CHECK(document.selection().empty());
+  }
+  SECTION("not over what was selected meanwhile") {
+    document.select(body("a"));
+    document.undo();
+    CHECK(document.selection() == body("a"));
+  }
+  SECTION("what goes") {
+    document.select(body("a"));
+    document.edit("Add c", with_bodies({"a", "c"}), body("c"));
+    document.undo();
+    CHECK(document.selection() == body("a"));
+    document.redo();
+    CHECK(document.selection() == body("a"));
+  }
+  SECTION("of several those that are left") {
+    document.edit("Add c", with_bodies({"a", "c"}), {});
+    document.select({{{PartKind::body, "c"}, {PartKind::body, "a"}}});
+    document.undo();
+    CHECK(document.selection() == body("a"));
+  }
 }

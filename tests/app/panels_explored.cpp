@@ -131,3 +131,13 @@ TEST_CASE("after a crash unsaved edits come back, and explored values are as sto
     CHECK(get_parameter(recovered, speed) == 11.0174);
   }
 }
+
+TEST_CASE("an explored value is told with the digits of its field") {
+  const TemporaryFolder folder;
+  FileRobot robot(folder);
+  App& app = robot.app;
+  robot.open(governor_in(folder));
+  change_parameter(app, speed, 14.2857142857);
+  CHECK_THAT(explored_words(app).front(), ContainsSubstring(" 14.2857143 rad/s"));
+  CHECK_THAT(explored_words(app).front(), ContainsSubstring("stored is 11.0174 rad/s"));
+}

@@ -5,6 +5,7 @@
 #include "app/document/mass_properties.hpp"
 #include "app/panels/inspector_parts.hpp"
 #include "app/panels/layout.hpp"
+#include "app/panels/quantity.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
@@ -674,4 +675,64 @@ TEST_CASE("the history goes to any step") {
   CHECK(hand.body("ball1").mass == 4);
   hand.click("history/0");
   CHECK(hand.mechanism() == hand.app.document.saved());
+}
+
+TEST_CASE("undo leaves the rows where they are, and a second edit at the same place means the same number") {
+  Hand hand;
+  open_scene(hand.app, FLYBALL_ASSETS "/scenes/watt_governor.json");
+  set_mode(hand.app, Mode::build);
+  hand.frames(3);
+  hand.click("outline/bodies/arm1");
+  const Mechanism before = hand.mechanism();
+  const ImVec2 at = hand.widget("inspector/position/x").center();
+  const auto edit_there = [&] {
+    hand.click(at);
+    hand.type("300 mm");
+    hand.key(key_enter);
+  };
+  edit_there();
+  CHECK(hand.body("arm1").position.x() == 0.3);
+  hand.key('Z', true);
+  CHECK(hand.mechanism() == before);
+  CHECK(hand.app.selection().parts == std::vector{Part{PartKind::body, "arm1"}});
+  CHECK(hand.widget("inspector/position/x").center().y == at.y);
+  edit_there();
+  CHECK(hand.body("arm1").position.x() == 0.3);
+  CHECK(hand.mechanism().gravity == before.gravity);
+  hand.key('Z', true);
+  hand.key('Z', true, true);
+  CHECK(hand.body("arm1").position.x() == 0.3);
+  CHECK(hand.app.selection().parts == std::vector{Part{PartKind::body, "arm1"}});
+}
+
+TEST_CASE("deleting says what goes along though it was not selected") {
+  Hand hand;
+  open_scene(hand.app, FLYBALL_ASSETS "/scenes/watt_governor.json");
+  set_mode(hand.app, Mode::build);
+  hand.choose(PartKind::body, "arm1");
+  hand.key(261); // Delete
+  CHECK(hand.app.notice == "Deleted arm1 together with joints arm1 and knee1.");
+  hand.choose(PartKind::joint, "foot1");
+  hand.key(261);
+  CHECK(hand.app.notice.empty());
+  undo(hand.app);
+  CHECK(hand.app.selection().parts == std::vector{Part{PartKind::joint, "foot1"}});
+}
+
+TEST_CASE("powers in fields are written as in results, and typed either way") {
+  Hand hand;
+  select(hand.app, {});
+  hand.frames(2);
+  hand.click("inspector/gravity/y");
+  CHECK_THAT(hand.app.inspector.typing.text, Catch::Matchers::EndsWith(" m/s²"));
+  hand.type("-5 m/s^2");
+  hand.key(key_enter);
+  CHECK(hand.mechanism().gravity.y() == -5);
+  hand.fill("inspector/gravity/y", "-6 m/s²");
+  CHECK(hand.mechanism().gravity.y() == -6);
+  CHECK(shown_unit("kg/m^3", {}).text == "kg/m³");
+  CHECK(shown_unit("N s^2/m^2", {}).text == "N s²/m²");
+  CHECK(shown_unit("m/s^10", {}).text == "m/s^10");
+  for (const char* unit : {"m/s^2", "kg m^2", "kg/m^3", "N s^2/m^2"})
+    CHECK(parse_quantity("2.5 " + written_unit(unit), unit, written_unit(unit)).value == 2.5);
 }

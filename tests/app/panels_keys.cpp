@@ -337,3 +337,78 @@ TEST_CASE("the number that is meant in a typed quantity") {
   CHECK(meant("m", 1).empty());
   CHECK(meant("", 0).empty());
 }
+
+TEST_CASE("a number typed with its unit over the number alone drives the former unit out") {
+  Hand hand;
+  select(hand.app, {{{PartKind::body, "ball1"}}});
+  hand.frames(2);
+  const auto ball = [&] { return hand.app.mechanism().bodies[1]; };
+  REQUIRE(ball().name == "ball1");
+  const auto type_over = [&](const char* field, const char* typed) {
+    hand.frames(40); // or it would be a triple click
+    hand.point({hand.widget(field).from.x + 8, hand.widget(field).center().y});
+    for (int i = 0; i < 4; ++i) {
+      ImGui::GetIO().MouseDown[0] = i % 2 == 0;
+      hand.frames(1);
+    }
+    hand.frames(2);
+    hand.type(typed);
+  };
+  type_over("inspector/mass", "1 kg");
+  CHECK(hand.app.inspector.typing.text == "1 kg kg");
+  CHECK(hand.app.inspector.typing.mistake.empty());
+  hand.key(key_enter);
+  CHECK(ball().mass == 1);
+  type_over("inspector/mass", "1500 g");
+  hand.key(key_enter);
+  CHECK(ball().mass == 1.5);
+  type_over("inspector/position/y", "21 cm");
+  hand.key(key_enter);
+  CHECK(ball().position.y() == Approx(0.21));
+  // What makes no sense without it either is still refused.
+  type_over("inspector/mass", "2 m");
+  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("Expected a mass"));
+  hand.key(key_escape);
+  CHECK(ball().mass == 1.5);
+}
+
+TEST_CASE(
+    "after a key that was a command in the view the next is one, too, whatever came under the pointer") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  robot.key(keys::tab);
+  REQUIRE(app.mode == Mode::build);
+  robot.click("outline/bodies/ball1");
+  // Where the motion's panel will be.
+  const WidgetRect view = robot.widget("view");
+  robot.point({view.center().x, view.to.y - 60});
+  robot.key('M');
+  REQUIRE(app.study.open == Study::motion);
+  REQUIRE(app.playback.playing);
+  robot.key(' ');
+  CHECK_FALSE(app.playback.playing);
+  CHECK_FALSE(app.notice.starts_with("No field"));
+  // A number that is begun among its fields is none all the same.
+  robot.key('1');
+  robot.key('M');
+  CHECK(app.study.open == Study::motion);
+  CHECK_THAT(app.notice, ContainsSubstring("No field is being typed in"));
+}
+
+TEST_CASE("no line of the sheet of keys is cut") {
+  const int width = GENERATE(1280, 1060, 900);
+  Robot robot({width, 800});
+  robot.key('?');
+  robot.frames(3);
+  const auto window = static_cast<float>(width);
+  const float right = window / 2 + std::min(1000.f, window - 20) / 2; // the sheet's
+  int lines = 0;
+  for (const auto& [name, rect] : robot.app.widgets)
+    if (name.starts_with("shortcuts/") && name != "shortcuts/close") {
+      INFO(name);
+      CHECK(rect.to.x <= right - 21); // what is cut ends at the rim
+      ++lines;
+    }
+  CHECK(lines > 40);
+  CHECK(robot.widget("shortcuts/Digits while placing").to.y < robot.widget("shortcuts/close").to.y);
+}

@@ -1,6 +1,7 @@
 // The view tells which pose is drawn how.
 #include "app/panels/legend.hpp"
 #include "app/panels/motion_control.hpp"
+#include "app/panels/study_panels.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"
 
@@ -49,6 +50,62 @@ TEST_CASE("the legend names what is in the view, and no more") {
   robot.frames(2);
   CHECK(words(app).empty());
   CHECK(app.widgets.count("legend") == 0);
+}
+
+TEST_CASE("only dampers that act make a motion damped") {
+  Robot robot;
+  App& app = robot.app;
+  edit_parameter(app, "joints.slide.damping", 0);
+  app.motion.duration = 0.2;
+  robot.key('M');
+  robot.frames(3);
+  REQUIRE(shown_motion(app));
+  CHECK(words(app).back() == "Motion");
+  for (const PlotCurve& curve : motion_plot(app, "value slide").curves)
+    CHECK(curve.name == "motion");
+  edit_parameter(app, "joints.slide.damping", 30);
+  robot.frames(3);
+  CHECK(words(app).back() == "Motion, damped");
+  app.motion.runs[0].wanted = false;
+  app.motion.runs[1].wanted = true;
+  restart_motion(app);
+  robot.frames(3);
+  CHECK(words(app).back() == "Motion, without dampers");
+}
+
+TEST_CASE("the legend's amber is that of the motion, as pale as the glass in the view") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  app.motion.duration = 0.2;
+  robot.key('M');
+  robot.frames(3);
+  const std::vector<LegendRow> rows = legend_rows(app);
+  REQUIRE(rows.back().mark == LegendMark::motion);
+  const WidgetRect row = robot.widget("legend/" + std::to_string(rows.size() - 1));
+  const Image picture = robot.picture();
+  const std::uint8_t* mark = picture.at(static_cast<int>(row.from.x + 10), static_cast<int>(row.center().y));
+  const Color& amber = palette(app.theme).motion;
+  const auto over_white = [&](float part) { return 255 * (1 - amber.a * (1 - part)); };
+  CHECK(static_cast<float>(mark[0]) == Approx(over_white(amber.r)).margin(12));
+  CHECK(static_cast<float>(mark[1]) == Approx(over_white(amber.g)).margin(12));
+  CHECK(static_cast<float>(mark[2]) == Approx(over_white(amber.b)).margin(12));
+}
+
+TEST_CASE("the time after the drawn phase stands on a plate") {
+  Robot robot({1280, 900});
+  CHECK_FALSE(robot.app.widgets.contains("view/time"));
+  robot.key(' ');
+  robot.frames(20, 0.05);
+  robot.key(' ');
+  REQUIRE(robot.app.playback.time > 0);
+  const WidgetRect plate = robot.widget("view/time");
+  const Image picture = robot.picture();
+  // Between its rim and the words there is but one colour.
+  const int y = static_cast<int>(plate.from.y) + 1;
+  const std::uint8_t* first = picture.at(static_cast<int>(plate.from.x) + 8, y);
+  for (int x = static_cast<int>(plate.from.x) + 8; x < static_cast<int>(plate.to.x) - 8; ++x)
+    for (int k = 0; k < 3; ++k)
+      CHECK(std::abs(picture.at(x, y)[k] - first[k]) <= 6);
 }
 
 TEST_CASE("the legend folds") {

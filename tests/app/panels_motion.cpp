@@ -9,7 +9,9 @@
 #include "tests/catch.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -268,6 +270,36 @@ TEST_CASE("an edit while the motion is shown is followed, and undone") {
   undo(app);
   robot.frames(2);
   CHECK(track(run_of(app), "slide").value[100] == before);
+}
+
+TEST_CASE("while a motion is computed it is told how much of it there is") {
+  const OffscreenContext context;
+  App app({.mode = LiveSolver::Mode::background,
+           .on_news = {},
+           .scenes = {},
+           .theme = Theme::light,
+           .numbers = {}});
+  Stage stage(app, 1);
+  open_scene(app, FLYBALL_ASSETS "/scenes/chain20.json");
+  const auto wait = [&](const auto& until) {
+    for (int i = 0; i < 3000 && !until(); ++i) {
+      stage.frame(app, wide, 0.01);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    REQUIRE(until());
+  };
+  wait([&] { return app.answer.ticket != 0; });
+  app.motion.duration = 1000;
+  open_study(app, Study::motion);
+  CHECK(computed_motion(app) == 0.);
+  wait([&] { return app.widgets.contains("motion/progress"); });
+  wait([&] { return computed_motion(app).value_or(0) > 0; });
+  CHECK(*computed_motion(app) < 1000);
+  stop_motion(app);
+  wait([&] { return !computing_motion(app); });
+  CHECK_FALSE(computed_motion(app));
+  stage.frame(app, wide, 0.01);
+  CHECK_FALSE(app.widgets.contains("motion/progress"));
 }
 
 TEST_CASE("building ends the motion") {

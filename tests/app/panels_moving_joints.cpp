@@ -102,7 +102,7 @@ TEST_CASE("everything selected moves as one, and only joints to the rest are tol
       for (const std::size_t end : {0u, 1u})
         CHECK((is.points[end] - was.points[end] - by * Vec3::UnitX()).norm() < 1e-12);
   }
-  CHECK(hand.app.notice == "spin went along.");
+  CHECK(hand.app.notice == "Joint spin went along.");
   // It settles as it did: all of it went.
   CHECK(hand.app.answer.solution.status == Status::converged);
 }
@@ -121,4 +121,21 @@ TEST_CASE("a body that is turned turns its joints' axes along") {
   CHECK(outer_joints(m, {{{PartKind::body, "spindle"}}}).size() >= 3);
   CHECK(outer_joints(m, {{{PartKind::body, "spindle"}, {PartKind::joint, "spin"}}}).size() + 1 ==
         outer_joints(m, {{{PartKind::body, "spindle"}}}).size());
+}
+
+TEST_CASE("what stays at the other side of joints that went along is told") {
+  Hand hand;
+  const auto move = [&](const char* body) {
+    hand.choose({{PartKind::body, body}});
+    hand.click("inspector/position/x");
+    hand.type("300 mm");
+    hand.key(key_enter);
+  };
+  move("ball1");
+  CHECK(hand.app.notice == "Joint arm1 went along; spindle stays where it was; link1 follows with one end.");
+  open_scene(hand.app, FLYBALL_ASSETS "/scenes/watt_governor.json");
+  set_mode(hand.app, Mode::build);
+  hand.frames(3);
+  move("arm1");
+  CHECK(hand.app.notice == "Joints arm1 and knee1 went along; spindle and link1 stay where they were.");
 }

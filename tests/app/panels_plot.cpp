@@ -9,6 +9,8 @@
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
 
+#include <imgui_internal.h>
+
 #include <cmath>
 #include <memory>
 
@@ -232,6 +234,28 @@ TEST_CASE("the marker is dragged along the curves, and the plot stays") {
   CHECK(bench.dragged.back().index == Approx(1.4).margin(0.02));
   CHECK(bench.ended == 1);
   CHECK(bench.range(0) == PlotRange{0, 10});
+}
+
+TEST_CASE("the marker is not drawn over the card that reads the curves") {
+  Bench bench;
+  bench.plot.marker = PlotMarker{3, 3, "now"};
+  bench.frame(2);
+  const ImVec2 marker = bench.at(3, 3);
+  bench.point({marker.x - 30, marker.y + 40}); // the card stands above the pointer, at the right
+  // What is drawn last is the same with the marker and without: the card.
+  const auto last = [&] {
+    const ImDrawList* list = ImGui::FindWindowByName("bench")->DrawList;
+    std::vector<float> at;
+    for (int i = list->VtxBuffer.Size - 40; i < list->VtxBuffer.Size; ++i) {
+      at.push_back(list->VtxBuffer[i].pos.x);
+      at.push_back(list->VtxBuffer[i].pos.y);
+    }
+    return at;
+  };
+  const std::vector<float> with = last();
+  bench.plot.marker.reset();
+  bench.frame(2);
+  CHECK(last() == with);
 }
 
 TEST_CASE("the menu offers scales, and the numbers for the clipboard") {

@@ -130,3 +130,20 @@ TEST_CASE("settings that cannot be read are as at first") {
     CHECK(read_settings(folder.path()) == Settings{});
   }
 }
+
+TEST_CASE("the lines below sliders change with the units at once") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  choose_units(app, si);
+  robot.frames(2);
+  REQUIRE(robot.app.widgets.contains(std::string("parameters/") + speed + "/rate"));
+  const std::uint64_t ticket = app.answer.ticket;
+  const auto shown = [&] { return app.panels.rates.at(speed).rates.front(); };
+  REQUIRE(shown().unit == "rad/(rad/s)");
+  const double value = shown().value;
+  choose_units(app, workshop);
+  robot.frames(1);
+  CHECK(app.answer.ticket == ticket);
+  CHECK(shown().unit == "°/rpm");
+  CHECK(shown().value == Approx(value * 6));
+}
