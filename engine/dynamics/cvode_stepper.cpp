@@ -166,7 +166,7 @@ class CvodeStepper : public Stepper {
     CVodeGetNumErrTestFails(memory_, &failures);
     CVodeGetNumStepSolveFails(memory_, &unsolved);
     if (!adams_) CVodeGetNumJacEvals(memory_, &jacobians);
-    const auto since = [this](long now, long& seen) { return now - std::exchange(seen, now); };
+    const auto since = [](long now, long& seen) { return now - std::exchange(seen, now); };
     counts_.steps += since(steps, seen_.steps);
     counts_.evaluations += since(evaluations, seen_.evaluations);
     counts_.rejected += since(failures + unsolved, seen_.rejected);
