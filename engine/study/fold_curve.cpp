@@ -315,6 +315,8 @@ class Plane {
                      " through the " + std::to_string(lines_.size()) +
                      " lines searched; there may be others between.";
       if (cancelled()) out_.message = "Cancelled. " + out_.message;
+    } else if (out_.message.empty()) { // before anything was found
+      out_.message = "Cancelled.";
     }
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     return std::move(out_);

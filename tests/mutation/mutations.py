@@ -35,7 +35,7 @@ MUTATIONS = [
     Mutation("drag's damping across its speed, sign", "engine/system/linearization.cpp",
              "if (speed > 0) force += f.quadratic / speed * v * v.dot(dv);\n      for_coordinates_of",
              "if (speed > 0) force -= f.quadratic / speed * v * v.dot(dv);\n      for_coordinates_of",
-             "dynamics_tests", "*linearised*"),
+             "dynamics_tests", "eigenvalues of*,a rate gyro tilts*"),
     Mutation("momentum in the gyroscopic matrix, sign", "engine/system/linearization.cpp",
              "u.force -= 2 * b.momentum.cross(s.sw);", "u.force += 2 * b.momentum.cross(s.sw);",
              "equilibrium_tests", "rotation can hold*,a spinning rotor*,a conical pendulum swings*,the swing pendulum*"),

@@ -168,7 +168,7 @@ TEST_CASE("the landscape is drawn below the view") {
   }
 }
 
-TEST_CASE("the tutorial's pictures are what its steps lead to", "[!mayfail]") {
+TEST_CASE("the tutorial's pictures are what its steps lead to") {
   Robot robot(building_size, steady_options().numbers);
   robot.app.view.samples = 4;
   build_governor(robot, [&](const std::string& step) {
