@@ -1,7 +1,5 @@
-""
-    "Every shipped scene and every case under every command, twice: the same bits but for run times; an exit of 0, 1
-    or 2 within a deadline;
-words wherever the exit is not 0; no number that is none in JSON and CSV.
+"""Every shipped scene and every case under every command, twice: the same bits but for run times; an exit of 0, 1
+or 2 within a deadline; words wherever the exit is not 0; no number that is none in JSON and CSV.
 
 Usage: every_command_test.py [--memcheck] FLYBALL FOLDER...
 
@@ -26,9 +24,11 @@ DEADLINE = 60  # s on the clock, of a machine that may be busy; on an idle one t
 SKIPPED = 77
 RUN_TIMES = {"run_time_s", "motion_s", "direct_s", "ratio"}
 DRAWN = {"governor", "brace_of_wrong_length"}  # a picture takes a second: two of them
-#Searches that take seconds : many coordinates at which many equilibria lie.
-ENDLESS = {"motion_with_a_far_point", "motion_with_extreme_damping", "motion_of_a_string_held_far_away"}  # to the clock's limit
+# Searches that take seconds: many coordinates at which many equilibria lie.
 LONG_SEARCH = {"chain20", "uninitialised_eigenvalues_of_a_pencil", "uninitialised_eigenvalues"}
+
+# Motions that go on to the limit of time: how far they come is the clock's affair.
+ENDLESS = {"motion_with_a_far_point", "motion_with_extreme_damping", "motion_of_a_string_held_far_away"}
 
 
 def first_coordinate(scene):
@@ -64,25 +64,29 @@ def commands(path):
     if path.stem not in ENDLESS:
         yield ["compare", "--repeats", "1", "--json", "--duration", "0.02"]
     try:
-        scene
-  = json.loads(path.read_text()) except ValueError : return address, low,
-      high = a_parameter(scene) vary =
-          [
-            "--vary", f "{address}={low!r}:{high!r}"
-          ] yield["sweep", "--vary", f "{address}={low!r}:{high!r}:3", "--csv",
-                  "OUT"] yield["sweep", "--vary", f "{address}={low!r}:{high!r}:3", "--csv",
-                               "-"] yield["branch", *vary, "--csv", "OUT", "--svg", "OUT2"] if path.stem in
-              DRAWN : yield["render", "--size", "160x120", "-o", "OUT"] wanted =
-              first_coordinate(scene) if wanted
-      : yield["design", "--connected", *vary, "--want", f "{wanted}=0.1", "--json"] if path.stem in
-            LONG_SEARCH : yield["branch", *vary, "--json"] else
-      : yield["solve", "--all", "--json"] yield["branch", "--all", *vary, "--json"]
+        scene = json.loads(path.read_text())
+    except ValueError:
+        return
+    address, low, high = a_parameter(scene)
+    vary = ["--vary", f"{address}={low!r}:{high!r}"]
+    yield ["sweep", "--vary", f"{address}={low!r}:{high!r}:3", "--csv", "OUT"]
+    yield ["sweep", "--vary", f"{address}={low!r}:{high!r}:3", "--csv", "-"]
+    yield ["branch", *vary, "--csv", "OUT", "--svg", "OUT2"]
+    if path.stem in DRAWN:
+        yield ["render", "--size", "160x120", "-o", "OUT"]
+    wanted = first_coordinate(scene)
+    if wanted:
+        yield ["design", "--connected", *vary, "--want", f"{wanted}=0.1", "--json"]
+    if path.stem in LONG_SEARCH:
+        yield ["branch", *vary, "--json"]
+    else:
+        yield ["solve", "--all", "--json"]
+        yield ["branch", "--all", *vary, "--json"]
 
-        def
-        without_times(value)
-      : if isinstance (value, dict) : return {
-  key: None if key in RUN_TIMES else without_times(part) for key, part in value.items()
-  }
+
+def without_times(value):
+    if isinstance(value, dict):
+        return {key: None if key in RUN_TIMES else without_times(part) for key, part in value.items()}
     return [without_times(part) for part in value] if isinstance(value, list) else value
 
 
