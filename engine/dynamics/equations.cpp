@@ -213,23 +213,19 @@ std::string Equations::unsolved() const {
          " kg m^2, too far apart for double precision; masses and lengths of like sizes mend that";
 }
 
-Eigen::VectorXd Equations::drive_forces() const {
-  Eigen::VectorXd out = force_.tail(drives_);
-  out.noalias() += mass_.mass.bottomLeftCorner(drives_, n_) * a_;
-  if (!rows_.empty()) out.noalias() += gradient_.rightCols(drives_).transpose() * scaled_lambda_;
-  return out;
+double Equations::drive_force(int d) const {
+  double force = force_[n_ + d];
+  for (int i = 0; i < n_; ++i)
+    force += mass_.mass(n_ + d, i) * a_[i];
+  for (Eigen::Index r = 0; r < gradient_.rows(); ++r)
+    force += gradient_(r, n_ + d) * scaled_lambda_[r];
+  return force;
 }
 
 double Equations::drive_power() const {
   double power = 0;
-  for (int d = 0; d < drives_; ++d) {
-    double force = force_[n_ + d];
-    for (int i = 0; i < n_; ++i)
-      force += mass_.mass(n_ + d, i) * a_[i];
-    for (Eigen::Index r = 0; r < gradient_.rows(); ++r)
-      force += gradient_(r, n_ + d) * scaled_lambda_[r];
-    power += force * u_[n_ + d];
-  }
+  for (int d = 0; d < drives_; ++d)
+    power += drive_force(d) * u_[n_ + d];
   return power;
 }
 

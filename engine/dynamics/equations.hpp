@@ -64,8 +64,8 @@ class Equations {
   const Eigen::VectorXd& multipliers() const { return lambda_; } // all rows; zero on dependent ones
   const Kinematics<double>& kinematics() const { return kinematics_; }
   const Eigen::MatrixXd& mass() const { return mass_.mass; }
-  double drive_power() const;           // W, of all drives
-  Eigen::VectorXd drive_forces() const; // N m or N, by System::drives: what each coordinate asks for
+  double drive_force(int drive) const; // N m or N: what the coordinate of System::drives asks for
+  double drive_power() const;          // W, of all drives
   ForcePowers powers();
   double stored_energy() const; // J
   double energy_scale();        // J, of the motion and of what the forces do over a radian or the reach

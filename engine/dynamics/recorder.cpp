@@ -232,14 +232,13 @@ void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
   run_.time.push_back(t);
   record_coordinates(t);
   record_energies(t, energies);
-  const Eigen::VectorXd forces = equations_->drive_forces();
   std::size_t motor = 0;
   for (std::size_t d = 0; d < system.drives.size(); ++d) {
     if (system.drives[d].motor != static_cast<int>(d)) continue;
     double torque = 0;
     for (std::size_t e = 0; e < system.drives.size(); ++e)
       if (system.drives[e].motor == static_cast<int>(d))
-        torque += forces[static_cast<Eigen::Index>(e)] *
+        torque += equations_->drive_force(static_cast<int>(e)) *
                   model_->parameters.links[at(system.drives[e].link)].gear_ratio;
     run_.drives[motor++].torque.push_back(torque);
   }

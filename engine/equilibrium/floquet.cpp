@@ -14,9 +14,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int usual_turns = 64;  // of the fastest drive in a period
-constexpr int most_turns = 1024; // where the drives have a common period at all
-constexpr int most_steps = 1 << 17;
+constexpr int usual_turns = 64;    // of the fastest drive in a period
+constexpr int most_turns = 1024;   // where the drives have a common period at all
 constexpr double accuracy = 1e-11; // of multipliers, relative to the largest
 
 Eigen::MatrixXd commutator(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -63,6 +62,12 @@ std::optional<double> period_of_motion(const Problem& problem, const Eigen::Vect
       return period;
   }
   return {};
+}
+
+// Of a period: each multiplies matrices of this size, and all together are to take a second or two.
+int most_steps(Eigen::Index size) {
+  const double n = static_cast<double>(size);
+  return static_cast<int>(std::clamp(0x1p26 / (n * n * n), 32., 0x1p17));
 }
 
 struct Monodromy {
@@ -156,8 +161,9 @@ FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Wo
   for (const Complex rate : rates.value_or(std::vector<Complex>()))
     fastest = std::max(fastest, std::abs(rate));
   const double needed = std::max(8. * std::max(1, turns), fastest * *period);
-  if (!(needed <= most_steps)) return fail(FloquetFailure::unresolved);
-  for (int steps = static_cast<int>(needed); steps <= most_steps; steps *= 2) {
+  const int most = most_steps(motion->size());
+  if (!(needed <= most)) return fail(FloquetFailure::unresolved);
+  for (int steps = static_cast<int>(needed); steps <= most; steps *= 2) {
     const MonodromyOutcome outcome = monodromy(*motion, steps, problem.cancel);
     const auto* phi = std::get_if<Monodromy>(&outcome);
     if (!phi) return fail(std::get<FloquetFailure>(outcome));

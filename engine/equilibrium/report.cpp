@@ -110,8 +110,8 @@ std::string floquet_message(FloquetFailure failure) {
     return begin +
            "and a direction in which it moves has neither mass nor damping nor stiffness at some phase.";
   case FloquetFailure::unresolved:
-    return begin +
-           "and is too large, too stiff or too slow in its period beside its own oscillations to follow.";
+    return begin + "and is too large, too stiff or too slow in its period beside its own oscillations to "
+                   "follow, or its loops turn too far.";
   case FloquetFailure::cancelled: return begin + "and looking for its multipliers was cancelled.";
   }
   return "";

@@ -151,6 +151,46 @@ TEST_CASE("Floquet: damping takes c / 2 m off every growth rate of Mathieu's equ
         Approx(without.floquet->growth.front() - damping / (2 * t.mass)).margin(2e-2));
 }
 
+TEST_CASE("Floquet: a loop whose null space turns with the drive", "[floquet]") {
+  // The bead moves in a plane that leans against the table's: on two slides of the ground, or on three of the
+  // table and tied to the ground, so that the directions that are free turn in the table's coordinates.
+  const double lean = 0.3;
+  const Vec3 down(0, std::cos(lean), -std::sin(lean)), normal(0, std::sin(lean), std::cos(lean));
+  for (const double speed : {5., 7.8, 8.7, 9.5, 20.}) {
+    Turntable t;
+    t.speed = speed;
+    t.free_length = 0.5;
+    const auto with = [&](std::vector<Joint> slides, std::vector<Body> carriages) {
+      Mechanism m;
+      m.name = "Leaning bead";
+      m.gravity.setZero();
+      m.bodies = std::move(carriages);
+      m.bodies.push_back(body("bead", t.mass, Vec3::Zero()));
+      add_turntable(t, m);
+      m.joints.insert(m.joints.end(), slides.begin(), slides.end());
+      return m;
+    };
+    const Solution plain = solve(with({prismatic("x", "ground", "across", Vec3::Zero(), Vec3::UnitX()),
+                                       prismatic("s", "across", "bead", Vec3::Zero(), down)},
+                                      {body("across", 0, Vec3::Zero())}),
+                                 nearest());
+    const Solution tied = solve(with({prismatic("u", "table", "first", Vec3::Zero(), Vec3::UnitX()),
+                                      prismatic("v", "first", "second", Vec3::Zero(), Vec3::UnitY()),
+                                      prismatic("w", "second", "bead", Vec3::Zero(), Vec3::UnitZ()),
+                                      distance("tie", "ground", "bead", -3 * normal, Vec3::Zero())},
+                                     {body("first", 0, Vec3::Zero()), body("second", 0, Vec3::Zero())}),
+                                nearest());
+    CAPTURE(speed, tied.message, plain.message);
+    REQUIRE(tied.floquet);
+    REQUIRE(plain.floquet);
+    CHECK(tied.stable == plain.stable);
+    REQUIRE(tied.floquet->growth.size() == plain.floquet->growth.size());
+    CHECK(tied.floquet->period == Approx(plain.floquet->period));
+    for (std::size_t i = 0; i < plain.floquet->growth.size(); ++i)
+      CHECK(std::abs(tied.floquet->growth[i] - plain.floquet->growth[i]) < 1e-7);
+  }
+}
+
 TEST_CASE("Floquet: a rotating saddle holds what it carries where it turns fast enough", "[floquet]") {
   // In the table's frame m (x'' - 2 w y' - w^2 x) + k x = 0 and the like: eigenvalues of a constant pencil.
   Turntable t;
