@@ -1,11 +1,15 @@
 // Eigenvalues and verdicts of stability against closed forms.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
+#include "engine/equilibrium/drive_cuts.hpp"
+#include "engine/equilibrium/linear_motion.hpp"
 #include "engine/equilibrium/pencil.hpp"
+#include "engine/equilibrium/report.hpp"
 #include "engine/equilibrium/stability.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 
 #include <complex>
 #include <random>
@@ -367,6 +371,37 @@ TEST_CASE("only asked for its sign, stability says the same") {
       CHECK(full.neutral == brief.neutral);
       if (!near) CHECK(full.status == Status::converged);
     }
+  }
+}
+
+TEST_CASE("a pencil that QZ gives up has eigenvalues all the same") {
+  const Mechanism m = load_scene(FLYBALL_ASSETS "/../tests/cases/uninitialised_eigenvalues_of_a_pencil.json");
+  std::vector<std::string> notes;
+  const System system = compile_for_drives(m, notes);
+  Parameters parameters;
+  Scaling scaling;
+  bind(system, m, parameters);
+  set_scaling(system, parameters, scaling);
+  Eigen::VectorXd q;
+  drawn_configuration(system, parameters, q);
+  const Solution solution = solve(m);
+  REQUIRE(solution.status == Status::converged);
+  set_start(system, parameters, start_values(solution.coordinates), q);
+  Workspace w;
+  const Problem problem{system, parameters, scaling};
+  const LinearMotion motion = linear_motion(problem, q, 0, w);
+  const Eigen::MatrixXd& n = motion.basis;
+  const Eigen::MatrixXd mass = n.transpose() * motion.mass * n,
+                        velocity = n.transpose() * motion.velocity * n,
+                        stiffness = n.transpose() * motion.stiffness * n;
+  const auto found = pencil_eigenvalues(mass, velocity, stiffness);
+  REQUIRE(found);
+  CHECK(found->size() > 2);
+  for (const Complex x : *found) { // each makes the pencil singular
+    const Eigen::MatrixXcd pencil = x * x * mass.cast<Complex>() + x * velocity.cast<Complex>() + stiffness;
+    const double size = std::norm(x) * mass.norm() + std::abs(x) * velocity.norm() + stiffness.norm();
+    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXcd>(pencil).singularValues();
+    CHECK(values.tail(1)[0] < 1e-9 * size);
   }
 }
 
