@@ -92,7 +92,4 @@ MUTATIONS = [
     Mutation("pencil by its inverse, sign", "engine/linear/spectral.cpp", "out.push_back(shift + 1. / mu);",
              "out.push_back(shift - 1. / mu);", "equilibrium_tests",
              "a pencil that QZ*"),
-    Mutation("symmetric eigenvalues of what is no number", "engine/linear/spectral.cpp",
-             "if (!a.allFinite()) return false;\n  large_ = a.rows() >= large::from;\n  if (large_) return large::symm",
-             "large_ = a.rows() >= large::from;\n  if (large_) return large::symm", "linear_tests"),
 ]
