@@ -6,6 +6,7 @@
 #include "engine/dynamics/singular_position.hpp"
 #include "engine/dynamics/start.hpp"
 #include "engine/dynamics/watch.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -449,11 +450,16 @@ Simulator::Simulator(const Mechanism& mechanism, const SimulationOptions& option
   x.watch.allow(options.time_limit);
   x.run.damped = options.damped;
   try {
+    const Interruptible scope(options.cancel); // what is decomposed on the way can be large
     x.open(mechanism, options);
   } catch (const SceneError&) {
     x.stepper.reset();
     if (!x.interrupt()) throw;
     return; // without a sample
+  } catch (const Interrupted&) {
+    x.stepper.reset();
+    x.interrupt();
+    return;
   }
   x.run.notes = x.model->notes;
   x.begin = x.stepped_to;
