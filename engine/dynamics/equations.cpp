@@ -1,6 +1,7 @@
 #include "engine/dynamics/equations.hpp"
 
 #include "engine/equilibrium/constraint_space.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/system/constraint_row.hpp"
 
@@ -159,6 +160,16 @@ bool Equations::solve_motion(const Eigen::VectorXd& force, const Eigen::VectorXd
 
 bool Equations::evaluate(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s) {
   if (watch_.over()) return false;
+  // A large mass matrix takes long to factor. What that throws must not pass through an integrator's library.
+  const Interruptible scope(watch_.flag());
+  try {
+    return evaluate_uncaught(t, q, s);
+  } catch (const Interrupted&) {
+    return false;
+  }
+}
+
+bool Equations::evaluate_uncaught(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s) {
   load(t, q, s);
   s_ = u_;
   place();

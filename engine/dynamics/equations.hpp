@@ -107,6 +107,7 @@ class Equations {
   const MotionModel& model() const { return model_; }
 
  private:
+  bool evaluate_uncaught(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s);
   void load(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
   void place(const Eigen::VectorXd* s = nullptr, const Eigen::VectorXd* a = nullptr);
   bool factor();

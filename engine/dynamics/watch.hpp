@@ -20,6 +20,7 @@ class Watch {
       end_ =
           Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
+  const std::atomic<bool>* flag() const { return cancel_; }
   bool cancelled() const { return cancel_ && cancel_->load(std::memory_order_relaxed); }
   bool out_of_time() const { return limited_ && Clock::now() >= end_; }
   bool over() const { return cancelled() || out_of_time(); }
