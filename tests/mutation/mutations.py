@@ -56,8 +56,6 @@ MUTATIONS = [
     Mutation("discriminant of two pairs, its size alone", "engine/equilibrium/pair_crossing.cpp",
              "return 4 * sum.real() / static_cast<double>(cluster.size());",
              "return 4 * std::abs(sum) / static_cast<double>(cluster.size());", "equilibrium_tests", "[flutter]"),
-    Mutation("damped pairs taken for undamped ones", "engine/equilibrium/pair_crossing.cpp",
-             "if (!mirrored ||", "if ((!mirrored && mirrored) ||", "equilibrium_tests", "[flutter]"),
     Mutation("dampers do not disturb a sleeping top", "engine/equilibrium/gyroscopic_stability.cpp",
              "if (!(size > 0)) return false;", "return false;", "equilibrium_tests", "[gyroscopic]"),
     Mutation("gyroscopic matrix, symmetric part", "engine/equilibrium/gyroscopic_stability.cpp",
