@@ -5,6 +5,7 @@
 #include "engine/equilibrium/constraint_space.hpp"
 #include "engine/mechanism/error.hpp"
 
+#include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 
 #include <algorithm>
@@ -78,7 +79,8 @@ void Equations::choose_idle() {
   scaled = scaled * unit.asDiagonal();
   space.factor(scaled, 1e-14);
   const Eigen::MatrixXd basis = unit.asDiagonal() * space.basis();
-  const Eigen::MatrixXd reduced = basis.transpose() * mass_.mass.topLeftCorner(n_, n_) * basis;
+  const Eigen::MatrixXd weighed = unit.asDiagonal() * mass_.mass.topLeftCorner(n_, n_) * unit.asDiagonal();
+  const Eigen::MatrixXd reduced = large::projected(weighed, space.basis());
   if (reduced.rows() > 0) {
     SymmetricEigen eigen;
     if (!eigen.compute((reduced + reduced.transpose()) / 2)) refuse_numbers();

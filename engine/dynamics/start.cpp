@@ -3,6 +3,7 @@
 #include "engine/equilibrium/analysis.hpp"
 #include "engine/equilibrium/answer_search.hpp"
 #include "engine/equilibrium/report.hpp"
+#include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/system/motion.hpp"
@@ -70,7 +71,7 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
     // From rest: the momentum of everything, the drives' motion included, is to vanish.
     Eigen::VectorXd momentum = mass * range;
     if (from_rest) momentum += column.cwiseProduct(m.mass.topRows(n) * all_u);
-    const Eigen::MatrixXd reduced = basis.transpose() * mass * basis;
+    const Eigen::MatrixXd reduced = large::projected(mass, basis);
     const auto along = least_squares(reduced, basis.transpose() * momentum);
     if (!along) refuse();
     step -= basis * *along;
