@@ -83,7 +83,8 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
 void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q) {
   const Problem problem{model.system, model.parameters, model.scaling, options.cancel};
   Workspace w;
-  const SteadyState steady = find_steady_state(problem, q, SolveOptions{}.search, w);
+  SteadyState steady;
+  find_steady_state(problem, q, SolveOptions{}.search, w, steady);
   if (!steady.holds) {
     const Stability unknown;
     const ReportInput input{model.mechanism, problem, steady.found, steady.existence, unknown};

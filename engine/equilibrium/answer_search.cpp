@@ -51,31 +51,30 @@ AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
   return out;
 }
 
-SteadyState find_steady_state(const Problem& problem, const Eigen::VectorXd& start, double seconds,
-                              Workspace& w) {
-  const std::vector<double> phases = sample_phases(problem.system, problem.parameters);
-  SteadyState out;
-  std::vector<double> history;
-  Eigen::VectorXd error;
+void find_steady_state(const Problem& problem, const Eigen::VectorXd& start, double seconds, Workspace& w,
+                       SteadyState& out) {
+  out.holds = false;
+  out.existence = {};
+  out.tried.clear();
+  out.phases = sample_phases(problem.system, problem.parameters);
   const auto judge = [&] {
     if (out.found.status != Status::converged) return;
-    refine(problem, out.found.z, out.found.newton, w, error);
-    out.existence = check_existence(problem, out.found.z.q, phases, w);
+    refine(problem, out.found.z, out.found.newton, w, out.error);
+    out.existence = check_existence(problem, out.found.z.q, out.phases, w);
     out.holds = out.existence.holds;
   };
-  find_equilibrium(problem, start, false, false, w, history, out.found);
+  find_equilibrium(problem, start, false, false, w, out.history, out.found);
   judge();
   const int nv = problem.system.nv;
-  if (out.holds || problem.cancelled() || nv == 0 || nv > largest_for_answer_search) return out;
-  AnswerSearch other = search_answer(problem, start, phases, seconds, w);
+  if (out.holds || problem.cancelled() || nv == 0 || nv > largest_for_answer_search) return;
+  AnswerSearch other = search_answer(problem, start, out.phases, seconds, w);
   if (!other.answer) {
     out.tried = describe(other);
-    return out;
+    return;
   }
   other.answer->iterations += out.found.iterations;
   out.found = std::move(*other.answer);
   judge();
-  return out;
 }
 
 std::string describe(const AnswerSearch& search) {

@@ -28,15 +28,19 @@ AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
                            const std::vector<double>& phases, double seconds, Workspace& w);
 
 // The steady state that solving answers with, where only the state itself is wanted: find_equilibrium() from
-// `start` and, where that leads to none that holds at every phase, search_answer() for `seconds`.
+// `start` and, where that leads to none that holds at every phase, search_answer() for `seconds`. `out` is
+// used again: nothing is allocated in it for a system of the same size.
 struct SteadyState {
   Found found;
   Existence existence;
-  bool holds = false; // found, and at every phase
-  std::string tried;  // where it does not: what the search did, in a sentence
+  bool holds = false;         // found, and at every phase
+  std::string tried;          // where it does not: what the search did, in a sentence
+  std::vector<double> phases; // s, at which it was looked at; none where nothing turns
+  std::vector<double> history;
+  Eigen::VectorXd error; // of refine()
 };
-SteadyState find_steady_state(const Problem& problem, const Eigen::VectorXd& start, double seconds,
-                              Workspace& w);
+void find_steady_state(const Problem& problem, const Eigen::VectorXd& start, double seconds, Workspace& w,
+                       SteadyState& out);
 
 // What was tried, as a sentence to follow a refusal: "None of 3 equilibria found by 120 starts holds ...".
 std::string describe(const AnswerSearch& search);

@@ -65,7 +65,8 @@ class Diagram {
       existence = check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters), w);
     std::string tried;
     if ((found.status != Status::converged || !existence.holds) && !problem.cancelled()) {
-      SteadyState other = find_steady_state(problem, start, SolveOptions{}.search, w);
+      SteadyState other;
+      find_steady_state(problem, start, SolveOptions{}.search, w, other);
       tried = std::move(other.tried);
       if (other.holds) {
         begun_ = "It begins at a steady state that a search found: the drawn pose leads to none.";

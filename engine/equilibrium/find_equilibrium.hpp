@@ -22,7 +22,7 @@ struct Found {
   std::optional<Net> net;
   bool minimum = false; // a strict minimum of the amended potential on the constraints
   int iterations = 0;
-  bool fell = false;    // the way downhill went on for hundreds of reaches before this was settled for
+  bool fell = false;  // the way downhill went on for hundreds of reaches before this was settled for
   int open_cut = -1;  // infeasible: the worst cut joint, in System::cuts
   double opening = 0; // infeasible: scaled
 };

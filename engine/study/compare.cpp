@@ -73,10 +73,10 @@ class Direct {
 
   // From the drawn pose to an answer that is known to exist and be stable, as Analysis::solve does.
   bool answer(Unknowns& z) {
-    steady_ = find_steady_state(problem(), drawn_, SolveOptions{}.search, w_);
+    find_steady_state(problem(), drawn_, SolveOptions{}.search, w_, steady_);
     if (!steady_.holds) return false;
-    const bool moving = !sample_phases(system_, parameters_).empty();
-    if (!steady_.found.minimum || moving) stability_ = find_stability(problem(), steady_.found.z, false, w_);
+    if (!steady_.found.minimum || !steady_.phases.empty())
+      stability_ = find_stability(problem(), steady_.found.z, false, w_);
     z = steady_.found.z;
     return true;
   }

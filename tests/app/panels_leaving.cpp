@@ -62,8 +62,8 @@ class Window {
 } // namespace
 
 TEST_CASE("a study of a long chain is left in the frame that asks for it, and keys act in the next") {
-  // Following its branches takes minutes, and what is waited for is less than the time one frame may take on a
-  // machine that is busy with other things.
+  // Following its branches takes minutes, and what is waited for is less than the time one frame may take on
+  // a machine that is busy with other things.
   constexpr double frame_limit = 2; // s
   Window window(hanging_chain(600));
   struct Key {
