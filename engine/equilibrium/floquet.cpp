@@ -160,7 +160,7 @@ FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Wo
   double fastest = 0;
   for (const Complex rate : rates.value_or(std::vector<Complex>()))
     fastest = std::max(fastest, std::abs(rate));
-  const double needed = std::max(8. * std::max(1, turns), fastest * *period);
+  const double needed = std::max(8. * std::max(1, turns), fastest * motion->period());
   const int most = most_steps(motion->size());
   if (!(needed <= most)) return fail(FloquetFailure::unresolved);
   for (int steps = static_cast<int>(needed); steps <= most; steps *= 2) {
@@ -185,12 +185,12 @@ FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Wo
         return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
       });
       Floquet result;
-      result.period = *period;
+      result.period = motion->period();
       result.multipliers = std::move(*multipliers);
       result.error = std::max(change, 1e-14) * std::abs(result.multipliers.front());
       for (const Complex mu : result.multipliers)
         if (std::abs(mu) > 1e-12 * std::abs(result.multipliers.front()))
-          result.growth.push_back(std::log(std::abs(mu)) / *period);
+          result.growth.push_back(std::log(std::abs(mu)) / motion->period());
       out.result = std::move(result);
       return out;
     }

@@ -1,8 +1,10 @@
 #include "engine/equilibrium/periodic_motion.hpp"
 
 #include "engine/equilibrium/linear_motion.hpp"
+#include "engine/linear/exponential.hpp"
 #include "engine/linear/spectral.hpp"
 
+#include <algorithm>
 #include <complex>
 #include <limits>
 #include <numbers>
@@ -55,28 +57,57 @@ Eigen::MatrixXd wrap(const Eigen::VectorXd& entries, Eigen::Index rows, Eigen::I
   return entries.reshaped(rows, columns);
 }
 
+// The orthonormal columns of `basis` mixed so that they lie as near as they can to those of `reference`: by
+// the polar factor of N^T N_ref (Golub and Van Loan, section 6.4.1). Nothing where some direction lies further
+// than 60 degrees from all of the reference.
+std::optional<Eigen::MatrixXd> beside(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& reference) {
+  if (basis.rows() == basis.cols()) return basis; // no constraints: both are the identity
+  const auto svd = singular_vectors(basis.transpose() * reference);
+  if (!svd || !(svd->values.minCoeff() > 0.5)) return {};
+  return Eigen::MatrixXd(basis * (svd->left * svd->right.transpose()));
+}
+
+// Each basis beside the one before: parallel transport along the samples, so that directions turn no more
+// than the null space makes them. False where samples lie too far apart for it.
+bool transport_bases(std::vector<LinearMotion>& motions) {
+  for (std::size_t j = 1; j < motions.size(); ++j) {
+    auto basis = beside(motions[j].basis, motions[j - 1].basis);
+    if (!basis) return false;
+    motions[j].basis = std::move(*basis);
+  }
+  return true;
+}
+
 } // namespace
 
 std::optional<PeriodicMotion> PeriodicMotion::sample(const Problem& problem, const Eigen::VectorXd& q,
                                                      double period, int turns, Workspace& w) {
-  const Eigen::MatrixXd reference = linear_motion(problem, q, 0, w).basis;
-  const Eigen::Index n = reference.rows(), k = reference.cols(), square = k * k;
-  PeriodicMotion out;
-  out.period_ = period;
-  out.k_ = k;
-  if (k == 0) return {};
   double previous = std::numeric_limits<double>::infinity();
   for (Eigen::Index count = 8 * std::max(1, turns) + 1; count <= most_samples; count = 2 * count + 1) {
     std::vector<LinearMotion> motions;
-    Eigen::MatrixXd bases(n * k, count);
     for (Eigen::Index j = 0; j < count; ++j) {
       if (problem.cancelled()) return {};
       motions.push_back(
           linear_motion(problem, q, period * static_cast<double>(j) / static_cast<double>(count), w));
-      const auto basis = basis_beside(motions.back(), reference);
-      if (!basis) return {};
-      bases.col(j) = basis->reshaped();
     }
+    const Eigen::Index n = motions.front().basis.rows(), k = motions.front().basis.cols(), square = k * k;
+    if (k == 0 || std::ranges::any_of(motions, [&](const LinearMotion& m) { return m.basis.cols() != k; }))
+      return {};
+    if (!transport_bases(motions)) continue;
+    const auto turned = beside(motions.front().basis, motions.back().basis);
+    if (!turned) continue;
+    const auto rotation = rotation_logarithm(motions.front().basis.transpose() * *turned);
+    // A basis that comes back as its mirror image has come back after as long again.
+    if (!rotation) return sample(problem, q, 2 * period, 2 * turns, w);
+    Eigen::MatrixXd bases(n * k, count);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const auto back = matrix_exponential(-static_cast<double>(j) / static_cast<double>(count) * *rotation);
+      if (!back) return {};
+      bases.col(j) = (motions[static_cast<std::size_t>(j)].basis * *back).reshaped();
+    }
+    PeriodicMotion out;
+    out.period_ = period;
+    out.k_ = k;
     const Eigen::MatrixXd basis_series = fourier(bases);
     const double rate = 2 * std::numbers::pi / period;
     // Of what linear_motion() gives at a phase x with the basis' derivatives there.
@@ -99,25 +130,29 @@ std::optional<PeriodicMotion> PeriodicMotion::sample(const Problem& problem, con
     out.series_ = fourier(entries);
     // Between samples, where a series that ends too early is furthest off.
     double worst = 0; // relative
-    const Eigen::VectorXd sizes = entries.cwiseAbs().rowwise().maxCoeff();
+    const auto block_size = [&](Eigen::Index block) {
+      return entries.middleRows(block * square, square).cwiseAbs().maxCoeff();
+    };
+    // What is smaller than a rate of the drives times the block before is not felt in a period.
+    const double mass_size = block_size(0), velocity_size = std::max(block_size(1), rate * mass_size),
+                 stiffness_size = std::max(block_size(2), rate * velocity_size);
     for (const double part : {0.137, 0.4219, 0.8631}) {
       const Eigen::Index j = static_cast<Eigen::Index>(part * static_cast<double>(count));
       const double x = angle(2 * j + 1, 2 * count);
       const LinearMotion m = linear_motion(problem, q, period * x / (2 * std::numbers::pi), w);
-      const auto basis = basis_beside(m, reference);
-      if (!basis) return {};
-      const Matrices there = reduced(m, *basis, x), series = out.at(period * x / (2 * std::numbers::pi));
-      const double basis_error =
-          (wrap(basis_series * waves_at(x, count), n, k) - *basis).cwiseAbs().maxCoeff();
-      const auto compare = [&](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::Index block) {
+      if (m.basis.cols() != k) return {};
+      const Eigen::MatrixXd between = wrap(basis_series * waves_at(x, count), n, k),
+                            basis = m.basis * (m.basis.transpose() * between);
+      const Matrices there = reduced(m, basis, x), series = out.at(period * x / (2 * std::numbers::pi));
+      const double basis_error = (between - basis).cwiseAbs().maxCoeff();
+      const auto compare = [&](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double size) {
         const double difference = (a - b).cwiseAbs().maxCoeff();
-        if (difference > 0)
-          worst = std::max(worst, difference / sizes.segment(block * square, square).maxCoeff());
+        if (difference > 0) worst = std::max(worst, difference / size);
       };
       worst = std::max(worst, basis_error);
-      compare(series.mass, there.mass, 0);
-      compare(series.velocity, there.velocity, 1);
-      compare(series.stiffness, there.stiffness, 2);
+      compare(series.mass, there.mass, mass_size);
+      compare(series.velocity, there.velocity, velocity_size);
+      compare(series.stiffness, there.stiffness, stiffness_size);
     }
     // Where large terms cancel, rounding is what is left before the accuracy asked for.
     const bool rounding = worst < 1e-7 && worst > 0.3 * previous;

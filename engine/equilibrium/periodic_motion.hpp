@@ -9,10 +9,12 @@ namespace flyball {
 class PeriodicMotion {
  public:
   // Samples linear_motion() over `period` (s), in which the fastest drive makes `turns` turns, until the
-  // series gives the matrices between the samples, too. The coordinates are those of a null space basis N(t)
-  // of the constraints beside that of the drawn phase: with delta = N p the motion has N^T [M N p'' + (2 M N'
-  // + D N) p' + (M N'' + D N' + K N) p] = 0. Nothing where the null space turns too far or the series does
-  // not end.
+  // series gives the matrices between the samples, too. The coordinates are those of an orthonormal null space
+  // basis N(t) of the constraints: with delta = N p the motion has N^T [M N p'' + (2 M N' + D N) p' + (M N'' +
+  // D N' + K N) p] = 0. N is carried from phase to phase by parallel transport, and what it has turned by at
+  // the end of the period is taken back evenly over it, so that it has that period, too (twice as long a one
+  // where it returns as its mirror image). Nothing where the series does not end or the number of free
+  // directions changes.
   static std::optional<PeriodicMotion> sample(const Problem& problem, const Eigen::VectorXd& q, double period,
                                               int turns, Workspace& w);
 

@@ -11,4 +11,8 @@ namespace flyball {
 // is not finite.
 std::optional<Eigen::MatrixXd> matrix_exponential(const Eigen::MatrixXd& a);
 
+// S = -S^T with exp(S) = q of an orthogonal matrix (n, n), the shortest: no angle above pi. Nothing where the
+// determinant is -1: no rotation leads there.
+std::optional<Eigen::MatrixXd> rotation_logarithm(const Eigen::MatrixXd& q);
+
 } // namespace flyball

@@ -462,6 +462,15 @@ std::optional<ComplexEigen> eigenvectors(const Eigen::MatrixXd& a) {
   return out;
 }
 
+std::optional<SchurForm> real_schur(const Eigen::MatrixXd& a) {
+  if (!a.allFinite() || a.rows() == 0) return {};
+  const Eigen::RealSchur<Eigen::MatrixXd> schur(a);
+  if (schur.info() != Eigen::Success) return {};
+  SchurForm out{schur.matrixT(), schur.matrixU()};
+  if (!out.t.allFinite() || !out.u.allFinite()) return {};
+  return out;
+}
+
 std::optional<std::vector<Complex>> generalized_eigenvalues(const Eigen::MatrixXd& a,
                                                             const Eigen::MatrixXd& b, CancelFlag cancel) {
   if (cancel) return unless_interrupted(cancel, [&] { return generalized_eigenvalues(a, b); });

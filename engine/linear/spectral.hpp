@@ -192,6 +192,13 @@ struct ComplexEigen {
 };
 std::optional<ComplexEigen> eigenvectors(const Eigen::MatrixXd& a);
 
+// A = U T U^T of a general real matrix (n, n): U orthogonal, T upper triangular but for blocks (2, 2) of
+// complex pairs (Golub and Van Loan, section 7.4).
+struct SchurForm {
+  Eigen::MatrixXd t, u;
+};
+std::optional<SchurForm> real_schur(const Eigen::MatrixXd& a);
+
 // The finite s of (a - s b) x = 0, b singular or not: by QZ (Moler and Stewart 1973), and where that does not
 // converge by shift and invert. Eigenvalues above 1e12 times the size of the rest count as infinite and are
 // left out. Nothing where neither gives an answer, as of a singular pencil.

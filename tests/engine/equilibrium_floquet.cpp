@@ -2,7 +2,9 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/equilibrium/branches.hpp"
+#include "engine/equilibrium/drive_cuts.hpp"
 #include "engine/equilibrium/floquet.hpp"
+#include "engine/equilibrium/periodic_motion.hpp"
 #include "engine/linear/spectral.hpp"
 
 #include <complex>
@@ -189,6 +191,69 @@ TEST_CASE("Floquet: a loop whose null space turns with the drive", "[floquet]") 
     for (std::size_t i = 0; i < plain.floquet->growth.size(); ++i)
       CHECK(std::abs(tied.floquet->growth[i] - plain.floquet->growth[i]) < 1e-7);
   }
+}
+
+namespace {
+
+// Mathieu's bead on two slides of the table, tied to a far point of the ground: the direction that is free
+// makes a whole turn in the table's coordinates.
+Mechanism tied_bead(const Turntable& t) {
+  Mechanism m;
+  m.name = "Tied bead";
+  m.gravity.setZero();
+  m.bodies = {body("first", 0, Vec3::Zero()), body("bead", t.mass, Vec3::Zero())};
+  add_turntable(t, m);
+  m.joints.push_back(prismatic("u", "table", "first", Vec3::Zero(), Vec3::UnitX()));
+  m.joints.push_back(prismatic("v", "first", "bead", Vec3::Zero(), Vec3::UnitY()));
+  m.joints.push_back(distance("tie", "ground", "bead", Vec3(0, -4, 0), Vec3::Zero()));
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("Floquet: a null space that makes a whole turn with the drive", "[floquet]") {
+  // The tie carries no force, so that the bead moves as on a slide that stands still.
+  for (const double speed : {5., 7.8, 8.7, 9.5, 20.}) {
+    Turntable t;
+    t.speed = speed;
+    t.free_length = 0.5;
+    const Solution plain = solve(mathieu(t), nearest()), tied = solve(tied_bead(t), nearest());
+    CAPTURE(speed, tied.message, plain.message);
+    REQUIRE(tied.floquet);
+    REQUIRE(plain.floquet);
+    CHECK(tied.stable == plain.stable);
+    CHECK(tied.floquet->period == Approx(plain.floquet->period));
+    REQUIRE(tied.floquet->multipliers.size() == plain.floquet->multipliers.size());
+    for (const Complex mu : plain.floquet->multipliers)
+      CHECK(std::ranges::any_of(tied.floquet->multipliers,
+                                [&](Complex other) { return std::abs(other - mu) < 1e-8 * std::abs(mu); }));
+  }
+}
+
+TEST_CASE("PeriodicMotion: a basis that comes back mirrored has twice the period", "[floquet]") {
+  // After half a turn the table looks the same and the line that is free is the same, the other way along.
+  Turntable t;
+  t.free_length = 0.5;
+  std::vector<std::string> notes;
+  const Mechanism m = tied_bead(t);
+  const System system = compile_for_drives(m, notes);
+  Parameters parameters;
+  bind(system, m, parameters);
+  Scaling scaling;
+  set_scaling(system, parameters, scaling);
+  const Problem problem{system, parameters, scaling};
+  Eigen::VectorXd q;
+  drawn_configuration(system, parameters, q);
+  Workspace w;
+  const double turn = 2 * std::numbers::pi / t.speed;
+  const auto motion = PeriodicMotion::sample(problem, q, turn / 2, 1, w);
+  REQUIRE(motion);
+  CHECK(motion->period() == Approx(turn));
+  const auto whole = PeriodicMotion::sample(problem, q, turn, 1, w);
+  REQUIRE(whole);
+  for (const double part : {0., 0.2, 0.7})
+    CHECK((*motion->state_matrix(part * turn) - *whole->state_matrix(part * turn)).norm() <
+          1e-9 * whole->state_matrix(0)->norm());
 }
 
 TEST_CASE("Floquet: a rotating saddle holds what it carries where it turns fast enough", "[floquet]") {

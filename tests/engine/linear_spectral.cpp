@@ -1,4 +1,5 @@
 // The same answers from large matrices, which are decomposed by pieces, as Eigen's own decompositions give.
+#include "engine/linear/exponential.hpp"
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "tests/catch.hpp"
@@ -121,4 +122,26 @@ TEST_CASE("a flag ends the eigenvalues of a large matrix without an answer") {
   CHECK_THROWS_AS(eigenvalues(random_matrix(n, n, 12)), Interrupted);
   SymmetricEigen symmetric;
   CHECK_THROWS_AS(symmetric.compute(Eigen::MatrixXd::Identity(n, n)), Interrupted);
+}
+
+TEST_CASE("the logarithm of a rotation is skew and leads back to it; a reflection has none") {
+  for (const int size : {1, 2, 3, 5, 8}) {
+    const Eigen::MatrixXd half = random_matrix(size, size, 40 + static_cast<unsigned>(size));
+    const Eigen::MatrixXd rotation = matrix_exponential(half - half.transpose()).value();
+    const auto log = rotation_logarithm(rotation);
+    REQUIRE(log);
+    CHECK((*log + log->transpose()).cwiseAbs().maxCoeff() < 1e-13);
+    CHECK((matrix_exponential(*log).value() - rotation).cwiseAbs().maxCoeff() < 1e-13);
+    // Two axes turned round in a random basis; then one.
+    Eigen::MatrixXd turned = Eigen::MatrixXd::Identity(size, size);
+    turned(0, 0) = -1;
+    CHECK_FALSE(rotation_logarithm(rotation * turned * rotation.transpose()));
+    if (size < 2) continue;
+    turned(1, 1) = -1;
+    turned = (rotation * turned * rotation.transpose()).eval();
+    const auto round = rotation_logarithm(turned);
+    REQUIRE(round);
+    CHECK((*round + round->transpose()).cwiseAbs().maxCoeff() < 1e-13);
+    CHECK((matrix_exponential(*round).value() - turned).cwiseAbs().maxCoeff() < 1e-13);
+  }
 }
