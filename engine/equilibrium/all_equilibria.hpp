@@ -20,7 +20,7 @@ struct SearchOptions {
   // run on every computer searches alike.
   double seconds = 1;
   int starts = 0;       // at most so many; zero: as many as the budget allows
-  double unseen = 0.25; // stop where no more than these are expected to be missing
+  double unseen = 0.05; // stop where no more than these are expected to be missing
   std::uint32_t seed = 1;
   ReportProgress progress{}; // the part of the budget that is spent
 };

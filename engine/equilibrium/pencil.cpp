@@ -141,11 +141,17 @@ Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixX
   if (massless == 0) {
     s = regular_eigenvalues((m1 + m1.transpose()) / 2, d1, k1, cancel);
   } else {
-    const auto felt_directions = felt(shape.vectors().leftCols(massless), d1, k1);
+    const Eigen::MatrixXd light = shape.vectors().leftCols(massless),
+                          r = shape.vectors().rightCols(m1.rows() - massless);
+    const Eigen::MatrixXd twice_damping = (d1 + d1.transpose()) * light,
+                          twice_gyroscopic = (d1 - d1.transpose()) * light;
+    // A mass of m_z couples gyroscopically like sqrt(m_z m_r): where masses are neglected up to 1e-13, so is
+    // the coupling up to its root.
+    const bool damped = twice_damping.norm() > 1e-13 * (d1.norm() + 1) ||
+                        twice_gyroscopic.norm() > 1e-6 * (d1.norm() + 1);
+    const auto felt_directions = felt(light, damped ? d1 : Eigen::MatrixXd::Zero(d1.rows(), d1.cols()), k1);
     if (!felt_directions) return {};
     const Eigen::MatrixXd& z = *felt_directions;
-    const Eigen::MatrixXd r = shape.vectors().rightCols(m1.rows() - massless);
-    const bool damped = (d1 * z).norm() + (z.transpose() * d1).norm() > 1e-13 * (d1.norm() + 1);
     if (damped) {
       Eigen::MatrixXd all(m1.rows(), z.cols() + r.cols());
       all << z, r;

@@ -428,6 +428,24 @@ TEST_CASE("massless directions without stiffness hold what they are coupled with
   }
 }
 
+TEST_CASE("a gyroscopic coupling as small as the mass that is neglected is neglected with it") {
+  // x'' = -4 x, y'' = -9 y with gyroscopic forces, and z of a mass of 1e-16 whose share in these is 1e-9: not
+  // an equation of its own, which would hold x.
+  Eigen::MatrixXd mass = Eigen::Vector3d(1, 1, 1e-16).asDiagonal(),
+                  stiffness = Eigen::Vector3d(4, 9, 0).asDiagonal(), velocity = Eigen::MatrixXd::Zero(3, 3);
+  velocity(0, 1) = 1;
+  velocity(0, 2) = 1e-9;
+  velocity = (velocity - velocity.transpose()).eval();
+  const auto with = pencil_eigenvalues(mass, velocity, stiffness);
+  const auto without =
+      pencil_eigenvalues(mass.topLeftCorner(2, 2), velocity.topLeftCorner(2, 2), stiffness.topLeftCorner(2, 2));
+  REQUIRE(with);
+  REQUIRE(without);
+  REQUIRE(with->size() == without->size());
+  for (std::size_t i = 0; i < with->size(); ++i)
+    CHECK(std::abs((*with)[i] - (*without)[i]) < 1e-12);
+}
+
 TEST_CASE("what feels neither mass nor spring nor damper has no eigenvalue") {
   // A body on a spring beside coordinates without an equation of motion, all turned against the axes.
   std::mt19937 random(3);
