@@ -63,6 +63,7 @@ void Equations::choose_rows() {
 void Equations::choose_idle() {
   idle_.clear();
   evaluate_mass(system_, parameters_, kinematics_, mass_);
+  interruption_point();
   // In units in which every coordinate alone would have mass one or less.
   double largest = 0;
   for (int v = 0; v < n_; ++v)
@@ -78,11 +79,14 @@ void Equations::choose_idle() {
         linearization_.constraint.row(rows_[r]).head(n_) * model_.scaling.row[rows_[r]];
   scaled = scaled * unit.asDiagonal();
   space.factor(scaled, 1e-14);
+  interruption_point();
   const Eigen::MatrixXd basis = unit.asDiagonal() * space.basis();
+  interruption_point();
   const Eigen::MatrixXd weighed = unit.asDiagonal() * mass_.mass.topLeftCorner(n_, n_) * unit.asDiagonal();
   const Eigen::MatrixXd reduced = large::projected(weighed, space.basis());
   if (reduced.rows() > 0) {
     SymmetricEigen eigen;
+    interruption_point();
     if (!eigen.compute((reduced + reduced.transpose()) / 2)) refuse_numbers();
     Eigen::Index count = 0;
     while (count < reduced.rows() && eigen.values()[count] < no_mass)

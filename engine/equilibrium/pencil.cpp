@@ -132,6 +132,7 @@ Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixX
   // Time in units in which mass and stiffness are alike.
   const double rate = k > 0 ? std::sqrt(k / m) : d > 0 ? d / m : 1;
   const Eigen::MatrixXd m1 = mass / m, d1 = velocity / (m * rate), k1 = stiffness / (m * rate * rate);
+  interruption_point();
   SymmetricEigen shape;
   if (!shape.compute((m1 + m1.transpose()) / 2)) return {};
   Eigen::Index massless = 0;

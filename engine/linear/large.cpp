@@ -234,7 +234,10 @@ void factor_pivoted_qr(Eigen::MatrixXd& a, Eigen::VectorXd& coefficients, Eigen:
 
 bool symmetric_eigen(Eigen::MatrixXd a, Eigen::VectorXd& values, Eigen::MatrixXd* vectors) {
   const Eigen::Index n = a.rows();
-  const double size = n > 0 ? a.triangularView<Eigen::Lower>().toDenseMatrix().cwiseAbs().maxCoeff() : 0;
+  interruption_point();
+  double size = 0;
+  for (Eigen::Index j = 0; j < n; ++j)
+    size = std::max(size, a.col(j).tail(n - j).cwiseAbs().maxCoeff());
   if (size > 0) a /= size;
   Eigen::VectorXd e, coefficients;
   tridiagonalize(a, values, e, coefficients);
