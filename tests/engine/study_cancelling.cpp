@@ -94,9 +94,8 @@ Mechanism with_losses(Mechanism m) {
   return m;
 }
 
-} // namespace
-
-TEST_CASE("every study of a chain ends within 50 ms of being asked to", "[.cancel]") {
+// How long (s of processor time) each study goes on when it is asked to stop in the midst of its work.
+void check_cancelling(double most) {
   std::mt19937 random(20);
   for (const int links : {200, 1000})
     for (const Mechanism& m : {bench::chain(links, 3), with_losses(bench::chain(links, 3))})
@@ -108,7 +107,16 @@ TEST_CASE("every study of a chain ends within 50 ms of being asked to", "[.cance
             time_to_stop(after, [&](const std::atomic<bool>& cancel) { computation.run(m, cancel); });
         if (!took) continue; // it was quick
         UNSCOPED_INFO("ended after " << *took << " s");
-        // Of processor time.
-        CHECK(*took < 0.05);
+        CHECK(*took < most);
       }
+}
+
+} // namespace
+
+TEST_CASE("every study of a chain ends when it is asked to") {
+  check_cancelling(0.5); // whatever else the machine does
+}
+
+TEST_CASE("every study of a chain ends within 50 ms of being asked to", "[.cancel]") {
+  check_cancelling(0.05);
 }
