@@ -6,7 +6,7 @@
 #include "app/panels/plot_picture.hpp"
 #include "app/plot/svg.hpp"
 #include "app/render/offscreen.hpp"
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"

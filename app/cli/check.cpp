@@ -4,11 +4,11 @@
 #include "app/cli/report_error.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

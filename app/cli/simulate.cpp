@@ -10,11 +10,11 @@
 #include "app/render/movie.hpp"
 #include "engine/dynamics/settled.hpp"
 #include "engine/dynamics/simulator.hpp"
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

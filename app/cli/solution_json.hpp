@@ -1,9 +1,9 @@
 // A solution as the JSON object that `flyball solve --json` prints.
 #pragma once
 
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <nlohmann/json.hpp>
 

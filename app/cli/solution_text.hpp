@@ -2,8 +2,8 @@
 // number with its unit.
 #pragma once
 
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <string>
 

@@ -4,9 +4,9 @@
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
 #include "app/cli/solution_text.hpp"
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <fmt/format.h>
 

@@ -8,8 +8,8 @@
 #pragma once
 
 #include "app/live/worker.hpp"
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <atomic>
 #include <condition_variable>

@@ -4,8 +4,8 @@
 
 #include "app/live/background.hpp"
 #include "app/panels/plot_view.hpp"
-#include "engine/equilibrium/analysis.hpp"
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <complex>
 #include <memory>

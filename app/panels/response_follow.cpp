@@ -1,9 +1,9 @@
 #include "app/panels/response_follow.hpp"
 
-#include "engine/equilibrium/branch_follower.hpp"
-#include "engine/equilibrium/existence.hpp"
-#include "engine/equilibrium/stability.hpp"
+#include "engine/continuation/branch_follower.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/solve/existence.hpp"
+#include "engine/stability/stability.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // Branches of equilibria through a state that is given, rather than from the drawn pose.
 #pragma once
 
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 
 #include <optional>
 

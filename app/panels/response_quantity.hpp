@@ -1,7 +1,7 @@
 // What the response curve can show over the parameter.
 #pragma once
 
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 
 #include <string>
 #include <vector>

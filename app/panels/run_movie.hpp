@@ -5,7 +5,7 @@
 #include "app/render/movie.hpp"
 #include "app/viewport/view_renderer.hpp"
 #include "engine/dynamics/simulation.hpp"
-#include "engine/equilibrium/analysis.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <memory>
 #include <optional>

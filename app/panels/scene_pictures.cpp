@@ -1,6 +1,6 @@
 #include "app/panels/scene_pictures.hpp"
 
-#include "engine/equilibrium/analysis.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <cmath>
 

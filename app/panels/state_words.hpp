@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/panels/ui_style.hpp"
-#include "engine/equilibrium/solution.hpp"
+#include "engine/solve/solution.hpp"
 
 #include <optional>
 #include <string>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/live/background.hpp"
-#include "engine/equilibrium/analysis.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 #include "engine/dynamics/choose_method.hpp"
 
 #include "engine/dynamics/fastest_rates.hpp"
-#include "engine/equilibrium/pencil.hpp"
+#include "engine/linear/pencil.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "engine/dynamics/equations.hpp"
 
-#include "engine/equilibrium/constraint_space.hpp"
+#include "engine/kkt/constraint_space.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/system/constraint_row.hpp"

@@ -2,7 +2,7 @@
 // without mass, and what moves along those.
 #include "engine/dynamics/equations.hpp"
 
-#include "engine/equilibrium/constraint_space.hpp"
+#include "engine/kkt/constraint_space.hpp"
 #include "engine/mechanism/error.hpp"
 
 #include "engine/linear/large.hpp"

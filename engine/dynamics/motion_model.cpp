@@ -1,7 +1,7 @@
 #include "engine/dynamics/motion_model.hpp"
 
-#include "engine/equilibrium/drive_cuts.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/solve/drive_cuts.hpp"
 #include "engine/system/motion.hpp"
 #include "engine/system/rotation_vector.hpp"
 

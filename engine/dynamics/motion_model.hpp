@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/simulation.hpp"
-#include "engine/equilibrium/problem.hpp"
+#include "engine/kkt/problem.hpp"
 #include "engine/system/released.hpp"
 
 namespace flyball {

@@ -1,6 +1,6 @@
 #include "engine/dynamics/recorder.hpp"
 
-#include "engine/equilibrium/report.hpp"
+#include "engine/report/report.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/potential.hpp"
 #include "engine/system/reactions.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/simulation.hpp"
-#include "engine/equilibrium/solution.hpp"
+#include "engine/solve/solution.hpp"
 
 namespace flyball {
 

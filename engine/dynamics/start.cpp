@@ -1,11 +1,11 @@
 #include "engine/dynamics/start.hpp"
 
-#include "engine/equilibrium/analysis.hpp"
-#include "engine/equilibrium/answer_search.hpp"
-#include "engine/equilibrium/report.hpp"
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/report/report.hpp"
+#include "engine/search/steady_state.hpp"
 #include "engine/system/motion.hpp"
 
 #include <algorithm>
@@ -84,7 +84,7 @@ void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, 
   const Problem problem{model.system, model.parameters, model.scaling, options.cancel};
   Workspace w;
   SteadyState steady;
-  find_steady_state(problem, q, SolveOptions{}.search, w, steady);
+  find_steady_state(problem, q, q, {.seconds = SolveOptions{}.search}, w, steady);
   if (!steady.holds) {
     const Stability unknown;
     const ReportInput input{model.mechanism, problem, steady.found, steady.existence, unknown};

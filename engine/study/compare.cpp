@@ -2,13 +2,13 @@
 
 #include "engine/dynamics/simulator.hpp"
 #include "engine/dynamics/watch.hpp"
-#include "engine/equilibrium/analysis.hpp"
-#include "engine/equilibrium/answer_search.hpp"
-#include "engine/equilibrium/drive_cuts.hpp"
-#include "engine/equilibrium/report.hpp"
-#include "engine/equilibrium/stability.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/report/report.hpp"
+#include "engine/search/steady_state.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/stability/stability.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
@@ -73,7 +73,7 @@ class Direct {
 
   // From the drawn pose to an answer that is known to exist and be stable, as Analysis::solve does.
   bool answer(Unknowns& z) {
-    find_steady_state(problem(), drawn_, SolveOptions{}.search, w_, steady_);
+    find_steady_state(problem(), drawn_, drawn_, {.seconds = SolveOptions{}.search}, w_, steady_);
     if (!steady_.holds) return false;
     if (!steady_.found.minimum || !steady_.phases.empty())
       stability_ = find_stability(problem(), steady_.found.z, false, w_);

@@ -6,7 +6,7 @@
 // unknowns, with residuals in extended precision.
 #pragma once
 
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 
 namespace flyball {
 

@@ -1,12 +1,12 @@
 #include "engine/study/fold_curve.hpp"
 
-#include "engine/equilibrium/all_equilibria.hpp"
-#include "engine/equilibrium/branch_follower.hpp"
-#include "engine/equilibrium/coordinate_gradient.hpp"
-#include "engine/equilibrium/drive_cuts.hpp"
-#include "engine/equilibrium/extended_balance.hpp"
+#include "engine/continuation/branch_follower.hpp"
+#include "engine/continuation/extended_balance.hpp"
+#include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/search/all_equilibria.hpp"
+#include "engine/solve/drive_cuts.hpp"
 #include "engine/study/design.hpp"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 // chapters 3 and 4), within a box and both ways.
 #pragma once
 
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 
 namespace flyball {
 

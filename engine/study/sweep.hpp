@@ -2,7 +2,7 @@
 // row says the same as a solve of its own would, in whatever order the rows were computed.
 #pragma once
 
-#include "engine/equilibrium/analysis.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <functional>
 #include <span>

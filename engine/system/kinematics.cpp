@@ -137,6 +137,14 @@ double coordinate_value(const System& system, const Parameters& parameters, cons
   return q[link.q];
 }
 
+bool turns_freely(const System& system, const Parameters& p, int l) {
+  const Link& link = system.links[static_cast<std::size_t>(l)];
+  return link.type == LinkType::revolute && link.drive < 0 && !p.links[static_cast<std::size_t>(l)].elastic &&
+         std::ranges::none_of(system.cuts, [&](const CutJoint& cut) {
+           return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
+         });
+}
+
 void set_coordinate(const System& system, const Parameters& parameters, const CoordinateInfo& c, double value,
                     Eigen::VectorXd& q) {
   const Link& link = system.links[static_cast<std::size_t>(c.link)];

@@ -65,6 +65,10 @@ void retract(const System& system, const Configuration<S>& step, Configuration<S
 // vector.
 double coordinate_value(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                         const CoordinateInfo& coordinate);
+// Whether whole turns of a link's coordinate do not matter: nothing springs back, stops, gears or drives it.
+// Such an angle is told in (-pi, pi].
+bool turns_freely(const System& system, const Parameters& parameters, int link);
+
 // The rotation vector of a spherical link, in the joint's own order.
 template <class S>
 Vec3T<S> rotation_vector(const Link& link, const LinkParameters& parameters, const Configuration<S>& q);

@@ -3,7 +3,7 @@
 
 #include "app/document/isometry.hpp"
 #include "app/document/part.hpp"
-#include "engine/equilibrium/analysis.hpp"
+#include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"
 
 #include <cstdint>

@@ -5,8 +5,8 @@
 #include "app/panels/response_control.hpp"
 #include "app/panels/sensitivity_line.hpp"
 #include "app/panels/study_panels.hpp"
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>

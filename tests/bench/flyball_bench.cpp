@@ -2,11 +2,11 @@
 // it, a Newton step, a solve from a neighbouring state and one from the drawn pose; and what it saves to
 // leave out what a scene does not need. Ratios of one run are printed at the end, since only those carry over
 // to another machine.
-#include "engine/equilibrium/branches.hpp"
-#include "engine/equilibrium/find_equilibrium.hpp"
-#include "engine/equilibrium/refine.hpp"
+#include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "engine/search/find_equilibrium.hpp"
+#include "engine/solve/refine.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -1,9 +1,9 @@
 // What large scenes cost, stage by stage, and with which power of their bodies that grows.
 #include "tests/bench/large_scenes.hpp"
 
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -4,7 +4,7 @@
 
 #include "engine/dynamics/equations.hpp"
 #include "engine/dynamics/start.hpp"
-#include "engine/equilibrium/constraint_space.hpp"
+#include "engine/kkt/constraint_space.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -4,7 +4,7 @@
 #include "engine/dynamics/choose_method.hpp"
 #include "engine/dynamics/fastest_rates.hpp"
 #include "engine/dynamics/motion_ode.hpp"
-#include "engine/equilibrium/pencil.hpp"
+#include "engine/linear/pencil.hpp"
 
 using namespace flyball;
 using namespace flyball::test;

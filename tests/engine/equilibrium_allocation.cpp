@@ -1,8 +1,8 @@
 // A repeated small solve allocates nothing. This program's allocation functions count, on demand.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/find_equilibrium.hpp"
-#include "engine/equilibrium/refine.hpp"
+#include "engine/search/find_equilibrium.hpp"
+#include "engine/solve/refine.hpp"
 
 #include <cerrno>
 #include <cstdlib>

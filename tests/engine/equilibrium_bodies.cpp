@@ -4,7 +4,7 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 
-#include "engine/equilibrium/find_equilibrium.hpp"
+#include "engine/search/find_equilibrium.hpp"
 
 #include <Eigen/Eigenvalues>
 

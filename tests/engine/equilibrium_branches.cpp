@@ -2,7 +2,7 @@
 // the chain.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 
 using namespace flyball;
 using namespace flyball::test;

@@ -4,8 +4,8 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 
-#include "engine/equilibrium/all_equilibria.hpp"
-#include "engine/equilibrium/drive_cuts.hpp"
+#include "engine/search/all_equilibria.hpp"
+#include "engine/solve/drive_cuts.hpp"
 
 #include <chrono>
 #include <cstdio>

@@ -2,7 +2,7 @@
 // words. Judged by Newton-Raphson in extended precision from the answer, with a Jacobian of differences.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/problem.hpp"
+#include "engine/kkt/problem.hpp"
 
 #include <Eigen/LU>
 

@@ -1,11 +1,11 @@
 // Stability where the linearised motion turns with the drives: multipliers against closed forms.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/branches.hpp"
-#include "engine/equilibrium/drive_cuts.hpp"
-#include "engine/equilibrium/floquet.hpp"
-#include "engine/equilibrium/periodic_motion.hpp"
+#include "engine/continuation/branches.hpp"
 #include "engine/linear/spectral.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/stability/floquet.hpp"
+#include "engine/stability/periodic_motion.hpp"
 
 #include <complex>
 #include <random>

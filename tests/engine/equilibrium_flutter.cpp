@@ -2,8 +2,8 @@
 // forms; and states that gyroscopic forces keep although the potential falls from them.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/branches.hpp"
-#include "engine/equilibrium/pair_crossing.hpp"
+#include "engine/continuation/branches.hpp"
+#include "engine/continuation/pair_crossing.hpp"
 #include "engine/mechanism/address.hpp"
 
 using namespace flyball;

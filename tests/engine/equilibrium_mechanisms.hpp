@@ -4,10 +4,10 @@
 #include "tests/catch.hpp"
 #include "tests/engine/mechanism_parts.hpp"
 
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <algorithm>
 #include <cmath>

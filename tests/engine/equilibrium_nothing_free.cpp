@@ -1,7 +1,7 @@
 // Mechanisms whose coordinates are all driven, or that have none: every analysis answers or says why not.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 
 using namespace flyball;
 using namespace flyball::test;

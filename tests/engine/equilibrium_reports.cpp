@@ -2,7 +2,7 @@
 // gears bear, and which reactions are the only ones possible.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"

@@ -2,7 +2,7 @@
 // start leads to none that holds.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <cstring>

@@ -1,11 +1,11 @@
 // Eigenvalues and verdicts of stability against closed forms.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/drive_cuts.hpp"
-#include "engine/equilibrium/linear_motion.hpp"
-#include "engine/equilibrium/pencil.hpp"
-#include "engine/equilibrium/report.hpp"
-#include "engine/equilibrium/stability.hpp"
+#include "engine/linear/pencil.hpp"
+#include "engine/report/report.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/stability/linear_motion.hpp"
+#include "engine/stability/stability.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -437,8 +437,8 @@ TEST_CASE("a gyroscopic coupling as small as the mass that is neglected is negle
   velocity(0, 2) = 1e-9;
   velocity = (velocity - velocity.transpose()).eval();
   const auto with = pencil_eigenvalues(mass, velocity, stiffness);
-  const auto without =
-      pencil_eigenvalues(mass.topLeftCorner(2, 2), velocity.topLeftCorner(2, 2), stiffness.topLeftCorner(2, 2));
+  const auto without = pencil_eigenvalues(mass.topLeftCorner(2, 2), velocity.topLeftCorner(2, 2),
+                                          stiffness.topLeftCorner(2, 2));
   REQUIRE(with);
   REQUIRE(without);
   REQUIRE(with->size() == without->size());

@@ -2,8 +2,8 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 
-#include "engine/equilibrium/find_equilibrium.hpp"
-#include "engine/equilibrium/refine.hpp"
+#include "engine/search/find_equilibrium.hpp"
+#include "engine/solve/refine.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,8 +1,8 @@
 // What nothing holds is named, and told from a search that failed.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
-#include "engine/equilibrium/unbounded.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/solve/unbounded.hpp"
 
 using namespace flyball;
 using namespace flyball::test;

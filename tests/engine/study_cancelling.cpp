@@ -3,9 +3,9 @@
 #include "tests/catch.hpp"
 #include "tests/time_to_stop.hpp"
 
+#include "engine/continuation/branches.hpp"
 #include "engine/dynamics/simulator.hpp"
-#include "engine/equilibrium/analysis.hpp"
-#include "engine/equilibrium/branches.hpp"
+#include "engine/report/analysis.hpp"
 #include "engine/study/compare.hpp"
 #include "engine/study/design.hpp"
 #include "engine/study/fold_curve.hpp"

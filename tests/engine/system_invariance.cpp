@@ -4,7 +4,7 @@
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/engine/system_model.hpp"
 
-#include "engine/equilibrium/analysis.hpp"
+#include "engine/report/analysis.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>

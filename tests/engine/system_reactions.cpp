@@ -3,8 +3,8 @@
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/engine/system_model.hpp"
 
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "engine/report/analysis.hpp"
 #include "engine/system/reactions.hpp"
 
 #include <algorithm>

@@ -5,11 +5,11 @@
 #include "tests/fuzz/watch.hpp"
 
 #include "engine/dynamics/simulator.hpp"
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
 #include "engine/study/compare.hpp"
 #include "engine/study/design.hpp"
 #include "engine/study/fold_curve.hpp"

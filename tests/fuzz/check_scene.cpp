@@ -3,10 +3,10 @@
 #include "tests/fuzz/not_finite.hpp"
 #include "tests/fuzz/watch.hpp"
 
-#include "engine/equilibrium/analysis.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
 
 namespace flyball::fuzz {
 namespace {

@@ -1,8 +1,8 @@
 // The first number in an answer that is none, named.
 #pragma once
 
+#include "engine/continuation/branches.hpp"
 #include "engine/dynamics/simulation.hpp"
-#include "engine/equilibrium/branches.hpp"
 
 namespace flyball::fuzz {
 

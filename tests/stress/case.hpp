@@ -1,7 +1,7 @@
 // One cell of the stability suite: a mechanism with extreme numbers, and what came of solving it.
 #pragma once
 
-#include "engine/equilibrium/analysis.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <functional>
 #include <string>

@@ -5,7 +5,7 @@
 
 #include "tests/engine/mechanism_parts.hpp"
 
-#include "engine/equilibrium/branches.hpp"
+#include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <limits>

@@ -1,7 +1,7 @@
 // Numbers to try: decades, random ones that are the same everywhere, and short words for them.
 #pragma once
 
-#include "engine/equilibrium/analysis.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <cmath>
 #include <cstdio>

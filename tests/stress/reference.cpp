@@ -2,9 +2,9 @@
 
 #include "tests/stress/wide.hpp"
 
-#include "engine/equilibrium/drive_cuts.hpp"
-#include "engine/equilibrium/problem.hpp"
-#include "engine/equilibrium/report.hpp"
+#include "engine/kkt/problem.hpp"
+#include "engine/report/report.hpp"
+#include "engine/solve/drive_cuts.hpp"
 
 #include <Eigen/LU>
 #include <Eigen/QR>

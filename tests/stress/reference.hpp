@@ -2,8 +2,8 @@
 // balance, its exact Jacobian, and loops closed in the sense of least squares, until nothing moves.
 #pragma once
 
-#include "engine/equilibrium/solution.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/solve/solution.hpp"
 
 #include <memory>
 #include <vector>

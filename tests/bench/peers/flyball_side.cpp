@@ -1,8 +1,8 @@
 #include "tests/bench/peers/flyball_side.hpp"
 
-#include "engine/equilibrium/analysis.hpp"
-#include "engine/equilibrium/find_equilibrium.hpp"
-#include "engine/equilibrium/refine.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/search/find_equilibrium.hpp"
+#include "engine/solve/refine.hpp"
 
 #include <cmath>
 #include <stdexcept>

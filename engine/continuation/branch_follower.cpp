@@ -1,0 +1,397 @@
+#include "engine/continuation/branch_follower.hpp"
+
+#include "engine/linear/interruption.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/report/report.hpp"
+#include "engine/search/all_equilibria.hpp"
+#include "engine/search/find_equilibrium.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/solve/existence.hpp"
+#include "engine/stability/stability.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+constexpr double special_accuracy = 1e-11; // of the scaled arclength
+
+bool turns_with_drives(const ResponsePoint& point) {
+  return point.stability_reason == StabilityReason::floquet;
+}
+
+} // namespace
+
+Mechanism with_parameter(const Mechanism& mechanism, const std::string& address, double value) {
+  Mechanism m = mechanism;
+  set_parameter(m, address, value);
+  validate(m);
+  return m;
+}
+
+Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates) {
+  Eigen::VectorXd q;
+  drawn_configuration(problem.system, problem.parameters, q);
+  set_start(problem.system, problem.parameters, start_values(coordinates), q);
+  return q;
+}
+
+ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
+                             const Eigen::VectorXd& error, PointDetails details, Workspace& w) {
+  ResponsePoint point;
+  const Stability stability = find_stability(problem, z, details.eigenvalues, w);
+  point.stable = stability.stable;
+  point.floquet = stability.floquet;
+  point.stability_reason = stability.reason;
+  if (stability.eigenvalues) point.eigenvalues = *stability.eigenvalues;
+  Found found;
+  found.z = z;
+  Solution s;
+  const Existence existence;
+  report({mechanism, problem, found, existence, stability},
+         error.size() > 0 ? error : Eigen::VectorXd::Zero(problem.system.nv).eval(), details.reactions, w, s);
+  point.coordinates = std::move(s.coordinates);
+  point.reactions = std::move(s.reactions);
+  point.drive_torques = std::move(s.drive_torques);
+  return point;
+}
+
+BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
+                               const BranchOptions& options)
+    : options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from), notes_)),
+      family_(system_, with_parameter(mechanism, address, from), address, std::abs(to - from)),
+      continuation_(family_), from_(from), to_(to) {}
+
+Problem BranchFollower::problem_at(double parameter) {
+  family_.set(parameter);
+  const Problem p = family_.problem();
+  return {p.system, p.parameters, p.scaling, options_.cancel};
+}
+
+std::optional<BranchState> BranchFollower::begin(Unknowns z, double parameter, bool forth) {
+  BranchState state{std::move(z), parameter, {}, 0, 0};
+  if (!continuation_.start(state, (to_ > from_) == forth ? 1 : -1)) return {};
+  return state;
+}
+
+BranchFollower::Described BranchFollower::describe(const BranchState& state) {
+  const Problem problem = problem_at(state.parameter);
+  Described d;
+  d.point = response_point(family_.mechanism(), problem, state.z, {},
+                           {options_.eigenvalues, options_.reactions}, w_);
+  d.point.parameter = state.parameter;
+  // Exponents have their frequencies but for whole turns a period: multipliers tell what crosses.
+  if (!turns_with_drives(d.point)) d.right = right_of_axis(d.point.eigenvalues, families_);
+  return d;
+}
+
+ResponsePoint BranchFollower::point(const BranchState& state) {
+  return describe(state).point;
+}
+
+Spectrum BranchFollower::spectrum(const BranchState& state) {
+  return find_stability(problem_at(state.parameter), state.z, true, w_).eigenvalues.value_or(Spectrum{});
+}
+
+// Where `value` (of a state and its distance along the branch) changes its sign, by the Illinois method
+// (Dowell and Jarratt 1971), and how far along that is. `value` may be a step function: then this halves.
+template <class Value>
+std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, double low, double at_low,
+                                                      double high, double at_high, const BranchState& beyond,
+                                                      Value value) {
+  BranchState at = beyond, probe;
+  double found = high, previous = low;
+  int side = 0;
+  for (int i = 0; i < 80 && high - low > special_accuracy; ++i) {
+    double middle = low - at_low * (high - low) / (at_high - at_low);
+    if (!(middle > low && middle < high)) middle = (low + high) / 2;
+    int iterations = 0;
+    if (!continuation_.step(from, middle, probe, iterations)) break;
+    const double now = value(probe, middle);
+    at = probe;
+    found = middle;
+    if (now == 0 || (std::abs(middle - previous) < 0.1 * special_accuracy && i > 3)) break;
+    previous = middle;
+    if ((now < 0) == (at_high < 0)) {
+      high = middle;
+      at_high = now;
+      if (side == 1) at_low /= 2;
+      side = 1;
+    } else {
+      low = middle;
+      at_low = now;
+      if (side == -1) at_high /= 2;
+      side = -1;
+    }
+  }
+  return {std::move(at), found};
+}
+
+Eigen::VectorXd BranchFollower::difference(const BranchState& a, const BranchState& b) const {
+  Eigen::VectorXd out(system_.nv + 1);
+  out.head(system_.nv) = scaled_difference(family_.problem(), a.z.q, b.z.q);
+  out[system_.nv] = (b.parameter - a.parameter) / family_.scale();
+  return out;
+}
+
+bool BranchFollower::same(const BranchState& a, const BranchState& b) const {
+  return std::abs(a.parameter - b.parameter) < 1e-6 * family_.scale() &&
+         same_pose(family_.problem(), a.z.q, b.z.q, 1e-5);
+}
+
+bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& branch) {
+  const double near = 2 * options_.largest_step;
+  const BranchState* nearest = nullptr;
+  Eigen::VectorXd way;
+  double least = near;
+  for (const BranchState& s : branch.states) {
+    if (std::abs(s.parameter - state.parameter) > near * family_.scale()) continue;
+    const Eigen::VectorXd d = difference(s, state);
+    if (d.norm() < least) {
+      least = d.norm();
+      way = d;
+      nearest = &s;
+    }
+  }
+  if (!nearest) return false;
+  if (same(*nearest, state)) return true;
+  // Beyond its ends it may go on as another branch: the two halves of a pitchfork are one curve.
+  const double along = nearest->tangent.dot(way);
+  if (nearest == &branch.states.front() && along < -branch.lead) return false;
+  if (nearest == &branch.states.back() && along > 0 && !branch.closed) return false;
+  BranchState there;
+  int iterations = 0;
+  return continuation_.step(*nearest, along, there, iterations) &&
+         difference(there, state).norm() < 1e-2 * least;
+}
+
+bool BranchFollower::out_of_reach(const BranchState& s) const {
+  return std::ranges::any_of(system_.links, [&](const Link& link) {
+    return link.type == LinkType::prismatic && link.q >= 0 &&
+           std::abs(s.z.q[link.q]) > 100 * family_.problem().parameters.length;
+  });
+}
+
+bool BranchFollower::holds_at_every_phase(const BranchState& s) {
+  const Problem problem = problem_at(s.parameter);
+  return check_existence(problem, s.z.q, sample_phases(problem.system, problem.parameters), w_).holds;
+}
+
+void BranchFollower::land_on_border(const BranchState& state, double border, FollowedBranch& out) {
+  if (std::abs(state.parameter - border) < 1e-12 * family_.scale()) return;
+  BranchState last = state;
+  last.parameter = border;
+  if (!continuation_.land(last) || !same_pose(family_.problem(), last.z.q, state.z.q, 0.2)) return;
+  out.points.push_back(point(last));
+  out.states.push_back(std::move(last));
+}
+
+// Scaled: where a stop is reached or left, a branch has a corner, which no shorter step makes straight.
+constexpr double longest_corner = 1e-6;
+
+FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
+  FollowedBranch out;
+  const Interruptible scope(options_.cancel);
+  try {
+    follow(std::move(state), tell_progress, out);
+  } catch (const Interrupted&) {
+    out.end = "cancelled"; // what was found until then stays
+    if (out.points.empty()) throw;
+    out.states.resize(std::min(out.points.size(), out.states.size()));
+    out.points.resize(out.states.size());
+  }
+  return out;
+}
+
+void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranch& out) {
+  const BranchState origin = state;
+  Described now = describe(state);
+  out.points.push_back(now.point);
+  out.states.push_back(state);
+  double length = options_.largest_step / 4;
+  out.end = "the largest number of points";
+  for (int i = 1; i < options_.max_points; ++i) {
+    if (cancelled()) {
+      out.end = "cancelled";
+      break;
+    }
+    BranchState next;
+    int iterations = 0;
+    const bool stepped = continuation_.step(state, length, next, iterations);
+    const bool straight = stepped && next.tangent.dot(state.tangent) >= 0.97;
+    const bool corner = stepped && !straight && length < longest_corner;
+    if (!straight && !corner) {
+      length /= 2;
+      if (length > 1e-9) continue;
+      out.end = "the corrector fails: the loops lock or a part of the mechanism becomes singular";
+      break;
+    }
+    const double p = position(next.parameter);
+    if (p > 1 || p < 0) {
+      land_on_border(state, p > 1 ? to_ : from_, out);
+      out.end = p > 1 ? "the end of the range" : "the beginning of the range";
+      break;
+    }
+    if (!holds_at_every_phase(next)) {
+      out.end = "beyond it the balance turns with the drives: there is no steady state";
+      break;
+    }
+    Described then = describe(next);
+    find_specials(state, next, length, now, then, out);
+    if (turns_with_drives(now.point) && turns_with_drives(then.point))
+      find_multiplier_crossing(state, next, length, out);
+    out.points.push_back(then.point);
+    out.states.push_back(next);
+    report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);
+    if (i > 5 && std::abs(next.parameter - origin.parameter) < length * family_.scale() &&
+        same_pose(family_.problem(), next.z.q, origin.z.q, length) &&
+        next.tangent.dot(origin.tangent) > 0.9) {
+      out.end = "closed";
+      out.closed = true;
+      break;
+    }
+    if (out_of_reach(next)) {
+      out.end = "a coordinate leaves all bounds";
+      break;
+    }
+    state = std::move(next);
+    now = std::move(then);
+    // Bands in which the drives pump a motion up are narrow.
+    const double longest = options_.largest_step * (turns_with_drives(now.point) ? 0.25 : 1);
+    if (corner)
+      length = options_.largest_step / 4;
+    else
+      length = std::min(longest, length * (iterations <= 3 ? 1.5 : iterations > 5 ? 0.6 : 1.));
+  }
+}
+
+void BranchFollower::find_specials(const BranchState& state, const BranchState& next, double length,
+                                   const Described& now, const Described& then, FollowedBranch& out) {
+  int explained = 0; // eigenvalues that go through zero
+  if (!families_ && state.turning * next.turning < 0) {
+    // At a crossing the tangent can jump; a fold's own balance stays regular.
+    const BranchState at =
+        locate(state, 0, state.turning, length, next.turning, next, [](const BranchState& s, double) {
+          return s.turning;
+        }).first;
+    out.special.emplace_back(SpecialPointType::fold, point(at));
+    ++explained;
+  }
+  if (!families_ && state.determinant * next.determinant < 0) {
+    BranchState at =
+        locate(state, 0, state.determinant, length, next.determinant, next, [](const BranchState& s, double) {
+          return s.determinant;
+        }).first;
+    // At the crossing itself the balance has two tangents; this is the branch's own.
+    at.tangent = state.tangent;
+    out.special.emplace_back(SpecialPointType::branch_point, point(at));
+    out.crossings.push_back(std::move(at));
+    ++explained;
+  }
+  if (options_.eigenvalues && std::abs(then.right - now.right) > explained)
+    find_pair_crossings(state, next, length, now.right, then.right, out);
+}
+
+// Every place on a step at which the number of eigenvalues to the right of the axis changes, in order.
+void BranchFollower::find_pair_crossings(const BranchState& state, const BranchState& next, double length,
+                                         int before, int after, FollowedBranch& out) {
+  constexpr int most = 8;
+  CrossingBracket at{0, length, before, after};
+  for (int i = 0; i < most && at.right_low != after && !cancelled(); ++i) {
+    at.high = length;
+    at.right_high = after;
+    // Their number is blurred by rounding where they meet: it brackets, and a smooth function locates.
+    std::optional<std::pair<SpecialPointType, BranchState>> found;
+    for (const double width : {1e-3 * length, 1e-7 * length}) {
+      if (!narrow(state, width, at)) return;
+      if ((found = locate_pair_crossing(state, next, length, at))) break;
+    }
+    if (!found) found = jumping_pair(state, at);
+    if (found) out.special.emplace_back(found->first, point(found->second));
+    at.low = at.high;
+    at.right_low = at.right_high;
+  }
+}
+
+bool BranchFollower::narrow(const BranchState& state, double width, CrossingBracket& at) {
+  while (at.high - at.low > width && !cancelled()) {
+    BranchState probe;
+    int iterations = 0;
+    const double middle = (at.low + at.high) / 2;
+    if (!continuation_.step(state, middle, probe, iterations)) return false;
+    const int right = right_of_axis(spectrum(probe), families_);
+    (right == at.right_low ? at.low : at.high) = middle;
+    if (right != at.right_low) at.right_high = right;
+  }
+  return true;
+}
+
+std::optional<std::pair<SpecialPointType, BranchState>>
+BranchFollower::locate_pair_crossing(const BranchState& state, const BranchState& next, double length,
+                                     const CrossingBracket& at) {
+  const bool forth = at.right_high > at.right_low; // towards the unstable side
+  const auto spectrum_at = [&](double along) {
+    BranchState probe;
+    int iterations = 0;
+    return continuation_.step(state, along, probe, iterations) ? spectrum(probe) : Spectrum{};
+  };
+  const double unstable = forth ? at.high : at.low;
+  const Spectrum there = spectrum_at(unstable);
+  for (PairCrossing crossing : possible_crossings(there, std::abs(at.right_high - at.right_low), families_)) {
+    double stable = forth ? at.low : at.high;
+    Spectrum here = spectrum_at(stable);
+    std::complex<double> first = crossing.at, second = crossing.at; // on the stable and the unstable side
+    if (!crossing.coalescence && !here.empty()) {
+      first = nearest_eigenvalue(here, second);
+      // A real part grows slowly: it was above zero for a while before it counted.
+      for (double reach = stable - unstable; first.real() > 0; reach *= 2) {
+        stable += reach;
+        here = stable < -length || stable > 2 * length ? Spectrum{} : spectrum_at(stable);
+        if (here.empty()) break;
+        first = nearest_eigenvalue(here, first);
+      }
+    }
+    const auto value = [&](const Spectrum& s, double along) {
+      crossing.at = first + (second - first) * ((along - stable) / (unstable - stable));
+      return crossing_value(s, crossing).value_or(0);
+    };
+    const double at_stable = value(here, stable), at_unstable = value(there, unstable);
+    if (!(at_stable < 0 && at_unstable > 0)) continue;
+    const double ends[] = {std::min(stable, unstable), std::max(stable, unstable)};
+    double last = at_unstable;
+    const BranchState found =
+        locate(state, ends[0], forth ? at_stable : at_unstable, ends[1], forth ? at_unstable : at_stable,
+               next, [&](const BranchState& s, double along) { return last = value(spectrum(s), along); })
+            .first;
+    const double jump = std::max(1e-5, 10 * special_accuracy / (ends[1] - ends[0]));
+    if (std::abs(last) > jump * std::max(-at_stable, at_unstable)) continue;
+    return std::pair{crossing.coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, found};
+  }
+  return {};
+}
+
+// Where nothing goes through zero smoothly the number of eigenvalues itself is followed, as at a corner of
+// the branch. Nothing where only real ones cross.
+std::optional<std::pair<SpecialPointType, BranchState>> BranchFollower::jumping_pair(const BranchState& state,
+                                                                                     CrossingBracket at) {
+  BranchState low, high;
+  int iterations = 0;
+  if (!narrow(state, special_accuracy, at) || !continuation_.step(state, at.low, low, iterations) ||
+      !continuation_.step(state, at.high, high, iterations))
+    return {};
+  const bool forth = at.right_high > at.right_low;
+  const auto crossings =
+      possible_crossings(spectrum(forth ? high : low), std::abs(at.right_high - at.right_low), families_);
+  if (crossings.empty()) return {};
+  return std::pair{crossings[0].coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, high};
+}
+
+std::optional<BranchState> BranchFollower::off(const BranchState& crossing, double length) {
+  BranchState first;
+  if (!continuation_.switch_branch(crossing, length, first)) return {};
+  if (position(first.parameter) < 0 || position(first.parameter) > 1) return {};
+  return first;
+}
+
+} // namespace flyball

@@ -1,0 +1,119 @@
+// One branch of equilibria followed from a state to where it ends, with what is met on the way.
+#pragma once
+
+#include "engine/continuation/branches.hpp"
+#include "engine/continuation/continuation.hpp"
+#include "engine/continuation/pair_crossing.hpp"
+
+#include <utility>
+
+namespace flyball {
+
+struct FollowedBranch {
+  std::vector<ResponsePoint> points;
+  std::vector<BranchState> states; // of all points but a crossing that it begins at
+  std::vector<std::pair<SpecialPointType, ResponsePoint>> special;
+  std::vector<BranchState> crossings; // where another branch leaves; tangent to this one
+  double lead = 0;                    // scaled length from a crossing that it begins at to the first state
+  std::string end;                    // why it stops
+  bool closed = false;                // came back to where it began
+};
+
+// A valid mechanism with one number changed. Throws SceneError.
+Mechanism with_parameter(const Mechanism& mechanism, const std::string& address, double value);
+
+// The configuration that a point's free coordinates tell.
+Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates);
+
+struct PointDetails {
+  bool eigenvalues = true, reactions = false;
+};
+
+// What there is to say about one steady state, its parameter left out. `error` by coordinate of q_R (rad, m),
+// empty where it is not known.
+ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
+                             const Eigen::VectorXd& error, PointDetails details, Workspace& w);
+
+class BranchFollower {
+ public:
+  // Compiles for the parameter at `from`. Throws SceneError.
+  BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
+                 const BranchOptions& options);
+
+  // With the parameter set. Refers to this object, and is good until the parameter is set again.
+  Problem problem_at(double parameter);
+  const Mechanism& mechanism() const { return family_.mechanism(); }
+  Workspace& workspace() { return w_; }
+  bool cancelled() const { return options_.cancel && options_.cancel->load(std::memory_order_relaxed); }
+
+  // The state of a balance that holds at `parameter`, going on with the parameter towards `to` (or back, for
+  // `forth` false). Nothing at a singular state that has no single direction.
+  std::optional<BranchState> begin(Unknowns z, double parameter, bool forth);
+
+  // Nothing resists some direction: then states form families, along which the determinant is rounding, and
+  // folds and crossings are not looked for.
+  void expect_families() { families_ = true; }
+  bool expects_families() const { return families_; }
+
+  FollowedBranch follow(BranchState state, bool tell_progress);
+
+  // A state off a crossing on the other branch, `length` (scaled, either sign) away. Nothing where none is
+  // found in the range.
+  std::optional<BranchState> off(const BranchState& crossing, double length);
+
+  ResponsePoint point(const BranchState& state);
+
+  // Whether a state is a point of a branch that was followed.
+  bool lies_on(const BranchState& state, const FollowedBranch& branch);
+  bool same(const BranchState& a, const BranchState& b) const;
+
+ private:
+  struct Described {
+    ResponsePoint point;
+    int right = 0; // eigenvalues to the right of the axis
+  };
+  // Part of a step (scaled arclength from its start) along which the number of eigenvalues to the right of
+  // the axis changes.
+  struct CrossingBracket {
+    double low = 0, high = 0;
+    int right_low = 0, right_high = 0;
+  };
+  void follow(BranchState state, bool tell_progress, FollowedBranch& out);
+  Described describe(const BranchState& state);
+  template <class Value>
+  std::pair<BranchState, double> locate(const BranchState& from, double low, double at_low, double high,
+                                        double at_high, const BranchState& beyond, Value value);
+  void find_specials(const BranchState& state, const BranchState& next, double length, const Described& now,
+                     const Described& then, FollowedBranch& out);
+  Spectrum spectrum(const BranchState& state);
+  void find_pair_crossings(const BranchState& state, const BranchState& next, double length, int before,
+                           int after, FollowedBranch& out);
+  // Halves the bracket to `width`. False where the branch cannot be followed into it.
+  bool narrow(const BranchState& state, double width, CrossingBracket& at);
+  std::optional<std::pair<SpecialPointType, BranchState>> locate_pair_crossing(const BranchState& state,
+                                                                               const BranchState& next,
+                                                                               double length,
+                                                                               const CrossingBracket& at);
+  std::optional<std::pair<SpecialPointType, BranchState>> jumping_pair(const BranchState& state,
+                                                                       CrossingBracket at);
+  // Of a step along which the linearised motion turns with the drives.
+  void find_multiplier_crossing(const BranchState& state, const BranchState& next, double length,
+                                FollowedBranch& out);
+  void land_on_border(const BranchState& state, double border, FollowedBranch& out);
+  bool out_of_reach(const BranchState& state) const;
+  bool holds_at_every_phase(const BranchState& state);
+  double position(double parameter) const { return (parameter - from_) / (to_ - from_); }
+  // Scaled step of q_R from a to b and of the parameter.
+  Eigen::VectorXd difference(const BranchState& a, const BranchState& b) const;
+
+  BranchOptions options_;
+  std::vector<std::string> notes_;
+  System system_;
+  Family family_;
+  Continuation continuation_;
+  double from_, to_;
+  bool families_ = false;
+  Workspace w_;
+};
+
+} // namespace flyball

@@ -1,0 +1,75 @@
+// Where motions beside a branch of equilibria begin to grow although nothing of the balance itself changes: a
+// Floquet multiplier leaves the unit circle.
+#include "engine/continuation/branch_follower.hpp"
+
+#include "engine/stability/stability.hpp"
+
+namespace flyball {
+namespace {
+
+constexpr double accuracy = 1e-11; // of the scaled arclength
+// A multiplier of a motion without damping lies on the circle until two meet, and leaves it with the root of
+// the distance: so much beyond the circle counts as having left it.
+constexpr double left = 1e-6;
+
+// ln|mu| of the largest multiplier and the multiplier itself; nothing where there are none.
+struct LargestMultiplier {
+  double growth = 0;
+  std::complex<double> value;
+};
+
+std::optional<LargestMultiplier> largest_multiplier(const Problem& problem, const Unknowns& z, Workspace& w) {
+  const Stability stability = find_stability(problem, z, false, w);
+  if (!stability.floquet) return {};
+  const std::complex<double> mu = stability.floquet->multipliers.front();
+  return LargestMultiplier{std::log(std::abs(mu)), mu};
+}
+
+} // namespace
+
+void BranchFollower::find_multiplier_crossing(const BranchState& state, const BranchState& next,
+                                              double length, FollowedBranch& out) {
+  const auto at_start = largest_multiplier(problem_at(state.parameter), state.z, w_);
+  const auto at_end = largest_multiplier(problem_at(next.parameter), next.z, w_);
+  if (!at_start || !at_end) return;
+  const bool damped = std::min(at_start->growth, at_end->growth) < -left;
+  const double limit = damped ? 0 : left;
+  double low = 0, high = length, at_low = at_start->growth - limit, at_high = at_end->growth - limit;
+  if (at_low * at_high >= 0) return;
+  BranchState found = next;
+  // The multiplier on the side that grows tells how it left.
+  std::complex<double> grows = at_low > 0 ? at_start->value : at_end->value;
+  int side = 0;
+  for (int i = 0; i < 80 && high - low > accuracy && !cancelled(); ++i) {
+    // Illinois' method where the growth is smooth; halves where it begins like a root.
+    double middle = damped ? low - at_low * (high - low) / (at_high - at_low) : (low + high) / 2;
+    if (!(middle > low && middle < high)) middle = (low + high) / 2;
+    BranchState probe;
+    int iterations = 0;
+    if (!continuation_.step(state, middle, probe, iterations)) break;
+    const auto here = largest_multiplier(problem_at(probe.parameter), probe.z, w_);
+    if (!here) break;
+    const double value = here->growth - limit;
+    if (value > 0) grows = here->value;
+    found = std::move(probe);
+    if (std::abs(value) < 1e-13) break;
+    if ((value > 0) == (at_high > 0)) {
+      high = middle;
+      at_high = value;
+      if (side == 1) at_low /= 2;
+      side = 1;
+    } else {
+      low = middle;
+      at_low = value;
+      if (side == -1) at_high /= 2;
+      side = -1;
+    }
+  }
+  const bool real = std::abs(grows.imag()) <= 1e-3 * std::abs(grows);
+  out.special.emplace_back(real     ? SpecialPointType::parametric
+                           : damped ? SpecialPointType::hopf
+                                    : SpecialPointType::flutter,
+                           point(found));
+}
+
+} // namespace flyball

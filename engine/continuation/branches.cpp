@@ -1,0 +1,275 @@
+#include "engine/continuation/branches.hpp"
+
+#include "engine/continuation/branch_follower.hpp"
+#include "engine/linear/interruption.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/report/report.hpp"
+#include "engine/search/all_equilibria.hpp"
+#include "engine/search/find_equilibrium.hpp"
+#include "engine/search/steady_state.hpp"
+#include "engine/solve/existence.hpp"
+#include "engine/stability/stability.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace flyball {
+namespace {
+
+constexpr double off_crossing = 0.01; // scaled: how far from a crossing a branch off it is looked for
+
+// Gathers the branches of one diagram.
+class Diagram {
+ public:
+  Diagram(const Mechanism& mechanism, const std::string& address, double from, double to,
+          const BranchOptions& options)
+      : mechanism_(mechanism), address_(address), from_(from), to_(to), options_(options),
+        follower_(mechanism, address, from, to, options) {}
+
+  ResponseDiagram run() {
+    const auto begin = std::chrono::steady_clock::now();
+    const Interruptible scope(options_.cancel);
+    try {
+      from_drawn_pose();
+      off_crossings(true);
+      if (options_.all)
+        for (double value : values_to_search())
+          from_all_equilibria(value);
+    } catch (const Interrupted&) {
+      if (out_.branches.empty()) out_.message = "Cancelled.";
+    }
+    if (out_.status == Status::converged && out_.message.empty()) out_.message = summary();
+    for (const std::string& note : {begun_, bands()})
+      if (out_.status == Status::converged && !note.empty()) out_.message += " " + note;
+    out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::move(out_);
+  }
+
+ private:
+  bool room() const { return static_cast<int>(followed_.size()) < options_.max_branches; }
+  bool going() const { return room() && !follower_.cancelled(); }
+
+  void from_drawn_pose() {
+    report_progress(options_.progress, "solving at the start");
+    const Problem problem = follower_.problem_at(from_);
+    Workspace& w = follower_.workspace();
+    Eigen::VectorXd start;
+    drawn_configuration(problem.system, problem.parameters, start);
+    Found found;
+    std::vector<double> history;
+    find_equilibrium(problem, start, true, false, w, history, found);
+    Existence existence;
+    if (found.status == Status::converged)
+      existence = check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters), w);
+    std::string tried;
+    if ((found.status != Status::converged || !existence.holds) && !problem.cancelled()) {
+      SteadyState other;
+      find_steady_state(problem, start, start, {.seconds = SolveOptions{}.search}, w, other);
+      tried = std::move(other.tried);
+      if (other.holds) {
+        begun_ = "It begins at a steady state that a search found: the drawn pose leads to none.";
+        found = std::move(other.found);
+        existence = other.existence;
+        evaluate(problem, found.z, 0, w);
+        factor(problem, found.z, w);
+      }
+    }
+    if (found.status != Status::converged || !existence.holds) {
+      const Stability none;
+      out_.status = found.status == Status::converged ? Status::no_steady_state : found.status;
+      const std::string unit = parameter_unit(mechanism_, address_);
+      out_.message = "At " + address_ + " = " + rounded_text(from_, 6) + (unit.empty() ? "" : " " + unit) +
+                     ": " + failure_message({follower_.mechanism(), problem, found, existence, none}, w) +
+                     (tried.empty() ? "" : " " + tried);
+      return;
+    }
+    out_.status = Status::converged;
+    if (!find_stability(problem, found.z, false, w).neutral.empty()) follower_.expect_families();
+    if (const auto first = follower_.begin(found.z, from_, true))
+      add(follower_.follow(*first, true), true);
+    else
+      out_.message = "The start is a singular state; begin beside it.";
+    if (out_.branches.empty() || out_.branches[0].points.front().stable != true) from_answer(start);
+  }
+
+  // Newton-Raphson may have stopped at an unstable state: the answer that solving gives has its branch, too.
+  void from_answer(const Eigen::VectorXd& start) {
+    const Problem problem = follower_.problem_at(from_);
+    Workspace& w = follower_.workspace();
+    Found found;
+    std::vector<double> history;
+    find_equilibrium(problem, start, false, false, w, history, found);
+    if (found.status != Status::converged ||
+        !check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters), w).holds)
+      return;
+    const auto first = follower_.begin(found.z, from_, true);
+    if (!first || known(*first)) return;
+    add(follower_.follow(*first, out_.branches.empty()), true);
+    out_.message.clear();
+  }
+
+  // Bands of parametric instability may be narrower than the points lie apart.
+  std::string bands() const {
+    double widest = 0;
+    for (const ResponseBranch& branch : out_.branches)
+      for (std::size_t i = 1; i < branch.points.size(); ++i)
+        if (branch.points[i].stability_reason == StabilityReason::floquet)
+          widest = std::max(widest, std::abs(branch.points[i].parameter - branch.points[i - 1].parameter));
+    if (!(widest > 0)) return "";
+    return "Where Floquet's multipliers judge, points lie up to " + rounded_text(widest, 2) +
+           " apart: narrower bands of instability between them go unseen, a smaller range shows them.";
+  }
+
+  void add(FollowedBranch branch, bool connected, std::string begin = {}) {
+    const int index = static_cast<int>(followed_.size());
+    for (auto& [type, point] : branch.special) {
+      if (type != SpecialPointType::branch_point) out_.special.push_back({type, std::move(point), index});
+    }
+    std::size_t crossing = 0;
+    for (auto& [type, point] : branch.special) {
+      if (type != SpecialPointType::branch_point) continue;
+      const BranchState& at = branch.crossings[crossing++];
+      if (std::ranges::any_of(found_, [&](const BranchState& other) { return follower_.same(at, other); }))
+        continue;
+      found_.push_back(at);
+      crossings_.push_back(at);
+      out_.special.push_back({type, std::move(point), index});
+    }
+    out_.branches.push_back({branch.points, branch.end, std::move(begin), connected});
+    followed_.push_back(std::move(branch));
+  }
+
+  bool known(const BranchState& state) {
+    return std::ranges::any_of(followed_,
+                               [&](const FollowedBranch& b) { return follower_.lies_on(state, b); });
+  }
+
+  // Both ways off every crossing that is left.
+  void off_crossings(bool connected) {
+    while (options_.switch_branches && !crossings_.empty() && going()) {
+      const BranchState at = std::move(crossings_.back());
+      crossings_.pop_back();
+      for (double length : {off_crossing, -off_crossing}) {
+        if (!going()) return;
+        const auto first = follower_.off(at, length);
+        if (!first || known(*first)) continue;
+        FollowedBranch branch = follower_.follow(*first, false);
+        branch.points.insert(branch.points.begin(), follower_.point(at));
+        branch.lead = off_crossing;
+        add(std::move(branch), connected);
+      }
+    }
+  }
+
+  std::vector<double> values_to_search() const {
+    if (!options_.all_at.empty()) return options_.all_at;
+    std::vector<double> values{from_, to_};
+    const double present = get_parameter(mechanism_, address_);
+    if (present > std::min(from_, to_) && present < std::max(from_, to_))
+      values.insert(values.begin(), present);
+    return values;
+  }
+
+  void from_all_equilibria(double value) {
+    if (!going()) return;
+    report_progress(options_.progress, "looking for other branches");
+    Workspace& w = follower_.workspace();
+    const Problem problem = follower_.problem_at(value);
+    Eigen::VectorXd drawn;
+    drawn_configuration(problem.system, problem.parameters, drawn);
+    const EquilibriumList list = find_all_equilibria(problem, drawn, {}, w);
+    out_.searched.push_back(value);
+    out_.starts += list.report.starts;
+    const std::vector<double> phases = sample_phases(problem.system, problem.parameters);
+    for (const Unknowns& z : list.states) {
+      if (!going()) return;
+      follower_.problem_at(value);
+      if (!check_existence(problem, z.q, phases, w).holds) continue;
+      // A family along a direction that nothing resists is no branch.
+      if (!find_stability(problem, z, false, w).neutral.empty()) continue;
+      const auto forth = follower_.begin(z, value, true), back = follower_.begin(z, value, false);
+      if (!forth || !back || known(*forth)) continue;
+      FollowedBranch ahead = follower_.follow(*forth, false);
+      if (ahead.closed) {
+        add(std::move(ahead), false);
+      } else {
+        FollowedBranch behind = follower_.follow(*back, false);
+        std::string begin = behind.end;
+        add(joined(std::move(behind), std::move(ahead)), false, std::move(begin));
+      }
+      if (out_.status != Status::converged) {
+        out_.message = "Nothing is followed from the drawn pose. " + out_.message;
+        out_.status = Status::converged;
+      }
+      off_crossings(false);
+    }
+  }
+
+  // One branch of the two ways from one state.
+  static FollowedBranch joined(FollowedBranch behind, FollowedBranch ahead) {
+    FollowedBranch out;
+    const auto join = [](auto& to, auto& first, auto& second, std::ptrdiff_t skip) {
+      to.assign(first.rbegin(), first.rend() - skip);
+      to.insert(to.end(), second.begin(), second.end());
+    };
+    join(out.points, behind.points, ahead.points, 1);
+    for (BranchState& s : behind.states)
+      s.tangent = -s.tangent;
+    join(out.states, behind.states, ahead.states, 1);
+    join(out.special, behind.special, ahead.special, 0);
+    join(out.crossings, behind.crossings, ahead.crossings, 0);
+    out.end = std::move(ahead.end);
+    return out;
+  }
+
+  std::string summary() {
+    const auto counted = [](std::size_t n, const char* one, const char* many) {
+      return std::to_string(n) + (n == 1 ? one : many);
+    };
+    std::string text = counted(out_.branches.size(), " branch", " branches");
+    if (!out_.searched.empty()) {
+      const auto apart =
+          static_cast<std::size_t>(std::ranges::count(out_.branches, false, &ResponseBranch::connected));
+      if (apart > 0) text += ", " + std::to_string(apart) + " of them not connected with the drawn pose's";
+      text += ", by a bounded search at " + counted(out_.searched.size(), " value", " values") +
+              " of the parameter; there may be more";
+    }
+    if (follower_.cancelled()) text += "; cancelled";
+    text += ".";
+    if (follower_.expects_families())
+      text += " Nothing resists some direction: folds and crossings were not looked for.";
+    return text;
+  }
+
+  const Mechanism& mechanism_;
+  const std::string& address_;
+  double from_, to_;
+  const BranchOptions& options_;
+  BranchFollower follower_;
+  std::vector<FollowedBranch> followed_;
+  std::vector<BranchState> crossings_, found_;
+  ResponseDiagram out_;
+  std::string begun_; // where the drawn pose leads to no steady state
+};
+
+} // namespace
+
+std::string_view word(SpecialPointType type) {
+  switch (type) {
+  case SpecialPointType::fold: return "fold";
+  case SpecialPointType::branch_point: return "branch_point";
+  case SpecialPointType::hopf: return "hopf";
+  case SpecialPointType::flutter: return "flutter";
+  case SpecialPointType::parametric: return "parametric";
+  }
+  return "";
+}
+
+ResponseDiagram follow_branches(const Mechanism& mechanism, const std::string& address, double from,
+                                double to, const BranchOptions& options) {
+  return Diagram(mechanism, address, from, to, options).run();
+}
+
+} // namespace flyball

@@ -1,0 +1,85 @@
+// The response of a mechanism to one parameter: branches of equilibria, their stability, and the points where
+// they fold, cross or begin to flutter.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/solve/solution.hpp"
+#include "engine/task/progress.hpp"
+
+#include <atomic>
+
+namespace flyball {
+
+struct ResponsePoint {
+  double parameter = 0;
+  std::vector<CoordinateSolution> coordinates;
+  std::optional<bool> stable;
+  std::optional<StabilityReason> stability_reason;
+  std::vector<std::complex<double>> eigenvalues; // 1/s, each point's in their own order
+  std::optional<Floquet> floquet;                // where the linearised motion turns with the drives
+  std::vector<Reaction> reactions;               // where BranchOptions::reactions asks for them
+  std::vector<DriveTorque> drive_torques;        // likewise
+};
+
+enum class SpecialPointType {
+  fold,         // the branch turns back
+  branch_point, // another branch crosses
+  hopf,         // a damped pair of eigenvalues crosses the imaginary axis
+  parametric,   // a real Floquet multiplier leaves the unit circle: the drives pump a motion up
+  flutter,      // two undamped pairs meet on the imaginary axis and leave it, whatever is damped elsewhere
+};
+std::string_view word(SpecialPointType type);
+
+struct SpecialPoint {
+  SpecialPointType type = SpecialPointType::fold;
+  ResponsePoint at;
+  int branch = 0;
+};
+
+struct ResponseBranch {
+  std::vector<ResponsePoint> points;
+  std::string end;   // why it stops at its last point, in words
+  std::string begin; // why it begins at its first, where it was followed both ways; else empty
+  // Reached from the drawn pose's equilibrium, or from the answer that solving gives there, through
+  // crossings; false where it was begun from the list of all equilibria (BranchOptions::all).
+  bool connected = true;
+};
+
+struct ResponseDiagram {
+  Status status = Status::not_converged; // of the start, or converged where `all` found another branch
+  std::string message;                   // a sentence or two
+  std::vector<ResponseBranch> branches;
+  std::vector<SpecialPoint> special;
+  std::vector<double> searched; // values of the parameter at which all equilibria were looked for
+  int starts = 0;               // Newton-Raphson runs of that search, which is bounded and may miss some
+  double run_time_s = 0;
+};
+
+struct BranchOptions {
+  double largest_step = 0.02; // scaled: radians, reaches, and parts of the parameter's range
+  int max_points = 2000;      // a branch
+  int max_branches = 32;
+  bool switch_branches = true;
+  bool eigenvalues = true;
+  bool reactions = false; // of every point: costs about as much as the point itself
+  // Also the branches that nothing connects with the drawn pose's: from each equilibrium that
+  // find_all_equilibria finds at the values `all_at`, both ways, where it lies on no branch yet.
+  bool all = false;
+  std::vector<double> all_at; // values of the parameter; empty: both ends, and the present one where between
+  const std::atomic<bool>* cancel = nullptr;
+  ReportProgress progress; // `part` is of the range, along the first branch; else of what is searched
+};
+
+// Starts at `from`, solved nearest to the drawn pose, and where that is unstable also from the answer that
+// Analysis::solve would give there; follows these branches towards `to` (which may be
+// smaller), then whatever branches off it, then what BranchOptions::all asks for. Throws SceneError for an
+// address that does not exist.
+ResponseDiagram follow_branches(const Mechanism& mechanism, const std::string& address, double from,
+                                double to, const BranchOptions& options = {});
+
+// The eigenvalues of consecutive points of a branch put in one order, so that entry i of every point belongs
+// to one line of a Campbell diagram: matched to what the two points before foretell. Lines are as many as
+// the point with the most eigenvalues has; where a point lacks one the entry is not a number.
+std::vector<std::vector<std::complex<double>>> track_eigenvalues(const std::vector<ResponsePoint>& points);
+
+} // namespace flyball

@@ -1,0 +1,354 @@
+#include "engine/kkt/body_equations.hpp"
+
+#include "engine/kkt/eliminator.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+// What a joint with an elastic element, and the load beyond it, ask for by a unit of its coordinates; and how
+// the load turns with each of them.
+struct JointTerms {
+  Mat6 stiffness = Mat6::Zero(), turns = Mat6::Zero();
+};
+
+JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Vec6& load,
+                       const Eigen::VectorXd& q) {
+  const int k = x.columns;
+  const double length = problem.parameters.length;
+  JointTerms terms;
+  auto& [g, turns] = terms;
+  for (int c = 0; c < k; ++c) {
+    Vec6 s = x.s.col(c);
+    s.tail<3>() *= length;
+    turns.col(c) = turned(s, load.head<3>(), load.tail<3>());
+    turns.col(c).tail<3>() *= length;
+  }
+  for (int c = 0; c < k; ++c) {
+    const auto column = static_cast<std::size_t>(c);
+    const Link& link = problem.system.links[static_cast<std::size_t>(x.stage[column])];
+    const LinkParameters& lp = problem.parameters.links[static_cast<std::size_t>(x.stage[column])];
+    for (int d = 0; d < k; ++d) { // what is nearer the root feels a wrench turn, and a rotation its own
+      const int at = x.stage[static_cast<std::size_t>(d)];
+      if (at < x.stage[column] || (at == x.stage[column] && k > 1 && link.type == LinkType::spherical))
+        g(d, c) += x.s.col(d).dot(turns.col(c));
+    }
+    if (!lp.elastic) continue;
+    if (link.type != LinkType::spherical) {
+      const double unit = problem.scaling.column[link.v];
+      g(c, c) += lp.force[0].curvature(q[link.q]) * unit * unit;
+    } else if (link.v == x.v[column]) {
+      g.block<3, 3>(c, c) += rotation_stiffness(link, lp, q);
+    }
+  }
+  return terms;
+}
+
+// Of the parent's motion to that of a body by itself.
+Mat6 carrying(const BodyNode& x) {
+  Mat6 m = Mat6::Identity();
+  m.bottomLeftCorner<3, 3>() = -skew(x.lever);
+  return m;
+}
+
+} // namespace
+
+void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                             const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines) {
+  const Division& division = problem.system.division;
+  lay_out(problem, problem.symmetric());
+  noise_.resize(static_cast<std::size_t>(nodes_.size()));
+  for_parts(division, [&](const SystemPart& part, std::size_t n) {
+    add_bodies(problem, k, n, true);
+    add_pairs(problem, z, k, lines, part, n);
+  });
+  add_body_forces(problem, k);
+  add_pairs(problem, z, k, lines, division.between, between_);
+  if (problem.parameters.moving) add_dampers(problem, k, between_);
+  for_parts(division, [&](const SystemPart& part, std::size_t n) {
+    for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];) {
+      sum_up_load(i, residual);
+      add_joint(problem, n, i, &z.q);
+      noise_[static_cast<std::size_t>(i)] = noise_of(problem, nodes_[i], magnitudes);
+    }
+    add_rows(problem, k, part, n);
+  });
+  add_rows(problem, k, division.between, between_);
+  entries_.hold_above(noise_);
+}
+
+void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<double>& k) {
+  const Division& division = problem.system.division;
+  lay_out(problem, true);
+  for_parts(division, [&](const SystemPart&, std::size_t n) { add_bodies(problem, k, n, false); });
+  set_bodies_apart(problem);
+  for_parts(division, [&](const SystemPart& part, std::size_t n) {
+    for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];)
+      add_joint(problem, n, i, nullptr);
+    add_rows(problem, k, part, n);
+  });
+  add_rows(problem, k, division.between, between_);
+  entries_.hold_all_by_metric();
+}
+
+bool BodyEquations::compressed() const {
+  return std::ranges::find(compressed_, true) != compressed_.end();
+}
+
+// Numbers the unknowns: motions, multipliers of tree joints, those of cut joints.
+void BodyEquations::lay_out(const Problem& problem, bool symmetric) {
+  coordinates_ = problem.system.nv;
+  rows_ = problem.system.rows;
+  nodes_.lay_out(problem);
+  first_row_ = 6 * nodes_.size();
+  mass_ = 0;
+  for (BodyNode& x : nodes_) {
+    x.multipliers = first_row_;
+    first_row_ += 6 - x.columns;
+    mass_ += problem.parameters.links[static_cast<std::size_t>(x.link)].mass;
+  }
+  unknowns_ = first_row_ + rows_;
+  const std::size_t parts = problem.system.division.parts.size();
+  between_ = parts > 1 ? parts : 0;
+  entries_.clear(unknowns_, symmetric, between_ + 1);
+  compressed_.assign(between_ + 1, false);
+  sums_.resize(static_cast<std::size_t>(nodes_.size()));
+}
+
+// What each body does by itself. Bodies go through the cache one after the other, few times.
+void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>& k, std::size_t part,
+                               bool stiff) {
+  const double reach = nodes_.length() * nodes_.length();
+  const double least = Eliminator::own_share * Eliminator::own_share * std::max(mass_, 1e-300) * reach;
+  for (int i = nodes_.first_of_part()[part]; i < nodes_.first_of_part()[part + 1]; ++i) {
+    BodyNode& x = nodes_[i];
+    Sums& sums = sums_[static_cast<std::size_t>(i)];
+    nodes_.place_node(i, problem, k);
+    if (stiff) {
+      sums.load.setZero();
+      set_body_stiffness(problem.parameters, static_cast<std::size_t>(x.link), k, x, sums.stiffness);
+    } else {
+      set_body_inertia(problem.parameters, static_cast<std::size_t>(x.link), k, x);
+    }
+    const Mat6 inertia = nodes_.scaled(inertia_matrix(x));
+    x.weight.setZero();
+    for (int c = 0; c < x.columns; ++c)
+      x.weight[c] = std::max(Eliminator::own_share * x.s.col(c).dot(inertia * x.s.col(c)), least);
+    sums.metric = inertia + x.d * x.weight.asDiagonal() * x.d.transpose();
+  }
+}
+
+void BodyEquations::add_body_forces(const Problem& problem, const Kinematics<double>& k) {
+  for (std::size_t i = 0; i < problem.system.body_forces.size(); ++i) {
+    const BodyForceElement& e = problem.system.body_forces[i];
+    if (const int n = nodes_.at(e.link); n >= 0)
+      add_body_force(e, problem.parameters.body_forces[i], k, sums_[static_cast<std::size_t>(n)].stiffness);
+  }
+}
+
+// Bodies that hang from no other, and none from them, meet others by rows alone: with few lines they are
+// solved for by hand. Much lighter ones than the rest stay: they would leave of their rows what they do
+// themselves, and nothing of the others.
+void BodyEquations::set_bodies_apart(const Problem& problem) {
+  constexpr double light = 1e-3; // beside the heaviest
+  constexpr int many = 24;       // lines of one body, which all would meet
+  constexpr int stays = -1;
+  const auto least = [](const Sums& sums) { return sums.metric.diagonal().minCoeff(); };
+  double heaviest = 0;
+  for (const Sums& sums : sums_)
+    heaviest = std::max(heaviest, least(sums));
+  lines_.resize(sums_.size());
+  for (int i = 0; i < nodes_.size(); ++i)
+    lines_[static_cast<std::size_t>(i)] = 6 - nodes_[i].columns;
+  const auto count = [&](int node, int rows) {
+    if (node >= 0) lines_[static_cast<std::size_t>(node)] += rows;
+  };
+  for (const CutJoint& cut : problem.system.cuts) {
+    if (cut.type == JointType::gear) {
+      count(nodes_.place(cut.gear_va).first, 1);
+      count(nodes_.place(cut.gear_vb).first, 1);
+      continue;
+    }
+    count(nodes_.at(cut.ends.a), static_cast<int>(cut.rows.size()));
+    count(nodes_.at(cut.ends.b), static_cast<int>(cut.rows.size()));
+  }
+  for (int i = 0; i < nodes_.size(); ++i) {
+    int& lines = lines_[static_cast<std::size_t>(i)];
+    if (nodes_[i].parent >= 0 || nodes_[i].bears || lines > many ||
+        !(least(sums_[static_cast<std::size_t>(i)]) > light * heaviest))
+      lines = stays;
+  }
+  entries_.set_apart(lines_);
+}
+
+void BodyEquations::add_pair(std::size_t list, int a, int b, const PairBlocks& x) {
+  if (x.compressed) compressed_[list] = true;
+  const int na = nodes_.at(a), nb = nodes_.at(b);
+  if (na >= 0) {
+    sums_[static_cast<std::size_t>(na)].stiffness += x.aa;
+    sums_[static_cast<std::size_t>(na)].load += x.on_a;
+  }
+  if (nb >= 0) {
+    sums_[static_cast<std::size_t>(nb)].stiffness += x.bb;
+    sums_[static_cast<std::size_t>(nb)].load += x.on_b;
+  }
+  if (na < 0 || nb < 0) return;
+  if (na == nb)
+    sums_[static_cast<std::size_t>(na)].stiffness += x.ab + x.ba;
+  else
+    entries_.add_between(list, na, nb, nodes_.scaled(x.ab), nodes_.scaled(x.ba), Mat6::Zero());
+}
+
+void BodyEquations::add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                              Lines lines, const SystemPart& part, std::size_t list) {
+  const System& system = problem.system;
+  const Parameters& p = problem.parameters;
+  for (const int n : part.springs) {
+    const auto i = static_cast<std::size_t>(n);
+    const PointSpringElement& e = system.springs[i];
+    add_pair(list, e.ends.a, e.ends.b, spring_blocks(e, p.springs[i], k, p.moving, lines));
+  }
+  PairBlocks sum;
+  for (const int n : part.cuts) {
+    const auto c = static_cast<std::size_t>(n);
+    const CutJoint& cut = system.cuts[c];
+    if (cut.type == JointType::gear) continue;
+    const auto multiplier = [&](std::size_t r) {
+      return z.lambda.size() > 0 ? z.lambda[cut.first_row + static_cast<int>(r)] : 0;
+    };
+    if (cut.rows.size() == 1 && multiplier(0) != 0) {
+      add_pair(list, cut.ends.a, cut.ends.b,
+               row_blocks(cut, p.cuts[c], cut.rows[0], multiplier(0), k, lines));
+      continue;
+    }
+    sum.set_zero();
+    for (std::size_t r = 0; r < cut.rows.size(); ++r)
+      if (const double m = multiplier(r); m != 0) sum += row_blocks(cut, p.cuts[c], cut.rows[r], m, k, lines);
+    add_pair(list, cut.ends.a, cut.ends.b, sum);
+  }
+}
+
+void BodyEquations::add_dampers(const Problem& problem, const Kinematics<double>& k, std::size_t list) {
+  for (std::size_t i = 0; i < problem.system.cut_dampers.size(); ++i) {
+    const CutDamperElement& e = problem.system.cut_dampers[i];
+    add_pair(list, e.ends.a, e.ends.b, damper_blocks(e, problem.parameters.cut_dampers[i], k));
+  }
+}
+
+// Of a body with all beyond it, whose own loads were summed up before.
+void BodyEquations::sum_up_load(int i, const Residual<double>& residual) {
+  const BodyNode& x = nodes_[i];
+  Vec6& load = sums_[static_cast<std::size_t>(i)].load;
+  if (x.parent >= 0) sums_[static_cast<std::size_t>(x.parent)].load += about(load, x.arm);
+  load.head<3>() += residual.moment[static_cast<std::size_t>(x.link)];
+  load.tail<3>() += residual.force[static_cast<std::size_t>(x.link)];
+}
+
+// A body with what its tree joint transmits, and what that holds; after those beyond it, so that then nothing
+// is missing. Without q the metric alone.
+void BodyEquations::add_joint(const Problem& problem, std::size_t list, int i, const Eigen::VectorXd* q) {
+  const BodyNode& x = nodes_[i];
+  Sums& sums = sums_[static_cast<std::size_t>(i)];
+  Mat6 p = Mat6::Zero(), t = Mat6::Zero();
+  if (q) {
+    const JointTerms terms = joint_terms(problem, x, sums.load, *q);
+    p = x.d * terms.stiffness * x.d.transpose();
+    sums.stiffness = nodes_.scaled(sums.stiffness) + p;
+    if (x.parent >= 0) t = terms.turns * x.d.transpose();
+  } else {
+    sums.stiffness.setZero();
+  }
+  entries_.add_body(list, i, sums.stiffness, sums.metric);
+  if (x.columns == 6 && x.parent < 0) return;
+  const BodyColumns held = forbidden_motions(x);
+  for (int r = 0; r < held.cols(); ++r)
+    entries_.add_row(list, x.multipliers + r, i, held.col(r));
+  if (x.parent < 0) return;
+  Sums& parent = sums_[static_cast<std::size_t>(x.parent)];
+  const Mat6 shift = carrying(x), w = x.d * x.weight.asDiagonal() * x.d.transpose();
+  const Mat6 by_parent = -p * shift, on_parent = shift.transpose() * (t - p);
+  // The parent's sums are in units of its own as yet.
+  if (q) parent.stiffness -= nodes_.unscaled(on_parent * shift);
+  parent.metric += shift.transpose() * w * shift;
+  entries_.add_between(list, i, x.parent, by_parent, on_parent, -w * shift);
+  for (int r = 0; r < held.cols(); ++r)
+    entries_.add_row(list, x.multipliers + r, x.parent, -shift.transpose() * held.col(r));
+}
+
+void BodyEquations::add_rows(const Problem& problem, const Kinematics<double>& k, const SystemPart& part,
+                             std::size_t list) {
+  const System& system = problem.system;
+  for (const int n : part.cuts) {
+    const auto c = static_cast<std::size_t>(n);
+    const CutJoint& cut = system.cuts[c];
+    const CutParameters& p = problem.parameters.cuts[c];
+    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+      const int row = cut.first_row + static_cast<int>(r);
+      const double unit = problem.scaling.row[row];
+      if (cut.type == JointType::gear) {
+        add_coordinate(list, first_row_ + row, cut.gear_va,
+                       -p.ratio * unit * problem.scaling.column[cut.gear_va]);
+        add_coordinate(list, first_row_ + row, cut.gear_vb, unit * problem.scaling.column[cut.gear_vb]);
+        continue;
+      }
+      RowGradient g = body_row_gradient(cut, p, cut.rows[r], k);
+      g.a.tail<3>() *= nodes_.length();
+      g.b.tail<3>() *= nodes_.length();
+      entries_.add_row(list, first_row_ + row, nodes_.at(cut.ends.a), unit * g.a);
+      entries_.add_row(list, first_row_ + row, nodes_.at(cut.ends.b), unit * g.b);
+    }
+  }
+}
+
+void BodyEquations::add_coordinate(std::size_t list, int row, int coordinate, double gradient) {
+  const auto [n, column] = nodes_.place(coordinate);
+  const BodyNode& x = nodes_[n];
+  const Vec6 g = gradient * x.d.col(column);
+  entries_.add_row(list, row, n, g);
+  entries_.add_row(list, row, x.parent, -about(g, x.lever));
+}
+
+// The turns of a point mass feel nothing, but the terms of their balance cancel with rounding only.
+double BodyEquations::noise_of(const Problem& problem, const BodyNode& x,
+                               const Magnitudes& magnitudes) const {
+  double force = magnitudes.link_force[static_cast<std::size_t>(x.link)] * problem.parameters.length;
+  for (int c = 0; c < x.columns; ++c) {
+    const int v = x.v[static_cast<std::size_t>(c)];
+    force = std::max(force, magnitudes.force[v] * problem.scaling.column[v]);
+  }
+  return Eliminator::rounding * force;
+}
+
+void BodyEquations::put(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& held) {
+  work_.setZero(unknowns_);
+  work_.tail(rows_) = closing;
+  nodes_.for_each([&](int i) {
+    const BodyNode& n = nodes_[i];
+    Vec6 g = Vec6::Zero();
+    for (int c = 0; c < n.columns; ++c)
+      g += n.d.col(c) * force[n.v[static_cast<std::size_t>(c)]];
+    work_.segment<6>(6 * i) += g;
+    if (n.parent >= 0) work_.segment<6>(6 * n.parent) -= about(g, n.lever);
+  });
+  entries_.gather(work_, held);
+}
+
+void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x) {
+  entries_.spread(held, work_);
+  nodes_.for_each([&](int i) {
+    const BodyNode& n = nodes_[i];
+    Vec6 m = work_.segment<6>(6 * i);
+    if (n.parent >= 0) m -= carried(work_.segment<6>(6 * n.parent), n.lever);
+    for (int c = 0; c < n.columns; ++c)
+      x[n.v[static_cast<std::size_t>(c)]] = n.d.col(c).dot(m);
+  });
+}
+
+void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x,
+                         Eigen::VectorXd& lambda) {
+  take(held, x);
+  lambda = work_.tail(rows_);
+}
+
+} // namespace flyball

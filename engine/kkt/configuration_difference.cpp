@@ -1,0 +1,85 @@
+#include "engine/kkt/configuration_difference.hpp"
+
+#include "engine/system/rotation_vector.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+
+// Visits the scaled distances (v, entries, distance) coordinate by coordinate. `all_turns`: whole turns of
+// sprung angles are left out, too.
+template <class Visit>
+void distances(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b, bool all_turns,
+               Visit visit) {
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const Link& link = problem.system.links[l];
+    if (link.v < 0) continue;
+    if (link.type == LinkType::spherical) {
+      const double cosine = std::abs(a.segment<4>(link.q).dot(b.segment<4>(link.q)));
+      // By the sine, too: the cosine of a small angle has lost half its digits.
+      const double sine = std::min((a.segment<4>(link.q) - b.segment<4>(link.q)).norm(),
+                                   (a.segment<4>(link.q) + b.segment<4>(link.q)).norm());
+      visit(link.v, 3,
+            cosine > 0.9 ? 4 * std::asin(std::min(1., sine / 2)) : 2 * std::acos(std::min(1., cosine)));
+      continue;
+    }
+    double d = a[link.q] - b[link.q];
+    if (link.type == LinkType::revolute && (all_turns || !problem.parameters.links[l].elastic))
+      d = std::remainder(d, turn);
+    visit(link.v, 1, d / problem.scaling.column[link.v]);
+  }
+}
+
+} // namespace
+
+bool same_pose(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b, double tolerance,
+               const std::vector<int>& ignore) {
+  bool same = true;
+  distances(problem, a, b, false, [&](int v, int count, double d) {
+    for (int i = v; i < v + count; ++i)
+      if (std::ranges::find(ignore, i) != ignore.end()) return;
+    if (!(std::abs(d) <= tolerance)) same = false;
+  });
+  return same;
+}
+
+bool same_but_for_turns(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                        double tolerance) {
+  bool same = true;
+  distances(problem, a, b, true, [&](int, int, double d) {
+    if (!(std::abs(d) <= tolerance)) same = false;
+  });
+  return same;
+}
+
+Eigen::VectorXd scaled_difference(const Problem& problem, const Eigen::VectorXd& from,
+                                  const Eigen::VectorXd& to) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(problem.system.nv);
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const Link& link = problem.system.links[l];
+    if (link.v < 0) continue;
+    if (link.type == LinkType::spherical) {
+      const auto rotation = [&](const Eigen::VectorXd& q) {
+        return Quat(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
+      };
+      out.segment<3>(link.v) = log_rotation<double>(rotation(to) * rotation(from).conjugate());
+      continue;
+    }
+    double d = to[link.q] - from[link.q];
+    if (link.type == LinkType::revolute && !problem.parameters.links[l].elastic) d = std::remainder(d, turn);
+    out[link.v] = d / problem.scaling.column[link.v];
+  }
+  return out;
+}
+
+double squared_distance(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  double sum = 0;
+  distances(problem, a, b, false, [&](int, int, double d) { sum += d * d; });
+  return sum;
+}
+
+} // namespace flyball

@@ -1,0 +1,32 @@
+#include "engine/kkt/problem.hpp"
+
+namespace flyball {
+
+void set_scaling(const System& system, const Parameters& p, Scaling& out) {
+  out.column.resize(system.nv);
+  out.row.resize(system.rows);
+  for (const Link& link : system.links) {
+    if (link.v < 0) continue;
+    if (link.type == LinkType::spherical)
+      out.column.segment<3>(link.v).setOnes();
+    else
+      out.column[link.v] = link.type == LinkType::revolute ? 1 : p.length;
+  }
+  for (const CutJoint& cut : system.cuts)
+    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+      double scale = 1;
+      switch (cut.rows[r].type) {
+      case RowType::point:
+      case RowType::distance: scale = 1 / p.length; break;
+      case RowType::direction: break;
+      case RowType::gear:
+        scale = 1 / std::max(out.column[cut.gear_vb],
+                             std::abs(p.cuts[static_cast<std::size_t>(&cut - system.cuts.data())].ratio) *
+                                 out.column[cut.gear_va]);
+        break;
+      }
+      out.row[cut.first_row + static_cast<int>(r)] = scale;
+    }
+}
+
+} // namespace flyball

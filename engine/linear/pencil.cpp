@@ -1,0 +1,171 @@
+#include "engine/linear/pencil.hpp"
+
+#include "engine/linear/spectral.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigenvalues = std::optional<std::vector<Complex>>;
+
+void sort_eigenvalues(std::vector<Complex>& s) {
+  for (Complex& x : s)
+    x += Complex(0, 0); // no negative zeros
+  std::ranges::sort(s, [](Complex a, Complex b) {
+    if (std::abs(a.imag()) != std::abs(b.imag())) return std::abs(a.imag()) < std::abs(b.imag());
+    return a.real() != b.real() ? a.real() > b.real() : a.imag() > b.imag();
+  });
+}
+
+// Of s^2 + s d + k with d = L^-1 D L^-T, k = L^-1 K L^-T, M = L L^T.
+Eigenvalues regular_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                                const Eigen::MatrixXd& stiffness, CancelFlag cancel) {
+  const Eigen::Index n = velocity.rows();
+  Cholesky l;
+  if (!l.compute(mass)) return {};
+  const auto whiten = [&](const Eigen::MatrixXd& a) {
+    const Eigen::MatrixXd half = l.forward(a);
+    return Eigen::MatrixXd(l.forward(half.transpose()).transpose());
+  };
+  const Eigen::MatrixXd d = whiten(velocity), k = whiten(stiffness);
+  const double asymmetry = (k - k.transpose()).norm();
+  if (d.norm() == 0 && asymmetry <= 1e-12 * k.norm()) { // s^2 = -eigenvalue of k: exact on the axes
+    const auto squares = symmetric_eigenvalues(k);
+    if (!squares) return {};
+    std::vector<Complex> s;
+    for (double mu : *squares) {
+      const Complex root = mu >= 0 ? Complex(0, std::sqrt(mu)) : Complex(std::sqrt(-mu), 0);
+      s.push_back(root);
+      s.push_back(-root);
+    }
+    return s;
+  }
+  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  companion.topRightCorner(n, n).setIdentity();
+  companion.bottomLeftCorner(n, n) = -k;
+  companion.bottomRightCorner(n, n) = -d;
+  return eigenvalues(companion, cancel);
+}
+
+Eigenvalues singular_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                                 const Eigen::MatrixXd& stiffness, CancelFlag cancel) {
+  const Eigen::Index n = mass.rows();
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * n, 2 * n), b = a;
+  a.topRightCorner(n, n).setIdentity();
+  a.bottomLeftCorner(n, n) = -stiffness;
+  a.bottomRightCorner(n, n) = -velocity;
+  b.topLeftCorner(n, n).setIdentity();
+  b.bottomRightCorner(n, n) = mass;
+  return generalized_eigenvalues(a, b, cancel);
+}
+
+Eigen::MatrixXd onto(const Eigen::MatrixXd& z, const Eigen::MatrixXd& a) {
+  return z.transpose() * a * z;
+}
+
+// Of massless directions z those that feel a spring or damper. The rest have no equation of motion, and would
+// make the pencil singular: then any number is an eigenvalue.
+std::optional<Eigen::MatrixXd> felt(const Eigen::MatrixXd& z, const Eigen::MatrixXd& velocity,
+                                    const Eigen::MatrixXd& stiffness) {
+  Eigen::MatrixXd feels(z.cols(), 4 * z.rows());
+  feels << (stiffness * z).transpose(), z.transpose() * stiffness, (velocity * z).transpose(),
+      z.transpose() * velocity;
+  if (feels.isZero(0)) return Eigen::MatrixXd(z.rows(), 0);
+  PivotedQr qr;
+  if (!qr.compute(feels)) return {};
+  const double rounding = 1e-13 * (stiffness.norm() + velocity.norm());
+  Eigen::Index rank = 0;
+  while (rank < z.cols() && qr.pivot(rank) > rounding)
+    ++rank;
+  return Eigen::MatrixXd(z * qr.q().leftCols(rank));
+}
+
+// With directions z that have neither mass nor damping, beside the rest r. Where they have stiffness they
+// follow statically; where they have none, but forces couple them with the rest, they hold it like the
+// multipliers of a constraint: no motion of the rest may change the forces along them.
+Eigenvalues condensed_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                                  const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& z,
+                                  const Eigen::MatrixXd& r, CancelFlag cancel) {
+  Eigen::MatrixXd m = onto(r, mass), d = onto(r, velocity), k = onto(r, stiffness);
+  if (z.cols() == 0) return regular_eigenvalues(m, d, k, cancel);
+  const auto shape = singular_vectors(onto(z, stiffness));
+  if (!shape) return {};
+  const Eigen::MatrixXd left = shape->left.transpose() * z.transpose() * stiffness * r,
+                        right = r.transpose() * stiffness * z * shape->right;
+  constexpr double none = 1e-12; // beside the coupling
+  Eigen::Index stiff = 0;
+  while (stiff < z.cols() && shape->values[stiff] > 0 &&
+         shape->values[stiff] > none * std::max(left.row(stiff).norm(), right.col(stiff).norm()))
+    ++stiff;
+  k -= right.leftCols(stiff) * shape->values.head(stiff).cwiseInverse().asDiagonal() * left.topRows(stiff);
+  const Eigen::Index holding = z.cols() - stiff;
+  if (holding == 0) return regular_eigenvalues(m, d, k, cancel);
+  const bool symmetric = (stiffness - stiffness.transpose()).norm() <= 1e-12 * stiffness.norm();
+  const auto along = null_space(left.bottomRows(holding));
+  const auto across = symmetric ? along : null_space(right.rightCols(holding).transpose());
+  if (!along || !across || along->cols() != across->cols()) return {};
+  if (along->cols() == 0) return std::vector<Complex>();
+  const auto reduced = [&](const Eigen::MatrixXd& a) {
+    return Eigen::MatrixXd(across->transpose() * a * *along);
+  };
+  m = reduced(m);
+  if ((m - m.transpose()).norm() > 1e-12 * m.norm())
+    return singular_eigenvalues(m, reduced(d), reduced(k), cancel);
+  return regular_eigenvalues((m + m.transpose()) / 2, reduced(d), reduced(k), cancel);
+}
+
+} // namespace
+
+Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                               const Eigen::MatrixXd& stiffness, CancelFlag cancel) {
+  if (mass.rows() == 0) return std::vector<Complex>();
+  const double m = mass.norm(), k = stiffness.norm(), d = velocity.norm();
+  if (!std::isfinite(m + k + d)) return {};
+  if (m == 0) {
+    if (d == 0) return std::vector<Complex>();
+    const auto z = felt(Eigen::MatrixXd::Identity(mass.rows(), mass.rows()), velocity, stiffness);
+    if (!z) return {};
+    return singular_eigenvalues(onto(*z, mass), onto(*z, velocity), onto(*z, stiffness), cancel);
+  }
+  // Time in units in which mass and stiffness are alike.
+  const double rate = k > 0 ? std::sqrt(k / m) : d > 0 ? d / m : 1;
+  const Eigen::MatrixXd m1 = mass / m, d1 = velocity / (m * rate), k1 = stiffness / (m * rate * rate);
+  interruption_point();
+  SymmetricEigen shape;
+  if (!shape.compute((m1 + m1.transpose()) / 2)) return {};
+  Eigen::Index massless = 0;
+  while (massless < m1.rows() && shape.values()[massless] < 1e-13)
+    ++massless;
+  Eigenvalues s;
+  if (massless == 0) {
+    s = regular_eigenvalues((m1 + m1.transpose()) / 2, d1, k1, cancel);
+  } else {
+    const Eigen::MatrixXd light = shape.vectors().leftCols(massless),
+                          r = shape.vectors().rightCols(m1.rows() - massless);
+    const Eigen::MatrixXd twice_damping = (d1 + d1.transpose()) * light,
+                          twice_gyroscopic = (d1 - d1.transpose()) * light;
+    // A mass of m_z couples gyroscopically like sqrt(m_z m_r): where masses are neglected up to 1e-13, so is
+    // the coupling up to its root.
+    const bool damped =
+        twice_damping.norm() > 1e-13 * (d1.norm() + 1) || twice_gyroscopic.norm() > 1e-6 * (d1.norm() + 1);
+    const auto felt_directions = felt(light, damped ? d1 : Eigen::MatrixXd::Zero(d1.rows(), d1.cols()), k1);
+    if (!felt_directions) return {};
+    const Eigen::MatrixXd& z = *felt_directions;
+    if (damped) {
+      Eigen::MatrixXd all(m1.rows(), z.cols() + r.cols());
+      all << z, r;
+      s = singular_eigenvalues(onto(all, m1), onto(all, d1), onto(all, k1), cancel);
+    } else {
+      s = condensed_eigenvalues(m1, d1, k1, z, r, cancel);
+    }
+  }
+  if (!s) return {};
+  for (Complex& x : *s)
+    x *= rate;
+  sort_eigenvalues(*s);
+  return s;
+}
+
+} // namespace flyball

@@ -1,0 +1,375 @@
+#include "engine/report/analysis.hpp"
+
+#include "engine/linear/interruption.hpp"
+#include "engine/linear/largest.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/report/report.hpp"
+#include "engine/search/find_equilibrium.hpp"
+#include "engine/search/steady_state.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/solve/existence.hpp"
+#include "engine/solve/refine.hpp"
+#include "engine/solve/sensitivity.hpp"
+#include "engine/solve/unbounded.hpp"
+#include "engine/stability/linear_motion.hpp"
+#include "engine/stability/pivot_stability.hpp"
+#include "engine/stability/sign_is_open.hpp"
+#include "engine/stability/stability.hpp"
+#include "engine/system/point_motion.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace flyball {
+namespace {
+
+// Parts and connections, as opposed to numbers: what a compiled system depends on.
+bool same_topology(const Mechanism& a, const Mechanism& b) {
+  if (a.bodies.size() != b.bodies.size() || a.joints.size() != b.joints.size() ||
+      a.forces.size() != b.forces.size())
+    return false;
+  for (std::size_t i = 0; i < a.bodies.size(); ++i)
+    if (a.bodies[i].name != b.bodies[i].name) return false;
+  for (std::size_t i = 0; i < a.joints.size(); ++i) {
+    const Joint &x = a.joints[i], &y = b.joints[i];
+    if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.cut != y.cut ||
+        x.joints != y.joints || x.coordinates.size() != y.coordinates.size())
+      return false;
+    for (std::size_t k = 0; k < x.coordinates.size(); ++k) {
+      const Coordinate &c = x.coordinates[k], &d = y.coordinates[k];
+      if (c.spring.has_value() != d.spring.has_value() || c.stop.has_value() != d.stop.has_value() ||
+          c.drive.has_value() != d.drive.has_value() || (c.damping != 0) != (d.damping != 0))
+        return false;
+    }
+  }
+  for (std::size_t i = 0; i < a.forces.size(); ++i) {
+    const Force &x = a.forces[i], &y = b.forces[i];
+    if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.body != y.body ||
+        x.frame != y.frame || (x.damping != 0) != (y.damping != 0))
+      return false;
+  }
+  return true;
+}
+
+// Eigenvalues need the matrices; beyond a size the pivots have to do.
+bool pivots_decide(const Problem& problem, int modes) {
+  return problem.system.nv > largest_for_eigenvalues && modes == 0 && !problem.is_dense();
+}
+
+Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eigenvalues, int modes,
+                       Workspace& w) {
+  if (pivots_decide(problem, modes)) {
+    if (const auto phases = sample_phases(problem.system, problem.parameters); !phases.empty()) {
+      if (!can_compare_phases(problem.system) || motion_varies(problem, z.q, phases, w)) {
+        Stability out;
+        out.reason = StabilityReason::varying;
+        out.floquet_failure = FloquetFailure::unresolved;
+        return out;
+      }
+      evaluate(problem, z, 0, w);
+      factor(problem, z, w);
+    }
+    return find_pivot_stability(problem, z, w);
+  }
+  const bool many = problem.system.nv > largest_for_eigenvalues && modes == 0;
+  const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
+  Stability out = find_stability(whole, z, with_eigenvalues && !many, w);
+  if (many && !out.floquet) out.eigenvalues.reset();
+  return out;
+}
+
+std::string search_message(const AllSolutions& all) {
+  std::string text = all.equilibria.empty() ? "No steady state was found in the range searched."
+                                            : "Found by a bounded search; there may be more.";
+  if (all.passing > 0)
+    text += " " + std::to_string(all.passing) +
+            (all.passing == 1 ? " equilibrium of the drawn phase is not listed: it does"
+                              : " equilibria of the drawn phase are not listed: they do") +
+            " not hold as the drives turn.";
+  switch (all.end) {
+  case SearchEnd::settled: break;
+  case SearchEnd::starts: text += " The search ended after the starts asked for."; break;
+  case SearchEnd::budget: text += " The search spent its budget; a larger one may find more."; break;
+  case SearchEnd::time: text += " The search took too long and was ended; the next may end elsewhere."; break;
+  case SearchEnd::cancelled: text += " The search was cancelled."; break;
+  }
+  if (all.end != SearchEnd::settled && std::isfinite(all.unseen) && all.unseen >= 0.5)
+    text += " By how often the same were found again, " + std::to_string(std::lround(all.unseen)) +
+            (std::lround(all.unseen) == 1 ? " is" : " are") + " expected to be missing.";
+  return text;
+}
+
+} // namespace
+
+struct Analysis::State {
+  Mechanism mechanism;
+  System system;
+  Parameters parameters;
+  Scaling scaling;
+  std::vector<std::string> notes;
+  Workspace workspace;
+  SteadyState steady; // of the last solve
+  Eigen::VectorXd drawn, answer, start;
+  bool answered = false;
+  bool settled = false; // the last solve converged, and no number has changed since
+
+  void bind_numbers() {
+    bind(system, mechanism, parameters);
+    set_scaling(system, parameters, scaling);
+    drawn_configuration(system, parameters, drawn);
+  }
+};
+
+Analysis::Analysis(const Mechanism& mechanism) : state_(std::make_unique<State>()) {
+  state_->mechanism = mechanism;
+  state_->system = compile_for_drives(mechanism, state_->notes);
+  state_->bind_numbers();
+}
+Analysis::~Analysis() = default;
+Analysis::Analysis(Analysis&&) noexcept = default;
+Analysis& Analysis::operator=(Analysis&&) noexcept = default;
+
+void Analysis::update(const Mechanism& mechanism) {
+  State& s = *state_;
+  if (!same_topology(s.mechanism, mechanism)) {
+    *this = Analysis(mechanism);
+    return;
+  }
+  s.mechanism = mechanism;
+  s.settled = false;
+  s.bind_numbers();
+}
+
+Solution Analysis::solve(const SolveOptions& options) {
+  const Interruptible scope(options.cancel);
+  try {
+    return solve_through(options);
+  } catch (const Interrupted&) {
+    state_->settled = false;
+    Solution cancelled;
+    cancelled.message = "The solve was cancelled.";
+    return cancelled;
+  }
+}
+
+Solution Analysis::solve_through(const SolveOptions& options) {
+  State& s = *state_;
+  Problem problem{s.system, s.parameters, s.scaling, options.cancel, true};
+  const bool warm = options.warm && s.answered && options.start.empty();
+  s.start = warm ? s.answer : s.drawn;
+  set_start(s.system, s.parameters, options.start, s.start);
+  for (const BodyPoint& point : options.points) // throws before anything is computed
+    find_point(s.system, s.mechanism, s.parameters, point);
+
+  s.settled = false;
+
+  report_progress(options.progress, "solving");
+  const auto begin = std::chrono::steady_clock::now();
+  SteadyState& steady = s.steady;
+  find_steady_state(problem, s.start, s.drawn, {options.nearest, warm, options.search, options.progress},
+                    s.workspace, steady);
+  problem.eliminated = steady.eliminated;
+  Stability stability;
+  if (steady.holds && steady.found.minimum && steady.phases.empty()) {
+    stability.stable = true;
+    stability.reason = StabilityReason::minimum;
+  } else if (steady.holds) {
+    stability = stability_of(problem, steady.found.z, false, 0, s.workspace);
+  }
+  const bool varies = stability.floquet || stability.floquet_failure;
+  const bool open = steady.holds && !varies && stability.reason != StabilityReason::neutral &&
+                    sign_is_open(problem, steady.found.z, steady.error, steady.found.minimum, s.workspace);
+  const auto end = std::chrono::steady_clock::now();
+
+  Solution out;
+  out.run_time_s = std::chrono::duration<double>(end - begin).count();
+  out.iterations = steady.found.iterations;
+  out.history = steady.history;
+  out.net = steady.found.net;
+  out.status = steady.holds                               ? Status::converged
+               : steady.found.status == Status::converged ? Status::no_steady_state
+                                                          : steady.found.status;
+  if (!steady.holds) {
+    const ReportInput input{s.mechanism, problem, steady.found, steady.existence, stability};
+    out.message = failure_message(input, s.workspace);
+    if (!steady.tried.empty()) out.message += " " + steady.tried;
+    out.residual = steady.history.empty() ? 0 : steady.history.back();
+    explain_unbounded(problem, steady.start, s.workspace, out);
+    out.weight_turns = out.status == Status::no_steady_state && !steady.existence.loops_open &&
+                       weight_turns(problem, steady.found.z.q, steady.existence.phase, s.workspace);
+    return out;
+  }
+  s.answer = steady.found.z.q;
+  s.answered = s.settled = true;
+  if (options.details && !varies && !pivots_decide(problem, options.modes)) {
+    report_progress(options.progress, "eigenvalues");
+    stability = stability_of(problem, steady.found.z, true, options.modes, s.workspace);
+    if (options.modes > 0 && stability.eigenvalues &&
+        stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
+      stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
+  }
+  if (open && stability.reason != StabilityReason::neutral) {
+    stability.stable.reset();
+    stability.reason = StabilityReason::marginal;
+    // Something may hold that is too soft to be seen beside what is stiff.
+    steady.error = steady.error.cwiseMax(s.workspace.unheld);
+  }
+  report_progress(options.progress, "reactions");
+  const ReportInput input{s.mechanism, problem, steady.found, steady.existence, stability, options.points};
+  steady.error += s.workspace.data_error;
+  report(input, steady.error, options.details, s.workspace, out);
+  if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
+    explain_unbounded(problem, steady.start, s.workspace, out);
+  if (!is_finite(out)) {
+    s.settled = false;
+    Solution refused;
+    refused.run_time_s = out.run_time_s;
+    refused.iterations = out.iterations;
+    refused.message = "The forces are too large for the computer's numbers.";
+    return refused;
+  }
+  if (options.details && !s.mechanism.sliders.empty()) {
+    Mechanism numbers = s.mechanism;
+    numbers.sliders.clear(); // or each of many would be copied for each
+    for (const Slider& slider : s.mechanism.sliders) {
+      const Eigen::VectorXd rate =
+          sensitivity(problem, numbers, steady.found.z, slider.parameter, s.workspace);
+      if (rate.size() > 0) out.sensitivities.push_back(name_rates(s.system, slider.parameter, rate));
+    }
+  }
+  return out;
+}
+
+AllSolutions Analysis::solve_all(const SolveOptions& options) {
+  const Interruptible scope(options.cancel);
+  try {
+    return solve_all_through(options);
+  } catch (const Interrupted&) {
+    AllSolutions cancelled;
+    cancelled.message = "The search was cancelled.";
+    cancelled.end = SearchEnd::cancelled;
+    return cancelled;
+  }
+}
+
+AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
+  State& s = *state_;
+  const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
+  for (const BodyPoint& point : options.points)
+    find_point(s.system, s.mechanism, s.parameters, point);
+  SearchOptions search;
+  search.seconds = options.search_time;
+  search.starts = options.search_starts;
+  search.progress = options.progress;
+  EquilibriumList list = find_all_equilibria(problem, s.drawn, search, s.workspace);
+  AllSolutions out;
+  out.starts = list.report.starts;
+  out.unseen = list.report.unseen;
+  out.end = list.report.end;
+  for (std::size_t c = 0; c < s.system.coordinates.size(); ++c) {
+    const CoordinateInfo& info = s.system.coordinates[c];
+    const TreeJoint& joint = s.system.tree_joints[static_cast<std::size_t>(info.tree_joint)];
+    if (s.system.links[static_cast<std::size_t>(info.link)].drive >= 0) continue;
+    const SearchRange& r = list.report.ranges[c];
+    out.bounds.push_back(
+        {joint.name, info.index, coordinate_count(joint.type), info.angle, r.lower, r.upper});
+  }
+  struct Entry {
+    Potential potential;
+    Solution solution;
+    Eigen::VectorXd q;
+    std::vector<int> neutral;
+  };
+  std::vector<Entry> entries;
+  Eigen::VectorXd error; // rad, m
+  const std::vector<double> phases = sample_phases(s.system, s.parameters);
+  for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i) {
+    report_progress(options.progress, "judging what was found",
+                    static_cast<double>(i) / static_cast<double>(list.states.size()));
+    Found found;
+    found.status = Status::converged;
+    found.z = list.states[i];
+    found.newton = list.outcomes[i];
+    found.iterations = list.outcomes[i].iterations;
+    const auto begin = std::chrono::steady_clock::now();
+    evaluate(problem, found.z, 0, s.workspace);
+    factor(problem, found.z, s.workspace);
+    refine(problem, found.z, found.newton, s.workspace, error);
+    const Existence existence = check_refined(problem, found.z, phases, s.workspace, error);
+    if (!existence.holds) {
+      ++out.passing;
+      continue;
+    }
+    const bool many = s.system.nv > largest_for_eigenvalues && options.modes == 0;
+    const Stability stability = find_stability(problem, found.z, !many, s.workspace);
+    // A family along a direction that nothing resists is one entry.
+    Potential potential;
+    if (s.system.conservative) {
+      forward<double>(s.system, s.parameters, found.z.q, 0, s.workspace.kinematics);
+      potential = amended_potential(s.system, s.parameters, found.z.q, s.workspace.kinematics);
+    }
+    if (!stability.neutral.empty() && std::ranges::any_of(entries, [&](const Entry& e) {
+          return e.neutral == stability.neutral && same_potential(e.potential, potential) &&
+                 same_pose(problem, e.q, found.z.q, 1e-6, stability.neutral);
+        }))
+      continue;
+    const auto end = std::chrono::steady_clock::now();
+    Entry entry{potential, {}, found.z.q, stability.neutral};
+    entry.solution.status = Status::converged;
+    entry.solution.iterations = found.iterations;
+    entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
+    error += s.workspace.data_error;
+    report({s.mechanism, problem, found, existence, stability, options.points}, error, options.details,
+           s.workspace, entry.solution);
+    if (s.system.conservative) entry.solution.potential = potential.value;
+    if (!is_finite(entry.solution)) continue;
+    entries.push_back(std::move(entry));
+  }
+  std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.potential.value; });
+  for (Entry& e : entries)
+    out.equilibria.push_back(std::move(e.solution));
+  out.message = search_message(out);
+  return out;
+}
+
+SystemSummary Analysis::summary() const {
+  SystemSummary out = summarize(state_->mechanism, state_->system, state_->parameters);
+  out.notes.insert(out.notes.end(), state_->notes.begin(), state_->notes.end());
+  return out;
+}
+
+std::vector<Pose> Analysis::poses_at(double t) const {
+  State& s = *state_;
+  std::vector<Pose> poses;
+  forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, s.workspace.kinematics);
+  body_poses(s.system, s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  return poses;
+}
+
+std::vector<VibrationMode> Analysis::modes() const {
+  State& s = *state_;
+  if (!s.settled) return {};
+  return find_modes({s.system, s.parameters, s.scaling}, s.steady.found.z, s.workspace);
+}
+
+std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitude, double phase,
+                                       double t) const {
+  State& s = *state_;
+  const Problem problem{s.system, s.parameters, s.scaling};
+  const Eigen::VectorXd& steady = s.answered ? s.answer : s.drawn;
+  std::vector<Pose> poses;
+  const Eigen::VectorXd q = mode.shape.size() == static_cast<std::size_t>(s.system.nv)
+                                ? along_mode(problem, steady, mode, amplitude, phase, t, s.workspace)
+                                : steady;
+  forward<double>(s.system, s.parameters, q, t, s.workspace.kinematics);
+  body_poses(s.system, s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  return poses;
+}
+
+std::optional<StabilityEvidence> Analysis::stability_evidence() const {
+  State& s = *state_;
+  if (!s.settled) return {};
+  return flyball::stability_evidence({s.system, s.parameters, s.scaling}, s.steady.found.z, s.workspace);
+}
+
+} // namespace flyball

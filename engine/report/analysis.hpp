@@ -1,0 +1,107 @@
+// A mechanism opened for solving again and again while its numbers move: the convenient front of
+// the solvers for the command line and the window.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/solve/solution.hpp"
+#include "engine/stability/modes.hpp"
+#include "engine/task/progress.hpp"
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace flyball {
+
+struct SolveOptions {
+  bool nearest = false; // the plain Newton-Raphson answer, stable or not
+  bool warm = false;    // start from this analysis' last converged answer instead of the drawn pose
+  bool details = true;  // eigenvalues, reactions and drive torques; not needed by a sweep
+  int modes = 0;        // eigenvalues asked for where there are more than 200 coordinates
+  std::vector<BodyPoint> points{};                   // to be told with the solution
+  std::vector<std::pair<std::string, double>> start; // "joint" or "joint.index" = value, over the drawn pose
+  const std::atomic<bool>* cancel = nullptr;         // looked at all the time; then not_converged
+  ReportProgress progress{};
+  // Where no steady state is found from the start: how long others are looked for before refusing, in seconds
+  // of one core, counted in operations (see SearchOptions). Zero: not at all.
+  double search = 0.2;
+  // Of solve_all, see SearchOptions.
+  double search_time = 1;
+  int search_starts = 0;
+};
+
+// What was compiled and what was left out, for `flyball check`.
+struct SystemSummary {
+  std::vector<std::string> in, left_out; // passes, in words
+  int bodies = 0, free_coordinates = 0, driven_coordinates = 0, constraint_equations = 0;
+  std::vector<CoordinateSolution> coordinates; // names and kinds; values of the drawn pose
+  std::vector<std::string> tree_joints, cut_joints, implicit_joints;
+  std::vector<std::string> notes; // choices worth telling: "the bearing was cut so that ..."
+};
+
+// All equilibria of a bounded search, lowest potential first where there is one, else as found.
+struct AllSolutions {
+  std::vector<Solution> equilibria;
+  struct Bound {
+    std::string joint;
+    int index = 0, count = 1;
+    bool angle = false;
+    double lower = 0, upper = 0; // rad or m
+  };
+  std::vector<Bound> bounds; // free coordinates
+  int starts = 0;            // Newton-Raphson runs
+  int passing = 0;           // equilibria of the drawn phase that do not hold as the drives turn: not listed
+  double unseen = 0;         // expected to be missing (SearchReport::unseen)
+  SearchEnd end = SearchEnd::settled;
+  std::string message; // a sentence
+};
+
+class Analysis {
+ public:
+  // Compiles. Throws SceneError (validate first for all mistakes at once).
+  explicit Analysis(const Mechanism& mechanism);
+  ~Analysis();
+  Analysis(Analysis&&) noexcept;
+  Analysis& operator=(Analysis&&) noexcept;
+
+  // Takes new numbers. Cheap where only numbers changed; recompiles where parts or topology did. Keeps the
+  // last answer as a warm start where it still fits.
+  void update(const Mechanism& mechanism);
+
+  // Throws SceneError for starts and points that name nothing.
+  Solution solve(const SolveOptions& options = {});
+
+  // `options`: details, modes, points, cancel, search_time, search_starts and progress count.
+  AllSolutions solve_all(const SolveOptions& options = {});
+
+  SystemSummary summary() const;
+
+  // Poses of all bodies at time t (s) after the drawn drive phase: drives turn, the other coordinates stand
+  // at their last answer (at the drawn pose before there is one).
+  std::vector<Pose> poses_at(double t) const;
+
+  // Modes of the linearised motion about the last answer (modes.hpp). Empty where the last solve has none, or
+  // numbers have changed since. Of another equilibrium: solve with its coordinates as start and `nearest`.
+  std::vector<VibrationMode> modes() const;
+
+  // Poses of all bodies in a mode of the last answer at `phase` (rad): the coordinates moved along Re(v e^(i
+  // phase)), the loops closed, the drives `t` seconds on. `amplitude` is that of the largest entry, in rad or
+  // parts of the mechanism's reach. For a mode that grows or decays multiply the amplitude by e^(Re s t).
+  std::vector<Pose> mode_poses(const VibrationMode& mode, double amplitude, double phase, double t = 0) const;
+
+  // What the potential and the eigenvalues say about the last answer; nothing where modes() is empty for want
+  // of one.
+  std::optional<StabilityEvidence> stability_evidence() const;
+
+ private:
+  // The same, to the end or an interruption.
+  Solution solve_through(const SolveOptions& options);
+  AllSolutions solve_all_through(const SolveOptions& options);
+
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace flyball

@@ -1,0 +1,206 @@
+#include "engine/report/phase_range.hpp"
+
+#include "engine/report/report_forces.hpp"
+#include "engine/stability/floquet.hpp"
+#include "engine/system/reactions.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+constexpr int most_turns = 240; // of a drive in a common period; beyond it there is none
+
+// Angles of the groups to torques of the motors.
+class Torques {
+ public:
+  Torques(const Problem& problem, const Eigen::VectorXd& q, std::span<const int> motors,
+          const std::vector<PhaseGroup>& groups, Workspace& w)
+      : problem_(problem), q_(q), motors_(motors), groups_(groups), w_(w), turned_(problem.parameters) {}
+
+  Eigen::VectorXd at(const Eigen::VectorXd& angles) {
+    const System& system = problem_.system;
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (std::size_t i = 0; i < groups_[g].drives.size(); ++i) {
+        const auto l =
+            static_cast<std::size_t>(system.drives[static_cast<std::size_t>(groups_[g].drives[i])].link);
+        turned_.links[l].start =
+            problem_.parameters.links[l].start + groups_[g].turns[i] * angles[static_cast<Eigen::Index>(g)];
+      }
+    const Problem there{system, turned_, problem_.scaling, problem_.cancel, problem_.eliminated};
+    const Unknowns z = with_reported_multipliers(there, q_, 0, w_);
+    const TransmittedForces forces =
+        transmitted_forces(system, turned_, z.lambda, w_.kinematics, w_.residual);
+    Eigen::VectorXd out(static_cast<Eigen::Index>(motors_.size()));
+    for (std::size_t m = 0; m < motors_.size(); ++m)
+      out[static_cast<Eigen::Index>(m)] = forces.drives[static_cast<std::size_t>(motors_[m])];
+    return out;
+  }
+
+ private:
+  const Problem& problem_;
+  const Eigen::VectorXd& q_;
+  std::span<const int> motors_;
+  const std::vector<PhaseGroup>& groups_;
+  Workspace& w_;
+  Parameters turned_;
+};
+
+// Torques on a grid of angles with as many values each.
+struct Grid {
+  int values = 0, dimensions = 0;
+  std::vector<Eigen::VectorXd> torques; // the first angle moves fastest
+  Eigen::VectorXd angles(std::size_t i) const {
+    Eigen::VectorXd out(dimensions);
+    for (int d = 0; d < dimensions; ++d, i /= static_cast<std::size_t>(values))
+      out[d] = turn * static_cast<double>(i % static_cast<std::size_t>(values)) / values;
+    return out;
+  }
+};
+
+// The greatest value of sign * torque near a grid point: searches along one angle after the other by golden
+// sections, which needs no derivatives and cannot lose what it has.
+double refined(Torques& torques, Eigen::Index motor, double sign, Eigen::VectorXd angles, double step,
+               double value) {
+  constexpr double golden = 0.6180339887498949;
+  for (int sweep = 0; sweep < 12; ++sweep) {
+    const double before = value;
+    for (Eigen::Index d = 0; d < angles.size(); ++d) {
+      const auto at = [&](double x) {
+        Eigen::VectorXd there = angles;
+        there[d] = x;
+        return sign * torques.at(there)[motor];
+      };
+      double low = angles[d] - step, high = angles[d] + step;
+      double x = high - golden * (high - low), y = low + golden * (high - low);
+      double fx = at(x), fy = at(y);
+      while (high - low > 1e-8) {
+        if (fx > fy) {
+          high = y;
+          y = x;
+          fy = fx;
+          x = high - golden * (high - low);
+          fx = at(x);
+        } else {
+          low = x;
+          x = y;
+          fx = fy;
+          y = low + golden * (high - low);
+          fy = at(y);
+        }
+      }
+      if (std::max(fx, fy) > value) {
+        value = std::max(fx, fy);
+        angles[d] = fx > fy ? x : y;
+      }
+    }
+    if (angles.size() == 1 || value - before <= 1e-13 * std::abs(value)) break;
+    step /= 2;
+  }
+  return value;
+}
+
+// Of the grid points the one at which a parabola through the neighbours is highest.
+std::size_t best_point(const Grid& grid, Eigen::Index motor, double sign) {
+  std::size_t best = 0;
+  double highest = -std::numeric_limits<double>::infinity();
+  const auto n = static_cast<std::size_t>(grid.values);
+  for (std::size_t i = 0; i < grid.torques.size(); ++i) {
+    const double here = sign * grid.torques[i][motor];
+    double top = here;
+    bool peak = true;
+    std::size_t stride = 1;
+    for (int d = 0; d < grid.dimensions && peak; ++d, stride *= n) {
+      const std::size_t k = i / stride % n, base = i - k * stride;
+      const double left = sign * grid.torques[base + (k + n - 1) % n * stride][motor];
+      const double right = sign * grid.torques[base + (k + 1) % n * stride][motor];
+      peak = here >= left && here >= right;
+      if (const double bend = 2 * here - left - right; bend > 0)
+        top += (right - left) * (right - left) / (8 * bend);
+    }
+    if (peak && top > highest) {
+      highest = top;
+      best = i;
+    }
+  }
+  return best;
+}
+
+} // namespace
+
+std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const Parameters& p) {
+  struct Group {
+    std::vector<int> drives;
+    std::vector<double> speeds; // rad/s
+    double period = 0;          // s
+  };
+  std::vector<Group> groups;
+  for (int d = 0; d < static_cast<int>(system.drives.size()); ++d) {
+    const auto l = static_cast<std::size_t>(system.drives[static_cast<std::size_t>(d)].link);
+    const double speed = p.links[l].speed;
+    if (speed == 0) continue;
+    if (system.links[l].type != LinkType::revolute) return std::nullopt;
+    bool found = false;
+    for (Group& g : groups) {
+      std::vector<double> speeds = g.speeds;
+      speeds.push_back(speed);
+      const auto period = common_period(speeds, most_turns);
+      if (!period) continue;
+      g.drives.push_back(d);
+      g.speeds = std::move(speeds);
+      g.period = *period;
+      found = true;
+      break;
+    }
+    if (!found) groups.push_back({{d}, {speed}, turn / std::abs(speed)});
+  }
+  std::vector<PhaseGroup> out;
+  for (const Group& g : groups) {
+    out.push_back({g.drives, {}});
+    for (double speed : g.speeds)
+      out.back().turns.push_back(static_cast<int>(std::lround(speed * g.period / turn)));
+  }
+  return out;
+}
+
+std::vector<std::optional<PhaseRange>> drive_ranges(const Problem& problem, const Eigen::VectorXd& q,
+                                                    std::span<const int> motors, Workspace& w) {
+  std::vector<std::optional<PhaseRange>> out(motors.size());
+  const auto groups = phase_groups(problem.system, problem.parameters);
+  if (!groups || groups->empty() || groups->size() > 3) return out;
+  Torques torques(problem, q, motors, *groups, w);
+  Grid grid;
+  grid.dimensions = static_cast<int>(groups->size());
+  // Products of what turns once make the harmonics: several of the fastest drive's.
+  int fastest = 1;
+  for (const PhaseGroup& g : *groups)
+    for (int turns : g.turns)
+      fastest = std::max(fastest, std::abs(turns));
+  grid.values = grid.dimensions == 1 ? 32 + 16 * fastest : grid.dimensions == 2 ? 40 : 14;
+  std::size_t count = 1;
+  for (int d = 0; d < grid.dimensions; ++d)
+    count *= static_cast<std::size_t>(grid.values);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(motors.size()));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (problem.cancelled()) return out;
+    grid.torques.push_back(torques.at(grid.angles(i)));
+    sum += grid.torques.back();
+  }
+  for (std::size_t m = 0; m < motors.size(); ++m) {
+    const auto motor = static_cast<Eigen::Index>(m);
+    PhaseRange range;
+    range.mean = sum[motor] / static_cast<double>(count);
+    for (const double sign : {1., -1.}) {
+      const std::size_t best = best_point(grid, motor, sign);
+      const double extreme = sign * refined(torques, motor, sign, grid.angles(best), turn / grid.values,
+                                            sign * grid.torques[best][motor]);
+      (sign > 0 ? range.most : range.least) = extreme;
+    }
+    out[m] = range;
+  }
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,28 @@
+// Mean and extremes of what changes with the phase of the drives, over all phases they can take.
+//
+// Drives whose speeds have a common measure return together after a common period: one angle tells where they
+// are. Others, in groups of a common period each, come as near as one likes to every combination of their
+// groups' angles (Kronecker), so that means over time are means over all angles.
+#pragma once
+
+#include "engine/kkt/problem.hpp"
+#include "engine/kkt/workspace.hpp"
+#include "engine/solve/solution.hpp"
+
+#include <span>
+
+namespace flyball {
+
+// Drives (entries of System::drives) that return together, each with the whole turns it makes in a period;
+// still ones are left out. Nothing where a drive slides: it never returns.
+struct PhaseGroup {
+  std::vector<int> drives, turns;
+};
+std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const Parameters& parameters);
+
+// Of the torques of some motors in a steady state. Nothing where the drives never return, or have more than
+// three groups.
+std::vector<std::optional<PhaseRange>> drive_ranges(const Problem& problem, const Eigen::VectorXd& q,
+                                                    std::span<const int> motors, Workspace& w);
+
+} // namespace flyball

@@ -1,0 +1,292 @@
+#include "engine/report/report_forces.hpp"
+
+#include "engine/report/phase_range.hpp"
+#include "engine/system/constraint_row.hpp"
+#include "engine/system/reactions.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+// Relative to the largest forces of all: what changes less does not change, and what multipliers that balance
+// among themselves move less they do not move.
+constexpr double varying_reaction = 1e-7, varying_torque = 1e-9, touched = 1e-7;
+constexpr double rounding = 1e-13; // of the loads
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+// What the parent's and the child's own axes are, for telling a wrench that turns with a part from one that
+// changes.
+struct Frames {
+  Mat3 parent, child;
+};
+
+Frames frames_of(const System& system, const Kinematics<double>& k, const TreeJoint& t) {
+  const auto r = [&](int body) {
+    return body < 0 ? Mat3(Mat3::Identity()) : k.at(system.body_link[at(body)]).R;
+  };
+  return {r(t.parent_body), r(t.child_body)};
+}
+
+// Of one phase.
+struct Snapshot {
+  TransmittedForces forces;
+  std::vector<Frames> tree, cuts;
+};
+
+Snapshot snapshot(const Problem& problem, const Eigen::VectorXd& lambda, const Workspace& w) {
+  const System& system = problem.system;
+  Snapshot s{transmitted_forces(system, problem.parameters, lambda, w.kinematics, w.residual), {}, {}};
+  for (const TreeJoint& tree : system.tree_joints)
+    s.tree.push_back(frames_of(system, w.kinematics, tree));
+  for (const CutJoint& cut : system.cuts)
+    s.cuts.push_back({w.kinematics.at(cut.ends.a).R, w.kinematics.at(cut.ends.b).R});
+  return s;
+}
+
+// N, moments by the mechanism's reach.
+double size_of(const TransmittedForces& forces, double length) {
+  double size = 0;
+  for (const auto* list : {&forces.tree, &forces.cuts})
+    for (const JointWrench& x : *list)
+      size = std::max({size, x.force.norm(), x.torque.norm() / length});
+  return size;
+}
+
+// What the weights and inertial loads come to, each by its size (N, moments by the mechanism's reach): the
+// forces that balance them are rounded by a part of this, however small they are themselves.
+double loads_on(const Problem& problem, const Kinematics<double>& k) {
+  const Parameters& p = problem.parameters;
+  double sum = 0;
+  for (std::size_t i = 0; i < k.links.size(); ++i) {
+    const double rate = k.links[i].w.squaredNorm();
+    sum += p.links[i].mass * (k.links[i].dv.norm() + rate * p.links[i].com.norm()) +
+           p.links[i].inertia.norm() * rate / p.length;
+  }
+  return sum;
+}
+
+// Multipliers that balance among themselves, Phi_q^T lambda = 0, with part of every direction of that null
+// space: arbitrary ones less those of the same forces that are found for any. At evaluated and factored
+// constraints.
+Eigen::VectorXd self_balanced_multipliers(const Problem& problem, Workspace& w) {
+  const System& system = problem.system;
+  Eigen::VectorXd arbitrary(system.rows); // scaled
+  for (Eigen::Index i = 0; i < system.rows; ++i)
+    arbitrary[i] = 1.5 + std::sin(2.4 * static_cast<double>(i * i) + 1);
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(system.nv);
+  for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+    const CutJoint& cut = system.cuts[c];
+    for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+      const int row = cut.first_row + static_cast<int>(r);
+      const double multiplier = arbitrary[row] * problem.scaling.row[row];
+      row_gradient(cut, problem.parameters.cuts[c], cut.rows[r], w.kinematics,
+                   [&](int v, double g) { force[v] += multiplier * g; });
+    }
+  }
+  const Eigen::VectorXd target = force.cwiseProduct(problem.scaling.column);
+  Eigen::VectorXd found;
+  if (problem.is_dense()) {
+    found = w.constraints.least_norm_multipliers(target);
+  } else {
+    w.zero_lambda.setZero(system.rows);
+    w.loops.solve(target, w.zero_lambda, w.range_step, found);
+  }
+  return (arbitrary - found).cwiseProduct(problem.scaling.row);
+}
+
+// Which of the transmitted forces other multipliers would change.
+struct Touched {
+  std::vector<bool> tree, cuts, drives, gears;
+};
+
+Touched find_touched(const Problem& problem, const TransmittedForces& drawn, const Unknowns& z,
+                     Workspace& w) {
+  const Parameters& p = problem.parameters;
+  Touched out{std::vector<bool>(drawn.tree.size()), std::vector<bool>(drawn.cuts.size()),
+              std::vector<bool>(drawn.drives.size()), std::vector<bool>(drawn.gears.size())};
+  if (problem.system.rows == 0 || independent_rows(problem, w) == problem.system.rows) return out;
+  const Eigen::VectorXd free = self_balanced_multipliers(problem, w);
+  if (!free.allFinite()) return out;
+  const auto with = [&](const Eigen::VectorXd& lambda) {
+    return transmitted_forces(problem.system, p, lambda, w.kinematics, w.residual);
+  };
+  // As large as what is there, so that rounding of neither hides the other.
+  const TransmittedForces none = with(Eigen::VectorXd::Zero(free.size()));
+  double alone = 0;
+  const auto difference = [](const JointWrench& a, const JointWrench& b, double length) {
+    return std::max((a.force - b.force).norm(), (a.torque - b.torque).norm() / length);
+  };
+  const TransmittedForces once = with(free);
+  for (std::size_t i = 0; i < once.cuts.size(); ++i)
+    alone = std::max(alone, difference(once.cuts[i], none.cuts[i], p.length));
+  for (std::size_t i = 0; i < once.gears.size(); ++i)
+    alone = std::max(alone, std::abs(once.gears[i].b.value - none.gears[i].b.value));
+  if (!(alone > 0)) return out;
+  const double load = size_of(drawn, p.length), size = load > 0 ? load : alone;
+  const TransmittedForces moved = with(z.lambda + free * (size / alone));
+  const double least = touched * size;
+  for (std::size_t i = 0; i < out.tree.size(); ++i)
+    out.tree[i] = difference(moved.tree[i], drawn.tree[i], p.length) > least;
+  for (std::size_t i = 0; i < out.cuts.size(); ++i)
+    out.cuts[i] = difference(moved.cuts[i], drawn.cuts[i], p.length) > least;
+  for (std::size_t i = 0; i < out.drives.size(); ++i)
+    out.drives[i] = std::abs(moved.drives[i] - drawn.drives[i]) > least * std::min(1., p.length);
+  for (std::size_t i = 0; i < out.gears.size(); ++i)
+    out.gears[i] = std::abs(moved.gears[i].b.value - drawn.gears[i].b.value) > least * std::min(1., p.length);
+  return out;
+}
+
+class ForceReport {
+ public:
+  ForceReport(const ReportInput& in, const Unknowns& z, Workspace& w)
+      : in_(in), system_(in.problem.system), p_(in.problem.parameters),
+        drawn_(snapshot(in.problem, z.lambda, w)), touched_(find_touched(in.problem, drawn_.forces, z, w)),
+        size_(size_of(drawn_.forces, p_.length)), loads_(loads_on(in.problem, w.kinematics)) {
+    for (double t : sample_phases(system_, p_))
+      others_.push_back(snapshot(in.problem, with_reported_multipliers(in.problem, z.q, t, w).lambda, w));
+  }
+
+  void reactions(Solution& out) const {
+    const std::size_t joints = in_.mechanism.joints.size();
+    std::vector<int> tree_of(joints, -1), cut_of(joints, -1);
+    for (std::size_t i = 0; i < system_.tree_joints.size(); ++i)
+      if (const int j = system_.tree_joints[i].joint; j >= 0) tree_of[at(j)] = static_cast<int>(i);
+    for (std::size_t i = 0; i < system_.cuts.size(); ++i)
+      cut_of[at(system_.cuts[i].joint)] = static_cast<int>(i);
+    for (std::size_t n = 0; n < joints; ++n) {
+      const Joint& j = in_.mechanism.joints[n];
+      if (j.type == JointType::gear) continue;
+      const bool tree = tree_of[n] >= 0;
+      if (!tree && cut_of[n] < 0) continue;
+      const std::size_t i = at(tree ? tree_of[n] : cut_of[n]);
+      const auto wrench = [&](const Snapshot& s) -> const JointWrench& {
+        return tree ? s.forces.tree[i] : s.forces.cuts[i];
+      };
+      const auto frames = [&](const Snapshot& s) -> const Frames& { return tree ? s.tree[i] : s.cuts[i]; };
+      const bool varying = std::ranges::any_of(others_, [&](const Snapshot& s) {
+        return varies(wrench(drawn_), frames(drawn_), wrench(s), frames(s));
+      });
+      const bool nonunique = tree ? touched_.tree[i] : touched_.cuts[i];
+      out.reactions.push_back({j.name, wrench(drawn_).force, wrench(drawn_).torque, varying, nonunique});
+      out.reactions_nonunique = out.reactions_nonunique || nonunique;
+    }
+  }
+
+  void gears(const Kinematics<double>& k, Solution& out) const {
+    for (std::size_t g = 0; g < drawn_.forces.gears.size(); ++g) {
+      const GearForces& x = drawn_.forces.gears[g];
+      const Joint& gear = in_.mechanism.joints[at(x.joint)];
+      GearReaction r;
+      r.joint = gear.name;
+      r.nonunique = touched_.gears[g] || x.a.link < 0;
+      out.reactions_nonunique = out.reactions_nonunique || r.nonunique;
+      // Ends come in the order of the chain from the motor, or of the gear.
+      const bool in_order = x.a.link < 0 || is_end(gear, 0, x.a.link);
+      const GearForces::End &a = in_order ? x.a : x.b, &b = in_order ? x.b : x.a;
+      if (a.link >= 0) {
+        const Link& link = system_.links[at(b.link)];
+        r.a = a.value;
+        r.b = b.value;
+        r.angle_a = system_.links[at(a.link)].type == LinkType::revolute;
+        r.angle_b = link.type == LinkType::revolute;
+        (r.angle_b ? r.torque : r.force) = k.links[at(b.link)].axis * (link.reversed ? -r.b : r.b);
+      }
+      for (const Snapshot& s : others_)
+        r.varying =
+            r.varying || std::abs(s.forces.gears[g].b.value - x.b.value) > torque_tolerance(r.angle_b);
+      out.gears.push_back(std::move(r));
+    }
+  }
+
+  void drive_torques(Workspace& w, Solution& out) const {
+    std::vector<int> varying;
+    for (std::size_t d = 0; d < system_.drives.size(); ++d) {
+      if (system_.drives[d].motor != static_cast<int>(d)) continue;
+      const Link& link = system_.links[at(system_.drives[d].link)];
+      const TreeJoint& joint = system_.tree_joints[at(link.tree_joint)];
+      DriveTorque torque;
+      torque.joint = joint.name;
+      torque.index = link.coordinate;
+      torque.count = coordinate_count(joint.type);
+      torque.angle = link.type == LinkType::revolute;
+      // Where the tree runs against the joint its axes are turned round and so is nothing else: the
+      // coordinate keeps its sign.
+      torque.value = drawn_.forces.drives[d];
+      torque.nonunique = touched_.drives[d];
+      for (const Snapshot& s : others_)
+        if (std::abs(s.forces.drives[d] - torque.value) > torque_tolerance(torque.angle))
+          torque.varying = true;
+      if (torque.varying) varying.push_back(static_cast<int>(d));
+      out.drive_torques.push_back(std::move(torque));
+    }
+    if (varying.empty()) return;
+    std::vector<std::optional<PhaseRange>> ranges = drive_ranges(in_.problem, in_.found.z.q, varying, w);
+    std::size_t next = 0;
+    for (DriveTorque& torque : out.drive_torques)
+      if (torque.varying) torque.range = ranges[next++];
+  }
+
+ private:
+  bool varies(const JointWrench& a, const Frames& fa, const JointWrench& b, const Frames& fb) const {
+    const double least = std::max(varying_reaction * size_, rounding * loads_);
+    const auto differs = [&](const Mat3& ra, const Mat3& rb) {
+      return (ra.transpose() * a.force - rb.transpose() * b.force).norm() > least ||
+             (ra.transpose() * a.torque - rb.transpose() * b.torque).norm() > least * p_.length;
+    };
+    return differs(fa.parent, fb.parent) && differs(fa.child, fb.child);
+  }
+
+  double torque_tolerance(bool angle) const {
+    return std::max(varying_torque * size_, rounding * loads_) * (angle ? p_.length : 1);
+  }
+
+  bool is_end(const Joint& gear, std::size_t end, int l) const {
+    const Link& link = system_.links[at(l)];
+    const CoordinateReference r = find_coordinate(in_.mechanism, gear.joints[end]);
+    return r.joint == system_.tree_joints[at(link.tree_joint)].joint && r.coordinate == link.coordinate;
+  }
+
+  const ReportInput& in_;
+  const System& system_;
+  const Parameters& p_;
+  Snapshot drawn_;
+  Touched touched_;
+  double size_, loads_; // N
+  std::vector<Snapshot> others_;
+};
+
+} // namespace
+
+Unknowns with_reported_multipliers(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w) {
+  Unknowns z{q, Eigen::VectorXd::Zero(problem.system.rows)};
+  forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
+  evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
+  if (problem.system.rows == 0) return z;
+  factor_constraints(problem, w);
+  best_multipliers(problem, w, z.lambda);
+  if (problem.is_dense())
+    z.lambda = w.constraints.least_norm_multipliers(w.target).cwiseProduct(problem.scaling.row);
+  return z;
+}
+
+void report_forces(const ReportInput& in, const Unknowns& z, Workspace& w, Solution& out) {
+  const System& system = in.problem.system;
+  for (const CutJoint& cut : system.cuts) {
+    JointMultipliers m;
+    m.joint = in.mechanism.joints[at(cut.joint)].name;
+    for (std::size_t r = 0; r < cut.rows.size(); ++r)
+      m.values.push_back(z.lambda[cut.first_row + static_cast<int>(r)]);
+    out.multipliers.push_back(std::move(m));
+  }
+  const Kinematics<double> drawn = w.kinematics;
+  const ForceReport report(in, z, w);
+  report.reactions(out);
+  report.gears(drawn, out);
+  report.drive_torques(w, out);
+}
+
+} // namespace flyball

@@ -1,0 +1,70 @@
+#include "engine/report/report.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+SystemSummary summarize(const Mechanism& mechanism, const System& system, const Parameters& p) {
+  SystemSummary out;
+  out.bodies = static_cast<int>(mechanism.bodies.size());
+  out.free_coordinates = system.nv;
+  out.driven_coordinates = static_cast<int>(system.drives.size());
+  out.constraint_equations = system.rows;
+  Eigen::VectorXd drawn;
+  drawn_configuration(system, p, drawn);
+  for (const ReportedCoordinate& r : system.reported) {
+    CoordinateSolution x;
+    x.joint = r.joint;
+    x.index = r.index;
+    x.count = r.count;
+    x.angle = r.angle;
+    x.dependent = r.cut >= 0;
+    if (x.dependent) {
+      x.value = p.cuts[static_cast<std::size_t>(r.cut)].drawn[static_cast<std::size_t>(r.index)];
+    } else {
+      const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(r.coordinate)];
+      x.driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
+      x.value = coordinate_value(system, p, drawn, c);
+    }
+    out.coordinates.push_back(std::move(x));
+  }
+  for (const TreeJoint& t : system.tree_joints)
+    (t.joint < 0 ? out.implicit_joints : out.tree_joints).push_back(t.name);
+  for (const CutJoint& c : system.cuts)
+    out.cut_joints.push_back(mechanism.joints[static_cast<std::size_t>(c.joint)].name);
+  const auto say = [&](bool in, std::string_view pass) { (in ? out.in : out.left_out).emplace_back(pass); };
+  say(system.rows > 0, "loops: multipliers and constraint rows");
+  say(p.moving, "motion of the drives: centrifugal and gyroscopic forces");
+  say(!p.gravity.isZero(0), "gravity");
+  say(std::ranges::any_of(p.links, &LinkParameters::elastic), "springs and stops in joints");
+  say(!system.springs.empty(), "springs between points");
+  say(!system.body_forces.empty(), "forces, torques and drag");
+  const bool damped =
+      std::ranges::any_of(p.links,
+                          [](const LinkParameters& l) {
+                            return std::ranges::any_of(
+                                l.force, [](const CoordinateForce& f) { return f.damping != 0; });
+                          }) ||
+      !system.cut_dampers.empty() ||
+      std::ranges::any_of(p.springs, [](const PointSpringParameters& s) { return s.damping != 0; });
+  say(damped, "dampers: in the eigenvalues, and in the balance where parts turn against each other");
+  say(std::ranges::any_of(system.links,
+                          [](const Link& l) { return l.type == LinkType::spherical && l.v >= 0; }),
+      "rotations as quaternions");
+  say(!(system.conservative && system.single_drives),
+      system.conservative && system.single_drives
+          ? "general matrices: the forces are conservative, a symmetric one serves"
+          : "general matrices");
+  if (system.nv > 0)
+    out.in.emplace_back(system.elimination == Elimination::tree
+                            ? "elimination along the tree: cost in proportion to the bodies"
+                        : system.elimination == Elimination::bodies
+                            ? "sparse equations of all bodies: each feels its neighbours alone"
+                            : "dense equations: the fastest for few coordinates");
+  say(!p.phase_free, p.phase_free
+                         ? "checks at other phases of the drives: the mechanism's shape makes all alike"
+                         : "checks at other phases of the drives");
+  return out;
+}
+
+} // namespace flyball

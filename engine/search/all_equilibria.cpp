@@ -1,0 +1,281 @@
+#include "engine/search/all_equilibria.hpp"
+
+#include "engine/linear/largest.hpp"
+#include "engine/search/find_equilibrium.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <random>
+
+namespace flyball {
+namespace {
+
+constexpr double alike = 1e-6; // scaled: nearer states are one
+
+// Seconds that an iteration takes on one core of 2020 or so: evaluating and linearising the balance, and its
+// dense factors.
+double iteration_cost(const System& system) {
+  const double n = system.nv, m = system.rows, links = static_cast<double>(system.links.size());
+  const double elements = static_cast<double>(system.springs.size() + system.body_forces.size());
+  return 1e-9 * (600 + 150 * links + 100 * elements + 12 * links * n + 40 * n * n + 1.5 * n * n * n + 60 * m +
+                 3 * m * n * (m + n));
+}
+
+// The deflation operator prod_i (1 + 1 / |x - r_i|^2).
+double deflation(const Problem& problem, const Eigen::VectorXd& q, const std::vector<Unknowns>& roots) {
+  double product = 1;
+  for (const Unknowns& root : roots)
+    product *= 1 + 1 / std::max(squared_distance(problem, q, root.q), 1e-30);
+  return product;
+}
+
+class Searcher {
+ public:
+  Searcher(const Problem& problem, const Eigen::VectorXd& drawn, const SearchOptions& options, Workspace& w)
+      : p_(problem), drawn_(drawn), options_(options), w_(w), cost_(iteration_cost(problem.system)) {}
+
+  EquilibriumList run() {
+    report_.ranges = search_ranges(p_, drawn_);
+    take_answer();
+    arrive(drawn_);
+    deflate_from(drawn_, 8);
+    SearchStarts starts(p_, report_.ranges, options_.seed);
+    Eigen::VectorXd q = drawn_;
+    while (p_.system.nv > 0 && !ended()) {
+      if (settled()) {
+        if (deflated_from_ == list_.states.size()) break;
+        deflate_from(Eigen::VectorXd(list_.states[deflated_from_++].q), 8);
+        continue;
+      }
+      starts.next(q);
+      ++spread_;
+      spend(closing);
+      if (assemble(p_, q, 0, w_)) {
+        if (arrive(q)) ++report_.arrivals;
+        deflate_from(q, 2);
+      }
+      if (list_.states.size() > 1 && !ended()) arrive_from_mixture();
+    }
+    report_.unseen = unseen();
+    list_.report = std::move(report_);
+    return std::move(list_);
+  }
+
+ private:
+  static constexpr int closing = 8; // iterations that closing the loops costs, about
+
+  void spend(double iterations) { spent_ += iterations * cost_; }
+
+  // Whether to stop short, and why.
+  bool ended() {
+    report_progress(options_.progress, "searching", std::min(1., spent_ / options_.seconds));
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin_;
+    if (p_.cancelled())
+      report_.end = SearchEnd::cancelled;
+    else if (options_.starts > 0 && report_.starts >= options_.starts)
+      report_.end = SearchEnd::starts;
+    else if (spent_ >= options_.seconds)
+      report_.end = SearchEnd::budget;
+    else if (taken.count() > 20 * options_.seconds + 5)
+      report_.end = SearchEnd::time;
+    else
+      return false;
+    return true;
+  }
+
+  double unseen() const {
+    const auto found = static_cast<double>(list_.states.size()), n = static_cast<double>(report_.arrivals);
+    if (p_.system.nv == 0) return 0;
+    return n > found + 2 ? found * (found + 1) / (n - found - 2) : std::numeric_limits<double>::infinity();
+  }
+
+  bool settled() const {
+    const int least = 20 + 10 * p_.system.nv;
+    if (report_.arrivals == 0) return spread_ >= 10 * least;
+    return report_.arrivals >= least && unseen() <= options_.unseen;
+  }
+
+  // What solving answers belongs to the list: the ranges reach as far.
+  void take_answer() {
+    Found found;
+    std::vector<double> history;
+    find_equilibrium(p_, drawn_, false, false, w_, history, found);
+    spend(found.iterations);
+    if (found.status != Status::converged) return;
+    ++report_.starts;
+    include(p_, found.z.q, report_.ranges);
+    keep(std::move(found.z), found.newton);
+  }
+
+  // The equilibrium that a run arrived at, evaluated last, if it is one that is looked for: known or new.
+  bool keep(Unknowns z, NewtonOutcome outcome) {
+    if (!closed_the_right_way(p_, w_.kinematics)) return false;
+    const Placement placement = bring_within(p_, report_.ranges, z.q);
+    if (placement == Placement::outside) return false;
+    if (placement == Placement::turned) {
+      outcome = newton(p_, z, w_, {}, nullptr);
+      spend(outcome.iterations);
+      if (!outcome.converged || !closed_the_right_way(p_, w_.kinematics) ||
+          bring_within(p_, report_.ranges, z.q) != Placement::within)
+        return false;
+    }
+    // A root of higher order is known to fewer digits.
+    const double near = outcome.linear ? 1e-4 : alike;
+    Family family;
+    family.known = false;
+    for (std::size_t i = 0; i < list_.states.size(); ++i) {
+      const Unknowns& other = list_.states[i];
+      const double within = list_.outcomes[i].linear ? std::max(near, 1e-4) : near;
+      if (same_but_for_turns(p_, other.q, z.q, within)) return true;
+      if (families_[i].neutral.empty()) continue;
+      if (!family.known) family = family_of(z, outcome);
+      if (family.neutral == families_[i].neutral &&
+          same_potential(family.potential, families_[i].potential) &&
+          same_pose(p_, other.q, z.q, alike, family.neutral))
+        return true;
+    }
+    if (!family.known) family = family_of(z, outcome);
+    list_.states.push_back(std::move(z));
+    list_.outcomes.push_back(outcome);
+    families_.push_back(std::move(family));
+    return true;
+  }
+
+  // The coordinates that take part in directions without stiffness, and the amended potential: along a family
+  // it stays the same.
+  struct Family {
+    bool known = true;
+    std::vector<int> neutral;
+    Potential potential;
+  };
+
+  Family family_of(Unknowns& z, const NewtonOutcome& outcome) {
+    Family out;
+    evaluate(p_, z, 0, w_);
+    if (p_.system.conservative)
+      out.potential = amended_potential(p_.system, p_.parameters, z.q, w_.kinematics);
+    factor(p_, z, w_);
+    if (outcome.linear || !w_.hessian.known() || !w_.hessian.singular()) return out;
+    const Eigen::MatrixXd flat = w_.constraints.basis() * w_.hessian.null_basis();
+    for (int v = 0; v < p_.system.nv; ++v)
+      if (largest_size(flat.row(v)) > 1e-6 * largest_size(flat)) out.neutral.push_back(v);
+    return out;
+  }
+
+  // Runs plainly, then damped. True where that leads to an equilibrium in the ranges.
+  bool arrive(const Eigen::VectorXd& from) {
+    ++report_.starts;
+    Unknowns z{from, Eigen::VectorXd::Zero(p_.system.rows)};
+    NewtonOutcome outcome = newton(p_, z, w_, {}, nullptr);
+    spend(outcome.iterations);
+    if (outcome.converged) return keep(std::move(z), outcome);
+    z = {from, Eigen::VectorXd::Zero(p_.system.rows)};
+    outcome = newton(p_, z, w_, {100, true}, nullptr);
+    spend(2 * outcome.iterations);
+    return outcome.converged && keep(std::move(z), outcome);
+  }
+
+  // From two equilibria mixed joint by joint: where branches of the tree feel little of each other any such
+  // mixture is close to another.
+  void arrive_from_mixture() {
+    const auto any = [&](std::size_t count) { return static_cast<std::size_t>(random_()) % count; };
+    const Eigen::VectorXd& other = list_.states[any(list_.states.size())].q;
+    Eigen::VectorXd q = list_.states[any(list_.states.size())].q;
+    for (const TreeJoint& joint : p_.system.tree_joints) {
+      if (any(2) == 0) continue;
+      for (int l = joint.first_link; l < joint.first_link + joint.link_count; ++l) {
+        const Link& link = p_.system.links[static_cast<std::size_t>(l)];
+        if (link.v < 0) continue;
+        const int entries = link.type == LinkType::spherical ? 4 : 1;
+        q.segment(link.q, entries) = other.segment(link.q, entries);
+      }
+    }
+    spend(p_.system.rows > 0 ? closing : 0);
+    if (!assemble(p_, q, 0, w_)) return;
+    ++report_.starts;
+    Unknowns z{std::move(q), Eigen::VectorXd::Zero(p_.system.rows)};
+    const NewtonOutcome outcome = newton(p_, z, w_, {}, nullptr);
+    spend(outcome.iterations);
+    if (outcome.converged) keep(std::move(z), outcome);
+  }
+
+  // Deflated runs as long as they find new equilibria, at most `most`.
+  void deflate_from(const Eigen::VectorXd& from, int most) {
+    for (int i = 0; i < most && !list_.states.empty() && !ended(); ++i) {
+      ++report_.starts;
+      Unknowns z{from, Eigen::VectorXd::Zero(p_.system.rows)};
+      if (std::ranges::any_of(list_.states,
+                              [&](const Unknowns& known) { return same_pose(p_, known.q, from, 1e-9); })) {
+        w_.step = 0.01 * p_.scaling.column;
+        retract<double>(p_.system, w_.step, z.q);
+      }
+      const std::size_t before = list_.states.size();
+      if (deflated_newton(z)) {
+        const NewtonOutcome outcome = newton(p_, z, w_, {}, nullptr);
+        spend(outcome.iterations);
+        if (outcome.converged) keep(std::move(z), outcome);
+      }
+      if (list_.states.size() == before) return;
+    }
+  }
+
+  // Newton-Raphson on the balance times the deflation operator: the same direction, another length (Farrell
+  // et al., section 3.2). True where it came near an equilibrium that is not known.
+  bool deflated_newton(Unknowns& z) {
+    const double of_deflation =
+        1e-8 * static_cast<double>(list_.states.size()) * (1 + 0.5 * p_.system.nv) / cost_;
+    for (int i = 0; i < 60; ++i) {
+      spend(1 + 3 * of_deflation);
+      evaluate(p_, z, 0, w_);
+      if (!std::isfinite(scaled_residual(p_, w_))) return false;
+      factor(p_, z, w_);
+      if (!w_.hessian.known()) return false;
+      if (p_.system.rows > 0) w_.residual.f.noalias() -= w_.linearization.constraint.transpose() * z.lambda;
+      newton_step(p_, w_.residual.f, w_.residual.phi, w_, w_.scaled_step, z.lambda);
+      const double size = largest_size(w_.scaled_step);
+      if (!std::isfinite(size) || size == 0) return false;
+      // Directional derivative of the operator along the step, by a central difference.
+      const double h = 1e-5 / std::max(1., size);
+      double side[2];
+      for (int k : {0, 1}) {
+        w_.moved = z.q;
+        w_.step = (k == 0 ? h : -h) * w_.scaled_step.cwiseProduct(p_.scaling.column);
+        retract<double>(p_.system, w_.step, w_.moved);
+        side[k] = deflation(p_, w_.moved, list_.states);
+      }
+      const double slope = (side[0] - side[1]) / (2 * h) / deflation(p_, z.q, list_.states);
+      double length = 1 / (1 - slope);
+      if (!std::isfinite(length)) return false;
+      length = std::clamp(length, -2., 2.);
+      length *= std::min(1., 1.5 / (std::abs(length) * size));
+      w_.step = length * w_.scaled_step.cwiseProduct(p_.scaling.column);
+      retract<double>(p_.system, w_.step, z.q);
+      if (size < 1e-3 && std::abs(slope) < 0.3) return true; // plain Newton-Raphson finishes
+    }
+    return false;
+  }
+
+  const Problem& p_;
+  const Eigen::VectorXd& drawn_;
+  const SearchOptions& options_;
+  Workspace& w_;
+  const double cost_; // s, of an iteration
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double spent_ = 0; // s
+  int spread_ = 0;   // starts
+  std::size_t deflated_from_ = 0;
+  std::mt19937 random_{options_.seed};
+  SearchReport report_;
+  EquilibriumList list_;
+  std::vector<Family> families_; // by state of the list
+};
+
+} // namespace
+
+EquilibriumList find_all_equilibria(const Problem& problem, const Eigen::VectorXd& drawn,
+                                    const SearchOptions& options, Workspace& w) {
+  return Searcher(problem, drawn, options, w).run();
+}
+
+} // namespace flyball

@@ -1,0 +1,402 @@
+#include "engine/search/find_equilibrium.hpp"
+
+#include "engine/linear/interruption.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/solve/descent.hpp"
+#include "engine/solve/homotopy.hpp"
+#include "engine/solve/trust_region.hpp"
+#include "engine/stability/gyroscopic_stability.hpp"
+#include "engine/stability/stability.hpp"
+
+#include <random>
+
+namespace flyball {
+namespace {
+
+constexpr double still = 1e-3; // of curvature(): holds what nothing resists, and little else
+
+class Search {
+ public:
+  Search(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
+         std::vector<double>& history, Found& found)
+      : p_(problem), start_(start), nearest_(nearest), warm_(warm), w_(w), history_(history), found_(found) {}
+
+  void run() {
+    found_.status = Status::not_converged;
+    found_.message.clear();
+    found_.net.reset();
+    found_.iterations = 0;
+    found_.open_cut = -1;
+    found_.minimum = found_.fell = false;
+    history_.clear();
+    if (p_.system.conservative && !nearest_ && !warm_) { // first, since closing loops takes the factors
+      w_.assembled = start_;
+      if (assemble(p_, w_.assembled, 0, w_)) begin_ = energy_at(w_.assembled);
+    }
+    NewtonSettings plain;
+    plain.trusting = warm_;
+    // Where the way downhill comes next it leads to a minimum with fewer steps.
+    plain.to_minimum = has_descent() && !p_.is_dense() && !warm_;
+    if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, plain, &history_); }))
+      return;
+    if (p_.cancelled()) return cancelled();
+    if (!close_loops()) {
+      if (!arrived_) {
+        found_.status = Status::infeasible;
+        return;
+      }
+      w_.assembled = candidate_.q; // Newton-Raphson found a way that Gauss-Newton did not
+    }
+    // In large mechanisms, where it takes few iterations, the way that leads to a stable state comes first.
+    const bool downhill_first = has_descent() && !p_.is_dense();
+    if (downhill_first && go_downhill()) return;
+    if (p_.cancelled()) return cancelled();
+    if (!arrived_) {
+      if (attempt(w_.assembled, Net::damped, [&](Unknowns& z) {
+            return newton(p_, z, w_, {200, true}, &history_);
+          }))
+        return;
+      if (p_.cancelled()) return cancelled();
+    }
+    if (!arrived_ && p_.parameters.moving) {
+      if (attempt(w_.assembled, Net::homotopy, [&](Unknowns& z) { return homotopy(p_, z, w_, &history_); }))
+        return;
+      if (p_.cancelled()) return cancelled();
+    }
+    if (has_descent() && !downhill_first && go_downhill()) return;
+    if (p_.cancelled()) return cancelled();
+    settle_for_unstable();
+  }
+
+  void cancelled() {
+    found_.status = Status::not_converged;
+    found_.message = "The solve was cancelled.";
+  }
+
+ private:
+  // Runs a solver from q; true when its answer stands.
+  template <class Solver>
+  bool attempt(const Eigen::VectorXd& q, std::optional<Net> net, Solver solver) {
+    found_.z.q = q;
+    found_.z.lambda.setZero(p_.system.rows);
+    const NewtonOutcome outcome = solver(found_.z);
+    found_.iterations += outcome.iterations;
+    falls_at_start_ = outcome.falls && outcome.iterations == 0;
+    if (!outcome.converged || !closed_the_right_way(p_, w_.kinematics)) return false;
+    arrived_ = true;
+    found_.newton = outcome;
+    found_.net = net;
+    if (!acceptable(outcome)) {
+      if (candidate_.q.size() == 0) {
+        candidate_ = found_.z;
+        candidate_outcome_ = outcome;
+        candidate_net_ = net;
+      }
+      return false;
+    }
+    found_.status = Status::converged;
+    return true;
+  }
+
+  // Leaves the kinematics of q behind.
+  Potential energy_at(const Eigen::VectorXd& q) {
+    forward<double>(p_.system, p_.parameters, q, 0, w_.kinematics);
+    return amended_potential(p_.system, p_.parameters, q, w_.kinematics);
+  }
+
+  // Whether the evaluated state found has no more energy than another, within rounding.
+  bool below(const Potential& begin) const {
+    const Potential end = amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics);
+    return end.value <= begin.value + 1e-12 * (begin.magnitude + end.magnitude);
+  }
+
+  bool fell_below_assembled() {
+    const Potential begin = energy_at(w_.assembled);
+    evaluate(p_, found_.z, 0, w_);
+    return below(begin);
+  }
+
+  // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems
+  // without a potential have no such order; their eigenvalues judge.
+  bool acceptable(const NewtonOutcome& outcome) {
+    judge(!found_.net && still_factored(outcome));
+    if (nearest_ || !potential_) return true;
+    if (unstable_) return drawn_and_held_by_rotation();
+    if (outcome.largest_step > 1) return false;
+    return !begin_ || below(*begin_);
+  }
+
+  // A mechanism drawn at a state from which the potential falls, but that gyroscopic forces keep, stays
+  // there.
+  bool drawn_and_held_by_rotation() {
+    if (found_.net || !begin_ || !same(found_.z.q, w_.assembled)) return false;
+    const bool held = is_gyroscopically_stable(p_, found_.z, w_);
+    evaluate(p_, found_.z, 0, w_);
+    factor(p_, found_.z, w_);
+    return held;
+  }
+
+  // Whether Newton-Raphson's last step was rounding, and taken from a balance with these multipliers: then
+  // the factors that it used are those of the state found.
+  bool still_factored(const NewtonOutcome& outcome) const {
+    const double rounding = p_.is_dense() ? 1e-14 : 1e-12; // more bodies, more of it
+    return !outcome.linear && outcome.last_step < rounding && history_.size() >= 2 &&
+           history_[history_.size() - 2] < rounding;
+  }
+
+  // Whether the state found is a minimum, from the balance factored at it.
+  void judge(bool factored = false) {
+    if (!factored) factor(p_, found_.z, w_);
+    if (p_.symmetric()) {
+      potential_ = true;
+      found_.minimum = positive_definite(p_, w_);
+      unstable_ = !found_.minimum && !(p_.is_dense() ? only_flat(w_.hessian) : only_flat());
+      return;
+    }
+    if (!p_.is_dense()) return;
+    potential_ = !nearest_ && has_potential(p_, found_.z, w_);
+    found_.minimum = unstable_ = false;
+    if (!potential_) return;
+    ReducedHessian energy;
+    energy.factor(w_.constraints.rank() == 0 ? w_.scaled_stiffness : w_.reduced, w_.noise, true);
+    found_.minimum = energy.positive_definite();
+    unstable_ = !found_.minimum && !only_flat(energy);
+  }
+
+  bool has_descent() const {
+    return p_.system.conservative && !nearest_ && (p_.is_dense() || p_.symmetric());
+  }
+
+  static bool only_flat(const ReducedHessian& hessian) {
+    return hessian.singular() && hessian.eigenvalues()[0] > -ReducedHessian::zero;
+  }
+
+  // A curvature (1/s^2) of the size of those that the potential has for moving the mechanism as a whole.
+  double curvature() const {
+    const double reach = p_.parameters.length;
+    return amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics).magnitude /
+           (w_.eliminator(p_).mass() * reach * reach);
+  }
+
+  // Rounding makes some of many directions that nothing resists a little stiff, either way, and along loops
+  // they bend. Then this leaves the balance factored with what keeps them still.
+  bool only_flat() {
+    Eliminator& e = w_.eliminator(p_);
+    const int negative = e.negative_count();
+    const std::size_t flat = e.flat().size();
+    if (negative == 0 && (p_.system.rows == 0 || flat == e.loose())) return true;
+    constexpr double rounding = 1e-5;
+    e.factor(rounding * curvature());
+    const bool none_falls = e.negative_count() == 0;
+    const bool to_be_held = negative > 0 || e.flat().size() < flat; // the rest feels nothing at all
+    e.factor(none_falls && to_be_held ? still * curvature() : 0);
+    return none_falls;
+  }
+
+  // Newton-Raphson from near a minimum. False, and back there, where it goes off.
+  bool arrive(NewtonOutcome& outcome) {
+    const Eigen::VectorXd near = found_.z.q;
+    NewtonSettings few;
+    few.max_iterations = 10;
+    outcome = newton(p_, found_.z, w_, few, &history_);
+    found_.iterations += outcome.iterations;
+    if (outcome.converged && outcome.largest_step < 0.01) return true;
+    found_.z.q = near;
+    return false;
+  }
+
+  // Newton-Raphson from where the descent ended, at last with neutral directions held still.
+  NewtonOutcome finish(bool factored) {
+    const Eigen::VectorXd bottom = found_.z.q;
+    NewtonSettings free;
+    free.factored = factored;
+    const NewtonOutcome plain = newton(p_, found_.z, w_, free, &history_);
+    found_.iterations += plain.iterations;
+    if (p_.is_dense() || fell_ || p_.cancelled() || (plain.converged && plain.largest_step <= 0.2))
+      return plain;
+    found_.z.q = bottom;
+    found_.z.lambda.setZero(p_.system.rows);
+    evaluate(p_, found_.z, 0, w_);
+    NewtonSettings settings;
+    settings.proximal = still * curvature();
+    const NewtonOutcome held = newton(p_, found_.z, w_, settings, &history_);
+    found_.iterations += held.iterations;
+    return held;
+  }
+
+  // Fills w_.assembled or finds that it cannot be done.
+  bool close_loops() {
+    if (!begin_) w_.assembled = start_;
+    if (assembled()) return true;
+    // Gauss-Newton can stall: try from a few places around the start before calling it infeasible.
+    record_opening();
+    std::mt19937 random(12345);
+    std::uniform_real_distribution<double> spread(-0.7, 0.7);
+    for (int i = 0; i < 12 && !p_.cancelled(); ++i) {
+      w_.assembled = start_;
+      w_.step.resize(p_.system.nv);
+      for (Eigen::Index k = 0; k < w_.step.size(); ++k)
+        w_.step[k] = spread(random) * p_.scaling.column[k];
+      retract<double>(p_.system, w_.step, w_.assembled);
+      if (assembled()) return true;
+    }
+    return false;
+  }
+
+  bool assembled() { return assemble(p_, w_.assembled, 0, w_) && closed_the_right_way(p_, w_.kinematics); }
+
+  void record_opening() {
+    for (std::size_t c = 0; c < p_.system.cuts.size(); ++c) {
+      const CutJoint& cut = p_.system.cuts[c];
+      for (std::size_t r = 0; r < cut.rows.size(); ++r) {
+        const auto row = static_cast<Eigen::Index>(cut.first_row) + static_cast<Eigen::Index>(r);
+        const double open = std::abs(w_.residual.phi[row]) * p_.scaling.row[row];
+        if (open <= found_.opening && found_.open_cut >= 0) continue;
+        found_.opening = open;
+        found_.open_cut = static_cast<int>(c);
+      }
+    }
+  }
+
+  // Small trees are solved densely, but go down by what they trust, too: it takes far fewer iterations.
+  bool go_downhill() {
+    const auto trusting = [&](bool all_the_way) {
+      const bool falls = falls_at_start_ && !all_the_way && w_.assembled == start_;
+      return descend_by_trust(p_, found_.z, w_, &history_, all_the_way, falls);
+    };
+    const bool trusted = !p_.is_dense() || (p_.symmetric() && is_plain_tree(p_.system));
+    if (trusted && go_downhill(trusting)) return true;
+    return p_.is_dense() && !p_.cancelled() &&
+           go_downhill([&](bool) { return descend(p_, found_.z, w_, &history_); });
+  }
+
+  template <class Descent>
+  bool go_downhill(Descent descend_from_here) {
+    found_.net = Net::descent;
+    found_.z.q = w_.assembled;
+    DescentOutcome descent = descend_from_here(false);
+    found_.iterations += descent.iterations;
+    NewtonOutcome outcome;
+    if (descent.end == DescentEnd::near && !arrive(outcome)) {
+      descent = descend_from_here(true);
+      found_.iterations += descent.iterations;
+    }
+    // A soft spring may hold a long way down: Newton's method takes that in a stride.
+    fell_ = descent.end == DescentEnd::unbounded;
+    if (descent.end == DescentEnd::minimum || fell_)
+      outcome = finish(descent.factored);
+    else if (descent.end != DescentEnd::near)
+      return false;
+    if (!outcome.converged || (outcome.largest_step > 0.2 && !fell_) ||
+        !closed_the_right_way(p_, w_.kinematics) || (fell_ && !fell_below_assembled()))
+      return false;
+    found_.fell = fell_;
+    fell_ = false;
+    found_.newton = outcome;
+    const bool left_unstable = arrived_ && unstable_;
+    judge(!p_.is_dense() && w_.eliminator(p_).shift() == 0 && still_factored(outcome));
+    if (potential_ && unstable_) return false;
+    // Newton may have been right all along, by a way that had to be checked.
+    if (arrived_ && !left_unstable && candidate_.q.size() > 0 && same(candidate_.q, found_.z.q)) {
+      found_.net = candidate_net_;
+      found_.newton = candidate_outcome_;
+    }
+    if (left_unstable)
+      found_.message =
+          same(candidate_.q, w_.assembled)
+              ? "The start is an unstable equilibrium; stepped off it and went downhill to a stable one."
+              : "Newton-Raphson arrived at an unstable equilibrium; went downhill from the start to a "
+                "stable one.";
+    found_.status = Status::converged;
+    return true;
+  }
+
+  bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    for (const Link& link : p_.system.links) {
+      if (link.v < 0) continue;
+      if (link.type == LinkType::spherical) {
+        if (std::abs(a.segment<4>(link.q).dot(b.segment<4>(link.q))) < 1 - 1e-12) return false;
+      } else if (std::abs(a[link.q] - b[link.q]) > 1e-6 * p_.scaling.column[link.v]) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Nothing better was found: an unstable answer is an answer, said to be one.
+  void settle_for_unstable() {
+    if (candidate_.q.size() > 0) {
+      found_.z = candidate_;
+      evaluate(p_, found_.z, 0, w_);
+      judge();
+      found_.newton = candidate_outcome_;
+      found_.net = candidate_net_;
+      found_.status = Status::converged;
+      found_.fell = fell_;
+      found_.message =
+          unstable_ ? fell_
+                          ? "The potential falls on, hundreds of times the mechanism's reach away; no stable "
+                            "state was found."
+                          : "No stable state was found downhill from here."
+                    : "A stable state, but the start may lie in the basin of another.";
+      return;
+    }
+    found_.status = Status::not_converged;
+    found_.net.reset();
+    std::vector<std::string_view> tried{"Newton-Raphson", "its damped form"};
+    if (p_.parameters.moving) tried.emplace_back("homotopy from rest");
+    if (has_descent()) tried.emplace_back("descent of the potential");
+    found_.message =
+        word_list(tried, "and") +
+        (fell_
+             ? " found no equilibrium: the potential falls on, hundreds of times the mechanism's reach away."
+             : " found no equilibrium from this start.");
+  }
+
+  const Problem& p_;
+  const Eigen::VectorXd& start_;
+  const bool nearest_, warm_;
+  Workspace& w_;
+  std::vector<double>& history_;
+  Found& found_;
+  std::optional<Potential> begin_; // of the start with its loops closed, w_.assembled, where it matters
+  Unknowns candidate_;
+  NewtonOutcome candidate_outcome_;
+  std::optional<Net> candidate_net_;
+  bool arrived_ = false, potential_ = false, unstable_ = false, fell_ = false;
+  bool falls_at_start_ = false; // says Newton-Raphson, which leaves the balance linearised there
+};
+
+} // namespace
+
+bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
+  for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
+    const CutJoint& cut = problem.system.cuts[c];
+    for (const ConstraintRow& row : cut.rows) {
+      if (row.type != RowType::direction || row.w == 3) continue;
+      const Mat3 r = k.at(cut.ends.a).R.transpose() * k.at(cut.ends.b).R;
+      const auto& f = problem.parameters.cuts[c].frame;
+      for (int axis : {row.u, row.w}) {
+        const Vec3& e = f[static_cast<std::size_t>(axis)];
+        // Where all three axes are held, the rows vanish a third of a turn round, too.
+        if ((axis == 2 || cut.type == JointType::fixed || cut.type == JointType::prismatic) &&
+            e.dot(r * e) < 0.5)
+          return false;
+      }
+    }
+  }
+  return true;
+}
+
+void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
+                      Workspace& w, std::vector<double>& history, Found& found) {
+  const Interruptible scope(problem.cancel);
+  Search search(problem, start, nearest, warm, w, history, found);
+  try {
+    search.run();
+  } catch (const Interrupted&) {
+    search.cancelled();
+  }
+}
+
+} // namespace flyball

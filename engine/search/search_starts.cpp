@@ -1,0 +1,145 @@
+#include "engine/search/search_starts.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace flyball {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+const Link& link_of(const Problem& problem, const CoordinateInfo& c) {
+  return problem.system.links[static_cast<std::size_t>(c.link)];
+}
+
+const LinkParameters& parameters_of(const Problem& problem, const CoordinateInfo& c) {
+  return problem.parameters.links[static_cast<std::size_t>(c.link)];
+}
+
+// The most by which gears multiply or divide an angle without spring: it takes so many turns before all that
+// it drives has made one.
+double turns_of(const Problem& problem, const Link& link) {
+  double turns = 1;
+  for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
+    const CutJoint& cut = problem.system.cuts[c];
+    if (cut.type != JointType::gear) continue;
+    const double ratio = std::abs(problem.parameters.cuts[c].ratio);
+    if (cut.gear_vb == link.v) turns = std::max(turns, ratio);
+    if (cut.gear_va == link.v && ratio > 0) turns = std::max(turns, 1 / ratio);
+  }
+  constexpr double most = 100;
+  return std::min(turns, most);
+}
+
+// The next number of which no root of a smaller one is a multiple: a prime.
+unsigned prime_after(unsigned n) {
+  for (++n;; ++n) {
+    bool prime = n > 1;
+    for (unsigned d = 2; d * d <= n && prime; ++d)
+      prime = n % d != 0;
+    if (prime) return n;
+  }
+}
+
+} // namespace
+
+std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::VectorXd& drawn) {
+  std::vector<SearchRange> ranges;
+  for (const CoordinateInfo& c : problem.system.coordinates) {
+    const Link& link = link_of(problem, c);
+    const LinkParameters& lp = parameters_of(problem, c);
+    const double value = coordinate_value(problem.system, problem.parameters, drawn, c);
+    if (link.drive >= 0) {
+      ranges.push_back({value, value});
+    } else if (c.angle) {
+      const double half = link.type == LinkType::revolute ? pi * turns_of(problem, link) : pi;
+      const bool elsewhere = link.type == LinkType::revolute && lp.elastic && std::abs(value) > half;
+      const double middle = elsewhere ? value : 0;
+      ranges.push_back({middle - half, middle + half});
+    } else {
+      const double reach = 2 * problem.parameters.length;
+      SearchRange range{value - reach, value + reach};
+      const CoordinateForce& f = lp.force[0];
+      if (f.stiffness != 0)
+        range = {std::min(range.lower, f.free - reach), std::max(range.upper, f.free + reach)};
+      // A stop gives way by what its stiffness allows.
+      if (f.has_lower) range.lower = std::max(range.lower, f.lower - 0.5 * reach);
+      if (f.has_upper) range.upper = std::min(range.upper, f.upper + 0.5 * reach);
+      if (range.upper < range.lower) range = {value - reach, value + reach};
+      ranges.push_back(range);
+    }
+  }
+  return ranges;
+}
+
+void include(const Problem& problem, const Eigen::VectorXd& q, std::vector<SearchRange>& ranges) {
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const CoordinateInfo& c = problem.system.coordinates[i];
+    const Link& link = link_of(problem, c);
+    if (link.v < 0 || link.type == LinkType::spherical) continue;
+    if (c.angle && turns_freely(problem.system, problem.parameters, c.link)) continue;
+    const double value = coordinate_value(problem.system, problem.parameters, q, c);
+    const double margin = c.angle ? 0.5 : 0.1 * problem.parameters.length;
+    if (value < ranges[i].lower) ranges[i].lower = value - margin;
+    if (value > ranges[i].upper) ranges[i].upper = value + margin;
+  }
+}
+
+Placement bring_within(const Problem& problem, const std::vector<SearchRange>& ranges, Eigen::VectorXd& q) {
+  constexpr double slack = 1e-12; // rounding may put what lies on a border beyond it
+  Placement placement = Placement::within;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const CoordinateInfo& c = problem.system.coordinates[i];
+    const Link& link = link_of(problem, c);
+    if (link.v < 0 || link.type == LinkType::spherical) continue;
+    double& value = q[link.q];
+    if (c.angle && turns_freely(problem.system, problem.parameters, c.link)) {
+      value = std::remainder(value, 2 * pi);
+      if (value <= -pi) value += 2 * pi;
+    }
+    const double room = slack * problem.scaling.column[link.v];
+    const auto inside = [&] { return value >= ranges[i].lower - room && value <= ranges[i].upper + room; };
+    if (inside()) continue;
+    if (!c.angle || !std::isfinite(value)) return Placement::outside;
+    const double middle = (ranges[i].lower + ranges[i].upper) / 2;
+    value = middle + std::remainder(value - middle, 2 * pi);
+    if (!inside()) return Placement::outside;
+    placement = Placement::turned;
+  }
+  return placement;
+}
+
+SearchStarts::SearchStarts(const Problem& problem, const std::vector<SearchRange>& ranges, std::uint32_t seed)
+    : problem_(problem), ranges_(ranges) {
+  std::mt19937 random(seed);
+  unsigned prime = 1;
+  for (int i = 0; i < problem.system.nv; ++i) {
+    prime = prime_after(prime);
+    const double root = std::sqrt(static_cast<double>(prime));
+    stride_.push_back(root - std::floor(root));
+    place_.push_back(static_cast<double>(random()) / 4294967296.);
+  }
+}
+
+void SearchStarts::next(Eigen::VectorXd& q) {
+  for (std::size_t i = 0; i < place_.size(); ++i) {
+    place_[i] += stride_[i];
+    place_[i] -= std::floor(place_[i]);
+  }
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    const CoordinateInfo& c = problem_.system.coordinates[i];
+    const Link& link = link_of(problem_, c);
+    if (link.v < 0) continue;
+    const auto v = static_cast<std::size_t>(link.v);
+    if (link.type != LinkType::spherical) {
+      q[link.q] = ranges_[i].lower + (ranges_[i].upper - ranges_[i].lower) * place_[v];
+    } else if (c.index == link.coordinate) {
+      const double a = std::sqrt(1 - place_[v]), b = std::sqrt(place_[v]);
+      const double x = 2 * pi * place_[v + 1], y = 2 * pi * place_[v + 2];
+      q.segment<4>(link.q) << b * std::cos(y), a * std::sin(x), a * std::cos(x), b * std::sin(y);
+    }
+  }
+}
+
+} // namespace flyball

@@ -1,0 +1,101 @@
+#include "engine/solve/drive_cuts.hpp"
+
+#include "engine/kkt/problem.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/system/residual.hpp"
+
+#include <algorithm>
+#include <deque>
+
+namespace flyball {
+namespace {
+
+// How the cut joints fare when the drives go on a little from the drawn pose with all else at rest.
+struct DrivenCuts {
+  int opened = 0;           // cuts that the drives pull open
+  std::vector<bool> turned; // by cut: its ends move against each other, and it stays closed
+};
+
+DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
+  DrivenCuts out;
+  out.turned.resize(system.cuts.size());
+  if (system.rows == 0 || system.drives.empty()) return out;
+  Parameters p;
+  bind(system, mechanism, p);
+  Scaling scaling;
+  set_scaling(system, p, scaling);
+  // A drive that stands still now may be set going by a slider, and the cuts must do for that, too.
+  double fastest = 0;
+  for (const DrivenCoordinate& d : system.drives) {
+    const auto l = static_cast<std::size_t>(d.link);
+    if (p.links[l].speed == 0) p.links[l].speed = p.links[l].gear_ratio;
+    fastest = std::max(fastest, std::abs(p.links[l].speed) /
+                                    (system.links[l].type == LinkType::revolute ? 1 : p.length));
+  }
+  Configuration<double> q;
+  drawn_configuration(system, p, q);
+  const Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.rows);
+  Kinematics<double> k[2];
+  Residual<double> r[2];
+  for (int i : {0, 1}) {
+    forward<double>(system, p, q, i * 0.05 / fastest, k[i]);
+    evaluate_residual<double>(system, p, q, lambda, k[i], r[i]);
+  }
+  for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+    const CutJoint& cut = system.cuts[c];
+    double change = 0;
+    for (int i = cut.first_row; i < cut.first_row + static_cast<int>(cut.rows.size()); ++i)
+      change = std::max(change, std::abs(r[1].phi[i] - r[0].phi[i]) * scaling.row[i]);
+    if (change > 1e-6) {
+      ++out.opened;
+    } else if (cut.type != JointType::gear) {
+      const auto relative = [&](int i) {
+        return Mat3(k[i].at(cut.ends.a).R.transpose() * k[i].at(cut.ends.b).R);
+      };
+      out.turned[c] = (relative(1) - relative(0)).norm() > 1e-6;
+    }
+  }
+  return out;
+}
+
+} // namespace
+
+System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& notes) {
+  System best = compile(mechanism);
+  DrivenCuts fate = drive_cuts(best, mechanism);
+  std::deque<CutChoice> queue;
+  std::vector<std::vector<int>> seen;
+  const auto enqueue = [&](const System& from) {
+    for (CutChoice& c : neighbouring_cuts(mechanism, from)) {
+      std::ranges::sort(c.cut);
+      if (std::ranges::find(seen, c.cut) != seen.end()) continue;
+      seen.push_back(c.cut);
+      queue.push_back(std::move(c));
+    }
+  };
+  if (fate.opened > 0) enqueue(best);
+  for (int tried = 0; tried < 500 && !queue.empty() && fate.opened > 0; ++tried) {
+    const CutChoice choice = std::move(queue.front());
+    queue.pop_front();
+    System other;
+    try {
+      other = compile(mechanism, choice);
+    } catch (const SceneError&) {
+      continue; // not admissible: a drive would be cut
+    }
+    if (DrivenCuts there = drive_cuts(other, mechanism); there.opened < fate.opened) {
+      fate = std::move(there);
+      best = other;
+    }
+    enqueue(other);
+  }
+  for (std::size_t c = 0; c < best.cuts.size(); ++c) {
+    const Joint& j = mechanism.joints[static_cast<std::size_t>(best.cuts[c].joint)];
+    if (fate.turned[c] && j.type != JointType::distance)
+      notes.push_back("The loop is cut at " + j.name +
+                      ", which turns at a constant rate in the steady state.");
+  }
+  return best;
+}
+
+} // namespace flyball

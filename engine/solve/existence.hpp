@@ -1,0 +1,36 @@
+// Whether a balance found at one phase of the drives holds at every phase: only then is it a steady state.
+#pragma once
+
+#include "engine/solve/newton.hpp"
+
+#include <string>
+
+namespace flyball {
+
+struct Existence {
+  bool holds = true;
+  bool loops_open = false; // a constraint cannot be kept; else the forces do not stay balanced
+  double phase = 0;        // s, where it fails worst
+  double violation = 0;    // scaled
+  int worst_cut = -1;      // loops_open: in System::cuts
+  double left = 0;         // where it holds: the largest imbalance at another phase, scaled
+};
+
+// Times (s) along q_D(t) at which to look: for each drive several turns at angles where no low harmonic
+// vanishes together. Empty where the mechanism's shape alone makes every phase alike.
+std::vector<double> sample_phases(const System& system, const Parameters& parameters);
+
+// At each phase Phi must vanish and the force balance must lie in the range of Phi_q^T.
+Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,
+                          Workspace& w);
+
+// How far (rad, m), by coordinate of q_R, the balance at other phases asks a state that holds within the
+// tolerance to move: twice the largest Newton step there. Leaves the balance at z evaluated and factored.
+Eigen::VectorXd phase_variation(const Problem& problem, const Unknowns& z, const std::vector<double>& phases,
+                                Workspace& w);
+
+// What turns with the drives, as a phrase: "the weight of bob", "the force push", "the inertia of rotor".
+std::string blame(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q, double phase,
+                  Workspace& w);
+
+} // namespace flyball

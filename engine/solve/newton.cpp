@@ -1,0 +1,426 @@
+#include "engine/solve/newton.hpp"
+
+#include "engine/linear/interruption.hpp"
+#include "engine/linear/large.hpp"
+#include "engine/linear/largest.hpp"
+#include "engine/linear/spectral.hpp"
+#include "engine/system/constraint_row.hpp"
+
+namespace flyball {
+namespace {
+
+// Dependent rows have singular values of the size by which the loops are open; closed, of rounding.
+double rank_tolerance(const Problem& problem, const Eigen::VectorXd& phi) {
+  const double open = phi.size() > 0 ? phi.cwiseProduct(problem.scaling.row).lpNorm<Eigen::Infinity>() : 0;
+  return std::clamp(10 * open, 1e-10, 1e-3);
+}
+
+void apply_step(const Problem& problem, const Eigen::VectorXd& scaled_step, double fraction,
+                Eigen::VectorXd& q, Workspace& w) {
+  w.step = fraction * scaled_step.cwiseProduct(problem.scaling.column);
+  retract<double>(problem.system, w.step, q);
+}
+
+// A point mass that may turn feels nothing of it, but the terms of its balance cancel with rounding only: of
+// the forces that act along its joint's other coordinates, which nothing is there to drown.
+void clear_rounding(const Problem& problem, Workspace& w) {
+  const System& system = problem.system;
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const Link& link = system.links[l];
+    if (link.v < 0 || link.type != LinkType::spherical) continue;
+    double force = w.magnitudes.link_force[l] * problem.parameters.length;
+    for (int i = static_cast<int>(l); i >= 0; i = system.links[static_cast<std::size_t>(i)].parent) {
+      const Link& other = system.links[static_cast<std::size_t>(i)];
+      if (other.tree_joint != link.tree_joint) break;
+      if (other.v >= 0)
+        force = std::max(force, w.magnitudes.force[other.v] * problem.scaling.column[other.v]);
+    }
+    const double rounding = 1e-15 * force;
+    for (int v = link.v; v < link.v + 3; ++v) {
+      if (w.scaled_stiffness.row(v).lpNorm<Eigen::Infinity>() > rounding ||
+          w.scaled_stiffness.col(v).lpNorm<Eigen::Infinity>() > rounding)
+        continue;
+      w.scaled_stiffness.row(v).setZero();
+      w.scaled_stiffness.col(v).setZero();
+    }
+  }
+}
+
+void factor_dense_constraints(const Problem& problem, Workspace& w) {
+  w.scaled_jacobian.resize(problem.system.rows, problem.system.nv);
+  for (int j = 0; j < problem.system.nv; ++j)
+    for (int i = 0; i < problem.system.rows; ++i)
+      w.scaled_jacobian(i, j) =
+          w.linearization.constraint(i, j) * problem.scaling.row[i] * problem.scaling.column[j];
+  w.constraints.factor(w.scaled_jacobian, rank_tolerance(problem, w.residual.phi));
+}
+
+constexpr double far = 1e8, farthest = 1e14; // scaled
+
+// The largest rounding of a coordinate, scaled.
+double resolution(const Problem& problem, const Eigen::VectorXd& q) {
+  double largest = 0;
+  for (const Link& link : problem.system.links)
+    if (link.v >= 0 && link.type == LinkType::prismatic)
+      largest = std::max(largest, std::abs(q[link.q]) / problem.scaling.column[link.v]);
+  return 8 * std::numeric_limits<double>::epsilon() * largest;
+}
+
+// What is left of the force balance when the best multipliers have been found; f is without constraint
+// forces.
+double merit(const Problem& problem, Workspace& w) {
+  w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
+  double sum = 0;
+  const double size = std::max(1e-300, largest(w.magnitudes.force.cwiseProduct(problem.scaling.column)));
+  if (problem.system.rows == 0) {
+    sum += (w.scaled_force / size).squaredNorm();
+  } else if (problem.is_dense()) {
+    w.reduced_rhs.noalias() = w.constraints.basis().transpose() * w.scaled_force;
+    sum += (w.reduced_rhs / size).squaredNorm();
+  } else { // in the metric, at the mass and reach of the whole
+    w.loops.solve(w.scaled_force, w.reduced_rhs);
+    sum += std::max(0., w.reduced_rhs.dot(w.scaled_force)) * w.loops.mass() *
+           (problem.parameters.length / size) * (problem.parameters.length / size);
+  }
+  sum += w.residual.phi.cwiseProduct(problem.scaling.row).squaredNorm();
+  return std::sqrt(sum);
+}
+
+// The balance with the multipliers' forces taken off again.
+void take_off_multipliers(const Problem& problem, const Eigen::VectorXd& lambda, Workspace& w) {
+  if (problem.system.rows == 0) return;
+  if (problem.is_dense()) {
+    w.residual.f.noalias() -= w.linearization.constraint.transpose() * lambda;
+    return;
+  }
+  const auto take_off = [&](const SystemPart& part, std::size_t) {
+    for (const int n : part.cuts) {
+      const auto c = static_cast<std::size_t>(n);
+      const CutJoint& cut = problem.system.cuts[c];
+      for (std::size_t r = 0; r < cut.rows.size(); ++r)
+        row_gradient(cut, problem.parameters.cuts[c], cut.rows[r], w.kinematics, [&](int v, double g) {
+          w.residual.f[v] -= g * lambda[cut.first_row + static_cast<int>(r)];
+        });
+    }
+  };
+  for_parts(problem.system.division, take_off);
+  take_off(problem.system.division.between, 0);
+}
+
+// The step from an evaluated and factored state, and the multipliers there: solved for whole, so that nothing
+// stays of those of worse places, or corrected, so that nothing stays of the rounding of the last solve.
+void find_step(const Problem& problem, bool whole, Unknowns& z, Workspace& w) {
+  if (whole) take_off_multipliers(problem, z.lambda, w);
+  newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+  if (whole)
+    z.lambda = w.trial.lambda;
+  else
+    z.lambda += w.trial.lambda;
+}
+
+// After a short step of this size another with the same factors: of sparse equations it costs a fifth of one
+// with new factors, and takes an error e^2 on to e^3 (Shamanskii, A modification of Newton's method, 1967).
+void step_again(const Problem& problem, double size, Unknowns& z, Workspace& w) {
+  newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+  if (!(w.scaled_step.lpNorm<Eigen::Infinity>() < 0.1 * size)) return;
+  apply_step(problem, w.scaled_step, 1, z.q, w);
+  z.lambda += w.trial.lambda;
+  evaluate(problem, z, 0, w);
+}
+
+} // namespace
+
+void evaluate(const Problem& problem, const Unknowns& z, double t, Workspace& w) {
+  interruption_point();
+  forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
+  evaluate_forces(problem, z, w);
+}
+
+void evaluate_forces(const Problem& problem, const Unknowns& z, Workspace& w) {
+  evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
+  evaluate_magnitudes(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.magnitudes);
+}
+
+double scaled_residual(const Problem& problem, const Workspace& w) {
+  double worst = 0;
+  for (Eigen::Index i = 0; i < w.residual.f.size(); ++i)
+    if (w.residual.f[i] != 0) worst = std::max(worst, std::abs(w.residual.f[i]) / w.magnitudes.force[i]);
+  for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
+    worst = std::max(worst, std::abs(w.residual.phi[i]) * problem.scaling.row[i]);
+  return std::isfinite(w.residual.f.sum() + w.residual.phi.sum()) ? worst
+                                                                  : std::numeric_limits<double>::infinity();
+}
+
+void factor_constraints(const Problem& problem, Workspace& w) {
+  if (problem.system.rows > 0 && !problem.is_dense()) {
+    const double tolerance = rank_tolerance(problem, w.residual.phi); // pivots are singular values squared
+    w.loops.linearize_metric(problem, w.kinematics, std::max(tolerance * tolerance, 1e-10));
+    w.loops.factor();
+    return;
+  }
+  if (!problem.is_dense()) return;
+  linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
+  factor_dense_constraints(problem, w);
+}
+
+int independent_rows(const Problem& problem, const Workspace& w) {
+  const int rows = problem.system.rows;
+  if (rows == 0) return 0;
+  if (problem.is_dense()) return w.constraints.rank();
+  if (w.loops.redundant() <= rows) return rows - w.loops.redundant();
+  // Chains of bodies without mass leave the metric singular by itself, which its pivots do not tell apart
+  // from redundant rows: the rank of the rows alone.
+  Linearization l;
+  linearize_constraints(problem.system, problem.parameters, w.kinematics, l);
+  PivotedQr qr;
+  if (!qr.compute(problem.scaling.column.asDiagonal() * l.constraint.transpose() *
+                  problem.scaling.row.asDiagonal()))
+    return 0;
+  return static_cast<int>(qr.rank(rank_tolerance(problem, w.residual.phi)));
+}
+
+void best_multipliers(const Problem& problem, Workspace& w, Eigen::VectorXd& lambda) {
+  w.target = -w.residual.f.cwiseProduct(problem.scaling.column);
+  if (problem.system.rows == 0) {
+    lambda.resize(0);
+    return;
+  }
+  if (problem.is_dense()) {
+    w.constraints.multipliers(w.target, w.scaled_lambda);
+  } else {
+    w.zero_lambda.setZero(problem.system.rows);
+    w.loops.solve(w.target, w.zero_lambda, w.range_step, w.scaled_lambda);
+  }
+  lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
+}
+
+void close(const Problem& problem, Workspace& w, Eigen::VectorXd& scaled_step) {
+  w.scaled_phi = -w.residual.phi.cwiseProduct(problem.scaling.row);
+  if (problem.is_dense()) {
+    w.constraints.solve(w.scaled_phi, scaled_step);
+    return;
+  }
+  w.reduced_rhs.setZero(problem.system.nv);
+  w.loops.solve(w.reduced_rhs, w.scaled_phi, scaled_step, w.scaled_lambda);
+}
+
+bool positive_definite(const Problem& problem, const Workspace& w) {
+  return problem.is_dense() ? w.hessian.positive_definite() : w.eliminator(problem).positive_definite();
+}
+
+bool singular(const Problem& problem, const Workspace& w) {
+  return problem.is_dense() ? w.hessian.singular() : !w.eliminator(problem).flat().empty();
+}
+
+void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
+  interruption_point();
+  if (!problem.is_dense()) {
+    Eliminator& eliminator = w.eliminator(problem);
+    eliminator.linearize(problem, z, w.kinematics, w.residual, w.magnitudes);
+    eliminator.factor();
+    return;
+  }
+  linearize(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.linearization);
+  interruption_point();
+  factor_dense_constraints(problem, w);
+  const int n = problem.system.nv;
+  w.scaled_stiffness.resize(n, n);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      w.scaled_stiffness(i, j) =
+          w.linearization.stiffness(i, j) * problem.scaling.column[i] * problem.scaling.column[j];
+  clear_rounding(problem, w);
+  // Below this a stiffness is rounding: the forces behind it, per radian or reach.
+  const double rounding = 1e-15;
+  if (w.constraints.rank() == 0) {
+    w.noise = rounding * w.magnitudes.force.cwiseProduct(problem.scaling.column);
+    w.hessian.factor(w.scaled_stiffness, w.noise, problem.symmetric());
+    return;
+  }
+  const Eigen::MatrixXd& basis = w.constraints.basis();
+  if (n < large::from) {
+    w.product.noalias() = w.scaled_stiffness * basis;
+    w.reduced.noalias() = basis.transpose() * w.product;
+  } else {
+    w.reduced = large::projected(w.scaled_stiffness, basis);
+  }
+  w.noise.resize(basis.cols());
+  for (Eigen::Index k = 0; k < basis.cols(); ++k) {
+    double size = 0;
+    for (int i = 0; i < n; ++i)
+      size += basis(i, k) * basis(i, k) * w.magnitudes.force[i] * problem.scaling.column[i];
+    w.noise[k] = rounding * size;
+  }
+  w.hessian.factor(w.reduced, w.noise, problem.symmetric());
+}
+
+void evaluate_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
+  z.lambda.setZero(problem.system.rows);
+  if (problem.system.rows == 0) return evaluate(problem, z, 0, w);
+  forward<double>(problem.system, problem.parameters, z.q, 0, w.kinematics);
+  evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
+  factor_constraints(problem, w);
+  best_multipliers(problem, w, z.lambda);
+  evaluate_forces(problem, z, w);
+}
+
+void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
+  evaluate_with_multipliers(problem, z, w);
+  factor(problem, z, w);
+}
+
+void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::VectorXd& phi, Workspace& w,
+                 Eigen::VectorXd& scaled_step, Eigen::VectorXd& lambda) {
+  w.scaled_force = f.cwiseProduct(problem.scaling.column);
+  if (!problem.is_dense()) {
+    w.reduced_rhs = -w.scaled_force;
+    w.scaled_phi = -phi.cwiseProduct(problem.scaling.row);
+    w.eliminator(problem).solve(w.reduced_rhs, w.scaled_phi, scaled_step, w.scaled_lambda);
+    lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
+    return;
+  }
+  if (w.constraints.rank() == 0) {
+    w.reduced_rhs = -w.scaled_force;
+    w.hessian.solve(w.reduced_rhs, scaled_step);
+    lambda.setZero(problem.system.rows);
+    return;
+  }
+  w.scaled_phi = -phi.cwiseProduct(problem.scaling.row);
+  w.constraints.solve(w.scaled_phi, w.range_step);
+  w.target = -w.scaled_force;
+  w.target.noalias() -= w.scaled_stiffness * w.range_step;
+  const Eigen::MatrixXd& basis = w.constraints.basis();
+  w.reduced_rhs.noalias() = basis.transpose() * w.target;
+  w.hessian.solve(w.reduced_rhs, w.reduced_step);
+  scaled_step = w.range_step;
+  scaled_step.noalias() += basis * w.reduced_step;
+  // Multipliers that balance what the step leaves: jacobian^T lambda = -(f + K step).
+  w.target = -w.scaled_force;
+  w.target.noalias() -= w.scaled_stiffness * scaled_step;
+  w.constraints.multipliers(w.target, w.scaled_lambda);
+  lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
+}
+
+NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const NewtonSettings& settings,
+                     std::vector<double>* history) {
+  NewtonOutcome outcome;
+  w.zero_lambda.setZero(problem.system.rows);
+  if (settings.to_minimum) // what loops carry decides whether the potential falls
+    evaluate_with_multipliers(problem, z, w);
+  else if (!settings.factored)
+    evaluate(problem, z, 0, w);
+  double previous_step = 0;
+  bool contracts = false;
+  for (int i = 0;; ++i) {
+    const double residual = scaled_residual(problem, w);
+    if (history) history->push_back(residual);
+    outcome.iterations = i;
+    if (outcome.converged || i >= settings.max_iterations || !std::isfinite(residual) || problem.cancelled())
+      break;
+    if (i > 0 || !settings.factored) factor(problem, z, w);
+    if (settings.proximal > 0) w.eliminator(problem).factor(settings.proximal);
+    if (!w.hessian.known()) break;
+    // At an unstable equilibrium it stays, to say so.
+    constexpr double there = 1e-6;
+    if (settings.to_minimum && residual > there && w.eliminator(problem).negative_count() > 0) {
+      outcome.falls = true;
+      break;
+    }
+    w.trial.q = z.q;
+    const bool corrects = !problem.is_dense() && contracts;
+    find_step(problem, !corrects, z, w);
+    const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
+    if (!std::isfinite(size) || size > farthest) break;
+    if (settings.to_minimum && size > there && w.eliminator(problem).negative_count() > 0) break;
+    // In large mechanisms steps that stay long lead nowhere and cost much.
+    if (!problem.is_dense() && !settings.damped && i >= 3 && size > 1 && size > 0.5 * previous_step) break;
+    double fraction = 1;
+    if (settings.damped) {
+      if (!problem.is_dense()) factor_constraints(problem, w); // the balance has its own factors
+      const double start = merit(problem, w);
+      for (;; fraction /= 2) {
+        z.q = w.trial.q;
+        apply_step(problem, w.scaled_step, fraction, z.q, w);
+        Unknowns probe{z.q, w.zero_lambda};
+        evaluate(problem, probe, 0, w);
+        factor_constraints(problem, w);
+        const double now = merit(problem, w);
+        if (now <= (1 - 1e-4 * fraction) * start || now < 1e-13 || fraction < 1e-6) break;
+      }
+      if (fraction < 1e-6 && size > settings.step_tolerance) break;
+    } else {
+      apply_step(problem, w.scaled_step, 1, z.q, w);
+    }
+    outcome.largest_step = std::max(outcome.largest_step, fraction * size);
+    outcome.last_step = size;
+    evaluate(problem, z, 0, w);
+    // From below that the next step is the last, and at rounding.
+    constexpr double almost_there = 1e-8;
+    const bool short_step = size < 1e-4 && size > almost_there;
+    if (short_step && problem.elimination() == Elimination::bodies && !settings.damped &&
+        settings.proximal == 0)
+      step_again(problem, size, z, w);
+    // So far away only a balance that is as good as linear leads.
+    if (size > far && !(scaled_residual(problem, w) < 1e-6)) break;
+    const double tolerance =
+        settings.step_tolerance + (size > far || outcome.largest_step > far ? resolution(problem, z.q) : 0);
+    const double contraction = previous_step > 0 ? size / (previous_step * previous_step) : 0;
+    const bool next_is_none = settings.trusting && previous_step > 0 && size < 1e-4 &&
+                              size < 0.1 * previous_step &&
+                              std::max(1., contraction) * size * size <= 1e-2 * tolerance;
+    // Along what nothing resists steps stay as long as rounding makes them.
+    const bool at_rounding = settings.proximal > 0 && size < 1e-5 && scaled_residual(problem, w) < 1e-12;
+    if ((size <= tolerance || next_is_none || at_rounding) && fraction == 1.) {
+      // No step is left; but a force that no coordinate resists, or a loop that cannot close, asks for none
+      // either.
+      const double left = scaled_residual(problem, w);
+      if (left > 1e-8) break;
+      // Where a direction has no stiffness, short steps tell nothing of the force along it.
+      outcome.converged = !singular(problem, w) || (left <= 1e-13 && outcome.largest_step <= far);
+    } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {
+      outcome.converged = outcome.linear = true;
+    }
+    contracts = size < 1e-4 && size < 0.1 * previous_step;
+    previous_step = size;
+  }
+  return outcome;
+}
+
+bool assemble(const Problem& problem, Eigen::VectorXd& q, double t, Workspace& w) {
+  if (problem.system.rows == 0) return true;
+  Unknowns& z = w.closing;
+  z.lambda.setZero(problem.system.rows);
+  const auto opening = [&](const Eigen::VectorXd& at) {
+    z.q = at;
+    forward<double>(problem.system, problem.parameters, z.q, t, w.kinematics);
+    evaluate_constraints<double>(problem.system, problem.parameters, z.q, w.kinematics, w.residual.phi);
+    w.scaled_phi = -w.residual.phi.cwiseProduct(problem.scaling.row);
+    return w.scaled_phi.lpNorm<Eigen::Infinity>();
+  };
+  double open = opening(q);
+  for (int i = 0; i < 60; ++i) {
+    if (!std::isfinite(open)) return false;
+    if (open < 1e-14) break;
+    factor_constraints(problem, w);
+    close(problem, w, w.scaled_step);
+    const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
+    if (size < 1e-15) break;
+    double fraction = std::min(1., 0.5 / size), next = open;
+    Eigen::VectorXd& moved = w.moved;
+    for (;; fraction /= 2) {
+      moved = q;
+      apply_step(problem, w.scaled_step, fraction, moved, w);
+      next = opening(moved);
+      if (next < open || fraction < 1e-8) break;
+    }
+    if (!(next < open)) {
+      open = opening(q);
+      break;
+    }
+    q = moved;
+    open = next;
+  }
+  return open < 1e-10;
+}
+
+} // namespace flyball

@@ -1,0 +1,302 @@
+#include "engine/solve/refine.hpp"
+
+#include "engine/kkt/eliminator.hpp"
+
+#include <bit>
+
+namespace flyball {
+namespace {
+
+constexpr auto long_rounding = static_cast<double>(std::numeric_limits<long double>::epsilon());
+
+// The balance at z in extended precision; what is left of it is small, and then rounded.
+void evaluate_long(const Problem& problem, const Unknowns& z, Workspace& w) {
+  w.q_long = z.q.cast<long double>();
+  // Quaternions of double precision are of unit length to double precision only, and scale what they turn.
+  for (const Link& link : problem.system.links)
+    if (link.v >= 0 && link.type == LinkType::spherical) w.q_long.segment<4>(link.q).normalize();
+  w.lambda_long = z.lambda.cast<long double>();
+  forward<long double>(problem.system, problem.parameters, w.q_long, 0, w.kinematics_long);
+  evaluate_residual<long double>(problem.system, problem.parameters, w.q_long, w.lambda_long,
+                                 w.kinematics_long, w.residual_long);
+  w.residual.f = w.residual_long.f.cast<double>();
+  w.residual.phi = w.residual_long.phi.cast<double>();
+}
+
+// Of noise in four patterns: no two of eight neighbours have the same signs in all of them, nor opposite
+// ones, so that what they do together does not cancel throughout.
+double noise_sign(unsigned pattern, Eigen::Index i) {
+  const auto place = static_cast<unsigned>(i), eight = place / 8;
+  const unsigned mixed = (place + 5 * eight) % 8;
+  const unsigned turned = pattern == 0 ? 0 : mixed >> (pattern - 1);
+  return ((turned ^ static_cast<unsigned>(std::popcount(eight))) & 1U) == 0 ? 1 : -1;
+}
+
+// What the rounding of the residual and of the solution for the step, and equations of redundant loops that
+// disagree, do to each coordinate: the step that noise of this size with arbitrary signs asks for, four times
+// over. `left` (scaled) is the largest force that the step had to balance: a stiff spring's, by its rounded
+// length. Loops mix it with the softest.
+void add_noise(const Problem& problem, double left, double opening, Workspace& w, Eigen::VectorXd& error) {
+  const double mixed = problem.system.rows > 0 ? std::numeric_limits<double>::epsilon() * left : 0;
+  for (unsigned pattern = 0; pattern < 4; ++pattern) {
+    for (Eigen::Index i = 0; i < w.residual.f.size(); ++i)
+      w.residual.f[i] = noise_sign(pattern, i) *
+                        (2 * long_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
+    for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
+      w.residual.phi[i] = noise_sign(pattern, i) *
+                          (2 * long_rounding * w.magnitudes.phi[i] + opening / problem.scaling.row[i]);
+    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+    error += w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs();
+  }
+}
+
+// Whether every axis points along one of the world's: then normalising rounds nothing.
+bool has_plain_axes(const Problem& problem) {
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const LinkType type = problem.system.links[l].type;
+    if ((type == LinkType::revolute || type == LinkType::prismatic) &&
+        (problem.parameters.links[l].axis.array() != 0).count() > 1)
+      return false;
+  }
+  return true;
+}
+
+// What the rounding of the scene's numbers on their way into the equations does to each coordinate: axes are
+// normalised, lengths measured and positions subtracted in double precision, which the exact balance of
+// these rounded numbers does not show. Springs of coordinates are taken as they are given.
+void add_rounding_of_data(const Problem& problem, Workspace& w, Eigen::VectorXd& error) {
+  const System& system = problem.system;
+  error.setZero(system.nv);
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  const bool plain = has_plain_axes(problem);
+  if (plain && system.rows == 0) return;
+  for (const unsigned pattern : {0U, 2U}) {
+    w.residual.f.setZero();
+    for (std::size_t l = 0; l < system.links.size() && !plain; ++l) {
+      const Link& link = system.links[l];
+      const int n = link.type == LinkType::spherical ? 3 : 1;
+      const double size =
+          link.type == LinkType::prismatic ? w.magnitudes.link_force[l] : w.magnitudes.link_moment[l];
+      for (int v = link.v; link.v >= 0 && v < link.v + n; ++v)
+        w.residual.f[v] = noise_sign(pattern, v) * rounding * size;
+    }
+    for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
+      w.residual.phi[i] = noise_sign(pattern, i) * rounding * w.magnitudes.phi[i];
+    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+    if (w.scaled_step.allFinite()) error += w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs();
+  }
+}
+
+// The force along a direction without stiffness, some way along it.
+class SoftDirection {
+ public:
+  SoftDirection(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction, Workspace& w)
+      : p_(problem), z_(z), direction_(direction), w_(w) {
+    move(0);
+    here_ = force_;
+  }
+
+  // Whether double precision can tell that there the state is no longer in balance.
+  bool decides(double way) {
+    move(way);
+    if (!tells(2)) return false;
+    // A straight way leaves a bent valley and climbs its walls: with what is stiff back in balance, too? That
+    // leaves some rounding of its own.
+    for (int i = 0; i < 10 && tells(8); ++i) {
+      const double before = force_;
+      if (!std::isfinite(before)) return true;
+      find_way_back();
+      if (w_.scaled_step.lpNorm<Eigen::Infinity>() < 1) take(1);
+      if (!(force_ < 0.5 * before)) return true;
+    }
+    return tells(8);
+  }
+
+ private:
+  bool tells(double times) const { return !(force_ <= times * (here_ + noise_)); }
+
+  void move(double way) {
+    moved_ = z_;
+    w_.scaled_step = direction_;
+    take(way);
+  }
+
+  void take(double way) {
+    w_.step = way * w_.scaled_step.cwiseProduct(p_.scaling.column);
+    retract<double>(p_.system, w_.step, moved_.q);
+    force_ = std::numeric_limits<double>::infinity();
+    if (way != 0 && !assemble(p_, moved_.q, 0, w_)) return;
+    evaluate_with_multipliers(p_, moved_, w_);
+    const Eigen::VectorXd terms = w_.magnitudes.force.cwiseProduct(p_.scaling.column);
+    noise_ = std::numeric_limits<double>::epsilon() * direction_.cwiseAbs().dot(terms);
+    force_ = std::abs(direction_.dot(w_.residual.f.cwiseProduct(p_.scaling.column)));
+  }
+
+  // The Newton step with a stiffness along the direction like those of the others.
+  void find_way_back() {
+    factor(p_, moved_, w_);
+    const Eigen::MatrixXd& basis = w_.constraints.basis();
+    // Where the scale is none nothing is felt at all.
+    const Eigen::ArrayXd unit = (w_.hessian.scale().array() > 0).select(1 / w_.hessian.scale().array(), 0);
+    const Eigen::VectorXd held = (basis.transpose() * direction_).cwiseProduct(unit.matrix()).normalized();
+    const Eigen::VectorXd by_coordinate = held.cwiseProduct(unit.matrix());
+    stiffness_ = w_.constraints.rank() == 0 ? w_.scaled_stiffness : w_.reduced;
+    stiffness_ += by_coordinate * by_coordinate.transpose();
+    hessian_.factor(stiffness_, w_.noise, p_.symmetric());
+    const Eigen::VectorXd rhs = -basis.transpose() * w_.residual.f.cwiseProduct(p_.scaling.column);
+    hessian_.solve(rhs, back_);
+    w_.scaled_step = basis * back_;
+  }
+
+  const Problem& p_;
+  const Unknowns& z_;
+  const Eigen::VectorXd direction_;
+  Workspace& w_;
+  Unknowns moved_;
+  ReducedHessian hessian_;
+  Eigen::MatrixXd stiffness_;
+  Eigen::VectorXd back_;
+  double force_ = 0, noise_ = 0, here_ = 0;
+};
+
+// How far (scaled) the state can be moved along a direction without stiffness before double precision can
+// tell that it is no longer in balance; not finite where that never happens.
+double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction, Workspace& w) {
+  SoftDirection soft(problem, z, direction, w);
+  double farthest = 0;
+  bool decided = false;
+  for (const double side : {1., -1.}) {
+    double way = 1e-10;
+    while (way < 0.1 && !soft.decides(side * way))
+      way *= 2;
+    if (!(way < 0.1)) continue;
+    farthest = std::max(farthest, way);
+    decided = true;
+  }
+  return decided ? farthest : std::numeric_limits<double>::infinity();
+}
+
+// Whether loops whose equations depend on each other here do so no longer some way along: arms straight, a
+// linkage flat. There lengths change with the square of the angles.
+bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) {
+  const int rank = w.constraints.rank();
+  w.trial.q = z.q;
+  w.trial.lambda = z.lambda;
+  w.scaled_step.setZero(problem.system.nv);
+  for (Eigen::Index c = 0; c < w.constraints.basis().cols(); ++c)
+    w.scaled_step += 1e-4 * w.constraints.basis().col(c);
+  w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
+  retract<double>(problem.system, w.step, w.trial.q);
+  evaluate(problem, w.trial, 0, w);
+  factor_constraints(problem, w);
+  const bool more = w.constraints.rank() > rank;
+  evaluate(problem, z, 0, w);
+  factor(problem, z, w);
+  return more;
+}
+
+// How far (scaled) the force along a soft direction, which the steps left alone, asks the state to move by
+// the stiffness there; none where that is no more than rounding.
+double asked_for(const Problem& problem, const Eigen::VectorXd& direction, const Workspace& w) {
+  const Eigen::VectorXd size = direction.cwiseAbs();
+  const double force = std::abs(direction.dot(w.residual.f.cwiseProduct(problem.scaling.column))) +
+                       8 * long_rounding * size.dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+  const double stiffness = std::abs(direction.dot(w.scaled_stiffness * direction));
+  const double noise =
+      8 * std::numeric_limits<double>::epsilon() * size.dot(w.scaled_stiffness.cwiseAbs() * size);
+  return stiffness > noise ? force / stiffness : 0;
+}
+
+void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, Eigen::VectorXd& error) {
+  Eigen::MatrixXd flat = w.constraints.basis() * w.hessian.null_basis();
+  Eigen::VectorXd asked = Eigen::VectorXd::Zero(flat.cols());
+  evaluate_long(problem, z, w);
+  for (Eigen::Index c = 0; c < flat.cols(); ++c) {
+    const double size = flat.col(c).lpNorm<Eigen::Infinity>();
+    if (!(size > 0)) continue;
+    flat.col(c) /= size;
+    asked[c] = asked_for(problem, flat.col(c), w);
+  }
+  // What is never decided along a mixture of many is not along any of them.
+  const bool none = flat.cols() > few_flat && !std::isfinite(undecided(problem, z, mixture_of(flat), w));
+  for (Eigen::Index c = 0; c < flat.cols(); ++c) {
+    if (flat.col(c).isZero(0)) continue;
+    const double way = none ? std::numeric_limits<double>::infinity() : undecided(problem, z, flat.col(c), w);
+    const Eigen::VectorXd moved = flat.col(c).cwiseProduct(problem.scaling.column).cwiseAbs();
+    if (std::isfinite(way))
+      error = error.cwiseMax(std::max(way, 4 * asked[c]) * moved);
+    else // neutral, or lost in rounding: stability tells which
+      w.unheld = w.unheld.cwiseMax(moved);
+  }
+  evaluate(problem, z, 0, w);
+  factor(problem, z, w);
+}
+
+// A metric that held what seemed to feel nothing shortens the steps along what feels a little: without it,
+// unless something is flat indeed.
+void let_go(const Problem& problem, Workspace& w) {
+  if (problem.is_dense()) return;
+  Eliminator& e = w.eliminator(problem);
+  const double shift = e.shift();
+  if (shift == 0) return;
+  e.factor();
+  if (e.flat().size() > e.loose()) e.factor(shift);
+}
+
+} // namespace
+
+void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, Workspace& w,
+            Eigen::VectorXd& error) {
+  const System& system = problem.system;
+  error.setZero(system.nv);
+  w.unheld.setZero(system.nv);
+  w.data_error.setZero(system.nv);
+  if (system.nv == 0) return;
+  let_go(problem, w);
+  double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
+  constexpr int last_round = 4;
+  for (int round = 0; round <= last_round; ++round) {
+    evaluate_long(problem, z, w);
+    left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
+    // Multipliers are corrected like the rest, so that the forces they balance do not drown what they cannot.
+    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+    if (!w.scaled_step.allFinite()) break;
+    const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
+    w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
+    error = w.step.cwiseAbs();
+    if (problem.is_dense() && w.constraints.rank() < system.rows) {
+      w.scaled_phi = w.residual.phi.cwiseProduct(problem.scaling.row);
+      w.scaled_phi.noalias() += w.scaled_jacobian * w.scaled_step;
+      opening = w.scaled_phi.lpNorm<Eigen::Infinity>();
+    }
+    if (size > 0.5 * previous) { // no longer contracting: rounding, or a singular state
+      error *= 4 * std::max(1., previous / size);
+      break;
+    }
+    retract<double>(system, w.step, z.q);
+    z.lambda += w.trial.lambda;
+    previous = size;
+    if (size < 1e-15) break;
+    if (round == last_round)
+      error *= 4; // converging slowly: what is left may be more than the last correction
+  }
+  if (outcome.linear) // to a root of order n the steps shrink by (n - 1) / n: n - 1 of the last are left
+    error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
+  add_noise(problem, left, opening, w, error);
+  add_rounding_of_data(problem, w, w.data_error);
+  error += long_rounding * problem.scaling.column;
+  if (problem.is_dense() && w.constraints.rank() < std::min(system.rows, system.nv) &&
+      at_singular_loops(problem, z, w))
+    error += 4 * std::sqrt(opening + long_rounding) * problem.scaling.column;
+  if (problem.is_dense() && w.hessian.singular()) add_singular_directions(problem, z, w, error);
+  for (const Link& link : system.links) {
+    if (link.v < 0) continue;
+    const int n = link.type == LinkType::spherical ? 3 : 1;
+    for (int k = 0; k < n; ++k) {
+      const double value = n == 3 ? 1 : std::abs(z.q[link.q]);
+      error[link.v + k] += 2 * std::numeric_limits<double>::epsilon() * value;
+    }
+  }
+}
+
+} // namespace flyball

@@ -1,0 +1,50 @@
+#include "engine/solve/solution.hpp"
+
+namespace flyball {
+
+std::string_view word(Status status) {
+  switch (status) {
+  case Status::converged: return "converged";
+  case Status::not_converged: return "not_converged";
+  case Status::no_steady_state: return "no_steady_state";
+  case Status::infeasible: return "infeasible";
+  }
+  return "";
+}
+
+std::string_view word(Net net) {
+  switch (net) {
+  case Net::damped: return "damped";
+  case Net::homotopy: return "homotopy";
+  case Net::descent: return "descent";
+  case Net::search: return "search";
+  }
+  return "";
+}
+
+std::string_view word(SearchEnd end) {
+  switch (end) {
+  case SearchEnd::settled: return "settled";
+  case SearchEnd::starts: return "starts";
+  case SearchEnd::budget: return "budget";
+  case SearchEnd::time: return "time";
+  case SearchEnd::cancelled: return "cancelled";
+  }
+  return "";
+}
+
+std::string_view word(StabilityReason reason) {
+  switch (reason) {
+  case StabilityReason::minimum: return "minimum";
+  case StabilityReason::asymptotic: return "asymptotic";
+  case StabilityReason::gyroscopic_only: return "gyroscopic_only";
+  case StabilityReason::neutral: return "neutral";
+  case StabilityReason::marginal: return "marginal";
+  case StabilityReason::unstable: return "unstable";
+  case StabilityReason::floquet: return "floquet";
+  case StabilityReason::varying: return "varying";
+  }
+  return "";
+}
+
+} // namespace flyball

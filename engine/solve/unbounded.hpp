@@ -1,0 +1,34 @@
+// Why a search found nothing, where something runs away: coordinates along which the forces push on without
+// end, so that the amended potential has no lower bound. A slide without a spring under gravity is the most
+// common of them, and for a person something else than a search that did not converge.
+#pragma once
+
+#include "engine/kkt/problem.hpp"
+#include "engine/kkt/workspace.hpp"
+#include "engine/solve/solution.hpp"
+
+namespace flyball {
+
+struct Unbounded {
+  std::vector<UnheldCoordinate> coordinates; // empty: nothing of the kind was found
+  bool by_weight = false;                    // without gravity the forces do not push this way
+  bool by_inertia = false;                   // without the drives' motion they do not
+};
+
+// From `start` (a configuration, loops open or closed) of a problem without a steady state. Two tests: along
+// each coordinate alone, whether the generalised force keeps its sign and loses nothing of its size out to a
+// thousand times the mechanism's reach, or over whole turns; then, where there is a potential, which
+// coordinates run off in a descent that finds no bottom. Empty where neither tells, where loops cannot be
+// closed and where the problem is cancelled.
+Unbounded find_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w);
+
+// The two in one place: names them in `out.unheld`, and in `out.message` what holds nothing and what would
+// mend it; of an unstable answer beside what the message says already. Leaves `out` alone where nothing runs
+// away.
+void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w, Solution& out);
+
+// Of a state that balances at one phase of the drives and not at the phase `t` (s): whether that is gravity's
+// doing alone, so that turning it along the axis, or off, would mend it.
+bool weight_turns(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w);
+
+} // namespace flyball

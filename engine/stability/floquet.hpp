@@ -1,0 +1,40 @@
+// Floquet's theory of a linearised motion whose matrices turn with the drives (Floquet 1883; Meirovitch,
+// Methods of Analytical Dynamics, section 7.8): with x' = A(t) x and A(t + T) = A(t) what a motion is after a
+// period T is the monodromy matrix times what it was before. Its eigenvalues, the multipliers mu, tell what
+// grows: |mu| > 1.
+#pragma once
+
+#include "engine/solve/newton.hpp"
+#include "engine/solve/solution.hpp"
+
+namespace flyball {
+
+// The shortest time (s) in which each of the speeds (rad/s, none of them zero) makes whole turns, none of
+// them more than `most`. Nothing where there is none to nine digits, or no speed.
+std::optional<double> common_period(const std::vector<double>& speeds, int most);
+
+// Why there are no multipliers.
+enum class FloquetFailure {
+  no_period, // the drives that matter have no common period
+  singular,  // without mass in directions that turn, or without damping and stiffness in one that has no mass
+  unresolved, // a period takes more steps than are reasonable
+  cancelled,
+};
+
+struct FloquetOutcome {
+  std::optional<Floquet> result;
+  FloquetFailure failure = FloquetFailure::no_period; // where there is no result
+};
+
+// Of the steady state q, where motion_varies(). The matrices are Fourier series through samples over the
+// period, of which there are as many as it takes; the monodromy matrix is a product of exponentials by
+// Magnus' expansion of order six (Blanes, Casas, Oteo, Ros, The Magnus expansion and some of its
+// applications, 2009, section 5.3.2), which keeps multipliers of motions without damping on the unit circle.
+// Steps are halved until the multipliers agree.
+FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
+
+// ln(mu) / T, 1/s: growth rates and frequencies, these but for whole turns a period, by size of the imaginary
+// part. Multipliers so small that they are rounding beside the largest are left out.
+std::vector<std::complex<double>> floquet_exponents(const Floquet& floquet);
+
+} // namespace flyball

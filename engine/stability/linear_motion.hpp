@@ -1,0 +1,32 @@
+// The linearised motion M q'' + (C + G) q' + K q = 0 about a steady state at one phase of the drives, and
+// whether it is the same at every phase. A steady state holds at every phase; the matrices need not: where a
+// drive does not stand at the root, or something spans it, they can turn with it though the balance does not.
+#pragma once
+
+#include "engine/solve/newton.hpp"
+
+namespace flyball {
+
+// In scaled coordinates (n = nv), the multipliers of that phase included.
+struct LinearMotion {
+  Eigen::MatrixXd mass, velocity, stiffness; // (n, n)
+  Eigen::MatrixXd basis;                     // (n, k), orthonormal: null space of the constraints
+  Eigen::VectorXd force;                     // (n), size of the terms that each balance is made of
+};
+
+// At the configuration q and the time t (s) along the drives, from their drawn angles.
+LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w);
+
+// The columns of `motion.basis` mixed so that reference^T N is the identity: then N depends on the phase only
+// as far as the null space does. Nothing where the null space turned at right angles to the reference.
+std::optional<Eigen::MatrixXd> basis_beside(const LinearMotion& motion, const Eigen::MatrixXd& reference);
+
+// Whether two phases have the same M, C + G and K on the same null space, to 1e-9 of the sizes in each
+// direction.
+bool same_motion(const Problem& problem, const LinearMotion& a, const LinearMotion& b);
+
+// Whether any of the times `phases` (s) differs from the drawn phase.
+bool motion_varies(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,
+                   Workspace& w);
+
+} // namespace flyball

@@ -1,0 +1,272 @@
+#include "engine/stability/modes.hpp"
+
+#include "engine/kkt/coordinate_gradient.hpp"
+#include "engine/linear/large.hpp"
+#include "engine/linear/spectral.hpp"
+#include "engine/solve/newton.hpp"
+#include "engine/stability/stability.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <random>
+
+namespace flyball {
+namespace {
+
+using Complex = std::complex<double>;
+
+// M, D and K on the null space of the constraints, scaled, in units of time that make M and K alike.
+struct ReducedMotion {
+  Eigen::MatrixXd mass, velocity, stiffness;
+  double rate = 1; // 1/s per unit of s
+};
+
+ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspace& w) {
+  evaluate(problem, z, 0, w);
+  factor(problem, z, w);
+  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.linearization);
+  const Eigen::MatrixXd& basis = w.constraints.basis();
+  const auto& s = problem.scaling.column;
+  ReducedMotion out;
+  out.mass = large::projected(s.asDiagonal() * w.linearization.mass * s.asDiagonal(), basis);
+  out.velocity = large::projected(s.asDiagonal() * w.linearization.velocity * s.asDiagonal(), basis);
+  out.stiffness = large::projected(w.scaled_stiffness, basis);
+  const double m = out.mass.norm(), k = out.stiffness.norm();
+  if (m > 0 && k > 0) out.rate = std::sqrt(k / m);
+  out.velocity *= out.rate;
+  out.mass *= out.rate * out.rate;
+  return out;
+}
+
+// The directions that s^2 M + s D + K takes to nothing, at most `count`, orthonormal after equilibration: by
+// block inverse iteration on the singular vectors (Golub and Van Loan, Matrix Computations, section 8.2).
+struct Shapes {
+  Eigen::MatrixXcd vectors;
+  std::vector<double> residuals; // relative
+};
+
+// Five steps from random vectors; false where the matrix cannot be factored.
+bool iterate(const Eigen::MatrixXcd& beside, Eigen::MatrixXcd& x) {
+  ComplexLu lu, adjoint;
+  if (!lu.compute(beside) || !adjoint.compute(beside.adjoint())) return false;
+  std::mt19937 random(1);
+  for (Complex& entry : x.reshaped())
+    entry = static_cast<double>(random()) / 2147483648. - 1;
+  for (int iteration = 0; iteration < 5; ++iteration) {
+    const Eigen::MatrixXcd y = adjoint.solve(x);
+    x = lu.solve(y);
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+      x.col(j) /= x.col(j).norm();
+      for (int twice = 0; twice < 2; ++twice)
+        for (Eigen::Index i = 0; i < j; ++i)
+          x.col(j) -= x.col(i) * x.col(i).dot(x.col(j));
+      x.col(j) /= x.col(j).norm();
+    }
+  }
+  return x.allFinite();
+}
+
+Shapes null_shapes(const ReducedMotion& motion, Complex s, Eigen::Index count) {
+  const Eigen::Index n = motion.mass.rows();
+  Eigen::MatrixXcd a = s * s * motion.mass.cast<Complex>() + s * motion.velocity.cast<Complex>() +
+                       motion.stiffness.cast<Complex>();
+  const Eigen::MatrixXd terms = std::norm(s) * motion.mass.cwiseAbs() +
+                                std::abs(s) * motion.velocity.cwiseAbs() + motion.stiffness.cwiseAbs();
+  Eigen::VectorXd scale(n);
+  const double largest = n > 0 ? terms.maxCoeff() : 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double size = terms.row(i).maxCoeff();
+    scale[i] = size > 1e-40 * largest ? 1 / std::sqrt(size) : 1; // else nothing but rounding
+  }
+  a = scale.asDiagonal() * a * scale.asDiagonal();
+  Eigen::MatrixXcd x(n, count);
+  // At the eigenvalue itself the matrix cannot be factored; a little beside it the vectors are the same. That
+  // little may meet a zero pivot itself.
+  double shift = std::numeric_limits<double>::epsilon();
+  bool found = false;
+  for (int tries = 0; tries < 4 && !found; ++tries, shift *= 3) {
+    Eigen::MatrixXcd beside = a;
+    beside.diagonal().array() += shift;
+    found = iterate(beside, x);
+  }
+  if (!found) return {Eigen::MatrixXcd(n, 0), {}};
+  Shapes out;
+  for (Eigen::Index j = 0; j < count; ++j)
+    out.residuals.push_back((a * x.col(j)).norm() / std::max(1., a.norm()));
+  out.vectors = scale.asDiagonal() * x;
+  return out;
+}
+
+VibrationMode describe(const Problem& problem, const Unknowns& z, const Eigen::VectorXcd& scaled, Complex s,
+                       double residual) {
+  VibrationMode mode;
+  mode.eigenvalue = s;
+  mode.frequency = damped_frequency(s);
+  mode.natural_frequency = natural_frequency(s);
+  mode.damping_ratio = damping_ratio(s);
+  mode.residual = residual;
+  Eigen::Index largest = 0;
+  scaled.cwiseAbs().maxCoeff(&largest);
+  Eigen::VectorXcd shape = scaled / scaled[largest];
+  shape[largest] = 1;
+  shape = shape.cwiseProduct(problem.scaling.column.cast<Complex>());
+  mode.shape.assign(shape.begin(), shape.end());
+  for (const CoordinateInfo& c : problem.system.coordinates) {
+    if (problem.system.links[static_cast<std::size_t>(c.link)].v < 0) continue;
+    const TreeJoint& joint = problem.system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+    const Eigen::VectorXd gradient = coordinate_gradient(problem.system, problem.parameters, z.q, c);
+    mode.amplitudes.push_back({joint.name, c.index, coordinate_count(joint.type), c.angle,
+                               gradient.cast<Complex>().cwiseProduct(shape).sum()});
+  }
+  return mode;
+}
+
+} // namespace
+
+double natural_frequency(Complex eigenvalue) {
+  return std::abs(eigenvalue);
+}
+double damped_frequency(Complex eigenvalue) {
+  return std::abs(eigenvalue.imag());
+}
+double damping_ratio(Complex eigenvalue) {
+  const double size = std::abs(eigenvalue);
+  return size > 0 ? -eigenvalue.real() / size : 0;
+}
+double hertz(double angular_frequency) {
+  return angular_frequency / (2 * std::numbers::pi);
+}
+
+std::vector<VibrationMode> find_modes(const Problem& problem, const Unknowns& z, Workspace& w) {
+  const Stability stability = find_stability(problem, z, true, w);
+  const ReducedMotion motion = reduced_motion(problem, z, w);
+  if (!stability.eigenvalues || stability.floquet)
+    return {};                                        // a motion that turns with the drives has no shapes
+  std::vector<Complex> left = *stability.eigenvalues; // by size of the imaginary part
+  double largest = 0;
+  for (const Complex s : left)
+    largest = std::max(largest, std::abs(s));
+  // Of a conjugate pair one; rounding takes a double zero apart, either way.
+  std::erase_if(left, [](Complex s) { return s.imag() < 0; });
+  const auto zero = [&](Complex s) { return std::abs(s) <= 1e-7 * largest; };
+  const auto alike = [&](Complex a, Complex b) {
+    return (zero(a) && zero(b)) || std::abs(a - b) <= 1e-9 * std::abs(a) + 1e-12 * largest;
+  };
+  std::vector<VibrationMode> modes;
+  while (!left.empty()) {
+    const Complex s = left.front();
+    std::vector<Complex> cluster;
+    std::erase_if(left, [&](Complex other) {
+      if (!alike(s, other)) return false;
+      cluster.push_back(other);
+      return true;
+    });
+    const auto count = std::min<Eigen::Index>(static_cast<Eigen::Index>(cluster.size()), motion.mass.rows());
+    const Shapes shapes = null_shapes(motion, s / motion.rate, count);
+    for (Eigen::Index j = 0; j < shapes.vectors.cols(); ++j) {
+      const double residual = shapes.residuals[static_cast<std::size_t>(j)];
+      if (j > 0 && !(residual <= 1e-10)) break;
+      modes.push_back(describe(problem, z, w.constraints.basis() * shapes.vectors.col(j),
+                               cluster[static_cast<std::size_t>(j)], residual));
+    }
+  }
+  std::ranges::stable_sort(modes, [](const VibrationMode& a, const VibrationMode& b) {
+    return a.frequency != b.frequency ? a.frequency < b.frequency : a.eigenvalue.real() > b.eigenvalue.real();
+  });
+  return modes;
+}
+
+Eigen::VectorXd along_mode(const Problem& problem, const Eigen::VectorXd& q, const VibrationMode& mode,
+                           double amplitude, double phase, double t, Workspace& w) {
+  const Complex turn = std::polar(1., phase);
+  Eigen::VectorXd moved;
+  for (int halving = 0; halving < 12; ++halving, amplitude /= 2) {
+    w.step.resize(problem.system.nv);
+    for (Eigen::Index i = 0; i < w.step.size(); ++i)
+      w.step[i] = amplitude * (mode.shape[static_cast<std::size_t>(i)] * turn).real();
+    moved = q;
+    retract<double>(problem.system, w.step, moved);
+    if (assemble(problem, moved, t, w)) return moved;
+  }
+  return q;
+}
+
+StabilityEvidence stability_evidence(const Problem& problem, const Unknowns& z, Workspace& w) {
+  StabilityEvidence out;
+  const Stability verdict = find_stability(problem, z, true, w);
+  evaluate(problem, z, 0, w);
+  factor(problem, z, w);
+  out.potential = has_potential(problem, z, w);
+  const Eigen::MatrixXd& basis = w.constraints.basis();
+  w.noise.resize(basis.cols());
+  for (Eigen::Index i = 0; i < basis.cols(); ++i)
+    w.noise[i] =
+        1e-15 * basis.col(i).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+  ReducedHessian energy;
+  energy.factor(large::projected(w.scaled_stiffness, basis), w.noise, out.potential);
+  out.flat = energy.null_count();
+  if (out.potential && !energy.positive_definite() && energy.size() > 0) {
+    if (energy.decompose())
+      out.downhill = static_cast<int>((energy.eigenvalues().array() < -ReducedHessian::zero).count());
+  }
+  if (verdict.floquet || verdict.floquet_failure) {
+    out.reason = verdict.floquet
+                     ? "The linearised motion turns with the drives: the multipliers of a period alone judge."
+                     : "The linearised motion turns with the drives, and no multipliers tell of it.";
+    out.agree = verdict.floquet.has_value();
+    return out;
+  }
+  if (!verdict.eigenvalues) {
+    out.agree = false;
+    out.reason = "The eigenvalues were not found: the iteration for them does not converge.";
+    return out;
+  }
+  std::vector<Complex> eigenvalues = *verdict.eigenvalues;
+  double largest = 0;
+  for (const Complex s : eigenvalues)
+    largest = std::max(largest, std::abs(s));
+  // The smallest belong to flat directions and are zero but for rounding.
+  std::ranges::sort(eigenvalues, {}, [](Complex s) { return std::abs(s); });
+  for (std::size_t i = 0; i < eigenvalues.size(); ++i) {
+    const Complex s = eigenvalues[i];
+    const bool of_flat = i < 2 * static_cast<std::size_t>(out.flat) && std::abs(s) < 1e-5 * largest;
+    const double tolerance = 1e-8 * std::abs(s) + 1e-12 * largest;
+    if (of_flat || std::abs(s.real()) <= tolerance)
+      ++out.standing;
+    else
+      ++(s.real() > 0 ? out.growing : out.decaying);
+  }
+
+  const auto directions = [](int count) {
+    return count == 1 ? std::string("one direction") : std::to_string(count) + " directions";
+  };
+  if (!out.potential) {
+    out.reason = "There is no potential here (drag, a damper between parts that turn against each other, or "
+                 "drives that ride on moving parts): the eigenvalues alone judge.";
+  } else if (out.downhill > 0 && out.growing > 0) {
+    out.reason = "Both say unstable: the amended potential falls in " + directions(out.downhill) + ", and " +
+                 (out.growing == 1 ? std::string("one eigenvalue grows.")
+                                   : std::to_string(out.growing) + " eigenvalues grow.");
+  } else if (out.downhill > 0 && verdict.stable == false) {
+    out.agree = false;
+    out.reason = "The amended potential falls in " + directions(out.downhill) +
+                 ", and no eigenvalue tells of it: that direction has no mass. The state is unstable.";
+  } else if (out.downhill > 0) {
+    out.agree = false;
+    out.reason = "The amended potential falls in " + directions(out.downhill) +
+                 ", yet no eigenvalue grows: gyroscopic forces hold the state. Any damping of that motion "
+                 "would make it unstable.";
+  } else if (out.growing > 0) {
+    out.agree = false;
+    out.reason = "An eigenvalue grows although the amended potential does not fall to second order: the "
+                 "state is too close to singular to tell.";
+  } else if (out.flat > 0) {
+    out.reason = "The amended potential is flat in " + directions(out.flat) +
+                 " to second order; no eigenvalue grows. Neither criterion decides.";
+  } else {
+    out.reason = "Both say stable: a strict minimum of the amended potential, and no eigenvalue grows.";
+  }
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,126 @@
+#include "engine/stability/pivot_stability.hpp"
+
+#include "engine/linear/largest.hpp"
+
+#include <random>
+
+namespace flyball {
+namespace {
+
+// Whether a way (scaled) along directions without stiffness leads to another balanced state, the rest giving
+// way as it must, to `rounding` of the forces.
+bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& way, double rounding,
+                    Workspace& w) {
+  Unknowns moved = z;
+  Eigen::VectorXd step = way, multipliers;
+  const double shift = w.eliminator(problem).shift();
+  const auto balanced = [&] {
+    const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+    const double left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
+    const double open = problem.system.rows > 0
+                            ? w.residual.phi.cwiseProduct(problem.scaling.row).lpNorm<Eigen::Infinity>()
+                            : 0;
+    return left <= rounding * force && open <= rounding;
+  };
+  for (int i = 0; i < 8; ++i) {
+    w.step = step.cwiseProduct(problem.scaling.column);
+    retract<double>(problem.system, w.step, moved.q);
+    evaluate(problem, moved, 0, w); // as a rule loops carry on as they did
+    if (balanced()) return true;
+    if (problem.system.rows > 0) {
+      evaluate_with_multipliers(problem, moved, w);
+      if (balanced()) return true;
+    }
+    factor(problem, moved, w);
+    if (shift > 0) w.eliminator(problem).factor(shift);
+    newton_step(problem, w.residual.f, w.residual.phi, w, step, multipliers);
+    if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
+  }
+  return false;
+}
+
+// Where many directions are neutral but for rounding: inverse iteration with the factors that hold them.
+Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspace& w) {
+  constexpr int samples = 4, iterations = 4;
+  constexpr double rounding = 1e-11; // the way is short, since what is held comes back far along it
+  Stability out;
+  Eliminator& e = w.eliminator(problem);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Eigen::VectorXd way, one(problem.system.nv), image;
+  std::vector<bool> takes_part(static_cast<std::size_t>(problem.system.nv));
+  for (int i = 0; i < samples; ++i) {
+    for (double& x : one)
+      x = any(random);
+    for (int k = 0; k < iterations; ++k) {
+      e.metric(one, image);
+      e.solve(image, one);
+      one /= one.lpNorm<Eigen::Infinity>();
+    }
+    for (int v = 0; v < problem.system.nv; ++v)
+      if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
+    if (i == 0) way = one;
+  }
+  for (const Eliminator::Flat& f : e.flat()) // and what feels nothing at all
+    for (const auto& [v, share] : f)
+      if (std::abs(share) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
+  const bool balanced = stays_balanced(problem, z, 0.002 * way, rounding, w) &&
+                        stays_balanced(problem, z, -0.003 * way, rounding, w);
+  out.reason = balanced ? StabilityReason::neutral : StabilityReason::marginal;
+  for (int v = 0; balanced && v < problem.system.nv; ++v)
+    if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);
+  return out;
+}
+
+} // namespace
+
+Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w) {
+  Stability out;
+  if (!problem.symmetric()) return out;
+  if (w.eliminator(problem).shift() > 0) return of_held_directions(problem, z, w);
+  const int negative = w.eliminator(problem).negative_count();
+  if (w.eliminator(problem).positive_definite()) {
+    out.stable = true;
+    out.reason = StabilityReason::minimum;
+  } else if (negative % 2 == 1) {
+    out.stable = false;
+    out.reason = StabilityReason::unstable;
+  }
+  if (w.eliminator(problem).flat().empty()) return out;
+
+  // All at once: either nothing resists any of them, or the state is singular.
+  const std::vector<Eliminator::Flat> flat = w.eliminator(problem).flat();
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(problem.system.nv), one;
+  std::vector<bool> takes_part(static_cast<std::size_t>(problem.system.nv));
+  if (flat.size() <= 100) {
+    for (const Eliminator::Flat& f : flat) {
+      w.eliminator(problem).direction_of(f, one);
+      one /= one.lpNorm<Eigen::Infinity>();
+      for (int v = 0; v < problem.system.nv; ++v)
+        if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
+      all += one;
+    }
+  } else { // each by itself would cost too much: without what follows beyond
+    for (const Eliminator::Flat& f : flat)
+      for (const auto& [v, share] : f)
+        if (std::abs(share) > 1e-6) {
+          takes_part[static_cast<std::size_t>(v)] = true;
+          all[v] += share;
+        }
+  }
+  if (all.isZero(0)) { // too many to name
+    if (!out.reason && negative == 0) out.reason = StabilityReason::marginal;
+    return out;
+  }
+  all /= all.lpNorm<Eigen::Infinity>();
+  const bool balanced =
+      stays_balanced(problem, z, 0.05 * all, 1e-9, w) && stays_balanced(problem, z, -0.11 * all, 1e-9, w);
+  if (balanced)
+    for (int v = 0; v < problem.system.nv; ++v)
+      if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);
+  if (!out.reason && negative == 0)
+    out.reason = balanced ? StabilityReason::neutral : StabilityReason::marginal;
+  return out;
+}
+
+} // namespace flyball

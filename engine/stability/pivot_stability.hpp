@@ -1,0 +1,13 @@
+// What the signs of the pivots tell of stability, at the cost of an elimination and without eigenvalues.
+#pragma once
+
+#include "engine/stability/stability.hpp"
+
+namespace flyball {
+
+// z must be a steady state of a problem that is not dense, factored in the workspace. The signs of the pivots
+// decide where there is a potential: a minimum is stable; an odd number of negative ones is unstable whatever
+// gyroscopic forces do (Thomson and Tait; Chetayev). Else nothing is decided and `reason` stays empty.
+Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w);
+
+} // namespace flyball

@@ -1,0 +1,40 @@
+#include "engine/stability/sign_is_open.hpp"
+
+namespace flyball {
+
+bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& error, bool minimum,
+                  Workspace& w) {
+  if (problem.system.nv == 0 || !problem.is_dense() || !problem.symmetric()) return false;
+  const double away = error.cwiseQuotient(problem.scaling.column).lpNorm<Eigen::Infinity>();
+  if (minimum && away < 1e-11) return false;
+  Unknowns here = z;
+  factor_with_multipliers(problem, here, w);
+  if (w.hessian.size() == 0) return false;
+  if (w.hessian.singular()) {
+    // Whatever is left open in a direction without stiffness, another one may fall for certain.
+    constexpr double certain = 1e-6;
+    return !(w.hessian.decompose() && w.hessian.eigenvalues()[0] < -certain);
+  }
+  if (!w.hessian.decompose()) return true;
+  Eigen::Index softest = 0;
+  w.hessian.eigenvalues().cwiseAbs().minCoeff(&softest);
+  Eigen::VectorXd way = w.hessian.eigenvectors().col(softest).cwiseProduct(w.hessian.scale());
+  if (problem.system.rows > 0 && w.constraints.rank() > 0) way = (w.constraints.basis() * way).eval();
+  way /= way.lpNorm<Eigen::Infinity>();
+  const auto stiffness = [&] { return way.dot(w.scaled_stiffness * way); };
+  const double noise = 4 * std::numeric_limits<double>::epsilon() *
+                       way.cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+  const double least = stiffness();
+  double change = noise;
+  for (const double side : {4., -4.}) {
+    here.q = z.q;
+    const Eigen::VectorXd step = side * away * way.cwiseProduct(problem.scaling.column);
+    retract<double>(problem.system, step, here.q);
+    if (!assemble(problem, here.q, 0, w)) continue;
+    factor_with_multipliers(problem, here, w);
+    change = std::max(change, std::abs(stiffness() - least));
+  }
+  return std::abs(least) <= change;
+}
+
+} // namespace flyball

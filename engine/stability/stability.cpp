@@ -1,0 +1,265 @@
+#include "engine/stability/stability.hpp"
+
+#include "engine/linear/interruption.hpp"
+#include "engine/linear/large.hpp"
+#include "engine/linear/largest.hpp"
+#include "engine/linear/pencil.hpp"
+#include "engine/linear/spectral.hpp"
+#include "engine/solve/existence.hpp"
+#include "engine/stability/gyroscopic_stability.hpp"
+#include "engine/stability/linear_motion.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+using Complex = std::complex<double>;
+
+// Whether a way (scaled) along the directions without stiffness leads to another balanced state, the rest
+// giving way as it must: a bob that turns about the vertical goes along an arc.
+bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::MatrixXd& flat,
+                    const Eigen::VectorXd& way, Workspace& w) {
+  Unknowns moved = z;
+  Eigen::VectorXd step = way;
+  for (int i = 0; i < 8; ++i) {
+    w.step = step.cwiseProduct(problem.scaling.column);
+    retract<double>(problem.system, w.step, moved.q);
+    if (!assemble(problem, moved.q, 0, w)) return false;
+    evaluate_with_multipliers(problem, moved, w);
+    const Eigen::MatrixXd& basis = w.constraints.basis();
+    const Eigen::VectorXd left = basis.transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
+    const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+    if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
+    factor(problem, moved, w);
+    const auto all = orthonormal_completion(basis.transpose() * flat);
+    if (!all || all->cols() <= flat.cols()) return false;
+    const auto rest = all->rightCols(all->cols() - flat.cols());
+    const auto solved = least_squares(large::projected(w.scaled_stiffness, basis) * rest, -left);
+    if (!solved) return false;
+    step = basis * (rest * *solved);
+    if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
+  }
+  return false;
+}
+
+// By the multipliers, of which those of `neutral` directions (a rotation or shift that nothing resists, and
+// its rate) lie at 1.
+void judge_by_multipliers(const Problem& problem, const Unknowns& z, int neutral, Workspace& w,
+                          Stability& out) {
+  FloquetOutcome outcome;
+  if (problem.system.nv <= largest_for_eigenvalues)
+    outcome = find_floquet(problem, z.q, w);
+  else
+    outcome.failure = FloquetFailure::unresolved;
+  if (!outcome.result) {
+    out.reason = StabilityReason::varying;
+    out.floquet_failure = outcome.failure;
+    return;
+  }
+  const Floquet& floquet = out.floquet.emplace(std::move(*outcome.result));
+  out.eigenvalues = floquet_exponents(floquet);
+  out.reason = StabilityReason::floquet;
+  std::vector<Complex> judged = floquet.multipliers;
+  std::ranges::sort(judged, {}, [](Complex mu) { return std::abs(mu - 1.); });
+  auto begin = judged.begin();
+  for (int i = 0; i < 2 * neutral && begin != judged.end() && std::abs(*begin - 1.) < 1e-4; ++i)
+    ++begin;
+  judged.erase(judged.begin(), begin);
+  // Multipliers that lie close together are known to the root of what others are.
+  const double tolerance = 1e-8 + 10 * floquet.error;
+  bool inside = true, apart = true;
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    const double size = std::abs(judged[i]);
+    bool close = std::abs(judged[i].imag()) < 1e-3; // at 1 or -1 a pair meets
+    for (std::size_t j = 0; j < judged.size(); ++j)
+      close = close || (i != j && std::abs(judged[i] - judged[j]) < 1e-3);
+    const double limit = close ? std::max(1e-6, std::sqrt(10 * floquet.error)) : tolerance;
+    if (size > 1 + limit) {
+      out.stable = false;
+      return;
+    }
+    if (size < 1 - limit) continue;
+    inside = false;
+    if (close) apart = false;
+  }
+  if (neutral > 0) {
+    out.reason = StabilityReason::neutral;
+    return;
+  }
+  // On the unit circle and apart from each other they cannot leave it: motions stay as small as they begin
+  // (Krein).
+  if (inside || apart) out.stable = true;
+}
+
+// Whether directions without mass and damping tip over at once: no finite eigenvalue tells of it. They do
+// where their own stiffness is negative, and where it vanishes while they are coupled with directions that
+// have mass: with a mass e of theirs, e s^2 and m s^2 on the diagonal and c beside it, s^2 = +-c / sqrt(e m).
+std::optional<bool> massless_directions_tip(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                                            const Eigen::MatrixXd& stiffness) {
+  if (mass.rows() == 0) return false;
+  SymmetricEigen shape;
+  if (!shape.compute((mass + mass.transpose()) / 2)) return {};
+  Eigen::Index massless = 0;
+  while (massless < mass.rows() && shape.values()[massless] < 1e-13 * std::max(mass.norm(), 1e-300))
+    ++massless;
+  if (massless == 0) return false;
+  const Eigen::MatrixXd z = shape.vectors().leftCols(massless),
+                        r = shape.vectors().rightCols(mass.rows() - massless);
+  SymmetricEigen local;
+  if (!local.compute(z.transpose() * (stiffness + stiffness.transpose()) * z / 2)) return {};
+  const double size = std::max(stiffness.norm(), 1e-300);
+  if (local.values()[0] < -1e-10 * size) return true;
+  for (Eigen::Index i = 0; i < massless && local.values()[i] < 1e-10 * size; ++i) {
+    const Eigen::VectorXd direction = z * local.vectors().col(i);
+    if ((velocity * direction).norm() > 1e-10 * velocity.norm()) continue;
+    const double coupling = std::min((r.transpose() * stiffness * direction).norm(),
+                                     (direction.transpose() * stiffness * r).norm());
+    if (coupling > 1e-8 * size && coupling * coupling > 100 * std::abs(local.values()[i]) * size) return true;
+  }
+  return false;
+}
+
+} // namespace
+
+bool can_compare_phases(const System& system) {
+  return system.nv <= (system.rows > 0 ? 600 : 2000);
+}
+
+bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
+  if (!problem.system.conservative) return false;
+  if (problem.system.single_drives) return true;
+  const Eigen::MatrixXd k = w.scaled_stiffness;
+  if ((k - k.transpose()).norm() > 1e-9 * k.norm()) return false;
+  // Second differences of U + lambda . Phi, whose gradient is f.
+  const auto lagrangian = [&](int i, double step) {
+    Eigen::VectorXd q = z.q;
+    w.step.setZero(problem.system.nv);
+    w.step[i] = step * problem.scaling.column[i];
+    retract<double>(problem.system, w.step, q);
+    forward<double>(problem.system, problem.parameters, q, 0, w.kinematics);
+    w.zero_lambda.setZero(problem.system.rows);
+    evaluate_residual<double>(problem.system, problem.parameters, q, w.zero_lambda, w.kinematics, w.residual);
+    return amended_potential(problem.system, problem.parameters, q, w.kinematics).value +
+           z.lambda.dot(w.residual.phi);
+  };
+  const double h = 1e-3;
+  bool agrees = true;
+  for (int i = 0; i < problem.system.nv && agrees; ++i) {
+    interruption_point();
+    const double second = (lagrangian(i, h) - 2 * lagrangian(i, 0) + lagrangian(i, -h)) / (h * h);
+    agrees = std::abs(second - k(i, i)) <= 1e-3 * k.norm();
+  }
+  evaluate(problem, z, 0, w);
+  factor(problem, z, w);
+  return agrees;
+}
+
+Stability find_stability(const Problem& problem, const Unknowns& z, bool with_eigenvalues, Workspace& w) {
+  Stability out;
+  const bool varies = motion_varies(problem, z.q, sample_phases(problem.system, problem.parameters), w);
+  evaluate(problem, z, 0, w);
+  factor(problem, z, w);
+  const bool potential = has_potential(problem, z, w);
+  const Eigen::MatrixXd basis = w.constraints.basis();
+  ReducedHessian energy; // symmetric where there is a potential, whatever Newton used
+  const Eigen::MatrixXd reduced = large::projected(w.scaled_stiffness, basis);
+  w.noise.resize(basis.cols());
+  for (Eigen::Index i = 0; i < basis.cols(); ++i)
+    w.noise[i] =
+        1e-15 * basis.col(i).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+  energy.factor(reduced, w.noise, potential);
+  const bool minimum = potential && !varies && energy.positive_definite();
+  if (minimum) {
+    out.stable = true;
+    out.reason = StabilityReason::minimum;
+  }
+
+  // Directions nothing resists: without stiffness here, and still in balance some way along.
+  const Eigen::MatrixXd flat = basis * energy.null_basis();
+  int flat_count = 0;
+  const auto stays_along = [&](const Eigen::VectorXd& direction) {
+    return stays_balanced(problem, z, flat, 0.05 * direction, w) &&
+           stays_balanced(problem, z, flat, -0.11 * direction, w);
+  };
+  // What holds for a mixture of many holds for each.
+  const bool all = flat.cols() > few_flat && stays_along(mixture_of(flat));
+  for (Eigen::Index c = 0; c < flat.cols(); ++c) {
+    Eigen::VectorXd direction = flat.col(c);
+    const double size = direction.lpNorm<Eigen::Infinity>();
+    if (!(size > 0)) continue;
+    direction /= size;
+    if (!all && !stays_along(direction)) continue;
+    ++flat_count;
+    for (int i = 0; i < problem.system.nv; ++i)
+      if (std::abs(direction[i]) > 1e-6 && std::ranges::find(out.neutral, i) == out.neutral.end())
+        out.neutral.push_back(i);
+  }
+  std::ranges::sort(out.neutral);
+  if (varies) {
+    judge_by_multipliers(problem, z, flat_count, w, out);
+    return out;
+  }
+  if (flat.cols() > 0) {
+    evaluate(problem, z, 0, w);
+    factor(problem, z, w);
+  }
+
+  double most_negative = 0;
+  if (potential && !minimum && energy.size() > 0) {
+    if (energy.decompose()) most_negative = energy.eigenvalues()[0];
+  }
+  if (minimum && !with_eigenvalues) return out;
+
+  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.linearization);
+  const auto& s = problem.scaling.column;
+  const Eigen::MatrixXd mass =
+      large::projected(s.asDiagonal() * w.linearization.mass * s.asDiagonal(), basis);
+  const Eigen::MatrixXd velocity =
+      large::projected(s.asDiagonal() * w.linearization.velocity * s.asDiagonal(), basis);
+  Eigen::MatrixXd stiffness = reduced;
+  if (potential) stiffness = (reduced + reduced.transpose()) / 2;
+  out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);
+  if (minimum || !out.eigenvalues) return out;
+
+  // Eigenvalues that belong to flat directions are zero but for rounding: leave the smallest out.
+  std::vector<Complex> moving = *out.eigenvalues;
+  std::ranges::sort(moving, [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
+  const double largest = moving.empty() ? 0 : std::abs(moving.back());
+  for (int i = 0;
+       i < 2 * static_cast<int>(flat.cols()) && !moving.empty() && std::abs(moving.front()) < 1e-5 * largest;
+       ++i)
+    moving.erase(moving.begin());
+  bool right = false, left = !moving.empty() || flat.cols() == 0;
+  for (Complex x : moving) {
+    const double tolerance = 1e-8 * std::abs(x) + 1e-12 * largest;
+    if (x.real() > tolerance) right = true;
+    if (x.real() >= -tolerance) left = false;
+  }
+  const auto tipping = massless_directions_tip(mass, velocity, stiffness);
+  if (!tipping) return out;
+  if (*tipping) right = true;
+  // Where the energy falls nowhere it grows nowhere either, whatever rounding makes of the eigenvalues.
+  const bool falls = !potential || most_negative < -ReducedHessian::zero;
+  if (right && falls) {
+    out.stable = false;
+    out.reason = StabilityReason::unstable;
+  } else if (flat_count > 0) {
+    out.reason = StabilityReason::neutral;
+  } else if (flat.cols() > 0) {
+    out.reason = StabilityReason::marginal;
+  } else if (left) {
+    out.stable = true;
+    out.reason = StabilityReason::asymptotic;
+  } else if (potential && most_negative < -ReducedHessian::zero) {
+    const auto damped = damping_destabilizes(problem, z.q, basis, mass, velocity, stiffness, w);
+    if (!damped) return out;
+    if (*damped) out.stable = false;
+    out.reason = *damped ? StabilityReason::unstable : StabilityReason::gyroscopic_only;
+  } else {
+    out.reason = StabilityReason::marginal;
+  }
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,39 @@
+// Stability of a steady state: the energy criterion where a potential exists, and the eigenvalues of the
+// linearised motion M q'' + (C + G) q' + K q = 0 on the tangent space of the constraints; where that motion
+// turns with the drives, the multipliers of Floquet's theory alone.
+#pragma once
+
+#include "engine/solve/newton.hpp"
+#include "engine/solve/solution.hpp"
+#include "engine/stability/floquet.hpp"
+
+#include <complex>
+
+namespace flyball {
+
+// Coordinates up to which eigenvalues are found without being asked for.
+inline constexpr int largest_for_eigenvalues = 200;
+
+struct Stability {
+  std::optional<bool> stable;
+  std::optional<StabilityReason> reason;
+  // 1/s, by size of the imaginary part: of the linearised motion, or Floquet's exponents.
+  std::optional<std::vector<std::complex<double>>> eigenvalues;
+  std::optional<Floquet> floquet;                // where the linearised motion turns with the drives
+  std::optional<FloquetFailure> floquet_failure; // where it does and there are no multipliers
+  std::vector<int> neutral; // coordinates of q_R that take part in directions nothing resists
+  double condition = 0;     // 2-norm, of the scaled equations
+};
+
+// Whether f is the gradient of the amended potential at this state although drives ride on drives: its
+// Hessian on the potential's second differences, to be asked only at a steady state.
+bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w);
+
+// Whether find_stability() can compare the linearised motion over the phases: larger mechanisms would take
+// too long.
+bool can_compare_phases(const System& system);
+
+// z must be a steady state. `with_eigenvalues` asks for the full picture, else only the sign is found.
+Stability find_stability(const Problem& problem, const Unknowns& z, bool with_eigenvalues, Workspace& w);
+
+} // namespace flyball
