@@ -81,6 +81,13 @@ std::optional<std::vector<Complex>> eigenvalues_of_large(Eigen::MatrixXd a) {
   return {};
 }
 
+// Whether QZ converged may not be asked of Eigen's class where it did not: its info() asserts that it did.
+class GeneralizedEigen : public Eigen::GeneralizedEigenSolver<Eigen::MatrixXd> {
+ public:
+  using GeneralizedEigenSolver::GeneralizedEigenSolver;
+  bool converged() const { return m_valuesOkay && m_realQZ.info() == Eigen::Success; }
+};
+
 // s = shift + 1 / mu, mu the eigenvalues of (a - shift b)^-1 b; a mu of rounding stands for an infinite s.
 std::optional<std::vector<Complex>> eigenvalues_by_inverse(const Eigen::MatrixXd& a,
                                                            const Eigen::MatrixXd& b) {
@@ -477,9 +484,9 @@ std::optional<std::vector<Complex>> generalized_eigenvalues(const Eigen::MatrixX
   if (!a.allFinite() || !b.allFinite()) return {};
   if (a.rows() == 0) return std::vector<Complex>();
   if (a.rows() >= large::from) return eigenvalues_by_inverse(a, b);
-  Eigen::GeneralizedEigenSolver<Eigen::MatrixXd> eigen(a.rows());
+  GeneralizedEigen eigen(a.rows());
   eigen.compute(a, b, false);
-  if (eigen.info() != Eigen::Success) return eigenvalues_by_inverse(a, b);
+  if (!eigen.converged()) return eigenvalues_by_inverse(a, b);
   std::vector<Complex> out;
   for (Eigen::Index i = 0; i < a.rows(); ++i)
     if (std::abs(eigen.betas()[i]) > 1e-12 * std::abs(eigen.alphas()[i]))

@@ -18,8 +18,10 @@ constexpr int usual_turns = 64;    // of the fastest drive in a period
 constexpr int most_turns = 1024;   // where the drives have a common period at all
 constexpr double accuracy = 1e-11; // of multipliers, relative to the largest
 
-Eigen::MatrixXd commutator(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return a * b - b * a;
+// out = a b - b a
+void commute(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::MatrixXd& out) {
+  out.noalias() = a * b;
+  out.noalias() -= b * a;
 }
 
 // Speeds of the drives that turn, rad/s; those of slides have no period.
@@ -83,19 +85,28 @@ MonodromyOutcome monodromy(const PeriodicMotion& motion, int steps, CancelFlag c
   const double h = motion.period() / steps;
   const double node = std::sqrt(15.) / 10; // of Gauss' rule with three nodes
   Monodromy out{Eigen::MatrixXd::Identity(motion.size(), motion.size()), 0};
+  Eigen::MatrixXd a1, a2, a3, b1, b2, b3, c1, c2, c3, sum, omega;
   for (int i = 0; i < steps; ++i) {
     if (cancel && cancel->load(std::memory_order_relaxed)) return FloquetFailure::cancelled;
     const double middle = (i + 0.5) * h;
-    const auto a1 = motion.state_matrix(middle - node * h), a2 = motion.state_matrix(middle),
-               a3 = motion.state_matrix(middle + node * h);
-    if (!a1 || !a2 || !a3) return FloquetFailure::singular;
-    const Eigen::MatrixXd b1 = h * *a2, b2 = std::sqrt(15.) / 3 * h * (*a3 - *a1),
-                          b3 = 10. / 3 * h * (*a3 - 2 * *a2 + *a1);
-    const Eigen::MatrixXd c1 = commutator(b1, b2), c2 = -1. / 60 * commutator(b1, 2 * b3 + c1);
-    const Eigen::MatrixXd omega = b1 + b3 / 12 + 1. / 240 * commutator(-20 * b1 - b3 + c1, b2 + c2);
+    if (!motion.state_matrix(middle - node * h, a1) || !motion.state_matrix(middle, a2) ||
+        !motion.state_matrix(middle + node * h, a3))
+      return FloquetFailure::singular;
+    b1 = h * a2;
+    b2 = std::sqrt(15.) / 3 * h * (a3 - a1);
+    b3 = 10. / 3 * h * (a3 - 2 * a2 + a1);
+    // Omega = b1 + b3 / 12 + [-20 b1 - b3 + c1, b2 + c2] / 240, c1 = [b1, b2], c2 = -[b1, 2 b3 + c1] / 60
+    commute(b1, b2, c1);
+    sum = 2 * b3 + c1;
+    commute(b1, sum, c2);
+    c2 = b2 - c2 / 60;
+    sum = -20 * b1 - b3 + c1;
+    commute(sum, c2, c3);
+    omega = b1 + b3 / 12 + c3 / 240;
     const auto step = matrix_exponential(omega);
     if (!step) return FloquetFailure::unresolved;
-    out.matrix = (*step * out.matrix).eval();
+    sum.noalias() = *step * out.matrix;
+    out.matrix.swap(sum);
     const double size = out.matrix.cwiseAbs().maxCoeff();
     if (!std::isfinite(size) || size == 0) return FloquetFailure::unresolved;
     if (size > 1e100 || size < 1e-100) {
@@ -154,9 +165,9 @@ FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Wo
   std::optional<std::vector<Complex>> coarse;
   double previous = std::numeric_limits<double>::infinity();
   // So many that the fastest motion makes no more than about a radian in a step.
-  const auto drawn = motion->state_matrix(0);
-  if (!drawn) return fail(FloquetFailure::singular);
-  const auto rates = eigenvalues(*drawn, problem.cancel);
+  Eigen::MatrixXd drawn;
+  if (!motion->state_matrix(0, drawn)) return fail(FloquetFailure::singular);
+  const auto rates = eigenvalues(drawn, problem.cancel);
   double fastest = 0;
   for (const Complex rate : rates.value_or(std::vector<Complex>()))
     fastest = std::max(fastest, std::abs(rate));
@@ -177,17 +188,19 @@ FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Wo
     }
     const double change =
         coarse ? difference(*multipliers, *coarse) : std::numeric_limits<double>::infinity();
-    // Rounding ends the fall of the differences before the accuracy asked for where multipliers lie close
-    // together.
+    // Steps of sixth order: where the differences fall like that, what is left is a part of the last one
+    // (Richardson); 64 times less in the limit. Rounding ends the fall of the differences before the accuracy
+    // asked for where multipliers lie close together.
+    const double left = change < previous / 20 ? change / 20 : change;
     const bool rounding = change < 1e-7 && change > 0.3 * previous;
-    if (change <= accuracy || rounding) {
+    if (left <= accuracy || rounding) {
       std::ranges::sort(*multipliers, [](Complex a, Complex b) {
         return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
       });
       Floquet result;
       result.period = motion->period();
       result.multipliers = std::move(*multipliers);
-      result.error = std::max(change, 1e-14) * std::abs(result.multipliers.front());
+      result.error = std::max(left, 1e-14) * std::abs(result.multipliers.front());
       for (const Complex mu : result.multipliers)
         if (std::abs(mu) > 1e-12 * std::abs(result.multipliers.front()))
           result.growth.push_back(std::log(std::abs(mu)) / motion->period());

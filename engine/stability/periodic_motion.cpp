@@ -158,6 +158,7 @@ std::optional<PeriodicMotion> PeriodicMotion::sample(const Problem& problem, con
     const bool rounding = worst < 1e-7 && worst > 0.3 * previous;
     if (worst <= series_accuracy || rounding) {
       out.singular_ = !out.sort_directions(samples);
+      if (!out.singular_) out.expand_state_matrix();
       return out;
     }
     previous = worst;
@@ -210,7 +211,43 @@ bool PeriodicMotion::sort_directions(const std::vector<Matrices>& samples) {
          split(sum.stiffness, count * square(nothing * stiffness), standing_) && size() > 0;
 }
 
-std::optional<Eigen::MatrixXd> PeriodicMotion::state_matrix(double t) const {
+bool PeriodicMotion::state_matrix(double t, Eigen::MatrixXd& a) const {
+  if (state_series_.size() == 0) {
+    const auto inverted = invert(t);
+    if (inverted) a = *inverted;
+    return inverted.has_value();
+  }
+  a.resize(size(), size());
+  a.reshaped().noalias() = state_series_ * waves_at(2 * std::numbers::pi * t / period_, state_series_.cols());
+  return true;
+}
+
+// Steps along the period take A thousands of times: a series of its own spares them the inverses.
+void PeriodicMotion::expand_state_matrix() {
+  constexpr Eigen::Index most = 257;
+  for (Eigen::Index count = series_.cols(); count <= most; count = 2 * count + 1) {
+    Eigen::MatrixXd entries(size() * size(), count);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const auto a = invert(period_ * static_cast<double>(j) / static_cast<double>(count));
+      if (!a) return;
+      entries.col(j) = a->reshaped();
+    }
+    state_series_ = fourier(entries);
+    double worst = 0;
+    for (const double part : {0.137, 0.4219, 0.8631}) {
+      Eigen::MatrixXd series;
+      const double t =
+          period_ * (std::floor(part * static_cast<double>(count)) + 0.5) / static_cast<double>(count);
+      const auto a = invert(t);
+      if (!a || !state_matrix(t, series)) break;
+      worst = std::max(worst, (series - *a).cwiseAbs().maxCoeff());
+    }
+    if (worst <= series_accuracy * entries.cwiseAbs().maxCoeff()) return;
+  }
+  state_series_.resize(0, 0);
+}
+
+std::optional<Eigen::MatrixXd> PeriodicMotion::invert(double t) const {
   const Matrices m = at(t);
   const Eigen::Index r = massive_.cols(), d = damped_.cols();
   Eigen::MatrixXd moving(k_, r + d);

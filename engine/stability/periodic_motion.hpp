@@ -24,8 +24,8 @@ class PeriodicMotion {
   // Of the state x = (p of what has mass, its rate in units of rate(), p of what is damped only). What has
   // neither mass nor damping is condensed statically.
   Eigen::Index size() const { return 2 * massive_.cols() + damped_.cols(); }
-  // A(t) of x' = A x, 1/s; nothing where a matrix that must be inverted is singular at t.
-  std::optional<Eigen::MatrixXd> state_matrix(double t) const;
+  // A(t) of x' = A x, (size, size), 1/s. False where a matrix that must be inverted is singular at t.
+  [[nodiscard]] bool state_matrix(double t, Eigen::MatrixXd& a) const;
 
  private:
   struct Matrices {
@@ -33,12 +33,15 @@ class PeriodicMotion {
   };
   Matrices at(double t) const;
   bool sort_directions(const std::vector<Matrices>& samples);
+  std::optional<Eigen::MatrixXd> invert(double t) const; // A(t) from the matrices there
+  void expand_state_matrix();
 
   double period_ = 0, rate_ = 1; // s; 1/s
   Eigen::Index k_ = 0;
   bool singular_ = false;
   Eigen::MatrixXd series_;                      // (3 k^2, harmonics): mean, then cosine and sine of each
   Eigen::MatrixXd massive_, damped_, standing_; // directions of p, columns
+  Eigen::MatrixXd state_series_;                // (size^2, harmonics) of A, where it ends soon; else empty
 };
 
 } // namespace flyball

@@ -73,7 +73,7 @@ MUTATIONS = [
              "touching[i] = stops[i].upper ? value > 0 : value < 0;",
              "touching[i] = stops[i].upper ? value < 0 : value > 0;", "dynamics_tests"),
     Mutation("monodromy matrix, steps in the wrong order", "engine/stability/floquet.cpp",
-             "out.matrix = (*step * out.matrix).eval();", "out.matrix = (out.matrix * *step).eval();",
+             "sum.noalias() = *step * out.matrix;", "sum.noalias() = out.matrix * *step;",
              "equilibrium_tests", "[floquet]"),
     Mutation("growth rates over twice the period", "engine/stability/floquet.cpp",
              "std::log(std::abs(mu)) / motion->period()", "std::log(std::abs(mu)) / (2 * motion->period())", "equilibrium_tests",
