@@ -7,8 +7,8 @@
 //   flyball::ResponseDiagram d = flyball::follow_branches(m, "joints.spin.drive.speed", 0, 20);
 //   flyball::Run run = flyball::simulate(m, {.duration = 5});          // the damped motion
 //
-// Numbers are in SI units and radians; bad input throws SceneError, which names the place; what cannot be solved
-// is a Solution whose status and message say why. Distinct objects may be used by distinct threads.
+// Numbers are in SI units and radians; bad input throws SceneError, which names the place; what cannot be
+// solved is a Solution whose status and message say why. Distinct objects may be used by distinct threads.
 #pragma once
 
 #include "engine/continuation/branches.hpp"

@@ -120,14 +120,12 @@ class Searcher {
           bring_within(p_, report_.ranges, z.q) != Placement::within)
         return false;
     }
-    // A root of higher order is known to fewer digits.
-    const double near = outcome.linear ? 1e-4 : alike;
+    const double near = digits(outcome);
     Family family;
     family.known = false;
     for (std::size_t i = 0; i < list_.states.size(); ++i) {
       const Unknowns& other = list_.states[i];
-      const double within = list_.outcomes[i].linear ? std::max(near, 1e-4) : near;
-      if (same_but_for_turns(p_, other.q, z.q, within)) return true;
+      if (same_but_for_turns(p_, other.q, z.q, std::max(near, families_[i].near))) return true;
       if (families_[i].neutral.empty()) continue;
       if (!family.known) family = family_of(z, outcome);
       if (family.neutral == families_[i].neutral &&
@@ -136,16 +134,28 @@ class Searcher {
         return true;
     }
     if (!family.known) family = family_of(z, outcome);
+    family.near = near;
     list_.states.push_back(std::move(z));
     list_.outcomes.push_back(outcome);
     families_.push_back(std::move(family));
     return true;
   }
 
+  // How far (scaled) from the state that a run arrived at the same root may be found another time. A root of
+  // higher order is known to half of the digits; so is one beside a singular pose of the loops, where
+  // rounding makes one more row count.
+  double digits(const NewtonOutcome& outcome) const {
+    constexpr double half = 1e-4, singular_pose = 1e-3;
+    const double pivot = w_.constraints.rank() > 0 ? w_.constraints.least_pivot() : 1;
+    if (pivot < singular_pose) return std::max(half, 10 * pivot);
+    return outcome.linear ? half : alike;
+  }
+
   // The coordinates that take part in directions without stiffness, and the amended potential: along a family
   // it stays the same.
   struct Family {
     bool known = true;
+    double near = alike; // scaled: how far away another state is still this one
     std::vector<int> neutral;
     Potential potential;
   };
