@@ -120,7 +120,7 @@ class Searcher {
           bring_within(p_, report_.ranges, z.q) != Placement::within)
         return false;
     }
-    const double near = digits(outcome);
+    const double near = uncertainty(outcome);
     Family family;
     family.known = false;
     for (std::size_t i = 0; i < list_.states.size(); ++i) {
@@ -144,9 +144,9 @@ class Searcher {
   // How far (scaled) from the state that a run arrived at the same root may be found another time. A root of
   // higher order is known to half of the digits; so is one beside a singular pose of the loops, where
   // rounding makes one more row count.
-  double digits(const NewtonOutcome& outcome) const {
+  double uncertainty(const NewtonOutcome& outcome) const {
     constexpr double half = 1e-4, singular_pose = 1e-3;
-    const double pivot = w_.constraints.rank() > 0 ? w_.constraints.least_pivot() : 1;
+    const double pivot = w_.constraints.least_pivot();
     if (pivot < singular_pose) return std::max(half, 10 * pivot);
     return outcome.linear ? half : alike;
   }
