@@ -144,21 +144,24 @@ Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixX
   } else {
     const Eigen::MatrixXd light = shape.vectors().leftCols(massless),
                           r = shape.vectors().rightCols(m1.rows() - massless);
-    const Eigen::MatrixXd twice_damping = (d1 + d1.transpose()) * light,
-                          twice_gyroscopic = (d1 - d1.transpose()) * light;
     // A mass of m_z couples gyroscopically like sqrt(m_z m_r): where masses are neglected up to 1e-13, so is
-    // the coupling up to its root.
-    const bool damped =
-        twice_damping.norm() > 1e-13 * (d1.norm() + 1) || twice_gyroscopic.norm() > 1e-6 * (d1.norm() + 1);
-    const auto felt_directions = felt(light, damped ? d1 : Eigen::MatrixXd::Zero(d1.rows(), d1.cols()), k1);
+    // the coupling up to its root. As rounding it would be a damper, or hold what it couples.
+    const Eigen::MatrixXd gyroscopic = (d1 - d1.transpose()) / 2, coupling = gyroscopic * light;
+    Eigen::MatrixXd d2 = d1;
+    if (coupling.norm() <= 5e-7 * (d1.norm() + 1)) {
+      const Eigen::MatrixXd one_side = coupling * light.transpose();
+      d2 -= one_side - one_side.transpose() - light * (light.transpose() * one_side);
+    }
+    const auto felt_directions = felt(light, d2, k1);
     if (!felt_directions) return {};
     const Eigen::MatrixXd& z = *felt_directions;
+    const bool damped = (d2 * z).norm() + (z.transpose() * d2).norm() > 1e-13 * (d1.norm() + 1);
     if (damped) {
       Eigen::MatrixXd all(m1.rows(), z.cols() + r.cols());
       all << z, r;
-      s = singular_eigenvalues(onto(all, m1), onto(all, d1), onto(all, k1), cancel);
+      s = singular_eigenvalues(onto(all, m1), onto(all, d2), onto(all, k1), cancel);
     } else {
-      s = condensed_eigenvalues(m1, d1, k1, z, r, cancel);
+      s = condensed_eigenvalues(m1, d2, k1, z, r, cancel);
     }
   }
   if (!s) return {};
