@@ -44,22 +44,13 @@ void BodyElimination::start(double tolerance, bool metric_alone) {
 void BodyElimination::factor(double shift) {
   shift_ = shift;
   flat_.resize(loose_);
-  const SparsePattern& pattern = equations_.pattern();
-  const std::vector<double>& values = equations_.sum(1, shift);
-  negative_ = 1;
-  solved_ = pattern.size == 0 || factors_.factor(pattern, values, tolerance_);
-  if (!solved_) return;
-  if (pattern.size == 0) {
-    negative_ = redundant_ = 0;
-    return;
-  }
+  factors_.factor(equations_.pattern(), equations_.sum(1, shift), tolerance_);
   // What the metric, which is positive definite, leaves singular are the constraints.
   if (factors_.nullity() == 0 || metric_alone_) {
     redundant_ = factors_.nullity();
   } else if (factors_.nullity() != redundant_) {
-    redundant_ = constraints_.factor(pattern, equations_.sum(0, 1), zero)
-                     ? std::min(constraints_.nullity(), factors_.nullity())
-                     : factors_.nullity();
+    constraints_.factor(equations_.pattern(), equations_.sum(0, 1), zero);
+    redundant_ = std::min(constraints_.nullity(), factors_.nullity());
   }
   const int of_constraints = equations_.multipliers() - redundant_;
   negative_ = equations_.symmetric() ? std::max(0, factors_.negative() - of_constraints) : 0;
@@ -118,7 +109,6 @@ void BodyElimination::solve_to(double enough, const Eigen::VectorXd& rhs, const 
                                Eigen::VectorXd& x, Eigen::VectorXd& lambda) {
   x.setZero(equations_.coordinates());
   lambda.setZero(rows_);
-  if (!solved_) return;
   equations_.put(rhs, closing, held_);
   if (held_.size() > 0) factors_.solve(held_, enough);
   equations_.take(held_, x, lambda);

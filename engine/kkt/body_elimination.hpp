@@ -42,7 +42,7 @@ class BodyElimination final : public Eliminator {
 
   BodyEquations equations_;
   SparseFactorization factors_, constraints_;
-  bool solved_ = false, metric_alone_ = false;
+  bool metric_alone_ = false;
   int redundant_ = 0;
   double tolerance_ = zero;
   Eigen::VectorXd held_;

@@ -2,8 +2,6 @@
 
 #include "engine/system/side_by_side.hpp"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,16 +9,6 @@
 
 namespace flyball {
 namespace {
-
-// Of a body's metric, where as a rule turns about its mass centre and shifts have nothing to do with each
-// other.
-Mat6 inverse(const Mat6& metric) {
-  if (!metric.bottomLeftCorner<3, 3>().isZero(0)) return metric.inverse();
-  Mat6 x = Mat6::Zero();
-  x.topLeftCorner<3, 3>() = metric.topLeftCorner<3, 3>().inverse();
-  x.bottomRightCorner<3, 3>() = metric.bottomRightCorner<3, 3>().inverse();
-  return x;
-}
 
 // Calls work(list) for each, side by side.
 template <class Lists, class Work>
@@ -30,7 +18,9 @@ void for_lists(Lists& lists, const Work& work) {
 
 } // namespace
 
-void BodyEntries::clear(int unknowns, bool symmetric, std::size_t lists) {
+void BodyEntries::clear(int bodies, int multipliers, bool symmetric, std::size_t lists) {
+  first_multiplier_ = static_cast<std::size_t>(6 * bodies);
+  const int unknowns = 6 * bodies + multipliers;
   pattern_.clear(unknowns, symmetric);
   lists_.resize(lists);
   for (List& list : lists_) {
@@ -39,9 +29,6 @@ void BodyEntries::clear(int unknowns, bool symmetric, std::size_t lists) {
     list.values.clear();
   }
   loose_.assign(static_cast<std::size_t>(unknowns), false);
-  alone_.clear();
-  first_line_.clear();
-  lines_.clear();
 }
 
 void BodyEntries::List::add(int row, int column, const Value& value) {
@@ -50,23 +37,7 @@ void BodyEntries::List::add(int row, int column, const Value& value) {
   values.push_back(value);
 }
 
-void BodyEntries::set_apart(const std::vector<int>& lines) {
-  alone_.resize(lines.size());
-  blocks_.resize(lines.size());
-  first_line_.assign(lines.size() + 1, 0);
-  for (std::size_t n = 0; n < lines.size(); ++n) {
-    alone_[n] = lines[n] >= 0;
-    first_line_[n + 1] = first_line_[n] + std::max(lines[n], 0);
-  }
-  next_line_.assign(first_line_.begin(), first_line_.end() - 1);
-  lines_.resize(static_cast<std::size_t>(first_line_.back()));
-}
-
 void BodyEntries::add_body(std::size_t list, int node, const Mat6& stiffness, const Mat6& metric) {
-  if (apart(node)) {
-    blocks_[static_cast<std::size_t>(node)] = inverse(metric);
-    return;
-  }
   const bool symmetric = pattern_.symmetric;
   const int at = 6 * node;
   for (int j = 0; j < 6; ++j)
@@ -103,10 +74,6 @@ void BodyEntries::add_block(List& list, int a, int first_i, int b, int first_j, 
 
 void BodyEntries::add_row(std::size_t list, int row, int node, const Vec6& gradient) {
   if (node < 0) return;
-  if (apart(node)) {
-    lines_[static_cast<std::size_t>(next_line_[static_cast<std::size_t>(node)]++)] = {row, gradient};
-    return;
-  }
   for (int i = gradient.head<3>().isZero(0) ? 3 : 0; i < 6; ++i) {
     lists_[list].add(row, 6 * node + i, {0, 0, gradient[i]});
     if (!pattern_.symmetric) lists_[list].add(6 * node + i, row, {0, 0, gradient[i]});
@@ -117,24 +84,8 @@ void BodyEntries::hold_all_by_metric() {
   for_lists(lists_, [&](List& list) {
     for (Value& value : list.values)
       std::swap(value.stiffness, value.metric);
-    const auto i = static_cast<std::size_t>(&list - lists_.data()), bodies = alone_.size();
-    for (std::size_t n = bodies * i / lists_.size(); n < bodies * (i + 1) / lists_.size(); ++n)
-      if (alone_[n]) leave_rows_of(n, list);
   });
   number();
-}
-
-// What is left of a body's rows when its motion is eliminated: - G B^-1 G^T.
-void BodyEntries::leave_rows_of(std::size_t n, List& list) const {
-  for (int i = first_line_[n]; i < first_line_[n + 1]; ++i) {
-    const Line& a = lines_[static_cast<std::size_t>(i)];
-    const Vec6 moved = blocks_[n] * a.gradient;
-    for (int j = first_line_[n]; j <= i; ++j) {
-      const Line& b = lines_[static_cast<std::size_t>(j)];
-      const double twice = a.row == b.row && i != j ? 2 : 1;
-      list.add(std::max(a.row, b.row), std::min(a.row, b.row), {-twice * moved.dot(b.gradient), 0, 0});
-    }
-  }
 }
 
 void BodyEntries::hold_above(const std::vector<double>& noise) {
@@ -180,13 +131,14 @@ void BodyEntries::drop_loose(List& list) const {
 
 // Numbers what is solved for, and tells the matrix.
 void BodyEntries::number() {
-  place_.assign(loose_.size(), 0);
-  for (std::size_t n = 0; n < alone_.size(); ++n)
-    if (alone_[n]) std::fill_n(place_.begin() + static_cast<std::ptrdiff_t>(6 * n), 6, -1);
+  place_.resize(loose_.size());
   int next = 0;
-  for (std::size_t u = 0; u < loose_.size(); ++u)
-    place_[u] = loose_[u] || place_[u] < 0 ? -1 : next++;
+  for (std::size_t u = 0; u < loose_.size(); ++u) {
+    if (u == first_multiplier_) pattern_.motions = next;
+    place_[u] = loose_[u] ? -1 : next++;
+  }
   pattern_.size = next;
+  if (first_multiplier_ == loose_.size()) pattern_.motions = next;
   std::size_t entries = 0;
   for (List& list : lists_) {
     list.begin = entries;
@@ -197,8 +149,8 @@ void BodyEntries::number() {
   sum_.resize(entries);
   for_lists(lists_, [&](const List& list) {
     for (std::size_t e = 0; e < list.values.size(); ++e) {
-      pattern_.rows[list.begin + e] = place_[static_cast<std::size_t>(list.rows[e])] + 1;
-      pattern_.columns[list.begin + e] = place_[static_cast<std::size_t>(list.columns[e])] + 1;
+      pattern_.rows[list.begin + e] = place_[static_cast<std::size_t>(list.rows[e])];
+      pattern_.columns[list.begin + e] = place_[static_cast<std::size_t>(list.columns[e])];
     }
   });
 }
@@ -212,16 +164,7 @@ const std::vector<double>& BodyEntries::sum(double stiffness, double metric) {
   return sum_;
 }
 
-void BodyEntries::gather(Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const {
-  for (std::size_t n = 0; n < alone_.size(); ++n) {
-    if (!alone_[n]) continue;
-    auto motion = unknowns.segment<6>(static_cast<Eigen::Index>(6 * n));
-    motion = blocks_[n] * motion.eval();
-    for (int i = first_line_[n]; i < first_line_[n + 1]; ++i) {
-      const Line& line = lines_[static_cast<std::size_t>(i)];
-      unknowns[line.row] -= line.gradient.dot(motion);
-    }
-  }
+void BodyEntries::gather(const Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const {
   held.resize(pattern_.size);
   for (std::size_t u = 0; u < place_.size(); ++u)
     if (const int at = place_[u]; at >= 0) held[at] = unknowns[static_cast<Eigen::Index>(u)];
@@ -229,22 +172,8 @@ void BodyEntries::gather(Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const
 
 void BodyEntries::spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::VectorXd& unknowns) const {
   unknowns.resize(static_cast<Eigen::Index>(place_.size()));
-  for (std::size_t u = 0; u < place_.size(); ++u) {
-    const auto at = static_cast<Eigen::Index>(u);
-    if (place_[u] >= 0)
-      unknowns[at] = held[place_[u]];
-    else if (loose_[u])
-      unknowns[at] = 0;
-  }
-  for (std::size_t n = 0; n < alone_.size(); ++n) {
-    if (!alone_[n]) continue;
-    Vec6 wrench = Vec6::Zero();
-    for (int i = first_line_[n]; i < first_line_[n + 1]; ++i) {
-      const Line& line = lines_[static_cast<std::size_t>(i)];
-      wrench += unknowns[line.row] * line.gradient;
-    }
-    unknowns.segment<6>(static_cast<Eigen::Index>(6 * n)) -= blocks_[n] * wrench;
-  }
+  for (std::size_t u = 0; u < place_.size(); ++u)
+    unknowns[static_cast<Eigen::Index>(u)] = place_[u] >= 0 ? held[place_[u]] : 0;
 }
 
 } // namespace flyball

@@ -2,8 +2,7 @@
 // (the constraints), so that a multiple of the metric can be added without assembling anything again.
 //
 // Of the unknowns the first are six for each body. Those that nothing holds, the loose ones, are left out,
-// and in the metric bodies that meet others by rows alone are solved for apart, which leaves their rows; the
-// others are numbered anew: they are the ones held.
+// and the others are numbered anew: they are the ones held.
 #pragma once
 
 #include "engine/kkt/body_stiffness.hpp"
@@ -17,11 +16,7 @@ class BodyEntries {
  public:
   // Starts anew, with as many lists as can be added to side by side. Of a symmetric matrix one triangle is
   // kept.
-  void clear(int unknowns, bool symmetric, std::size_t lists);
-
-  // Before the first entry: the bodies to be solved for by hand, by node with the number of their lines; -1
-  // is one that stays. They must meet others by rows alone, and the metric must be what is solved for.
-  void set_apart(const std::vector<int>& lines);
+  void clear(int bodies, int multipliers, bool symmetric, std::size_t lists);
 
   // A body's own six equations.
   void add_body(std::size_t list, int node, const Mat6& stiffness, const Mat6& metric);
@@ -47,9 +42,8 @@ class BodyEntries {
   // The pattern's values: multiples of stiffness and metric, and what is fixed. Valid until the next call.
   const std::vector<double>& sum(double stiffness, double metric);
 
-  // From all unknowns to those held, where bodies apart get what they would do without rows; and from there
-  // back, where what is loose gets nothing.
-  void gather(Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const;
+  // From all unknowns to those held; and from there back, where what is loose gets nothing.
+  void gather(const Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const;
   void spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::VectorXd& unknowns) const;
 
  private:
@@ -68,26 +62,15 @@ class BodyEntries {
 
   void add_block(List& list, int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
                  const Mat6& metric_ab);
-  bool apart(int node) const { return !alone_.empty() && alone_[static_cast<std::size_t>(node)]; }
-  void leave_rows_of(std::size_t body, List& list) const;
   void drop_loose(List& list) const;
   void number();
 
   SparsePattern pattern_;
+  std::size_t first_multiplier_ = 0; // among the unknowns
   std::vector<List> lists_;
   std::vector<double> sum_, largest_;
   std::vector<bool> loose_;
-  std::vector<int> place_; // by unknown: among those held; -1: loose, or apart
-
-  // Of bodies apart, by body: whether one is, the inverse of its metric, and its rows' gradients.
-  struct Line {
-    int row = 0;
-    Vec6 gradient;
-  };
-  std::vector<bool> alone_;
-  std::vector<Mat6> blocks_;
-  std::vector<int> first_line_, next_line_;
-  std::vector<Line> lines_;
+  std::vector<int> place_; // by unknown: among those held; -1: loose
 };
 
 } // namespace flyball

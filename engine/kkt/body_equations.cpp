@@ -82,7 +82,6 @@ void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<dou
   const Division& division = problem.system.division;
   lay_out(problem, true);
   for_parts(division, [&](const SystemPart&, std::size_t n) { add_bodies(problem, k, n, false); });
-  set_bodies_apart(problem);
   for_parts(division, [&](const SystemPart& part, std::size_t n) {
     for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];)
       add_joint(problem, n, i, nullptr);
@@ -111,7 +110,7 @@ void BodyEquations::lay_out(const Problem& problem, bool symmetric) {
   unknowns_ = first_row_ + rows_;
   const std::size_t parts = problem.system.division.parts.size();
   between_ = parts > 1 ? parts : 0;
-  entries_.clear(unknowns_, symmetric, between_ + 1);
+  entries_.clear(nodes_.size(), multipliers(), symmetric, between_ + 1);
   compressed_.assign(between_ + 1, false);
   sums_.resize(static_cast<std::size_t>(nodes_.size()));
 }
@@ -145,41 +144,6 @@ void BodyEquations::add_body_forces(const Problem& problem, const Kinematics<dou
     if (const int n = nodes_.at(e.link); n >= 0)
       add_body_force(e, problem.parameters.body_forces[i], k, sums_[static_cast<std::size_t>(n)].stiffness);
   }
-}
-
-// Bodies that hang from no other, and none from them, meet others by rows alone: with few lines they are
-// solved for by hand. Much lighter ones than the rest stay: they would leave of their rows what they do
-// themselves, and nothing of the others.
-void BodyEquations::set_bodies_apart(const Problem& problem) {
-  constexpr double light = 1e-3; // beside the heaviest
-  constexpr int many = 24;       // lines of one body, which all would meet
-  constexpr int stays = -1;
-  const auto least = [](const Sums& sums) { return sums.metric.diagonal().minCoeff(); };
-  double heaviest = 0;
-  for (const Sums& sums : sums_)
-    heaviest = std::max(heaviest, least(sums));
-  lines_.resize(sums_.size());
-  for (int i = 0; i < nodes_.size(); ++i)
-    lines_[static_cast<std::size_t>(i)] = 6 - nodes_[i].columns;
-  const auto count = [&](int node, int rows) {
-    if (node >= 0) lines_[static_cast<std::size_t>(node)] += rows;
-  };
-  for (const CutJoint& cut : problem.system.cuts) {
-    if (cut.type == JointType::gear) {
-      count(nodes_.place(cut.gear_va).first, 1);
-      count(nodes_.place(cut.gear_vb).first, 1);
-      continue;
-    }
-    count(nodes_.at(cut.ends.a), static_cast<int>(cut.rows.size()));
-    count(nodes_.at(cut.ends.b), static_cast<int>(cut.rows.size()));
-  }
-  for (int i = 0; i < nodes_.size(); ++i) {
-    int& lines = lines_[static_cast<std::size_t>(i)];
-    if (nodes_[i].parent >= 0 || nodes_[i].bears || lines > many ||
-        !(least(sums_[static_cast<std::size_t>(i)]) > light * heaviest))
-      lines = stays;
-  }
-  entries_.set_apart(lines_);
 }
 
 void BodyEquations::add_pair(std::size_t list, int a, int b, const PairBlocks& x) {

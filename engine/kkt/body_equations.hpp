@@ -59,7 +59,6 @@ class BodyEquations {
   void add_body_forces(const Problem& problem, const Kinematics<double>& kinematics);
   void add_dampers(const Problem& problem, const Kinematics<double>& kinematics, std::size_t list);
   void add_pair(std::size_t list, int a, int b, const PairBlocks& blocks);
-  void set_bodies_apart(const Problem& problem);
   void sum_up_load(int node, const Residual<double>& residual);
   void add_joint(const Problem& problem, std::size_t list, int node, const Eigen::VectorXd* q);
   void add_rows(const Problem& problem, const Kinematics<double>& kinematics, const SystemPart& part,
@@ -82,7 +81,6 @@ class BodyEquations {
   std::vector<Sums> sums_;    // by node
   BodyEntries entries_;       // a list for each part of the system, and one for what is between them
   std::vector<double> noise_; // by node: stiffness that rounding makes
-  std::vector<int> lines_;    // see BodyEntries::set_apart()
   Eigen::VectorXd work_;
 };
 

@@ -1,72 +1,71 @@
 #include "engine/linear/elimination_order.hpp"
 
-#include "engine/linear/mumps.hpp"
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <vector>
 
 namespace flyball {
+namespace {
 
-// Minimum fill would begin with the multipliers, which meet few. But these have nothing on the diagonal, are
-// no pivots until something that they meet has been one, and to wait costs much. So they are left out of the
-// graph, where what they tie meets instead, and each follows the first that it meets: a body, as a rule,
-// whose motions come one after the other.
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Unknowns by place.
+std::vector<int> minimum_degree(int size, const std::vector<Eigen::Triplet<char>>& edges) {
+  if (size == 0) return {};
+  Eigen::SparseMatrix<char> graph(size, size);
+  graph.setFromTriplets(edges.begin(), edges.end(), [](char a, char) { return a; });
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> unknown;
+  Eigen::AMDOrdering<int>()(Eigen::SparseMatrix<char>(graph.selfadjointView<Eigen::Lower>()), unknown);
+  return {unknown.indices().data(), unknown.indices().data() + size};
+}
+
+} // namespace
+
 std::vector<int> elimination_order(const SparsePattern& pattern) {
-  const auto count = static_cast<std::size_t>(pattern.size), entries = pattern.rows.size();
-  const auto row = [&](std::size_t e) { return static_cast<std::size_t>(pattern.rows[e] - 1); };
-  const auto column = [&](std::size_t e) { return static_cast<std::size_t>(pattern.columns[e] - 1); };
-  std::vector<bool> held(count, false); // has something on the diagonal
-  for (std::size_t e = 0; e < entries; ++e)
-    if (row(e) == column(e)) held[row(e)] = true;
-  std::vector<int> number(count, 0);
-  SparsePattern graph;
-  for (std::size_t u = 0; u < count; ++u)
-    if (held[u]) number[u] = ++graph.size;
-  if (graph.size == 0 || graph.size == pattern.size) return {};
-
-  std::vector<std::vector<int>> met(count); // by multiplier
-  for (std::size_t e = 0; e < entries; ++e) {
-    const std::size_t i = row(e), j = column(e);
-    if (held[i] && held[j]) {
-      graph.rows.push_back(number[i]);
-      graph.columns.push_back(number[j]);
-    } else if (held[i] != held[j]) {
-      met[held[i] ? j : i].push_back(number[held[i] ? i : j]);
-    }
+  const int size = pattern.size, motions = pattern.motions;
+  std::vector<std::vector<int>> tied(at(size - motions)); // motions, by multiplier
+  std::vector<Eigen::Triplet<char>> edges;
+  for (std::size_t e = 0; e < pattern.rows.size(); ++e) {
+    const auto [j, i] = std::minmax(pattern.rows[e], pattern.columns[e]);
+    if (i < motions)
+      edges.emplace_back(i, j);
+    else
+      tied[at(i - motions)].push_back(j);
   }
-  for (const std::vector<int>& all : met)
+  for (std::vector<int>& all : tied) {
+    std::ranges::sort(all);
+    all.erase(std::ranges::unique(all).begin(), all.end());
     for (std::size_t a = 0; a < all.size(); ++a)
-      for (std::size_t b = 0; b < a; ++b) {
-        graph.rows.push_back(all[a]);
-        graph.columns.push_back(all[b]);
-      }
-  Mumps order;
-  order.open(graph);
-  order.run(Mumps::analyse);
-  if (order.failed()) return {};
+      for (std::size_t b = 0; b < a; ++b)
+        edges.emplace_back(all[a], all[b]);
+  }
+  const std::vector<int> motion = minimum_degree(motions, edges);
+  std::vector<int> place(at(motions));
+  for (int p = 0; p < motions; ++p)
+    place[at(motion[at(p)])] = p;
 
-  // Multipliers by the place that they follow.
-  const auto place = [&](int n) { return order.data.sym_perm[n - 1]; };
-  std::vector<std::vector<int>> next(static_cast<std::size_t>(graph.size) + 1);
-  for (std::size_t u = 0; u < count; ++u) {
-    if (held[u]) continue;
-    std::vector<int>& all = met[u];
-    std::ranges::sort(all, {}, place);
-    int at = all.empty() ? graph.size : place(all[0]);
-    for (int n : all)
-      if (place(n) == at + 1) ++at;
-    next[static_cast<std::size_t>(at)].push_back(static_cast<int>(u));
+  std::vector<std::vector<int>> next(at(motions) + 1); // multipliers, by the place that they follow
+  for (int u = motions; u < size; ++u) {
+    std::vector<int>& places = tied[at(u - motions)];
+    for (int& m : places)
+      m = place[at(m)];
+    std::ranges::sort(places);
+    int last = places.empty() ? motions - 1 : places.front();
+    for (const int p : places)
+      if (p == last + 1) ++last;
+    next[at(last + 1)].push_back(u);
   }
-  std::vector<std::size_t> unknown(static_cast<std::size_t>(graph.size) + 1);
-  for (std::size_t u = 0; u < count; ++u)
-    if (held[u]) unknown[static_cast<std::size_t>(place(number[u]))] = u;
-  std::vector<int> out(count);
-  int at = 0;
-  for (std::size_t p = 0; p < unknown.size(); ++p) {
-    if (p > 0) out[unknown[p]] = ++at;
-    for (int u : next[p])
-      out[static_cast<std::size_t>(u)] = ++at;
+  std::vector<int> order;
+  order.reserve(at(size));
+  for (int p = -1; p < motions; ++p) {
+    if (p >= 0) order.push_back(motion[at(p)]);
+    order.insert(order.end(), next[at(p + 1)].begin(), next[at(p + 1)].end());
   }
-  return out;
+  return order;
 }
 
 } // namespace flyball

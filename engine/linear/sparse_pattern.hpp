@@ -4,14 +4,15 @@
 
 namespace flyball {
 
-// Where a sparse matrix has entries: by row and column, counted from 1; repeated ones add up. Of a symmetric
-// matrix one triangle.
+// Where a sparse matrix [K, J^T; J, -C] has entries: by row and column, counted from 0; repeated ones add up.
+// Of a symmetric matrix one triangle.
 struct SparsePattern {
   int size = 0;
+  int motions = 0; // of K; the unknowns after them are the multipliers of J's rows
   bool symmetric = true;
   std::vector<int> rows, columns;
   void clear(int n, bool is_symmetric) {
-    size = n;
+    size = motions = n;
     symmetric = is_symmetric;
     rows.clear();
     columns.clear();
