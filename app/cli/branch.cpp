@@ -13,7 +13,9 @@
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>

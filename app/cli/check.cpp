@@ -10,6 +10,7 @@
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

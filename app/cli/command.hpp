@@ -6,11 +6,13 @@
 // SceneError and std::exception may leave the callback: main() prints them (see report_error.hpp).
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <string>
 #include <string_view>
+
+namespace CLI {
+class App;
+}
 
 namespace flyball::cli {
 

@@ -11,6 +11,7 @@
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/text.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

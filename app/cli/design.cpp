@@ -8,7 +8,9 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 

@@ -4,6 +4,7 @@
 #include "app/live/worker.hpp"
 #include "engine/mechanism/text.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>

@@ -4,6 +4,7 @@
 #include "engine/mechanism/file.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace flyball::cli {
 

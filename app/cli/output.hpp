@@ -5,7 +5,7 @@
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
 #include <initializer_list>

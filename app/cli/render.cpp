@@ -4,6 +4,7 @@
 #include "app/cli/progress.hpp"
 #include "engine/mechanism/error.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "app/cli/command.hpp"
 #include "engine/mechanism/safe_text.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>

@@ -3,10 +3,13 @@
 
 #include "engine/mechanism/error.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <string_view>
+
+namespace CLI {
+class App;
+class ParseError;
+} // namespace CLI
 
 namespace flyball::cli {
 

@@ -7,6 +7,7 @@
 #include "engine/mechanism/validate.hpp"
 
 #include <charconv>
+#include <CLI/CLI.hpp>
 #include <cmath>
 
 namespace flyball::cli {

@@ -4,13 +4,16 @@
 #include "engine/mechanism/body_point.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+namespace CLI {
+class App;
+class Validator;
+} // namespace CLI
 
 namespace flyball::cli {
 

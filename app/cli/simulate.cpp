@@ -16,6 +16,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

@@ -3,6 +3,7 @@
 #include "engine/mechanism/validate.hpp"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace flyball::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/report/analysis.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace flyball::cli {
 

@@ -8,7 +8,9 @@
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 

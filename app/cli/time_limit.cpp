@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <CLI/CLI.hpp>
 
 namespace flyball::cli {
 

@@ -1,12 +1,14 @@
 // How long a command may take by the clock on the wall.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
+
+namespace CLI {
+class App;
+}
 
 namespace flyball::cli {
 
