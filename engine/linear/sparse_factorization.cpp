@@ -31,8 +31,7 @@ struct SparseFactorization::State {
   std::vector<int> order, place; // unknown by place, place by unknown
   Multifrontal::Columns columns;
   std::vector<int> slot; // of the given entries in `lower`, or where -1 - it is negative in `upper`
-  std::vector<double> lower, upper;           // equilibrated
-  std::vector<double> with_lower, with_upper; // and augmented
+  std::vector<double> lower, upper; // equilibrated
   // Of each row of J the slots of its entries, and those of the products of any two of them.
   struct Entry {
     int motion; // place
@@ -55,7 +54,7 @@ struct SparseFactorization::State {
   void find_rows();
   int find_slot(int i, int j) const;
   void equilibrate();
-  void augment();
+  void augment(std::vector<double>& with_lower, std::vector<double>& with_upper) const;
   double leave(const Eigen::VectorXd& x);
   void substitute(Eigen::VectorXd& x);
 
@@ -188,9 +187,8 @@ void SparseFactorization::State::equilibrate() {
 }
 
 // Adds rho J^T J.
-void SparseFactorization::State::augment() {
-  with_lower = lower;
-  with_upper = upper;
+void SparseFactorization::State::augment(std::vector<double>& with_lower,
+                                         std::vector<double>& with_upper) const {
   const int* product = products.data();
   for (std::size_t r = 0; r < multiplier.size(); ++r)
     for (int a = first_entry[r]; a < first_entry[r + 1]; ++a)
@@ -250,14 +248,15 @@ void SparseFactorization::factor(const SparsePattern& pattern, const std::vector
   s.given = values;
   s.zero = zero;
   s.equilibrate();
-  s.augment();
   s.null_space.resize(0, 0);
   s.largest.setZero(pattern.size); // sums of rows
   s.for_entries([&](int i, int j, std::size_t e) {
     s.largest[i] += std::abs(s.lower[e]);
     if (i != j) s.largest[j] += std::abs(s.lower[e]);
   });
-  s.factors.factor(s.with_lower, s.with_upper, pattern.size > 0 ? zero * s.largest.maxCoeff() : 0);
+  std::vector<double> with_lower = s.lower, with_upper = s.upper;
+  s.augment(with_lower, with_upper);
+  s.factors.factor(with_lower, with_upper, pattern.size > 0 ? zero * s.largest.maxCoeff() : 0);
   s.left_out.assign(at(pattern.size), false);
   for (int i = 0; i < s.factors.nullity(); ++i)
     if (const int u = s.factors.null_unknown(i); u >= 0) s.left_out[at(u)] = true;
