@@ -107,13 +107,13 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   out.matrix = Eigen::MatrixXd::Zero(k + conditions, k + count + (unfolded_ ? 1 : 0));
   out.rhs.resize(k + conditions);
   // Forces and loops in extended precision: the last digits of the answer come from here.
-  w_.q_long = state.z.q.cast<long double>();
-  w_.lambda_long = Eigen::VectorXd::Zero(system_.rows).cast<long double>();
-  forward<long double>(system_, parameters_, w_.q_long, 0, w_.kinematics_long);
-  evaluate_residual<long double>(system_, parameters_, w_.q_long, w_.lambda_long, w_.kinematics_long,
-                                 w_.residual_long);
-  const Eigen::VectorXd phi = w_.residual_long.phi.cast<double>().cwiseProduct(scaling_.row);
-  Eigen::VectorXd force = w_.residual_long.f.cast<double>().cwiseProduct(scaling_.column);
+  w_.q_extended = state.z.q.cast<Extended>();
+  w_.lambda_extended = Eigen::VectorXd::Zero(system_.rows).cast<Extended>();
+  forward<Extended>(system_, parameters_, w_.q_extended, 0, w_.kinematics_extended);
+  evaluate_residual<Extended>(system_, parameters_, w_.q_extended, w_.lambda_extended, w_.kinematics_extended,
+                              w_.residual_extended);
+  const Eigen::VectorXd phi = w_.residual_extended.phi.cast<double>().cwiseProduct(scaling_.row);
+  Eigen::VectorXd force = w_.residual_extended.f.cast<double>().cwiseProduct(scaling_.column);
   if (w_.constraints.rank() > 0) w_.constraints.solve(-phi, out.r0);
   out.matrix.topLeftCorner(k, k) = large::projected(stiffness, basis) / size;
   for (Eigen::Index i = 0; i < count; ++i) {

@@ -6,6 +6,7 @@
 #include "engine/kkt/problem.hpp"
 #include "engine/kkt/reduced_hessian.hpp"
 #include "engine/kkt/tree_elimination.hpp"
+#include "engine/system/extended.hpp"
 
 namespace flyball {
 
@@ -29,9 +30,9 @@ struct Workspace {
   Eigen::MatrixXd scaled_jacobian, scaled_stiffness, product, reduced;
   Eigen::VectorXd scaled_phi, scaled_force, range_step, target, reduced_rhs, reduced_step, noise, scaled_step,
       scaled_lambda, step, zero_lambda;
-  Kinematics<long double> kinematics_long;
-  Residual<long double> residual_long;
-  Configuration<long double> q_long, lambda_long;
+  Kinematics<Extended> kinematics_extended;
+  Residual<Extended> residual_extended;
+  Configuration<Extended> q_extended, lambda_extended;
   Unknowns trial, closing;
   Eigen::VectorXd assembled, moved;
   // By refine(): what the rounding of the scene's own numbers does (rad, m), beside the error of the

@@ -7,20 +7,18 @@
 namespace flyball {
 namespace {
 
-constexpr auto long_rounding = static_cast<double>(std::numeric_limits<long double>::epsilon());
-
 // The balance at z in extended precision; what is left of it is small, and then rounded.
-void evaluate_long(const Problem& problem, const Unknowns& z, Workspace& w) {
-  w.q_long = z.q.cast<long double>();
+void evaluate_extended(const Problem& problem, const Unknowns& z, Workspace& w) {
+  w.q_extended = z.q.cast<Extended>();
   // Quaternions of double precision are of unit length to double precision only, and scale what they turn.
   for (const Link& link : problem.system.links)
-    if (link.v >= 0 && link.type == LinkType::spherical) w.q_long.segment<4>(link.q).normalize();
-  w.lambda_long = z.lambda.cast<long double>();
-  forward<long double>(problem.system, problem.parameters, w.q_long, 0, w.kinematics_long);
-  evaluate_residual<long double>(problem.system, problem.parameters, w.q_long, w.lambda_long,
-                                 w.kinematics_long, w.residual_long);
-  w.residual.f = w.residual_long.f.cast<double>();
-  w.residual.phi = w.residual_long.phi.cast<double>();
+    if (link.v >= 0 && link.type == LinkType::spherical) w.q_extended.segment<4>(link.q).normalize();
+  w.lambda_extended = z.lambda.cast<Extended>();
+  forward<Extended>(problem.system, problem.parameters, w.q_extended, 0, w.kinematics_extended);
+  evaluate_residual<Extended>(problem.system, problem.parameters, w.q_extended, w.lambda_extended,
+                              w.kinematics_extended, w.residual_extended);
+  w.residual.f = w.residual_extended.f.cast<double>();
+  w.residual.phi = w.residual_extended.phi.cast<double>();
 }
 
 // Of noise in four patterns: no two of eight neighbours have the same signs in all of them, nor opposite
@@ -41,10 +39,10 @@ void add_noise(const Problem& problem, double left, double opening, Workspace& w
   for (unsigned pattern = 0; pattern < 4; ++pattern) {
     for (Eigen::Index i = 0; i < w.residual.f.size(); ++i)
       w.residual.f[i] = noise_sign(pattern, i) *
-                        (2 * long_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
+                        (2 * extended_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
     for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
       w.residual.phi[i] = noise_sign(pattern, i) *
-                          (2 * long_rounding * w.magnitudes.phi[i] + opening / problem.scaling.row[i]);
+                          (2 * extended_rounding * w.magnitudes.phi[i] + opening / problem.scaling.row[i]);
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
     error += w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs();
   }
@@ -199,8 +197,9 @@ bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) 
 // the stiffness there; none where that is no more than rounding.
 double asked_for(const Problem& problem, const Eigen::VectorXd& direction, const Workspace& w) {
   const Eigen::VectorXd size = direction.cwiseAbs();
-  const double force = std::abs(direction.dot(w.residual.f.cwiseProduct(problem.scaling.column))) +
-                       8 * long_rounding * size.dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+  const double force =
+      std::abs(direction.dot(w.residual.f.cwiseProduct(problem.scaling.column))) +
+      8 * extended_rounding * size.dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
   const double stiffness = std::abs(direction.dot(w.scaled_stiffness * direction));
   const double noise =
       8 * std::numeric_limits<double>::epsilon() * size.dot(w.scaled_stiffness.cwiseAbs() * size);
@@ -210,7 +209,7 @@ double asked_for(const Problem& problem, const Eigen::VectorXd& direction, const
 void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, Eigen::VectorXd& error) {
   Eigen::MatrixXd flat = w.constraints.basis() * w.hessian.null_basis();
   Eigen::VectorXd asked = Eigen::VectorXd::Zero(flat.cols());
-  evaluate_long(problem, z, w);
+  evaluate_extended(problem, z, w);
   for (Eigen::Index c = 0; c < flat.cols(); ++c) {
     const double size = flat.col(c).lpNorm<Eigen::Infinity>();
     if (!(size > 0)) continue;
@@ -256,7 +255,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
   constexpr int last_round = 4;
   for (int round = 0; round <= last_round; ++round) {
-    evaluate_long(problem, z, w);
+    evaluate_extended(problem, z, w);
     left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
     // Multipliers are corrected like the rest, so that the forces they balance do not drown what they cannot.
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
@@ -284,10 +283,10 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
     error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
   add_noise(problem, left, opening, w, error);
   add_rounding_of_data(problem, w, w.data_error);
-  error += long_rounding * problem.scaling.column;
+  error += extended_rounding * problem.scaling.column;
   if (problem.is_dense() && w.constraints.rank() < std::min(system.rows, system.nv) &&
       at_singular_loops(problem, z, w))
-    error += 4 * std::sqrt(opening + long_rounding) * problem.scaling.column;
+    error += 4 * std::sqrt(opening + extended_rounding) * problem.scaling.column;
   if (problem.is_dense() && w.hessian.singular()) add_singular_directions(problem, z, w, error);
   for (const Link& link : system.links) {
     if (link.v < 0) continue;

@@ -19,7 +19,7 @@
 namespace flyball {
 namespace {
 
-using LongVector = Configuration<long double>;
+using ExtendedVector = Configuration<Extended>;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -86,25 +86,25 @@ class Direct {
   void settle_reference(const Unknowns& answer, Comparison& out) {
     Unknowns z = answer;
     factor_with_multipliers(problem(), z, w_);
-    reference_ = z.q.cast<long double>();
-    LongVector step, multipliers = z.lambda.cast<long double>();
+    reference_ = z.q.cast<Extended>();
+    ExtendedVector step, multipliers = z.lambda.cast<Extended>();
     Eigen::VectorXd correction;
     double previous = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 12; ++i) {
-      forward<long double>(system_, parameters_, reference_, 0, w_.kinematics_long);
-      evaluate_residual<long double>(system_, parameters_, reference_, multipliers, w_.kinematics_long,
-                                     w_.residual_long);
-      w_.residual.f = w_.residual_long.f.cast<double>();
-      w_.residual.phi = w_.residual_long.phi.cast<double>();
+      forward<Extended>(system_, parameters_, reference_, 0, w_.kinematics_extended);
+      evaluate_residual<Extended>(system_, parameters_, reference_, multipliers, w_.kinematics_extended,
+                                  w_.residual_extended);
+      w_.residual.f = w_.residual_extended.f.cast<double>();
+      w_.residual.phi = w_.residual_extended.phi.cast<double>();
       newton_step(problem(), w_.residual.f, w_.residual.phi, w_, w_.scaled_step, z.lambda);
       const double size = w_.scaled_step.size() > 0 ? w_.scaled_step.lpNorm<Eigen::Infinity>() : 0;
       correction = w_.scaled_step.cwiseProduct(scaling_.column);
       out.reference_error = size;
       out.reference_residual = balance(w_);
       if (!std::isfinite(size) || (i > 1 && size >= previous / 2)) break; // rounding is all that is left
-      step = correction.cast<long double>();
-      retract<long double>(system_, step, reference_);
-      multipliers += z.lambda.cast<long double>(); // corrected like the rest
+      step = correction.cast<Extended>();
+      retract<Extended>(system_, step, reference_);
+      multipliers += z.lambda.cast<Extended>(); // corrected like the rest
       previous = size;
     }
     if (correction.size() == 0) correction.setZero(system_.nv);
@@ -115,7 +115,7 @@ class Direct {
 
   // The largest difference from q*, in radians or relative to the reach.
   double error_of(const Eigen::VectorXd& q, const std::vector<std::string>& neutral) const {
-    long double worst = 0;
+    double worst = 0;
     for (std::size_t l = 0; l < system_.links.size(); ++l) {
       const Link& link = system_.links[l];
       if (link.v < 0) continue;
@@ -123,19 +123,21 @@ class Direct {
       if (std::ranges::find(neutral, joint) != neutral.end()) continue;
       if (link.type == LinkType::spherical) {
         const auto rotation = [&](const auto& x) {
-          return Eigen::Quaternion<long double>(x[link.q], x[link.q + 1], x[link.q + 2], x[link.q + 3])
+          return Eigen::Quaternion<Extended>(x[link.q], x[link.q + 1], x[link.q + 2], x[link.q + 3])
               .normalized();
         };
         const auto turn = rotation(q) * rotation(reference_).conjugate();
-        worst = std::max(worst, log_rotation<long double>(turn).norm());
+        worst = std::max(worst, static_cast<double>(log_rotation<Extended>(turn).norm()));
         continue;
       }
-      long double away = static_cast<long double>(q[link.q]) - reference_[link.q];
-      if (turns_freely(system_, parameters_, static_cast<int>(l)))
-        away = std::remainder(away, 2 * std::numbers::pi_v<long double>);
-      worst = std::max(worst, std::abs(away) / static_cast<long double>(scaling_.column[link.v]));
+      Extended away = Extended(q[link.q]) - reference_[link.q];
+      if (turns_freely(system_, parameters_, static_cast<int>(l))) {
+        constexpr Extended turn = 2 * std::numbers::pi_v<Extended>;
+        away -= turn * std::round(static_cast<double>(away / turn));
+      }
+      worst = std::max(worst, std::abs(static_cast<double>(away)) / scaling_.column[link.v]);
     }
-    return static_cast<double>(worst);
+    return worst;
   }
 
   // The state after so many plain iterations from the drawn pose, and whether more would change it.
@@ -170,7 +172,7 @@ class Direct {
   Workspace w_;
   SteadyState steady_;
   Stability stability_;
-  LongVector reference_;
+  ExtendedVector reference_;
 };
 
 // Long enough for the slowest motion about the steady state to shrink to 1e-2, 1e-4 ... 1e-10; s.

@@ -1,5 +1,6 @@
 #include "engine/system/kinematics.hpp"
 
+#include "engine/system/extended.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 namespace flyball {
@@ -185,14 +186,13 @@ void body_poses(const System& system, const Mechanism& mechanism, const Paramete
 
 template void forward<double>(const System&, const Parameters&, const Configuration<double>&, double,
                               Kinematics<double>&);
-template void forward<long double>(const System&, const Parameters&, const Configuration<long double>&,
-                                   double, Kinematics<long double>&);
+template void forward<Extended>(const System&, const Parameters&, const Configuration<Extended>&, double,
+                                Kinematics<Extended>&);
 template void retract<double>(const System&, const Configuration<double>&, Configuration<double>&);
-template void retract<long double>(const System&, const Configuration<long double>&,
-                                   Configuration<long double>&);
+template void retract<Extended>(const System&, const Configuration<Extended>&, Configuration<Extended>&);
 template Vec3T<double> rotation_vector<double>(const Link&, const LinkParameters&,
                                                const Configuration<double>&);
-template Vec3T<long double> rotation_vector<long double>(const Link&, const LinkParameters&,
-                                                         const Configuration<long double>&);
+template Vec3T<Extended> rotation_vector<Extended>(const Link&, const LinkParameters&,
+                                                   const Configuration<Extended>&);
 
 } // namespace flyball

@@ -1,6 +1,7 @@
 #include "engine/system/residual.hpp"
 
 #include "engine/system/constraint_row.hpp"
+#include "engine/system/extended.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
@@ -432,9 +433,8 @@ template void evaluate_constraints<double>(const System&, const Parameters&, con
 template void evaluate_residual<double>(const System&, const Parameters&, const Configuration<double>&,
                                         const Configuration<double>&, const Kinematics<double>&,
                                         Residual<double>&);
-template void evaluate_residual<long double>(const System&, const Parameters&,
-                                             const Configuration<long double>&,
-                                             const Configuration<long double>&,
-                                             const Kinematics<long double>&, Residual<long double>&);
+template void evaluate_residual<Extended>(const System&, const Parameters&, const Configuration<Extended>&,
+                                          const Configuration<Extended>&, const Kinematics<Extended>&,
+                                          Residual<Extended>&);
 
 } // namespace flyball

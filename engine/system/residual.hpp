@@ -19,7 +19,7 @@ struct Residual {
   std::vector<Vec3T<S>> spine_force, spine_moment; // workspace: of each part on each link of the spine
 };
 
-// `kinematics` must be at (q, t). Instantiated for double and long double.
+// `kinematics` must be at (q, t). Instantiated for double and Extended.
 template <class S>
 void evaluate_residual(const System& system, const Parameters& parameters, const Configuration<S>& q,
                        const Configuration<S>& lambda, const Kinematics<S>& kinematics, Residual<S>& out);

@@ -5,6 +5,8 @@
 
 #include "engine/system/spatial.hpp"
 
+#include <array>
+
 namespace flyball {
 
 // Unit quaternion (w >= 0 not required) to rotation vector of length at most pi.
@@ -38,13 +40,28 @@ struct InverseJacobianCoefficients {
     using std::sin;
     using std::tan;
     const S x = n / 2;
-    if (n < S(0.25)) { // b = (1 - x cot x) / (4 x^2), by its series
+    if (n < S(0.25)) { // b = (1 - x cot x) / (4 x^2), by its series, to 113 bits
       const S y = x * x;
-      const S c0 = S(1) / 12, c1 = S(1) / 180, c2 = S(1) / 1890, c3 = S(1) / 18900, c4 = S(1) / 187110,
-              c5 = S(691) / S(1277025750), c6 = S(1) / 18243225;
-      b = c0 + y * (c1 + y * (c2 + y * (c3 + y * (c4 + y * (c5 + y * c6)))));
-      // db/dn / n = (db/dy) (dy/dn) / n = (db/dy) / 2
-      db_over_n = (c1 + y * (2 * c2 + y * (3 * c3 + y * (4 * c4 + y * (5 * c5 + y * 6 * c6))))) / 2;
+      const std::array<S, 13> coefficients{S(1) / 12,
+                                           S(1) / 180,
+                                           S(1) / 1890,
+                                           S(1) / 18900,
+                                           S(1) / 187110,
+                                           S(691) / S(1277025750),
+                                           S(1) / 18243225,
+                                           5.5536521974949195e-9, // from here on the first digits are enough
+                                           5.626961629202249e-10,
+                                           5.701287801148046e-11,
+                                           5.776608149750656e-12,
+                                           5.852926704956221e-13,
+                                           5.930254350058413e-14};
+      S slope = 0; // db/dy
+      b = 0;
+      for (std::size_t i = coefficients.size(); i-- > 0;) {
+        slope = b + y * slope;
+        b = coefficients[i] + y * b;
+      }
+      db_over_n = slope / 2; // (db/dy) (dy/dn) / n
     } else {
       const S cot = 1 / tan(x), s = sin(x);
       b = 1 / (n * n) - cot / (2 * n);

@@ -3,6 +3,7 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/kkt/problem.hpp"
+#include "engine/system/extended.hpp"
 
 #include <Eigen/LU>
 
@@ -13,7 +14,7 @@ using namespace flyball::test;
 
 namespace {
 
-using Real = long double;
+using Real = Extended;
 using VectorL = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 using MatrixL = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
@@ -55,7 +56,7 @@ class Judge {
       MatrixL jacobian(n, n);
       for (Eigen::Index j = 0; j < n; ++j) {
         // Rates turn with the angle at most some tens of times a radian; reach is the unit of lengths.
-        const Real h = 1e-7L;
+        const Real h = 1e-7;
         const auto shifted = [&](Real step) {
           VectorL moved = q, multipliers = lambda;
           if (j < nv)
@@ -68,15 +69,15 @@ class Judge {
       }
       VectorL rows(n);
       for (Eigen::Index k = 0; k < n; ++k)
-        rows[k] = 1 / std::max(jacobian.row(k).cwiseAbs().maxCoeff(), Real(1e-300L));
+        rows[k] = 1 / std::max(jacobian.row(k).cwiseAbs().maxCoeff(), Real(1e-300));
       const MatrixL scaled = rows.asDiagonal() * jacobian;
       const VectorL step = scaled.fullPivLu().solve(-rows.cwiseProduct(f));
       if (!step.allFinite()) break;
       q = displaced(q, step.head(nv));
       lambda += step.tail(system_.rows) * unit;
       const Real size = step.head(nv).size() > 0 ? step.head(nv).cwiseAbs().maxCoeff() : 0;
-      if (size > 1e3L) break;
-      out.converged = i > 0 && size < 1e-17L * std::max(Real(1), q.cwiseAbs().maxCoeff());
+      if (size > 1e3) break;
+      out.converged = i > 0 && size < 1e-17 * std::max(Real(1), q.cwiseAbs().maxCoeff());
     }
     out.q = q;
     // Displacements from the drawn pose, as the configuration holds them; labels are read off likewise.
@@ -86,8 +87,9 @@ class Judge {
 
   // How far the answer is from the judgement, in the coordinate's unit.
   Real distance(const Judgement& judgement, Eigen::Index v) const {
+    using std::abs;
     for (const Link& link : system_.links)
-      if (link.v == v) return std::abs(judgement.q[link.q] - Real(drawn_[link.q]));
+      if (link.v == v) return abs(judgement.q[link.q] - Real(drawn_[link.q]));
     return 0;
   }
 

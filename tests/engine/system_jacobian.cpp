@@ -1,4 +1,4 @@
-// f_z against derivatives of the long double residual that owe nothing to its formulas, for each type of
+// f_z against derivatives of the extended residual that owe nothing to its formulas, for each type of
 // joint and force by itself and for random mechanisms; the matrices of the motion against the reference.
 #include "tests/catch.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
@@ -16,11 +16,11 @@ using reference::RandomOptions;
 namespace {
 
 // d/dh of f at zero by central differences, extrapolated three times (Richardson): the error is of order h^6.
-template <class Function>
-VectorR slope(const Function& f) {
-  const auto central = [&](Real h) -> VectorR { return (f(h) - f(-h)) / (2 * h); };
-  const Real h = 2e-3L;
-  const VectorR d1 = central(h), d2 = central(h / 2), d4 = central(h / 4);
+template <class S, class Function>
+Configuration<S> slope(const Function& f) {
+  const auto central = [&](S h) -> Configuration<S> { return (f(h) - f(-h)) / (2 * h); };
+  const S h = 2e-3;
+  const Configuration<S> d1 = central(h), d2 = central(h / 2), d4 = central(h / 4);
   return (16 * (4 * d4 - d2) / 3 - (4 * d2 - d1) / 3) / 15;
 }
 
@@ -28,16 +28,17 @@ void check_jacobian(const Model& model, const Eigen::VectorXd& q, const Eigen::V
   const Linearization l = linearize_at(model, q, lambda, t);
   MatrixR stiffness(model.system.nv, model.system.nv), constraint(model.system.rows, model.system.nv);
   for (int j = 0; j < model.system.nv; ++j) {
-    const VectorR column = slope([&](Real h) {
-      VectorR moved = q.cast<Real>();
-      retract<Real>(model.system, h * VectorR::Unit(model.system.nv, j), moved);
-      const Point<Real> p = evaluate_at<Real>(model, moved, lambda.cast<Real>(), t);
-      VectorR both(model.system.nv + model.system.rows);
+    using VectorE = Configuration<Extended>;
+    const VectorE column = slope<Extended>([&](Extended h) {
+      VectorE moved = q.cast<Extended>();
+      retract<Extended>(model.system, h * VectorE::Unit(model.system.nv, j), moved);
+      const Point<Extended> p = evaluate_at<Extended>(model, moved, lambda.cast<Extended>(), t);
+      VectorE both(model.system.nv + model.system.rows);
       both << p.residual.f, p.residual.phi;
       return both;
     });
-    stiffness.col(j) = column.head(model.system.nv);
-    constraint.col(j) = column.tail(model.system.rows);
+    stiffness.col(j) = column.head(model.system.nv).cast<double>().cast<Real>();
+    constraint.col(j) = column.tail(model.system.rows).cast<double>().cast<Real>();
   }
   CHECK(largest(MatrixR(l.stiffness.cast<Real>() - stiffness)) < 1e-11 * (1 + largest(stiffness)));
   CHECK(largest(MatrixR(l.constraint.cast<Real>() - constraint)) < 1e-12 * (1 + largest(constraint)));
@@ -90,7 +91,7 @@ Motion motion_of(const Model& model, const Eigen::VectorXd& q, double t) {
   const MatrixR b = e.B * map;
   Motion out{b.transpose() * absolute * b, MatrixR(model.system.nv, model.system.nv)};
   for (int j = 0; j < model.system.nv; ++j)
-    out.velocity.col(j) = slope([&](Real h) -> VectorR {
+    out.velocity.col(j) = slope<Real>([&](Real h) -> VectorR {
       // The speeds are read as double: take the difference that they really make.
       const VectorR step = map.col(j) * h;
       return map.transpose() * balance_in_motion(model, e, s, step);

@@ -156,7 +156,7 @@ double largest(const MatrixR& m) {
 
 template Point<double> evaluate_at(const Model&, const Configuration<double>&, const Configuration<double>&,
                                    double);
-template Point<Real> evaluate_at(const Model&, const Configuration<Real>&, const Configuration<Real>&,
-                                 double);
+template Point<Extended> evaluate_at(const Model&, const Configuration<Extended>&,
+                                     const Configuration<Extended>&, double);
 
 } // namespace flyball::testing

@@ -1,6 +1,7 @@
 // A mechanism opened twice: compiled by the engine, and read by the reference with the engine's tree.
 #pragma once
 
+#include "engine/system/extended.hpp"
 #include "engine/system/linearization.hpp"
 #include "tests/engine/reference/b_matrix.hpp"
 

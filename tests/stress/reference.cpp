@@ -227,10 +227,10 @@ ReferenceState Reference::settle(const Solution& solution) const {
     for (int k = 0; k < system.nv; ++k)
       move[k] = Dual(step[k] * s.column[k] * Wide(size > 0 ? taken / size : 1));
     retract<Dual>(system, move, q);
-    if (size < 1e-26 || (size < 1e-12 && size > previous / 2)) {
-      out.converged = true;
-      break;
-    }
+    // On to the last digit: answers near zero are known to far less than 1e-26.
+    const bool stands = size == 0 || (size < 1e-12 && size > previous / 2);
+    out.converged = stands || size < 1e-26;
+    if (stands) break;
     previous = size;
   }
 
