@@ -1,6 +1,17 @@
 #include "engine/kkt/body_stiffness.hpp"
 
 namespace flyball {
+namespace {
+
+// How drag changes with the velocity of its point.
+Mat3 drag_slope(const BodyForceParameters& f, const Vec3& velocity) {
+  const double speed = velocity.norm();
+  Mat3 j = (f.linear + f.quadratic * speed) * Mat3::Identity();
+  if (speed > 0) j += f.quadratic / speed * velocity * velocity.transpose();
+  return j;
+}
+
+} // namespace
 
 void set_body_inertia(const Parameters& p, std::size_t l, const Kinematics<double>& k, BodyInertia& n) {
   const LinkParameters& lp = p.links[l];
@@ -55,10 +66,7 @@ void add_body_force(const BodyForceElement& e, const BodyForceParameters& f, con
     own.bottomLeftCorner<3, 3>() -= fx;
     return;
   }
-  const Vec3 v = k.velocity(e.link, a.point);
-  const double speed = v.norm();
-  Mat3 j = (f.linear + f.quadratic * speed) * Mat3::Identity();
-  if (speed > 0) j += f.quadratic / speed * v * v.transpose();
+  const Mat3 j = drag_slope(f, k.velocity(e.link, a.point));
   // Velocity at the point of V x X, whose parts are w x theta and v x theta + w x x.
   const Mat3 wx = skew(x.w);
   const Mat3 by_turn = j * (skew(x.v) - armx * wx), by_shift = j * wx;
@@ -66,6 +74,31 @@ void add_body_force(const BodyForceElement& e, const BodyForceParameters& f, con
   own.topRightCorner<3, 3>() += armx * by_shift;
   own.bottomLeftCorner<3, 3>() += by_turn;
   own.bottomRightCorner<3, 3>() += by_shift;
+}
+
+// A particle at r with the velocity v + w' x r in the frame feels 2 w x that by its mass, and its wrench is r
+// x that; summed up with S as above, since [r][w][r] = -(r.w) [r].
+Mat6 coriolis_matrix(const BodyInertia& n, const Vec3& w) {
+  const Vec3& h = n.first_moment;
+  Mat3 s = -n.inertia;
+  s.diagonal().array() += n.inertia.trace() / 2;
+  Mat6 d;
+  d.topLeftCorner<3, 3>() = skew<double>(2 * s * w);
+  d.topRightCorner<3, 3>() = 2 * skew_product(h, w);
+  d.bottomLeftCorner<3, 3>() = -2 * skew_product(w, h);
+  d.bottomRightCorner<3, 3>() = skew<double>(2 * n.mass * w);
+  return d;
+}
+
+void add_body_drag(const BodyForceElement& e, const BodyForceParameters& f, const Kinematics<double>& k,
+                   Mat6& damping) {
+  const Vec3 point = k.point(e.link, f.at);
+  const Mat3 j = drag_slope(f, k.velocity(e.link, point));
+  const Mat3 armx = skew<double>(point - k.at(e.link).o);
+  damping.topLeftCorner<3, 3>() -= armx * j * armx;
+  damping.topRightCorner<3, 3>() += armx * j;
+  damping.bottomLeftCorner<3, 3>() -= j * armx;
+  damping.bottomRightCorner<3, 3>() += j;
 }
 
 Mat6 inertia_matrix(const BodyInertia& b) {

@@ -31,6 +31,12 @@ void set_body_stiffness(const Parameters& parameters, std::size_t link, const Ki
 void add_body_force(const BodyForceElement& element, const BodyForceParameters& force,
                     const Kinematics<double>& kinematics, Mat6& own);
 
+// How the wrench changes with the body's velocity in a frame that turns with w (rad/s): Coriolis forces.
+Mat6 coriolis_matrix(const BodyInertia& body, const Vec3& w);
+// Adds what drag does.
+void add_body_drag(const BodyForceElement& element, const BodyForceParameters& drag,
+                   const Kinematics<double>& kinematics, Mat6& damping);
+
 // The metric as a matrix; and applied to a motion.
 Mat6 inertia_matrix(const BodyInertia& body);
 Vec6 times_inertia(const BodyInertia& body, const Vec6& motion);

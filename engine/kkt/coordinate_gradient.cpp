@@ -22,6 +22,17 @@ Eigen::VectorXd coordinate_gradient(const System& system, const Parameters& para
   return out;
 }
 
+std::complex<double> coordinate_change(const System& system, const Parameters& parameters,
+                                       const Eigen::VectorXd& q, const CoordinateInfo& coordinate,
+                                       const Eigen::VectorXcd& step) {
+  const Link& link = system.links[static_cast<std::size_t>(coordinate.link)];
+  if (link.v < 0) return 0;
+  if (link.type != LinkType::spherical) return step[link.v];
+  const Mat3 rate =
+      rotation_vector_rate(link, parameters.links[static_cast<std::size_t>(coordinate.link)], q);
+  return rate.row(coordinate.index - link.coordinate).dot(step.segment<3>(link.v));
+}
+
 double away_from(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate,
                  double value, double wanted) {
   const auto link = static_cast<std::size_t>(coordinate.link);

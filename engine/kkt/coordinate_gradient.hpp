@@ -3,12 +3,19 @@
 
 #include "engine/system/kinematics.hpp"
 
+#include <complex>
+
 namespace flyball {
 
 // Gradient of coordinate_value by the entries of a step of q_R, unscaled: 1 at its own entry, and of a
 // component of a rotation vector its row of the inverse Jacobian. Zero where it is driven.
 Eigen::VectorXd coordinate_gradient(const System& system, const Parameters& parameters,
                                     const Eigen::VectorXd& q, const CoordinateInfo& coordinate);
+
+// By how much the value changes along a step, unscaled.
+std::complex<double> coordinate_change(const System& system, const Parameters& parameters,
+                                       const Eigen::VectorXd& q, const CoordinateInfo& coordinate,
+                                       const Eigen::VectorXcd& step);
 
 // `coordinate`'s value less a wanted one, rad or m; of an angle that is the same after a whole turn (no
 // spring or stop) the short way round.

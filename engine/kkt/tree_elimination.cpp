@@ -107,6 +107,7 @@ void TreeElimination::set_joint(const Problem& problem, const Eigen::VectorXd& q
       measure(n.v + c, true, ball.noise[c], ball.metric[c]);
     }
     ball.joint = lp.elastic ? rotation_stiffness(link, lp, q) : Mat3(Mat3::Zero());
+    if (with_velocities_) ball.joint += rate_ * rotation_damping(link, lp, q);
   } else if (n.v >= 0) {
     const Column<double>& column = k.columns[static_cast<std::size_t>(n.v)];
     const double unit = problem.scaling.column[n.v];
@@ -114,13 +115,43 @@ void TreeElimination::set_joint(const Problem& problem, const Eigen::VectorXd& q
     n.angular = column.angular;
     measure(n.v, n.angular, n.noise, n.metric);
     n.joint = lp.elastic ? lp.force[0].curvature(q[link.q]) * unit * unit : 0;
+    if (with_velocities_) n.joint += rate_ * lp.force[0].damping * unit * unit;
+  }
+}
+
+// What the bodies' accelerations and velocities ask for.
+void TreeElimination::add_motion(const Problem& problem, const Kinematics<double>& k) {
+  for (Node& n : nodes_) {
+    if (n.massless()) continue;
+    BodyInertia body = n;
+    body.turning = 0;
+    n.own += rate_ * rate_ * inertia_matrix(body);
+    if (with_velocities_ && problem.parameters.moving)
+      n.own += rate_ * coriolis_matrix(body, k.links[static_cast<std::size_t>(n.link)].w);
+  }
+  for (std::size_t i = 0; i < problem.system.body_forces.size() && with_velocities_; ++i) {
+    const BodyForceElement& e = problem.system.body_forces[i];
+    const BodyForceParameters& f = problem.parameters.body_forces[i];
+    const int at = e.link < 0 ? -1 : node_of_link_[static_cast<std::size_t>(e.link)];
+    if (at < 0 || f.type != ForceType::drag) continue;
+    Mat6 damping = Mat6::Zero();
+    add_body_drag(e, f, k, damping);
+    nodes_[static_cast<std::size_t>(at)].own += rate_ * damping;
   }
 }
 
 void TreeElimination::linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                                 const Residual<double>& residual, const Magnitudes& magnitudes) {
+  linearize_motion(problem, z, k, residual, magnitudes, 0, false);
+}
+
+void TreeElimination::linearize_motion(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                                       const Residual<double>& residual, const Magnitudes& magnitudes,
+                                       double rate, bool with_velocities) {
   const System& system = problem.system;
-  symmetric_ = problem.symmetric();
+  rate_ = rate;
+  with_velocities_ = with_velocities;
+  symmetric_ = problem.symmetric() && !with_velocities;
   size_ = system.nv;
   mass_ = 0;
   balls_.clear();
@@ -148,6 +179,7 @@ void TreeElimination::linearize(const Problem& problem, const Unknowns& z, const
     if (at >= 0)
       add_body_force(e, problem.parameters.body_forces[i], k, nodes_[static_cast<std::size_t>(at)].own);
   }
+  if (rate != 0) add_motion(problem, k);
   const double least =
       own_share * own_share * std::max(mass_, 1e-300) * problem.parameters.length * problem.parameters.length;
   inwards(size_branches_, [&](Node& n, SubtreeSizes& sizes) {

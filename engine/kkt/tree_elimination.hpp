@@ -39,6 +39,10 @@ class TreeElimination final : public Eliminator {
   // Of a system with is_plain_tree().
   void linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                  const Residual<double>& residual, const Magnitudes& magnitudes) override;
+  // Takes in K + rate^2 M, or with velocities K + rate (C + G) + rate^2 M, in the place of K (rate in 1/s).
+  void linearize_motion(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
+                        const Residual<double>& residual, const Magnitudes& magnitudes, double rate,
+                        bool with_velocities);
   void factor(double shift = 0) override;
   bool hold_turns(double most, Eigen::VectorXd& x) override;
   double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
@@ -79,6 +83,7 @@ class TreeElimination final : public Eliminator {
   template <class Sum, class Visit>
   void inwards(std::vector<Sum>& branches, Visit visit);
   void place(int i, const Link& link);
+  void add_motion(const Problem& problem, const Kinematics<double>& k);
   void set_joint(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k,
                  const Magnitudes& magnitudes, const SubtreeSizes& sizes, double least, Node& n);
   void eliminate_one(Node& n, double shift, Mat6& h);
@@ -86,6 +91,8 @@ class TreeElimination final : public Eliminator {
   void outwards(double most, Eigen::VectorXd& x);
 
   bool symmetric_ = true;
+  double rate_ = 0; // see linearize_motion()
+  bool with_velocities_ = false;
   std::vector<Node> nodes_;       // of mobile links, parents before children
   std::vector<int> node_of_link_; // -1: immobile
   std::vector<Ball> balls_;

@@ -12,6 +12,7 @@
 #include "engine/solve/sensitivity.hpp"
 #include "engine/solve/unbounded.hpp"
 #include "engine/stability/linear_motion.hpp"
+#include "engine/stability/lowest_modes.hpp"
 #include "engine/stability/pivot_stability.hpp"
 #include "engine/stability/sign_is_open.hpp"
 #include "engine/stability/stability.hpp"
@@ -51,16 +52,22 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
   return true;
 }
 
-// Eigenvalues need the matrices; beyond a size the pivots have to do.
-bool pivots_decide(const Problem& problem, int modes) {
-  return problem.system.nv > largest_for_eigenvalues && modes == 0 && !problem.is_dense();
+// All eigenvalues need the matrices; beyond a size the pivots have to do.
+bool pivots_decide(const Problem& problem) {
+  return problem.system.nv > largest_for_eigenvalues && !problem.is_dense();
+}
+
+// Whether the linearised motion of a large mechanism turns with the drives, as far as can be told.
+bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w) {
+  if (phases.empty()) return false;
+  return !can_compare_phases(problem.system) || motion_varies(problem, z.q, phases, w);
 }
 
 Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eigenvalues, int modes,
                        Workspace& w) {
-  if (pivots_decide(problem, modes)) {
+  if (pivots_decide(problem)) {
     if (const auto phases = sample_phases(problem.system, problem.parameters); !phases.empty()) {
-      if (!can_compare_phases(problem.system) || motion_varies(problem, z.q, phases, w)) {
+      if (may_vary(problem, z, phases, w)) {
         Stability out;
         out.reason = StabilityReason::varying;
         out.floquet_failure = FloquetFailure::unresolved;
@@ -76,6 +83,32 @@ Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eige
   Stability out = find_stability(whole, z, with_eigenvalues && !many, w);
   if (many && !out.floquet) out.eigenvalues.reset();
   return out;
+}
+
+// Adds the eigenvalues nearest to zero of a large mechanism to what its pivots say; where those decide
+// nothing one that grows does. Returns why there are none.
+std::string add_lowest_eigenvalues(const Problem& problem, const Unknowns& z, int count, Workspace& w,
+                                   Stability& out) {
+  std::vector<std::complex<double>> eigenvalues;
+  // As a rule in pairs.
+  for (const int modes : {(count + 1) / 2, count}) {
+    const LowestModes lowest = find_lowest_modes(problem, z, modes, w);
+    if (!lowest.failure.empty()) return lowest.failure;
+    eigenvalues.clear();
+    for (const VibrationMode& mode : lowest.modes) {
+      eigenvalues.push_back(mode.eigenvalue);
+      if (mode.oscillates()) eigenvalues.push_back(std::conj(mode.eigenvalue));
+    }
+    if (eigenvalues.size() >= static_cast<std::size_t>(count)) break;
+  }
+  const bool grows =
+      std::ranges::any_of(eigenvalues, [](std::complex<double> s) { return s.real() > 1e-6 * std::abs(s); });
+  if (!out.reason && grows) {
+    out.stable = false;
+    out.reason = StabilityReason::unstable;
+  }
+  out.eigenvalues = std::move(eigenvalues);
+  return {};
 }
 
 std::string search_message(const AllSolutions& all) {
@@ -201,9 +234,13 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   }
   s.answer = steady.found.z.q;
   s.answered = s.settled = true;
-  if (options.details && !varies && !pivots_decide(problem, options.modes)) {
+  std::string without_modes;
+  if (options.details && !varies && (options.modes > 0 || !pivots_decide(problem))) {
     report_progress(options.progress, "eigenvalues");
-    stability = stability_of(problem, steady.found.z, true, options.modes, s.workspace);
+    if (pivots_decide(problem))
+      without_modes = add_lowest_eigenvalues(problem, steady.found.z, options.modes, s.workspace, stability);
+    else
+      stability = stability_of(problem, steady.found.z, true, options.modes, s.workspace);
     if (options.modes > 0 && stability.eigenvalues &&
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
       stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
@@ -218,6 +255,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   const ReportInput input{s.mechanism, problem, steady.found, steady.existence, stability, options.points};
   steady.error += s.workspace.data_error;
   report(input, steady.error, options.details, s.workspace, out);
+  if (!without_modes.empty()) out.message += " " + without_modes;
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
     explain_unbounded(problem, steady.start, s.workspace, out);
   if (!is_finite(out)) {
@@ -346,10 +384,14 @@ std::vector<Pose> Analysis::poses_at(double t) const {
   return poses;
 }
 
-std::vector<VibrationMode> Analysis::modes() const {
+std::vector<VibrationMode> Analysis::modes(int count) const {
   State& s = *state_;
   if (!s.settled) return {};
-  return find_modes({s.system, s.parameters, s.scaling}, s.steady.found.z, s.workspace);
+  const Problem problem{s.system, s.parameters, s.scaling, nullptr, s.steady.eliminated};
+  const Unknowns& z = s.steady.found.z;
+  if (!pivots_decide(problem)) return find_modes({s.system, s.parameters, s.scaling}, z, s.workspace);
+  if (may_vary(problem, z, sample_phases(s.system, s.parameters), s.workspace)) return {};
+  return find_lowest_modes(problem, z, count, s.workspace).modes;
 }
 
 std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitude, double phase,

@@ -19,7 +19,8 @@ struct SolveOptions {
   bool nearest = false; // the plain Newton-Raphson answer, stable or not
   bool warm = false;    // start from this analysis' last converged answer instead of the drawn pose
   bool details = true;  // eigenvalues, reactions and drive torques; not needed by a sweep
-  int modes = 0;        // eigenvalues asked for where there are more than 200 coordinates
+  // Eigenvalues asked for where there are more than 200 coordinates: those nearest to zero.
+  int modes = 0;
   std::vector<BodyPoint> points{};                   // to be told with the solution
   std::vector<std::pair<std::string, double>> start; // "joint" or "joint.index" = value, over the drawn pose
   const std::atomic<bool>* cancel = nullptr;         // looked at all the time; then not_converged
@@ -82,9 +83,10 @@ class Analysis {
   // at their last answer (at the drawn pose before there is one).
   std::vector<Pose> poses_at(double t) const;
 
-  // Modes of the linearised motion about the last answer (modes.hpp). Empty where the last solve has none, or
-  // numbers have changed since. Of another equilibrium: solve with its coordinates as start and `nearest`.
-  std::vector<VibrationMode> modes() const;
+  // Modes of the linearised motion about the last answer (modes.hpp); of more than 200 coordinates the
+  // `count` whose eigenvalues are nearest to zero. Empty where the last solve has none, or numbers have
+  // changed since. Of another equilibrium: solve with its coordinates as start and `nearest`.
+  std::vector<VibrationMode> modes(int count = 20) const;
 
   // Poses of all bodies in a mode of the last answer at `phase` (rad): the coordinates moved along Re(v e^(i
   // phase)), the loops closed, the drives `t` seconds on. `amplitude` is that of the largest entry, in rad or

@@ -97,8 +97,24 @@ Shapes null_shapes(const ReducedMotion& motion, Complex s, Eigen::Index count) {
   return out;
 }
 
-VibrationMode describe(const Problem& problem, const Unknowns& z, const Eigen::VectorXcd& scaled, Complex s,
-                       double residual) {
+} // namespace
+
+double natural_frequency(Complex eigenvalue) {
+  return std::abs(eigenvalue);
+}
+double damped_frequency(Complex eigenvalue) {
+  return std::abs(eigenvalue.imag());
+}
+double damping_ratio(Complex eigenvalue) {
+  const double size = std::abs(eigenvalue);
+  return size > 0 ? -eigenvalue.real() / size : 0;
+}
+double hertz(double angular_frequency) {
+  return angular_frequency / (2 * std::numbers::pi);
+}
+
+VibrationMode describe_mode(const Problem& problem, const Eigen::VectorXd& q, const Eigen::VectorXcd& scaled,
+                            Complex s, double residual) {
   VibrationMode mode;
   mode.eigenvalue = s;
   mode.frequency = damped_frequency(s);
@@ -114,27 +130,16 @@ VibrationMode describe(const Problem& problem, const Unknowns& z, const Eigen::V
   for (const CoordinateInfo& c : problem.system.coordinates) {
     if (problem.system.links[static_cast<std::size_t>(c.link)].v < 0) continue;
     const TreeJoint& joint = problem.system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-    const Eigen::VectorXd gradient = coordinate_gradient(problem.system, problem.parameters, z.q, c);
     mode.amplitudes.push_back({joint.name, c.index, coordinate_count(joint.type), c.angle,
-                               gradient.cast<Complex>().cwiseProduct(shape).sum()});
+                               coordinate_change(problem.system, problem.parameters, q, c, shape)});
   }
   return mode;
 }
 
-} // namespace
-
-double natural_frequency(Complex eigenvalue) {
-  return std::abs(eigenvalue);
-}
-double damped_frequency(Complex eigenvalue) {
-  return std::abs(eigenvalue.imag());
-}
-double damping_ratio(Complex eigenvalue) {
-  const double size = std::abs(eigenvalue);
-  return size > 0 ? -eigenvalue.real() / size : 0;
-}
-double hertz(double angular_frequency) {
-  return angular_frequency / (2 * std::numbers::pi);
+void sort_modes(std::vector<VibrationMode>& modes) {
+  std::ranges::stable_sort(modes, [](const VibrationMode& a, const VibrationMode& b) {
+    return a.frequency != b.frequency ? a.frequency < b.frequency : a.eigenvalue.real() > b.eigenvalue.real();
+  });
 }
 
 std::vector<VibrationMode> find_modes(const Problem& problem, const Unknowns& z, Workspace& w) {
@@ -166,13 +171,11 @@ std::vector<VibrationMode> find_modes(const Problem& problem, const Unknowns& z,
     for (Eigen::Index j = 0; j < shapes.vectors.cols(); ++j) {
       const double residual = shapes.residuals[static_cast<std::size_t>(j)];
       if (j > 0 && !(residual <= 1e-10)) break;
-      modes.push_back(describe(problem, z, w.constraints.basis() * shapes.vectors.col(j),
-                               cluster[static_cast<std::size_t>(j)], residual));
+      modes.push_back(describe_mode(problem, z.q, w.constraints.basis() * shapes.vectors.col(j),
+                                    cluster[static_cast<std::size_t>(j)], residual));
     }
   }
-  std::ranges::stable_sort(modes, [](const VibrationMode& a, const VibrationMode& b) {
-    return a.frequency != b.frequency ? a.frequency < b.frequency : a.eigenvalue.real() > b.eigenvalue.real();
-  });
+  sort_modes(modes);
   return modes;
 }
 

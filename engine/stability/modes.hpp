@@ -44,6 +44,13 @@ struct VibrationMode {
   bool oscillates() const { return eigenvalue.imag() > 0; }
 };
 
+// The mode of the eigenvalue s (1/s) and the shape `scaled`, a scaled step of q_R about the configuration q.
+VibrationMode describe_mode(const Problem& problem, const Eigen::VectorXd& q, const Eigen::VectorXcd& scaled,
+                            std::complex<double> s, double residual);
+
+// By frequency, and of one frequency the fastest growing first.
+void sort_modes(std::vector<VibrationMode>& modes);
+
 // Of one steady state z: one mode a conjugate pair and one a real eigenvalue, by frequency. A repeated
 // eigenvalue counts as often as it has shapes of its own. Infinite eigenvalues (massless coordinates) have
 // no mode; massless coordinates follow the others.

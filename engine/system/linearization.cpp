@@ -157,12 +157,6 @@ double apply_inertia(const Row& row, const Vec3& w, const Vec3& v, const Vec3& a
   return w.dot(row.inertia.moment + arm.cross(row.inertia.force)) + v.dot(row.inertia.force);
 }
 
-Mat3 rotation_damping(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
-  const Mat3 rate = rotation_vector_rate(link, p, q);
-  const Vec3 c(p.force[0].damping, p.force[1].damping, p.force[2].damping);
-  return rate.transpose() * c.asDiagonal() * rate;
-}
-
 // Calls visit(v) for every free coordinate from the link to the root.
 template <class Visit>
 void for_coordinates_of(const System& system, int link, Visit visit) {
@@ -221,6 +215,12 @@ Mat3 rotation_stiffness(const Link& link, const LinkParameters& p, const Eigen::
         link.reversed ? Vec3(-r0 * (dj * g + j * dg)) : Vec3(dj.transpose() * g + j.transpose() * dg);
   }
   return out;
+}
+
+Mat3 rotation_damping(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
+  const Mat3 rate = rotation_vector_rate(link, p, q);
+  const Vec3 c(p.force[0].damping, p.force[1].damping, p.force[2].damping);
+  return rate.transpose() * c.asDiagonal() * rate;
 }
 
 void linearize_constraints(const System& system, const Parameters& p, const Kinematics<double>& k,

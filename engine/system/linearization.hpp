@@ -38,6 +38,9 @@ struct Linearization {
 // Hessian of a spherical link's springs and stops in the step's axes (N m per rad).
 Mat3 rotation_stiffness(const Link& link, const LinkParameters& parameters, const Eigen::VectorXd& q);
 
+// The same of its dampers with the rates (N m s per rad).
+Mat3 rotation_damping(const Link& link, const LinkParameters& parameters, const Eigen::VectorXd& q);
+
 // Fills `constraint` alone.
 void linearize_constraints(const System& system, const Parameters& parameters,
                            const Kinematics<double>& kinematics, Linearization& out);

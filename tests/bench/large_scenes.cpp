@@ -63,6 +63,15 @@ Mechanism chain(int links, double speed, double tilt, double length, double mass
   return m;
 }
 
+Mechanism springy_chain(int links, double speed, double stiffness, double damping) {
+  Mechanism m = chain(links, speed);
+  for (std::size_t i = 1; i < m.joints.size(); ++i) {
+    m.joints[i].coordinates[0].spring = CoordinateSpring{stiffness, 0};
+    m.joints[i].coordinates[0].damping = damping;
+  }
+  return m;
+}
+
 Mechanism binary_tree(int rods, double speed) {
   Mechanism m = on_a_hub("Tree of " + std::to_string(rods), speed);
   std::vector<Vec3> tip{Vec3::Zero()};

@@ -9,6 +9,10 @@ namespace flyball::bench {
 // `speed` (rad/s); hinges parallel to z, hanging straight but for a small tilt (rad).
 Mechanism chain(int links, double speed, double tilt = 1e-3, double length = 1, double mass = 1);
 
+// The same with a spring of `stiffness` (N m per rad) and a damper of `damping` (N m s per rad) in every
+// hinge.
+Mechanism springy_chain(int links, double speed, double stiffness, double damping);
+
 // A tree of rods from the same hub, each carrying two more, hinges in the plane by turns about z and x,
 // springs in the hinges so that it keeps its shape.
 Mechanism binary_tree(int rods, double speed);
