@@ -102,7 +102,7 @@ std::string search_message(const AllSolutions& all) {
 } // namespace
 
 struct Analysis::State {
-  Mechanism mechanism;
+  std::shared_ptr<const Mechanism> mechanism;
   System system;
   Parameters parameters;
   Scaling scaling;
@@ -114,15 +114,16 @@ struct Analysis::State {
   bool settled = false; // the last solve converged, and no number has changed since
 
   void bind_numbers() {
-    bind(system, mechanism, parameters);
+    bind(system, *mechanism, parameters);
     set_scaling(system, parameters, scaling);
     drawn_configuration(system, parameters, drawn);
   }
 };
 
-Analysis::Analysis(const Mechanism& mechanism) : state_(std::make_unique<State>()) {
-  state_->mechanism = mechanism;
-  state_->system = compile_for_drives(mechanism, state_->notes);
+Analysis::Analysis(const Mechanism& mechanism) : Analysis(std::make_shared<const Mechanism>(mechanism)) {}
+Analysis::Analysis(std::shared_ptr<const Mechanism> mechanism) : state_(std::make_unique<State>()) {
+  state_->system = compile_for_drives(*mechanism, state_->notes);
+  state_->mechanism = std::move(mechanism);
   state_->bind_numbers();
 }
 Analysis::~Analysis() = default;
@@ -130,12 +131,17 @@ Analysis::Analysis(Analysis&&) noexcept = default;
 Analysis& Analysis::operator=(Analysis&&) noexcept = default;
 
 void Analysis::update(const Mechanism& mechanism) {
+  update(std::make_shared<const Mechanism>(mechanism));
+}
+
+void Analysis::update(std::shared_ptr<const Mechanism> mechanism) {
   State& s = *state_;
-  if (!same_topology(s.mechanism, mechanism)) {
-    *this = Analysis(mechanism);
+  if (mechanism == s.mechanism) return;
+  if (!same_topology(*s.mechanism, *mechanism)) {
+    *this = Analysis(std::move(mechanism));
     return;
   }
-  s.mechanism = mechanism;
+  s.mechanism = std::move(mechanism);
   s.settled = false;
   s.bind_numbers();
 }
@@ -159,7 +165,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   s.start = warm ? s.answer : s.drawn;
   set_start(s.system, s.parameters, options.start, s.start);
   for (const BodyPoint& point : options.points) // throws before anything is computed
-    find_point(s.system, s.mechanism, s.parameters, point);
+    find_point(s.system, *s.mechanism, s.parameters, point);
 
   s.settled = false;
 
@@ -190,7 +196,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                : steady.found.status == Status::converged ? Status::no_steady_state
                                                           : steady.found.status;
   if (!steady.holds) {
-    const ReportInput input{s.mechanism, problem, steady.found, steady.existence, stability};
+    const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability};
     out.message = failure_message(input, s.workspace);
     if (!steady.tried.empty()) out.message += " " + steady.tried;
     out.residual = steady.history.empty() ? 0 : steady.history.back();
@@ -215,7 +221,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     steady.error = steady.error.cwiseMax(s.workspace.unheld);
   }
   report_progress(options.progress, "reactions");
-  const ReportInput input{s.mechanism, problem, steady.found, steady.existence, stability, options.points};
+  const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability, options.points};
   steady.error += s.workspace.data_error;
   report(input, steady.error, options.details, s.workspace, out);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
@@ -228,10 +234,10 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     refused.message = "The forces are too large for the computer's numbers.";
     return refused;
   }
-  if (options.details && !s.mechanism.sliders.empty()) {
-    Mechanism numbers = s.mechanism;
+  if (options.details && !s.mechanism->sliders.empty()) {
+    Mechanism numbers = *s.mechanism;
     numbers.sliders.clear(); // or each of many would be copied for each
-    for (const Slider& slider : s.mechanism.sliders) {
+    for (const Slider& slider : s.mechanism->sliders) {
       const Eigen::VectorXd rate =
           sensitivity(problem, numbers, steady.found.z, slider.parameter, s.workspace);
       if (rate.size() > 0) out.sensitivities.push_back(name_rates(s.system, slider.parameter, rate));
@@ -256,7 +262,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   State& s = *state_;
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
   for (const BodyPoint& point : options.points)
-    find_point(s.system, s.mechanism, s.parameters, point);
+    find_point(s.system, *s.mechanism, s.parameters, point);
   SearchOptions search;
   search.seconds = options.search_time;
   search.starts = options.search_starts;
@@ -319,7 +325,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
     error += s.workspace.data_error;
-    report({s.mechanism, problem, found, existence, stability, options.points}, error, options.details,
+    report({*s.mechanism, problem, found, existence, stability, options.points}, error, options.details,
            s.workspace, entry.solution);
     if (s.system.conservative) entry.solution.potential = potential.value;
     if (!is_finite(entry.solution)) continue;
@@ -333,7 +339,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
 }
 
 SystemSummary Analysis::summary() const {
-  SystemSummary out = summarize(state_->mechanism, state_->system, state_->parameters);
+  SystemSummary out = summarize(*state_->mechanism, state_->system, state_->parameters);
   out.notes.insert(out.notes.end(), state_->notes.begin(), state_->notes.end());
   return out;
 }
@@ -342,7 +348,7 @@ std::vector<Pose> Analysis::poses_at(double t) const {
   State& s = *state_;
   std::vector<Pose> poses;
   forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, s.workspace.kinematics);
-  body_poses(s.system, s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  body_poses(s.system, *s.mechanism, s.parameters, s.workspace.kinematics, poses);
   return poses;
 }
 
@@ -362,7 +368,7 @@ std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitu
                                 ? along_mode(problem, steady, mode, amplitude, phase, t, s.workspace)
                                 : steady;
   forward<double>(s.system, s.parameters, q, t, s.workspace.kinematics);
-  body_poses(s.system, s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  body_poses(s.system, *s.mechanism, s.parameters, s.workspace.kinematics, poses);
   return poses;
 }
 
