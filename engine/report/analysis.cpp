@@ -78,6 +78,18 @@ Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eige
   return out;
 }
 
+// Of the balance on the null space, scaled and equilibrated, where that is not too large. `factored`: by
+// find_stability() at z; else it is here.
+void add_condition(const Problem& problem, const Unknowns& z, bool factored, Workspace& w, Solution& out) {
+  if (problem.system.nv == 0 || problem.system.nv > largest_for_eigenvalues) return;
+  const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
+  if (!factored) {
+    evaluate(whole, z, 0, w);
+    factor(whole, z, w);
+  }
+  out.condition = w.hessian.condition();
+}
+
 std::string search_message(const AllSolutions& all) {
   std::string text = all.equilibria.empty() ? "No steady state was found in the range searched."
                                             : "Found by a bounded search; there may be more.";
@@ -112,6 +124,21 @@ struct Analysis::State {
   Eigen::VectorXd drawn, answer, start;
   bool answered = false;
   bool settled = false; // the last solve converged, and no number has changed since
+
+  // How the steady state moves with the sliders' numbers. `factored`: the balance is, at it.
+  void add_rates(const Problem& problem, bool factored, Solution& out) {
+    if (mechanism->sliders.empty() || system.nv == 0) return;
+    if (!factored) {
+      evaluate(problem, steady.found.z, 0, workspace);
+      factor(problem, steady.found.z, workspace);
+    }
+    std::vector<std::string> addresses;
+    for (const Slider& slider : mechanism->sliders)
+      addresses.push_back(slider.parameter);
+    const auto rates = sensitivities(problem, *mechanism, steady.found.z, addresses, workspace);
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      out.sensitivities.push_back(name_rates(system, addresses[i], rates[i]));
+  }
 
   void bind_numbers() {
     bind(system, *mechanism, parameters);
@@ -207,9 +234,14 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   }
   s.answer = steady.found.z.q;
   s.answered = s.settled = true;
+  bool factored = false; // the dense balance, at the steady state
   if (options.details && !varies && !pivots_decide(problem, options.modes)) {
     report_progress(options.progress, "eigenvalues");
-    stability = stability_of(problem, steady.found.z, true, options.modes, s.workspace);
+    // Only of a minimum the sign is found without them.
+    if (!stability.eigenvalues) {
+      stability = stability_of(problem, steady.found.z, true, options.modes, s.workspace);
+      factored = true;
+    }
     if (options.modes > 0 && stability.eigenvalues &&
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
       stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
@@ -219,6 +251,10 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     stability.reason = StabilityReason::marginal;
     // Something may hold that is too soft to be seen beside what is stiff.
     steady.error = steady.error.cwiseMax(s.workspace.unheld);
+  }
+  if (options.details) {
+    add_condition(problem, steady.found.z, factored, s.workspace, out);
+    s.add_rates(problem, problem.is_dense() && (factored || out.condition), out);
   }
   report_progress(options.progress, "reactions");
   const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability, options.points};
@@ -233,15 +269,6 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     refused.iterations = out.iterations;
     refused.message = "The forces are too large for the computer's numbers.";
     return refused;
-  }
-  if (options.details && !s.mechanism->sliders.empty()) {
-    Mechanism numbers = *s.mechanism;
-    numbers.sliders.clear(); // or each of many would be copied for each
-    for (const Slider& slider : s.mechanism->sliders) {
-      const Eigen::VectorXd rate =
-          sensitivity(problem, numbers, steady.found.z, slider.parameter, s.workspace);
-      if (rate.size() > 0) out.sensitivities.push_back(name_rates(s.system, slider.parameter, rate));
-    }
   }
   return out;
 }
@@ -325,6 +352,9 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
     error += s.workspace.data_error;
+    if (options.details)
+      add_condition(problem, found.z, !stability.floquet && !stability.floquet_failure, s.workspace,
+                    entry.solution);
     report({*s.mechanism, problem, found, existence, stability, options.points}, error, options.details,
            s.workspace, entry.solution);
     if (s.system.conservative) entry.solution.potential = potential.value;

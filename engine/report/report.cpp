@@ -232,23 +232,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   if (details)
     for (const int l : system.body_link)
       out.centres.push_back(point_motion(p, w.kinematics, {l, p.links[static_cast<std::size_t>(l)].com}));
-  if (details && system.nv > 0 && system.nv <= largest_for_eigenvalues) {
-    const Problem whole{system, p, in.problem.scaling, in.problem.cancel};
-    factor(whole, z, w);
-    // Of the balance on the null space and the constraints on the range, both in scaled units and
-    // equilibrated.
-    out.condition = 1;
-    if (const Eigen::VectorXd values = w.hessian.singular_values(); values.size() > 0) {
-      // Directions that nothing resists are not solved for.
-      double low = values.maxCoeff();
-      for (double value : values)
-        if (value > ReducedHessian::zero * values.maxCoeff()) low = std::min(low, value);
-      if (low > 0) out.condition = values.maxCoeff() / low;
-    }
-  }
-  if (details) {
-    report_forces(in, z, w, out);
-  }
+  if (details) report_forces(in, z, w, out);
   out.message = in.found.message;
   if (out.message.empty()) out.message = "Converged.";
   if (rank < system.rows)
