@@ -220,8 +220,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
       }
   }
   // The balance with its multipliers, as solved.
-  const Unknowns z = with_reported_multipliers(in.problem, in.found.z.q, 0, w);
-  if (system.rows > 0) evaluate_residual<double>(system, p, z.q, z.lambda, w.kinematics, w.residual);
+  const Unknowns z = evaluate_reported(in.problem, in.found.z.q, w);
   evaluate_magnitudes(system, p, z.q, z.lambda, w.kinematics, w.magnitudes);
   const int rank = independent_rows(in.problem, w);
   out.residual = scaled_residual(in.problem, w);
@@ -232,7 +231,14 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   if (details)
     for (const int l : system.body_link)
       out.centres.push_back(point_motion(p, w.kinematics, {l, p.links[static_cast<std::size_t>(l)].com}));
-  if (details) report_forces(in, z, w, out);
+  if (details) {
+    ReportedForces forces = report_forces(in.mechanism, in.problem, z, w);
+    out.multipliers = std::move(forces.multipliers);
+    out.drive_torques = std::move(forces.drive_torques);
+    out.reactions = std::move(forces.reactions);
+    out.gears = std::move(forces.gears);
+    out.reactions_nonunique = forces.nonunique;
+  }
   out.message = in.found.message;
   if (out.message.empty()) out.message = "Converged.";
   if (rank < system.rows)
