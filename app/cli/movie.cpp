@@ -76,7 +76,7 @@ void draw_movie(const Mechanism& mechanism, std::shared_ptr<const Run> run,
   ViewRenderer renderer;
   const std::vector<double> times =
       movie_times(*run, {run->time.front(), run->time.back(), options.rate, options.factor});
-  RunScene scene(mechanism, std::move(run), steady);
+  RunScene scene(std::make_shared<const Mechanism>(mechanism), std::move(run), steady);
   ViewFrame look;
   look.camera = camera_for(mechanism, scene, times, options);
   const Signals signals;

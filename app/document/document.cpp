@@ -75,12 +75,12 @@ void Document::edit_number(std::string name, const std::string& address, double 
                            std::uint64_t gesture) {
   Mechanism next = stored();
   set_parameter(next, address, value);
-  if (!flyball::is_finite(next)) return;
+  const bool same = next == stored();
   Explored left = now().explored;
   std::erase_if(left, [&](const ExploredValue& each) { return each.address == address; });
-  if (next == stored() && left == now().explored) return;
+  if (same && left == now().explored) return;
   push({.name = std::move(name),
-        .mechanism = next == stored() ? now().mechanism : std::make_shared<const Mechanism>(std::move(next)),
+        .mechanism = same ? now().mechanism : std::make_shared<const Mechanism>(std::move(next)),
         .selection = selection_,
         .gesture = gesture,
         .explored = std::move(left)});

@@ -33,7 +33,8 @@ class Document {
   explicit Document(Mechanism mechanism = empty_mechanism(), std::filesystem::path file = {});
 
   // What is shown and solved: with the numbers that are explored, unless these are put aside.
-  const Mechanism& mechanism() const { return *(aside_ ? now().mechanism : now().tried); }
+  const Mechanism& mechanism() const { return *shared(); }
+  const std::shared_ptr<const Mechanism>& shared() const { return aside_ ? now().mechanism : now().tried; }
   // What saving writes: without them.
   const Mechanism& stored() const { return *now().mechanism; }
   const Explored& explored() const { return now().explored; }

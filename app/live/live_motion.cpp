@@ -28,7 +28,7 @@ double since(Clock::time_point start) {
 struct LiveMotion::State {
   struct Job {
     std::uint64_t ticket = 0;
-    Mechanism mechanism;
+    std::shared_ptr<const Mechanism> mechanism;
     SimulationOptions options;
     std::shared_ptr<const Run> before; // to go on from; or null
     double time = 0;
@@ -68,11 +68,11 @@ LiveMotion::~LiveMotion() {
   state_->next.reset();
 }
 
-std::uint64_t LiveMotion::start(Mechanism mechanism, SimulationOptions options) {
+std::uint64_t LiveMotion::start(std::shared_ptr<const Mechanism> mechanism, SimulationOptions options) {
   return state_->ask({0, std::move(mechanism), std::move(options), nullptr, 0});
 }
 
-std::uint64_t LiveMotion::go_on(Mechanism mechanism, SimulationOptions options,
+std::uint64_t LiveMotion::go_on(std::shared_ptr<const Mechanism> mechanism, SimulationOptions options,
                                 std::shared_ptr<const Run> run, double time) {
   return state_->ask({0, std::move(mechanism), std::move(options), std::move(run), time});
 }
@@ -150,7 +150,7 @@ void LiveMotion::State::compute(Job job) {
       options.start = Start::state;
       options.state = state_at(*job.before, last);
     }
-    Simulator simulator(job.mechanism, options);
+    Simulator simulator(*job.mechanism, options);
     if (simulator.run().time.empty()) // cancelled before it began
       return publish({job.ticket, job.before, true, simulator.run().message});
     const double begin = simulator.time(), end = begin + std::max(duration, 0.);

@@ -24,11 +24,11 @@ class LiveMotion {
 
   // A new run of options.duration; what is under way is dropped. Returns the request's ticket: 1, 2, ...
   // `options.cancel` and `options.progress` are not used.
-  std::uint64_t start(Mechanism mechanism, SimulationOptions options);
+  std::uint64_t start(std::shared_ptr<const Mechanism> mechanism, SimulationOptions options);
   // Goes on from a moment (s) of `run` with other numbers, up to where it would have ended; a new run where
   // there is nothing to go on from.
-  std::uint64_t go_on(Mechanism mechanism, SimulationOptions options, std::shared_ptr<const Run> run,
-                      double time);
+  std::uint64_t go_on(std::shared_ptr<const Mechanism> mechanism, SimulationOptions options,
+                      std::shared_ptr<const Run> run, double time);
   // Keeps what was computed: that is the last news.
   void stop();
   // The newest, once.

@@ -26,7 +26,7 @@
 namespace flyball {
 
 struct LiveRequest {
-  Mechanism mechanism;
+  std::shared_ptr<const Mechanism> mechanism; // not null
   double time = 0;      // s after the drawn drive phase, at which the answer's poses are wanted
   bool another = false; // another mechanism than before: nothing that runs is worth finishing
   bool warm = true;     // start from the last answer rather than from the drawn pose
@@ -39,8 +39,8 @@ struct LiveRequest {
 };
 
 struct LiveAnswer {
-  std::uint64_t ticket = 0; // of the request it answers; 0: no answer yet
-  Mechanism mechanism;      // as asked
+  std::uint64_t ticket = 0;                   // of the request it answers; 0: no answer yet
+  std::shared_ptr<const Mechanism> mechanism; // as asked: the very one; null where ticket is 0
   Solution solution;
   SystemSummary summary;
   std::vector<Pose> poses;          // at the time asked for; empty where there is no solution

@@ -19,8 +19,6 @@ using StartValues = std::vector<std::pair<std::string, double>>;
 // Asks for the document's steady state, or knows better.
 void ask(App& app, bool another, bool warm, StartValues start = {}) {
   if (!warm) app.on_branch = false;
-  app.mistakes = find_mistakes(app.mechanism());
-  app.warnings = app.mistakes.empty() ? find_warnings(app.mechanism()) : std::vector<SceneError>();
   if (app.mechanism().bodies.empty() || !app.mistakes.empty()) {
     app.answer = {};
     app.poses.clear();
@@ -28,7 +26,7 @@ void ask(App& app, bool another, bool warm, StartValues start = {}) {
     app.waited = 0;
     return;
   }
-  app.awaited = app.asked = app.live.ask({.mechanism = app.mechanism(),
+  app.awaited = app.asked = app.live.ask({.mechanism = app.document.shared(),
                                           .time = app.playback.time,
                                           .another = another,
                                           .warm = warm,
@@ -37,9 +35,27 @@ void ask(App& app, bool another, bool warm, StartValues start = {}) {
                                           .points = told_points(app)});
 }
 
-// After the document's mechanism has changed.
-void take_document(App& app, bool another, bool warm, StartValues start = {}) {
-  app.parameters = parameter_controls(app.mechanism(), app.document.stored());
+void validate_all(App& app) {
+  app.mistakes = find_mistakes(app.mechanism());
+  app.warnings = app.mistakes.empty() ? find_warnings(app.mechanism()) : std::vector<SceneError>();
+}
+
+// After nothing of the mechanism but the number at `address` has changed.
+void validate_number(App& app, const std::string& address) {
+  if (!app.mistakes.empty() || address.starts_with("bodies.")) return validate_all(app); // they have warnings
+  app.mistakes = find_mistakes(app.mechanism(), address);
+  if (!app.mistakes.empty()) app.warnings.clear();
+}
+
+// After the document's mechanism has changed; `address` where that is only the number there.
+void take_document(App& app, bool another, bool warm, StartValues start = {},
+                   const std::string& address = {}) {
+  if (address.empty())
+    validate_all(app);
+  else
+    validate_number(app, address);
+  if (address.empty() || !take_value(app.parameters, app.mechanism(), app.document.stored(), address))
+    app.parameters = parameter_controls(app.mechanism(), app.document.stored());
   app.drawn = drawn_poses(app.mechanism());
   app.moved_time = true;
   ask(app, another, warm, std::move(start));
@@ -194,14 +210,6 @@ void keep_phase(App& app, const std::string& address, double before, double valu
     app.playback.time *= before / value;
 }
 
-// After numbers were set; what was solved last, or `start`, is where solving begins.
-void take_numbers(App& app, std::uint64_t revision_before, StartValues start) {
-  if (app.document.revision() != revision_before)
-    take_document(app, false, true, std::move(start));
-  else if (!start.empty())
-    ask(app, false, true, std::move(start));
-}
-
 // Sets the number as a step of the history.
 void set_parameter_from(App& app, const std::string& address, double value, StartValues start) {
   if (!std::isfinite(value)) return;
@@ -217,7 +225,11 @@ void set_parameter_from(App& app, const std::string& address, double value, Star
   } catch (const SceneError&) {
     return;
   }
-  take_numbers(app, revision, std::move(start));
+  // What was solved last, or `start`, is where solving begins.
+  if (app.document.revision() != revision)
+    take_document(app, false, true, std::move(start), address);
+  else if (!start.empty())
+    ask(app, false, true, std::move(start));
 }
 
 } // namespace
@@ -232,7 +244,7 @@ void edit_parameter(App& app, const std::string& address, double value) {
     return show_error(app, error.what());
   }
   app.notice.clear();
-  if (app.document.revision() != revision) take_document(app, false, app.mode == Mode::explore);
+  if (app.document.revision() != revision) take_document(app, false, app.mode == Mode::explore, {}, address);
 }
 
 void change_parameter(App& app, const std::string& address, double value) {
@@ -389,7 +401,7 @@ ViewFrame view_frame(const App& app) {
       frame.ghost_pose = GhostPose::steady;
     }
   } else {
-    frame.mechanism = app.answer.ticket ? &app.answer.mechanism : &app.mechanism();
+    frame.mechanism = app.answer.ticket ? app.answer.mechanism.get() : &app.mechanism();
     const bool moves = app.motion.poses.size() == frame.mechanism->bodies.size();
     if (solved) {
       frame.poses = app.poses;

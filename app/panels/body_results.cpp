@@ -80,12 +80,12 @@ void line_across(App& app) {
 
 void body_results(App& app) {
   const Solution& solution = app.answer.solution;
-  const std::vector<Body>& bodies = app.answer.mechanism.bodies;
-  if (app.mode != Mode::explore) return;
+  if (app.mode != Mode::explore || !app.answer.mechanism) return;
+  const std::vector<Body>& bodies = app.answer.mechanism->bodies;
   const bool known = solution.centres.size() == bodies.size(); // else the point counts in the motion alone
   bool any = false;
   for (const std::string& name : app.selection().names(PartKind::body)) {
-    const int b = body_index(app.answer.mechanism, name);
+    const int b = body_index(*app.answer.mechanism, name);
     if (b < 0) continue;
     const auto i = static_cast<std::size_t>(b);
     any = true;

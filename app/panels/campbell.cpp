@@ -137,10 +137,10 @@ void follow_campbell(App& app) {
   campbell.problem.clear();
   const State state = present(app, drive);
   campbell.asked_ticket = app.answer.ticket;
-  campbell.task->start(
-      [mechanism = app.mechanism(), drive, range, state](const Background<FoundCampbell>::Watch& watch) {
-        return follow(mechanism, drive, range[0], range[1], state, watch);
-      });
+  campbell.task->start([mechanism = app.document.shared(), drive, range,
+                        state](const Background<FoundCampbell>::Watch& watch) {
+    return follow(*mechanism, drive, range[0], range[1], state, watch);
+  });
 }
 
 void update_campbell(App& app) {

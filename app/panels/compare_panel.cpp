@@ -21,17 +21,17 @@ void begin(App& app) {
   if (!state.task)
     state.task = std::make_unique<Background<Comparison>>(app.options.mode, app.options.on_news);
   state.problem.clear();
-  state.of = app.mechanism();
-  state.task->start(
-      [mechanism = app.mechanism(), repeats = state.repeats](const Background<Comparison>::Watch& watch) {
-        CompareOptions options;
-        options.repeats = repeats;
-        options.cancel = &watch.cancel;
-        options.progress = [&](std::size_t done, std::size_t all) {
-          watch.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
-        };
-        return compare(mechanism, options);
-      });
+  state.of = app.document.shared();
+  state.task->start([mechanism = app.document.shared(),
+                     repeats = state.repeats](const Background<Comparison>::Watch& watch) {
+    CompareOptions options;
+    options.repeats = repeats;
+    options.cancel = &watch.cancel;
+    options.progress = [&](std::size_t done, std::size_t all) {
+      watch.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
+    };
+    return compare(*mechanism, options);
+  });
 }
 
 void found(App& app, const Comparison& c) {
@@ -83,7 +83,8 @@ void words(App& app) {
     ImGui::SetClipboardText(comparison_csv(*state.result).c_str());
     app.notice = "The measurements are on the clipboard, as CSV.";
   }
-  if (!(state.of == app.mechanism())) paragraph("Measured before the last changes.", colors.warn);
+  if (state.of != app.document.shared() && *state.of != app.mechanism())
+    paragraph("Measured before the last changes.", colors.warn);
   found(app, *state.result);
 }
 

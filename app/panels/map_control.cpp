@@ -98,10 +98,10 @@ void compute_cells(App& app) {
   map.asked_cells = of_cells(map.choice);
   map.cells_of = without_place(app.mechanism(), map.choice);
   map.problem.clear();
-  map.cells_task->start(
-      [mechanism = app.mechanism(), choice = map.asked_cells](const Background<FoundCells>::Watch& watch) {
-        return find_cells(mechanism, choice, watch);
-      });
+  map.cells_task->start([mechanism = app.document.shared(),
+                         choice = map.asked_cells](const Background<FoundCells>::Watch& watch) {
+    return find_cells(*mechanism, choice, watch);
+  });
 }
 
 void compute_curves(App& app) {
@@ -116,10 +116,10 @@ void compute_curves(App& app) {
   }
   if (!map.curves_task)
     map.curves_task = std::make_unique<Background<FoundCurves>>(app.options.mode, app.options.on_news);
-  map.curves_task->start(
-      [mechanism = app.mechanism(), choice = map.asked_curves](const Background<FoundCurves>::Watch& watch) {
-        return find_curves(mechanism, choice, watch);
-      });
+  map.curves_task->start([mechanism = app.document.shared(),
+                          choice = map.asked_curves](const Background<FoundCurves>::Watch& watch) {
+    return find_curves(*mechanism, choice, watch);
+  });
 }
 
 bool known(const Mechanism& mechanism, const std::string& address) {

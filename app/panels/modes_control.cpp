@@ -16,11 +16,12 @@ constexpr double no_time = 0.3; // s
 constexpr int most_coordinates = 300;
 constexpr double turn = 2 * std::numbers::pi;
 
-FoundModes find(const Mechanism& mechanism, const std::vector<std::pair<std::string, double>>& start,
+FoundModes find(std::shared_ptr<const Mechanism> mechanism,
+                const std::vector<std::pair<std::string, double>>& start,
                 const Background<FoundModes>::Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
   FoundModes found;
-  found.analysis = std::make_unique<Analysis>(mechanism);
+  found.analysis = std::make_unique<Analysis>(std::move(mechanism));
   if (const int free = found.analysis->summary().free_coordinates; free > most_coordinates)
     throw std::runtime_error("Modes are found of at most " + std::to_string(most_coordinates) +
                              " free coordinates; this mechanism has " + std::to_string(free) + ".");

@@ -54,8 +54,8 @@ void ask(App& app, bool go_on) {
     }
     if (!run.live) run.live = std::make_unique<LiveMotion>(app.options.mode, app.options.on_news);
     const SimulationOptions options = options_of(app, damped);
-    run.asked = go_on && run.run ? run.live->go_on(app.mechanism(), options, run.run, app.playback.time)
-                                 : run.live->start(app.mechanism(), options);
+    run.asked = go_on && run.run ? run.live->go_on(app.document.shared(), options, run.run, app.playback.time)
+                                 : run.live->start(app.document.shared(), options);
     run.finished = false;
     run.problem.clear();
   }
@@ -247,7 +247,8 @@ void step_motion(App& app, int samples) {
 
 double steady_time(const App& app) {
   const MotionRun* shown = app.motion.on ? shown_motion(app) : nullptr;
-  return shown ? steady_time(*shown->run, app.answer.mechanism, app.playback.time) : app.playback.time;
+  return shown && app.answer.mechanism ? steady_time(*shown->run, *app.answer.mechanism, app.playback.time)
+                                       : app.playback.time;
 }
 
 double steady_time(const Run& run, const Mechanism& mechanism, double time) {

@@ -32,7 +32,8 @@ void MovieExport::begin(App& app, const MovieRequest& request) {
   if (!shown) return;
   std::optional<Solution> steady;
   if (converged(app)) steady = app.answer.solution;
-  const Mechanism& mechanism = app.answer.ticket ? app.answer.mechanism : app.mechanism();
+  const std::shared_ptr<const Mechanism>& mechanism =
+      app.answer.ticket ? app.answer.mechanism : app.document.shared();
   const ViewFrame look = view_frame(app);
   file_ = request.file;
   movie_.emplace(RunScene(mechanism, shown->run, steady), requested_times(app, request), request.file,

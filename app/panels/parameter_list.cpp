@@ -208,6 +208,18 @@ std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, con
   return controls;
 }
 
+bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechanism, const Mechanism& file,
+                const std::string& address) {
+  const auto control = std::ranges::find(controls, address, &ParameterControl::address);
+  const std::optional<double> value = number_at(mechanism, address), saved = number_at(file, address);
+  if (control == controls.end() || !value || saved != control->file_value) return false;
+  // Springs and dampers of zero have no slider of their own.
+  const bool always = control->group == ParameterGroup::pinned || control->group == ParameterGroup::drives;
+  if (!always && (*value == 0 || *saved == 0)) return false;
+  control->value = *value;
+  return true;
+}
+
 Slider slider_for(const Mechanism& mechanism, const std::string& address) {
   const Range range =
       range_for(get_parameter(mechanism, address), parameter_unit(mechanism, address), is_stiffness(address));

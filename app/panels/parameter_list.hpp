@@ -30,6 +30,11 @@ struct ParameterControl {
 // number.
 std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, const Mechanism& file);
 
+// After the number at `address` was set in the mechanism and nowhere else: the same as parameter_controls()
+// anew. False where that takes more than the value of one of them.
+bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechanism, const Mechanism& file,
+                const std::string& address);
+
 // A slider with a range that suits the number's present value. Throws SceneError for an unknown address.
 Slider slider_for(const Mechanism& mechanism, const std::string& address);
 // "speed of spin", "mass of ball1", "y of gravity".

@@ -33,7 +33,7 @@ BranchOptions follow_options(const ResponseRequest& of, double present) {
   if (of.all && (present - of.from) * (present - of.to) < 0) options.all_at.push_back(present);
   options.reactions = of.reactions;
   std::size_t coordinates = 0;
-  for (const Joint& joint : of.mechanism.joints)
+  for (const Joint& joint : of.mechanism->joints)
     coordinates += joint.coordinates.size();
   if (coordinates > many_coordinates) {
     options.largest_step = 0.05;
@@ -47,25 +47,26 @@ std::optional<ResponseRequest> wanted_now(const App& app) {
   const ResponseState& state = app.study.response;
   if (app.mechanism().bodies.empty() || !app.mistakes.empty() || !response_control(app)) return std::nullopt;
   ResponseRequest of;
-  of.mechanism = app.mechanism();
   of.address = state.address;
   of.from = state.from;
   of.to = state.to;
   of.logarithmic = state.logarithmic;
   of.all = state.all;
   of.reactions = needs_reactions(state.quantity);
-  set_parameter(of.mechanism, of.address, of.from);
+  Mechanism followed = app.mechanism();
+  set_parameter(followed, of.address, of.from);
   // What moves no equilibrium begins no new curve.
-  of.mechanism.sliders.clear();
-  of.mechanism.camera.reset();
-  of.mechanism.simulation = {};
+  followed.sliders.clear();
+  followed.camera.reset();
+  followed.simulation = {};
+  of.mechanism = std::make_shared<const Mechanism>(std::move(followed));
   return of;
 }
 
 // The answer as a point of a curve; none where its mechanism has no such number.
 std::optional<ResponsePoint> present_point(const App& app, const std::string& address) {
   try {
-    return response_point(app.answer.solution, get_parameter(app.answer.mechanism, address));
+    return response_point(app.answer.solution, get_parameter(*app.answer.mechanism, address));
   } catch (const SceneError&) {
     return std::nullopt;
   }
@@ -92,10 +93,10 @@ void follow(App& app, ResponseRequest of) {
         ResponseResult result;
         std::optional<ResponseDiagram> diagram;
         if (through && !of.all)
-          diagram = follow_through(of.mechanism, of.address, of.from, of.to, *through, options);
+          diagram = follow_through(*of.mechanism, of.address, of.from, of.to, *through, options);
         // Without a state to go through, as the command line: from the drawn pose at the range's beginning.
         result.diagram = diagram ? std::move(*diagram)
-                                 : follow_branches(of.mechanism, of.address, of.from, of.to, options);
+                                 : follow_branches(*of.mechanism, of.address, of.from, of.to, options);
         result.lines = response_lines(result.diagram);
         result.of = of;
         return result;
@@ -375,7 +376,7 @@ void find_design(App& app) {
         options.progress = watch.progress;
         return ResponseDesign::Answer{
             of, coordinate, value,
-            design(of.mechanism, of.address, of.from, of.to, coordinate, value, options)};
+            design(*of.mechanism, of.address, of.from, of.to, coordinate, value, options)};
       },
       after);
   take_design(app);

@@ -184,7 +184,7 @@ Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantit
                    std::vector<ResponsePiece>& pieces) {
   Plot plot;
   pieces.clear();
-  const std::string unit = parameter_unit(result.of.mechanism, result.of.address);
+  const std::string unit = parameter_unit(*result.of.mechanism, result.of.address);
   plot.x = {.label = parameter_phrase(result.of.address),
             .unit = unit,
             .logarithmic = result.of.logarithmic,

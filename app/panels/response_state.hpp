@@ -8,18 +8,25 @@
 #include "engine/study/design.hpp"
 
 #include <memory>
+#include <tuple>
 
 namespace flyball {
 
 // What a curve is followed for; while it stays the same nothing is computed.
 struct ResponseRequest {
-  Mechanism mechanism; // with the varied number at `from`, and nothing that changes no equilibrium
+  // With the varied number at `from`, and nothing that changes no equilibrium.
+  std::shared_ptr<const Mechanism> mechanism;
   std::string address;
   double from = 0, to = 1; // of the number, in its unit
   bool logarithmic = false;
   bool all = false;       // disconnected branches, too
   bool reactions = false; // and drive torques
-  bool operator==(const ResponseRequest&) const = default;
+  bool operator==(const ResponseRequest& o) const {
+    const auto choices = [](const ResponseRequest& r) {
+      return std::tie(r.address, r.from, r.to, r.logarithmic, r.all, r.reactions);
+    };
+    return choices(*this) == choices(o) && (mechanism == o.mechanism || *mechanism == *o.mechanism);
+  }
 };
 
 // A branch with its special points in their places.

@@ -10,8 +10,8 @@ namespace flyball {
 namespace {
 
 // The same steady state again, ready to be turned.
-std::optional<Analysis> analysis_at(const Mechanism& mechanism, const Solution& steady) {
-  Analysis analysis(mechanism);
+std::optional<Analysis> analysis_at(std::shared_ptr<const Mechanism> mechanism, const Solution& steady) {
+  Analysis analysis(std::move(mechanism));
   SolveOptions options;
   options.nearest = true;
   options.details = false;
@@ -40,7 +40,8 @@ std::vector<double> movie_times(const Run& run, const MovieTiming& timing) {
   return times;
 }
 
-RunScene::RunScene(Mechanism mechanism, std::shared_ptr<const Run> run, const std::optional<Solution>& steady)
+RunScene::RunScene(std::shared_ptr<const Mechanism> mechanism, std::shared_ptr<const Run> run,
+                   const std::optional<Solution>& steady)
     : mechanism_(std::move(mechanism)), run_(std::move(run)) {
   if (steady) analysis_ = analysis_at(mechanism_, *steady);
   if (analysis_) cut_joints_ = analysis_->summary().cut_joints;
@@ -48,13 +49,13 @@ RunScene::RunScene(Mechanism mechanism, std::shared_ptr<const Run> run, const st
 
 ViewFrame RunScene::frame(double time, const ViewFrame& look) {
   ViewFrame frame = look;
-  frame.mechanism = &mechanism_;
+  frame.mechanism = mechanism_.get();
   frame.cut_joints = cut_joints_;
   motion_ = poses_at(*run_, time);
   frame.motion = {};
   frame.poses = motion_;
   if (!analysis_) return frame;
-  steady_ = analysis_->poses_at(steady_time(*run_, mechanism_, time));
+  steady_ = analysis_->poses_at(steady_time(*run_, *mechanism_, time));
   frame.poses = steady_;
   frame.motion = motion_;
   return frame;
@@ -65,7 +66,7 @@ Bounds RunScene::bounds(const std::vector<double>& times) {
   for (const double time : times) {
     const ViewFrame seen = frame(time, {});
     bounds.add(scene_of(seen).bounds);
-    for (const Instance& instance : build_ghost(mechanism_, seen.motion, {}))
+    for (const Instance& instance : build_ghost(*mechanism_, seen.motion, {}))
       bounds.add(instance_bounds(instance));
   }
   return bounds;

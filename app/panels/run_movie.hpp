@@ -29,7 +29,8 @@ class RunScene {
  public:
   // `steady` is the steady state to show; nothing where there is none: then the motion is shown solid. Throws
   // SceneError.
-  RunScene(Mechanism mechanism, std::shared_ptr<const Run> run, const std::optional<Solution>& steady);
+  RunScene(std::shared_ptr<const Mechanism> mechanism, std::shared_ptr<const Run> run,
+           const std::optional<Solution>& steady);
 
   // At a moment (s) of the run, looked at as `look` says; refers to this until it is asked again.
   ViewFrame frame(double time, const ViewFrame& look);
@@ -37,7 +38,7 @@ class RunScene {
   Bounds bounds(const std::vector<double>& times);
 
  private:
-  Mechanism mechanism_;
+  std::shared_ptr<const Mechanism> mechanism_;
   std::shared_ptr<const Run> run_;
   std::optional<Analysis> analysis_; // that stands at the steady state
   std::vector<std::string> cut_joints_;

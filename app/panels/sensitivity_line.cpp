@@ -65,7 +65,7 @@ std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
   const auto found = std::ranges::find(solution.sensitivities, address, &Sensitivity::address);
   const auto control = std::ranges::find(app.parameters, address, &ParameterControl::address);
   if (found == solution.sensitivities.end() || control == app.parameters.end()) return out;
-  const double size = reach(app.answer.mechanism);
+  const double size = reach(*app.answer.mechanism);
   // Rates come in the order of the coordinates: each is looked for from where the last was found.
   auto from = solution.coordinates.begin();
   for (const Sensitivity::Rate& rate : found->rates) {

@@ -17,7 +17,8 @@ bool same(const std::vector<Pose>& kept, std::span<const Pose> now) {
 const std::shared_ptr<const ViewScene>& keep(const App& app, ShownScene& shown, const ViewFrame& frame) {
   SceneSource& source = shown.source;
   // While exploring, the picture waits for the answer.
-  const std::uint64_t revision = frame.mechanism == &app.mechanism() ? app.document.revision() : 0;
+  const bool waits = app.mode == Mode::explore && app.answer.ticket != 0;
+  const std::uint64_t revision = waits ? 0 : app.document.revision();
   if (shown.scene && source.revision == revision && source.ticket == app.answer.ticket &&
       source.theme == frame.theme && same(source.poses, frame.poses) && same(source.ghost, frame.ghost) &&
       same(source.motion, frame.motion))

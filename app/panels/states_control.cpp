@@ -10,11 +10,12 @@ namespace {
 
 constexpr double no_time = 0.3; // s
 
-FoundStates find_states(const Mechanism& mechanism, const Background<FoundStates>::Watch& watch) {
+FoundStates find_states(std::shared_ptr<const Mechanism> mechanism,
+                        const Background<FoundStates>::Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
   FoundStates found;
   report_progress(watch.progress, "preparing");
-  Analysis analysis(mechanism);
+  Analysis analysis(std::move(mechanism));
   SolveOptions options;
   options.details = false;
   options.cancel = &watch.cancel;
@@ -34,7 +35,7 @@ void search_states(App& app) {
     states.task = std::make_unique<Background<FoundStates>>(app.options.mode, app.options.on_news);
   states.asked = app.document.revision();
   states.problem.clear();
-  states.task->start([mechanism = app.mechanism()](const Background<FoundStates>::Watch& watch) {
+  states.task->start([mechanism = app.document.shared()](const Background<FoundStates>::Watch& watch) {
     return find_states(mechanism, watch);
   });
 }

@@ -19,7 +19,7 @@ enum class Study { none, motion, compare, response, states, modes, map };
 struct CompareState {
   std::unique_ptr<Background<Comparison>> task; // made when it is first asked for
   std::optional<Comparison> result;
-  Mechanism of; // what was compared
+  std::shared_ptr<const Mechanism> of; // what was compared
   std::string problem;
   int repeats = 5;
   PlotView view;

@@ -3,7 +3,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
-#include "engine/report/report.hpp"
+#include "engine/report/report_forces.hpp"
 #include "engine/search/all_equilibria.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/drive_cuts.hpp"
@@ -40,20 +40,23 @@ Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<Coord
 ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
                              const Eigen::VectorXd& error, PointDetails details, Workspace& w) {
   ResponsePoint point;
-  const Stability stability = find_stability(problem, z, details.eigenvalues, w);
+  Stability stability = find_stability(problem, z, details.eigenvalues, w);
   point.stable = stability.stable;
-  point.floquet = stability.floquet;
+  point.floquet = std::move(stability.floquet);
   point.stability_reason = stability.reason;
-  if (stability.eigenvalues) point.eigenvalues = *stability.eigenvalues;
-  Found found;
-  found.z = z;
-  Solution s;
-  const Existence existence;
-  report({mechanism, problem, found, existence, stability},
-         error.size() > 0 ? error : Eigen::VectorXd::Zero(problem.system.nv).eval(), details.reactions, w, s);
-  point.coordinates = std::move(s.coordinates);
-  point.reactions = std::move(s.reactions);
-  point.drive_torques = std::move(s.drive_torques);
+  if (stability.eigenvalues) point.eigenvalues = std::move(*stability.eigenvalues);
+  Unknowns reported;
+  if (details.reactions)
+    reported = evaluate_reported(problem, z.q, w);
+  else
+    forward<double>(problem.system, problem.parameters, z.q, 0, w.kinematics);
+  point.coordinates = coordinate_solutions(
+      problem.system, problem.parameters, z.q,
+      error.size() > 0 ? error : Eigen::VectorXd::Zero(problem.system.nv).eval(), w.kinematics);
+  if (!details.reactions) return point;
+  ReportedForces forces = report_forces(mechanism, problem, reported, w);
+  point.reactions = std::move(forces.reactions);
+  point.drive_torques = std::move(forces.drive_torques);
   return point;
 }
 

@@ -84,6 +84,16 @@ Eigen::VectorXd ReducedHessian::singular_values() const {
   return symmetric_eigenvalues(matrix_).value_or(Eigen::VectorXd()).cwiseAbs();
 }
 
+double ReducedHessian::condition() const {
+  const Eigen::VectorXd values = singular_values();
+  if (values.size() == 0) return 1;
+  // Directions that nothing resists are not solved for.
+  double low = values.maxCoeff();
+  for (double value : values)
+    if (value > zero * values.maxCoeff()) low = std::min(low, value);
+  return low > 0 ? values.maxCoeff() / low : 1;
+}
+
 Eigen::MatrixXd ReducedHessian::null_basis() const {
   const Eigen::Index n = scale_.size();
   Eigen::MatrixXd basis(n, null_);

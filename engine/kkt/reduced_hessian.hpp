@@ -34,6 +34,8 @@ class ReducedHessian {
   const Eigen::MatrixXd& equilibrated() const { return matrix_; }
   // Of the equilibrated matrix; none where they are not found.
   Eigen::VectorXd singular_values() const;
+  // 2-norm, of the equilibrated matrix where it has stiffness; 1 where that is not found, or of size 0.
+  double condition() const;
   // Basis of the directions without stiffness, in the original's coordinates.
   Eigen::MatrixXd null_basis() const;
 

@@ -5,6 +5,7 @@
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -66,23 +67,30 @@ void expect_finite(const std::vector<Number>& numbers, const std::string& prefix
   }
 }
 
-void find_non_finite(const Mechanism& mechanism, Mistakes& mistakes) {
-  Vec3 gravity = mechanism.gravity;
+void find_non_finite(Vec3 gravity, Mistakes& mistakes) {
   expect_finite(numbers_of_gravity(gravity), "", mistakes);
-  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
-    Body body = mechanism.bodies[i];
-    const std::string path = part_path("bodies", i, body.name);
-    expect_finite(numbers_of(body), path + ".", mistakes);
-    mistakes.expect(body.rotation.coeffs().allFinite(), path + ".rotation", "expected four finite numbers");
-  }
-  for (std::size_t i = 0; i < mechanism.joints.size(); ++i) {
-    Joint joint = mechanism.joints[i];
-    expect_finite(numbers_of(mechanism, joint), part_path("joints", i, joint.name) + ".", mistakes);
-  }
-  for (std::size_t i = 0; i < mechanism.forces.size(); ++i) {
-    Force force = mechanism.forces[i];
-    expect_finite(numbers_of(mechanism, force), part_path("forces", i, force.name) + ".", mistakes);
-  }
+}
+
+void find_non_finite(Body body, const std::string& path, Mistakes& mistakes) {
+  expect_finite(numbers_of(body), path + ".", mistakes);
+  mistakes.expect(body.rotation.coeffs().allFinite(), path + ".rotation", "expected four finite numbers");
+}
+
+template <class JointOrForce>
+void find_non_finite(const Mechanism& mechanism, JointOrForce part, const std::string& path,
+                     Mistakes& mistakes) {
+  expect_finite(numbers_of(mechanism, part), path + ".", mistakes);
+}
+
+void find_non_finite(const Mechanism& mechanism, Mistakes& mistakes) {
+  find_non_finite(mechanism.gravity, mistakes);
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i)
+    find_non_finite(mechanism.bodies[i], part_path("bodies", i, mechanism.bodies[i].name), mistakes);
+  for (std::size_t i = 0; i < mechanism.joints.size(); ++i)
+    find_non_finite(mechanism, mechanism.joints[i], joint_path(mechanism, i), mistakes);
+  for (std::size_t i = 0; i < mechanism.forces.size(); ++i)
+    find_non_finite(mechanism, mechanism.forces[i], part_path("forces", i, mechanism.forces[i].name),
+                    mistakes);
 }
 
 constexpr std::size_t most_sliders = 10'000; // the answer's sensitivity to each is computed
@@ -120,6 +128,48 @@ void find_setting_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
                   "expected a number above zero");
   mistakes.expect(std::isfinite(camera.azimuth), "view.camera.azimuth", "expected a finite number");
   mistakes.expect(std::isfinite(camera.elevation), "view.camera.elevation", "expected a finite number");
+}
+
+// Whether the part with the number at `address` has no mistake by which a mechanism that had none has one
+// now; false also where other parts have to be looked at.
+bool is_right_at(const Mechanism& mechanism, std::string_view address) {
+  const std::string_view list = address.substr(0, address.find('.'));
+  const std::string_view rest = address.substr(std::min(list.size() + 1, address.size()));
+  const std::string_view name = rest.substr(0, rest.find('.'));
+  Mistakes mistakes;
+  const auto part_at = [&](const auto& parts, int index, const auto& find) {
+    if (index < 0) return false;
+    const auto i = static_cast<std::size_t>(index);
+    find(parts[i], part_path(list, i, parts[i].name));
+    return true;
+  };
+  bool found = true;
+  if (list == "gravity") {
+    find_non_finite(mechanism.gravity, mistakes);
+  } else if (list == "simulation") {
+    find_setting_mistakes(mechanism, mistakes);
+  } else if (list == "bodies") {
+    found = part_at(mechanism.bodies, body_index(mechanism, name), [&](const Body& body, const auto& path) {
+      find_non_finite(body, path, mistakes);
+      find_mistakes_of(body, path, mistakes);
+    });
+  } else if (list == "forces") {
+    found =
+        part_at(mechanism.forces, force_index(mechanism, name), [&](const Force& force, const auto& path) {
+          find_non_finite(mechanism, force, path, mistakes);
+          find_mistakes_of(force, path, mistakes);
+        });
+  } else {
+    // Gears tie the drives and drawn values of joints to each other.
+    const bool geared =
+        std::ranges::find(mechanism.joints, JointType::gear, &Joint::type) != mechanism.joints.end();
+    const int joint = geared ? -1 : joint_index(mechanism, name);
+    found = part_at(mechanism.joints, joint, [&](const Joint& each, const auto& path) {
+      find_non_finite(mechanism, each, path, mistakes);
+      find_mistakes_of_joint(mechanism, static_cast<std::size_t>(joint), mistakes);
+    });
+  }
+  return found && mistakes.all().empty();
 }
 
 } // namespace
@@ -176,6 +226,10 @@ std::vector<SceneError> find_mistakes(const Mechanism& mechanism) {
   find_connection_mistakes(mechanism, mistakes);
   find_drive_mistakes(mechanism, mistakes);
   return mistakes.all();
+}
+
+std::vector<SceneError> find_mistakes(const Mechanism& mechanism, std::string_view address) {
+  return is_right_at(mechanism, address) ? std::vector<SceneError>() : find_mistakes(mechanism);
 }
 
 std::vector<SceneError> find_warnings(const Mechanism& mechanism) {

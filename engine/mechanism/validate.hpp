@@ -12,6 +12,9 @@ namespace flyball {
 // and numbers that are none; single parts, in order of appearance; the mechanism as a whole. Empty when it
 // can be compiled and solved.
 std::vector<SceneError> find_mistakes(const Mechanism& mechanism);
+// The same of a mechanism that had none before the number at `address` was set: where that is right in its
+// part, the others are not looked at again.
+std::vector<SceneError> find_mistakes(const Mechanism& mechanism, std::string_view address);
 // Throws the first of them.
 void validate(const Mechanism& mechanism);
 

@@ -59,22 +59,22 @@ void find_shape_mistakes(const Shape& shape, const std::string& path, Mistakes& 
 
 } // namespace
 
+void find_mistakes_of(const Body& body, const std::string& path, Mistakes& mistakes) {
+  if (body.mass < 0) mistakes.add(path + ".mass", "expected zero or more, found " + number_text(body.mass));
+  if (const auto moments = principal_moments(body); moments && moments->values[0] < -moments->edge)
+    mistakes.add(path + ".inertia", "expected a tensor without negative principal moments" + moments->text());
+  constexpr double unit_tolerance = 1e-6;
+  const double norm = body.rotation.coeffs().stableNorm();
+  if (!(std::abs(norm - 1) <= unit_tolerance))
+    mistakes.add(path + ".rotation",
+                 "expected a unit quaternion [w, x, y, z], found one of length " + number_text(norm));
+  for (std::size_t k = 0; k < body.shapes.size(); ++k)
+    find_shape_mistakes(body.shapes[k], path + ".shapes[" + std::to_string(k) + "]", mistakes);
+}
+
 void find_body_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
-  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
-    const Body& body = mechanism.bodies[i];
-    const std::string path = part_path("bodies", i, body.name);
-    if (body.mass < 0) mistakes.add(path + ".mass", "expected zero or more, found " + number_text(body.mass));
-    if (const auto moments = principal_moments(body); moments && moments->values[0] < -moments->edge)
-      mistakes.add(path + ".inertia",
-                   "expected a tensor without negative principal moments" + moments->text());
-    constexpr double unit_tolerance = 1e-6;
-    const double norm = body.rotation.coeffs().stableNorm();
-    if (!(std::abs(norm - 1) <= unit_tolerance))
-      mistakes.add(path + ".rotation",
-                   "expected a unit quaternion [w, x, y, z], found one of length " + number_text(norm));
-    for (std::size_t k = 0; k < body.shapes.size(); ++k)
-      find_shape_mistakes(body.shapes[k], path + ".shapes[" + std::to_string(k) + "]", mistakes);
-  }
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i)
+    find_mistakes_of(mechanism.bodies[i], part_path("bodies", i, mechanism.bodies[i].name), mistakes);
 }
 
 void find_body_warnings(const Mechanism& mechanism, Mistakes& warnings) {

@@ -121,6 +121,21 @@ void find_gear_mistakes(const Mechanism& mechanism, const Joint& gear, const std
 
 } // namespace
 
+void find_mistakes_of_joint(const Mechanism& mechanism, std::size_t j, Mistakes& mistakes) {
+  const Joint& joint = mechanism.joints[j];
+  const std::string path = joint_path(mechanism, j);
+  if (joint.type == JointType::distance) find_length_mistakes(joint, path, mistakes);
+  find_axis_mistakes(joint, path, mistakes);
+  find_cut_mistakes(joint, path, mistakes);
+  const auto count = static_cast<std::size_t>(coordinate_count(joint.type));
+  if (joint.coordinates.size() != count)
+    mistakes.add(path + ".coordinate", "expected " + std::to_string(count) + " coordinates, found " +
+                                           std::to_string(joint.coordinates.size()));
+  else
+    for (std::size_t i = 0; i < count; ++i)
+      find_coordinate_mistakes(mechanism, j, i, mistakes);
+}
+
 void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
   const BodyNumbers numbers(mechanism);
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
@@ -130,17 +145,24 @@ void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
       find_gear_mistakes(mechanism, joint, path, mistakes);
     else
       find_two_body_mistakes(mechanism, numbers, joint.bodies, path, mistakes);
-    if (joint.type == JointType::distance) find_length_mistakes(joint, path, mistakes);
-    find_axis_mistakes(joint, path, mistakes);
-    find_cut_mistakes(joint, path, mistakes);
-    const auto count = static_cast<std::size_t>(coordinate_count(joint.type));
-    if (joint.coordinates.size() != count)
-      mistakes.add(path + ".coordinate", "expected " + std::to_string(count) + " coordinates, found " +
-                                             std::to_string(joint.coordinates.size()));
-    else
-      for (std::size_t i = 0; i < count; ++i)
-        find_coordinate_mistakes(mechanism, j, i, mistakes);
+    find_mistakes_of_joint(mechanism, j, mistakes);
   }
+}
+
+void find_mistakes_of(const Force& force, const std::string& path, Mistakes& mistakes) {
+  const auto not_negative = [&](double value, const char* key) {
+    if (value < 0) mistakes.add(path + "." + key, "expected zero or more, found " + number_text(value));
+  };
+  if (force.type == ForceType::spring) {
+    if (coincide(force.points) && force.free_length != 0.0)
+      mistakes.add(path + ".points",
+                   "expected two points apart, or a `free_length` of 0: the spring has no direction");
+    not_negative(force.free_length.value_or(0), "free_length");
+    not_negative(force.damping, "damping");
+    return;
+  }
+  not_negative(force.linear, "linear");
+  not_negative(force.quadratic, "quadratic");
 }
 
 void find_force_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
@@ -148,24 +170,13 @@ void find_force_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
   for (std::size_t i = 0; i < mechanism.forces.size(); ++i) {
     const Force& force = mechanism.forces[i];
     const std::string path = part_path("forces", i, force.name);
-    const auto not_negative = [&](double value, const char* key) {
-      if (value < 0) mistakes.add(path + "." + key, "expected zero or more, found " + number_text(value));
-    };
-    if (force.type == ForceType::spring) {
+    if (force.type == ForceType::spring)
       find_two_body_mistakes(mechanism, numbers, force.bodies, path, mistakes);
-      if (coincide(force.points) && force.free_length != 0.0)
-        mistakes.add(path + ".points",
-                     "expected two points apart, or a `free_length` of 0: the spring has no direction");
-      not_negative(force.free_length.value_or(0), "free_length");
-      not_negative(force.damping, "damping");
-      continue;
-    }
-    if (force.body == ground_name)
+    else if (force.body == ground_name)
       mistakes.add(path + ".body", "expected a body; the ground does not move");
     else if (!numbers.has(force.body))
       add_unknown_body(mechanism, force.body, false, path + ".body", mistakes);
-    not_negative(force.linear, "linear");
-    not_negative(force.quadratic, "quadratic");
+    find_mistakes_of(force, path, mistakes);
   }
 }
 

@@ -111,6 +111,18 @@ std::string add_lowest_eigenvalues(const Problem& problem, const Unknowns& z, in
   return {};
 }
 
+// Of the balance on the null space, scaled and equilibrated, where that is not too large. `factored`: by
+// find_stability() at z; else it is here.
+void add_condition(const Problem& problem, const Unknowns& z, bool factored, Workspace& w, Solution& out) {
+  if (problem.system.nv == 0 || problem.system.nv > largest_for_eigenvalues) return;
+  const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
+  if (!factored) {
+    evaluate(whole, z, 0, w);
+    factor(whole, z, w);
+  }
+  out.condition = w.hessian.condition();
+}
+
 std::string search_message(const AllSolutions& all) {
   std::string text = all.equilibria.empty() ? "No steady state was found in the range searched."
                                             : "Found by a bounded search; there may be more.";
@@ -135,7 +147,7 @@ std::string search_message(const AllSolutions& all) {
 } // namespace
 
 struct Analysis::State {
-  Mechanism mechanism;
+  std::shared_ptr<const Mechanism> mechanism;
   System system;
   Parameters parameters;
   Scaling scaling;
@@ -146,16 +158,32 @@ struct Analysis::State {
   bool answered = false;
   bool settled = false; // the last solve converged, and no number has changed since
 
+  // How the steady state moves with the sliders' numbers. `factored`: the balance is, at it.
+  void add_rates(const Problem& problem, bool factored, Solution& out) {
+    if (mechanism->sliders.empty() || system.nv == 0) return;
+    if (!factored) {
+      evaluate(problem, steady.found.z, 0, workspace);
+      factor(problem, steady.found.z, workspace);
+    }
+    std::vector<std::string> addresses;
+    for (const Slider& slider : mechanism->sliders)
+      addresses.push_back(slider.parameter);
+    const auto rates = sensitivities(problem, *mechanism, steady.found.z, addresses, workspace);
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      out.sensitivities.push_back(name_rates(system, addresses[i], rates[i]));
+  }
+
   void bind_numbers() {
-    bind(system, mechanism, parameters);
+    bind(system, *mechanism, parameters);
     set_scaling(system, parameters, scaling);
     drawn_configuration(system, parameters, drawn);
   }
 };
 
-Analysis::Analysis(const Mechanism& mechanism) : state_(std::make_unique<State>()) {
-  state_->mechanism = mechanism;
-  state_->system = compile_for_drives(mechanism, state_->notes);
+Analysis::Analysis(const Mechanism& mechanism) : Analysis(std::make_shared<const Mechanism>(mechanism)) {}
+Analysis::Analysis(std::shared_ptr<const Mechanism> mechanism) : state_(std::make_unique<State>()) {
+  state_->system = compile_for_drives(*mechanism, state_->notes);
+  state_->mechanism = std::move(mechanism);
   state_->bind_numbers();
 }
 Analysis::~Analysis() = default;
@@ -163,12 +191,17 @@ Analysis::Analysis(Analysis&&) noexcept = default;
 Analysis& Analysis::operator=(Analysis&&) noexcept = default;
 
 void Analysis::update(const Mechanism& mechanism) {
+  update(std::make_shared<const Mechanism>(mechanism));
+}
+
+void Analysis::update(std::shared_ptr<const Mechanism> mechanism) {
   State& s = *state_;
-  if (!same_topology(s.mechanism, mechanism)) {
-    *this = Analysis(mechanism);
+  if (mechanism == s.mechanism) return;
+  if (!same_topology(*s.mechanism, *mechanism)) {
+    *this = Analysis(std::move(mechanism));
     return;
   }
-  s.mechanism = mechanism;
+  s.mechanism = std::move(mechanism);
   s.settled = false;
   s.bind_numbers();
 }
@@ -192,7 +225,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   s.start = warm ? s.answer : s.drawn;
   set_start(s.system, s.parameters, options.start, s.start);
   for (const BodyPoint& point : options.points) // throws before anything is computed
-    find_point(s.system, s.mechanism, s.parameters, point);
+    find_point(s.system, *s.mechanism, s.parameters, point);
 
   s.settled = false;
 
@@ -223,7 +256,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                : steady.found.status == Status::converged ? Status::no_steady_state
                                                           : steady.found.status;
   if (!steady.holds) {
-    const ReportInput input{s.mechanism, problem, steady.found, steady.existence, stability};
+    const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability};
     out.message = failure_message(input, s.workspace);
     if (!steady.tried.empty()) out.message += " " + steady.tried;
     out.residual = steady.history.empty() ? 0 : steady.history.back();
@@ -235,12 +268,15 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   s.answer = steady.found.z.q;
   s.answered = s.settled = true;
   std::string without_modes;
+  bool factored = false; // the dense balance, at the steady state
   if (options.details && !varies && (options.modes > 0 || !pivots_decide(problem))) {
     report_progress(options.progress, "eigenvalues");
-    if (pivots_decide(problem))
+    if (pivots_decide(problem)) {
       without_modes = add_lowest_eigenvalues(problem, steady.found.z, options.modes, s.workspace, stability);
-    else
+    } else if (!stability.eigenvalues) { // only of a minimum the sign is found without them
       stability = stability_of(problem, steady.found.z, true, options.modes, s.workspace);
+      factored = true;
+    }
     if (options.modes > 0 && stability.eigenvalues &&
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
       stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
@@ -251,8 +287,12 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     // Something may hold that is too soft to be seen beside what is stiff.
     steady.error = steady.error.cwiseMax(s.workspace.unheld);
   }
+  if (options.details) {
+    add_condition(problem, steady.found.z, factored, s.workspace, out);
+    s.add_rates(problem, problem.is_dense() && (factored || out.condition), out);
+  }
   report_progress(options.progress, "reactions");
-  const ReportInput input{s.mechanism, problem, steady.found, steady.existence, stability, options.points};
+  const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability, options.points};
   steady.error += s.workspace.data_error;
   report(input, steady.error, options.details, s.workspace, out);
   if (!without_modes.empty()) out.message += " " + without_modes;
@@ -265,15 +305,6 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     refused.iterations = out.iterations;
     refused.message = "The forces are too large for the computer's numbers.";
     return refused;
-  }
-  if (options.details && !s.mechanism.sliders.empty()) {
-    Mechanism numbers = s.mechanism;
-    numbers.sliders.clear(); // or each of many would be copied for each
-    for (const Slider& slider : s.mechanism.sliders) {
-      const Eigen::VectorXd rate =
-          sensitivity(problem, numbers, steady.found.z, slider.parameter, s.workspace);
-      if (rate.size() > 0) out.sensitivities.push_back(name_rates(s.system, slider.parameter, rate));
-    }
   }
   return out;
 }
@@ -294,7 +325,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   State& s = *state_;
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
   for (const BodyPoint& point : options.points)
-    find_point(s.system, s.mechanism, s.parameters, point);
+    find_point(s.system, *s.mechanism, s.parameters, point);
   SearchOptions search;
   search.seconds = options.search_time;
   search.starts = options.search_starts;
@@ -357,7 +388,10 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
     error += s.workspace.data_error;
-    report({s.mechanism, problem, found, existence, stability, options.points}, error, options.details,
+    if (options.details)
+      add_condition(problem, found.z, !stability.floquet && !stability.floquet_failure, s.workspace,
+                    entry.solution);
+    report({*s.mechanism, problem, found, existence, stability, options.points}, error, options.details,
            s.workspace, entry.solution);
     if (s.system.conservative) entry.solution.potential = potential.value;
     if (!is_finite(entry.solution)) continue;
@@ -371,7 +405,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
 }
 
 SystemSummary Analysis::summary() const {
-  SystemSummary out = summarize(state_->mechanism, state_->system, state_->parameters);
+  SystemSummary out = summarize(*state_->mechanism, state_->system, state_->parameters);
   out.notes.insert(out.notes.end(), state_->notes.begin(), state_->notes.end());
   return out;
 }
@@ -380,7 +414,7 @@ std::vector<Pose> Analysis::poses_at(double t) const {
   State& s = *state_;
   std::vector<Pose> poses;
   forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, s.workspace.kinematics);
-  body_poses(s.system, s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  body_poses(s.system, *s.mechanism, s.parameters, s.workspace.kinematics, poses);
   return poses;
 }
 
@@ -404,7 +438,7 @@ std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitu
                                 ? along_mode(problem, steady, mode, amplitude, phase, t, s.workspace)
                                 : steady;
   forward<double>(s.system, s.parameters, q, t, s.workspace.kinematics);
-  body_poses(s.system, s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  body_poses(s.system, *s.mechanism, s.parameters, s.workspace.kinematics, poses);
   return poses;
 }
 

@@ -61,8 +61,10 @@ struct AllSolutions {
 
 class Analysis {
  public:
-  // Compiles. Throws SceneError (validate first for all mistakes at once).
+  // Compiles. Throws SceneError (validate first for all mistakes at once). A mechanism given by pointer (not
+  // null) is shared, any other is copied; here and in update().
   explicit Analysis(const Mechanism& mechanism);
+  explicit Analysis(std::shared_ptr<const Mechanism> mechanism);
   ~Analysis();
   Analysis(Analysis&&) noexcept;
   Analysis& operator=(Analysis&&) noexcept;
@@ -70,6 +72,7 @@ class Analysis {
   // Takes new numbers. Cheap where only numbers changed; recompiles where parts or topology did. Keeps the
   // last answer as a warm start where it still fits.
   void update(const Mechanism& mechanism);
+  void update(std::shared_ptr<const Mechanism> mechanism);
 
   // Throws SceneError for starts and points that name nothing.
   Solution solve(const SolveOptions& options = {});

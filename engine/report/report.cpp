@@ -220,8 +220,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
       }
   }
   // The balance with its multipliers, as solved.
-  const Unknowns z = with_reported_multipliers(in.problem, in.found.z.q, 0, w);
-  if (system.rows > 0) evaluate_residual<double>(system, p, z.q, z.lambda, w.kinematics, w.residual);
+  const Unknowns z = evaluate_reported(in.problem, in.found.z.q, w);
   evaluate_magnitudes(system, p, z.q, z.lambda, w.kinematics, w.magnitudes);
   const int rank = independent_rows(in.problem, w);
   out.residual = scaled_residual(in.problem, w);
@@ -232,22 +231,13 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   if (details)
     for (const int l : system.body_link)
       out.centres.push_back(point_motion(p, w.kinematics, {l, p.links[static_cast<std::size_t>(l)].com}));
-  if (details && system.nv > 0 && system.nv <= largest_for_eigenvalues) {
-    const Problem whole{system, p, in.problem.scaling, in.problem.cancel};
-    factor(whole, z, w);
-    // Of the balance on the null space and the constraints on the range, both in scaled units and
-    // equilibrated.
-    out.condition = 1;
-    if (const Eigen::VectorXd values = w.hessian.singular_values(); values.size() > 0) {
-      // Directions that nothing resists are not solved for.
-      double low = values.maxCoeff();
-      for (double value : values)
-        if (value > ReducedHessian::zero * values.maxCoeff()) low = std::min(low, value);
-      if (low > 0) out.condition = values.maxCoeff() / low;
-    }
-  }
   if (details) {
-    report_forces(in, z, w, out);
+    ReportedForces forces = report_forces(in.mechanism, in.problem, z, w);
+    out.multipliers = std::move(forces.multipliers);
+    out.drive_torques = std::move(forces.drive_torques);
+    out.reactions = std::move(forces.reactions);
+    out.gears = std::move(forces.gears);
+    out.reactions_nonunique = forces.nonunique;
   }
   out.message = in.found.message;
   if (out.message.empty()) out.message = "Converged.";

@@ -142,23 +142,23 @@ Touched find_touched(const Problem& problem, const TransmittedForces& drawn, con
 
 class ForceReport {
  public:
-  ForceReport(const ReportInput& in, const Unknowns& z, Workspace& w)
-      : in_(in), system_(in.problem.system), p_(in.problem.parameters),
-        drawn_(snapshot(in.problem, z.lambda, w)), touched_(find_touched(in.problem, drawn_.forces, z, w)),
-        size_(size_of(drawn_.forces, p_.length)), loads_(loads_on(in.problem, w.kinematics)) {
+  ForceReport(const Mechanism& mechanism, const Problem& problem, const Unknowns& z, Workspace& w)
+      : mechanism_(mechanism), problem_(problem), q_(z.q), system_(problem.system), p_(problem.parameters),
+        drawn_(snapshot(problem, z.lambda, w)), touched_(find_touched(problem, drawn_.forces, z, w)),
+        size_(size_of(drawn_.forces, p_.length)), loads_(loads_on(problem, w.kinematics)) {
     for (double t : sample_phases(system_, p_))
-      others_.push_back(snapshot(in.problem, with_reported_multipliers(in.problem, z.q, t, w).lambda, w));
+      others_.push_back(snapshot(problem, with_reported_multipliers(problem, z.q, t, w).lambda, w));
   }
 
-  void reactions(Solution& out) const {
-    const std::size_t joints = in_.mechanism.joints.size();
+  void reactions(ReportedForces& out) const {
+    const std::size_t joints = mechanism_.joints.size();
     std::vector<int> tree_of(joints, -1), cut_of(joints, -1);
     for (std::size_t i = 0; i < system_.tree_joints.size(); ++i)
       if (const int j = system_.tree_joints[i].joint; j >= 0) tree_of[at(j)] = static_cast<int>(i);
     for (std::size_t i = 0; i < system_.cuts.size(); ++i)
       cut_of[at(system_.cuts[i].joint)] = static_cast<int>(i);
     for (std::size_t n = 0; n < joints; ++n) {
-      const Joint& j = in_.mechanism.joints[n];
+      const Joint& j = mechanism_.joints[n];
       if (j.type == JointType::gear) continue;
       const bool tree = tree_of[n] >= 0;
       if (!tree && cut_of[n] < 0) continue;
@@ -172,18 +172,18 @@ class ForceReport {
       });
       const bool nonunique = tree ? touched_.tree[i] : touched_.cuts[i];
       out.reactions.push_back({j.name, wrench(drawn_).force, wrench(drawn_).torque, varying, nonunique});
-      out.reactions_nonunique = out.reactions_nonunique || nonunique;
+      out.nonunique = out.nonunique || nonunique;
     }
   }
 
-  void gears(const Kinematics<double>& k, Solution& out) const {
+  void gears(const Kinematics<double>& k, ReportedForces& out) const {
     for (std::size_t g = 0; g < drawn_.forces.gears.size(); ++g) {
       const GearForces& x = drawn_.forces.gears[g];
-      const Joint& gear = in_.mechanism.joints[at(x.joint)];
+      const Joint& gear = mechanism_.joints[at(x.joint)];
       GearReaction r;
       r.joint = gear.name;
       r.nonunique = touched_.gears[g] || x.a.link < 0;
-      out.reactions_nonunique = out.reactions_nonunique || r.nonunique;
+      out.nonunique = out.nonunique || r.nonunique;
       // Ends come in the order of the chain from the motor, or of the gear.
       const bool in_order = x.a.link < 0 || is_end(gear, 0, x.a.link);
       const GearForces::End &a = in_order ? x.a : x.b, &b = in_order ? x.b : x.a;
@@ -202,7 +202,7 @@ class ForceReport {
     }
   }
 
-  void drive_torques(Workspace& w, Solution& out) const {
+  void drive_torques(Workspace& w, ReportedForces& out) const {
     std::vector<int> varying;
     for (std::size_t d = 0; d < system_.drives.size(); ++d) {
       if (system_.drives[d].motor != static_cast<int>(d)) continue;
@@ -224,7 +224,7 @@ class ForceReport {
       out.drive_torques.push_back(std::move(torque));
     }
     if (varying.empty()) return;
-    std::vector<std::optional<PhaseRange>> ranges = drive_ranges(in_.problem, in_.found.z.q, varying, w);
+    std::vector<std::optional<PhaseRange>> ranges = drive_ranges(problem_, q_, varying, w);
     std::size_t next = 0;
     for (DriveTorque& torque : out.drive_torques)
       if (torque.varying) torque.range = ranges[next++];
@@ -246,11 +246,13 @@ class ForceReport {
 
   bool is_end(const Joint& gear, std::size_t end, int l) const {
     const Link& link = system_.links[at(l)];
-    const CoordinateReference r = find_coordinate(in_.mechanism, gear.joints[end]);
+    const CoordinateReference r = find_coordinate(mechanism_, gear.joints[end]);
     return r.joint == system_.tree_joints[at(link.tree_joint)].joint && r.coordinate == link.coordinate;
   }
 
-  const ReportInput& in_;
+  const Mechanism& mechanism_;
+  const Problem& problem_;
+  const Eigen::VectorXd& q_;
   const System& system_;
   const Parameters& p_;
   Snapshot drawn_;
@@ -273,20 +275,29 @@ Unknowns with_reported_multipliers(const Problem& problem, const Eigen::VectorXd
   return z;
 }
 
-void report_forces(const ReportInput& in, const Unknowns& z, Workspace& w, Solution& out) {
-  const System& system = in.problem.system;
-  for (const CutJoint& cut : system.cuts) {
+Unknowns evaluate_reported(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
+  Unknowns z = with_reported_multipliers(problem, q, 0, w);
+  if (problem.system.rows > 0)
+    evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
+  return z;
+}
+
+ReportedForces report_forces(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
+                             Workspace& w) {
+  ReportedForces out;
+  for (const CutJoint& cut : problem.system.cuts) {
     JointMultipliers m;
-    m.joint = in.mechanism.joints[at(cut.joint)].name;
+    m.joint = mechanism.joints[at(cut.joint)].name;
     for (std::size_t r = 0; r < cut.rows.size(); ++r)
       m.values.push_back(z.lambda[cut.first_row + static_cast<int>(r)]);
     out.multipliers.push_back(std::move(m));
   }
   const Kinematics<double> drawn = w.kinematics;
-  const ForceReport report(in, z, w);
+  const ForceReport report(mechanism, problem, z, w);
   report.reactions(out);
   report.gears(drawn, out);
   report.drive_torques(w, out);
+  return out;
 }
 
 } // namespace flyball

@@ -9,8 +9,18 @@ namespace flyball {
 // redundant those of least norm, or in large mechanisms with none on rows that follow from others.
 Unknowns with_reported_multipliers(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w);
 
-// Fills multipliers, drive torques, reactions and gears. `z`: from the above at the drawn phase, evaluated
-// with its multipliers.
-void report_forces(const ReportInput& input, const Unknowns& z, Workspace& w, Solution& out);
+// The same at the drawn phase, evaluated with them.
+Unknowns evaluate_reported(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
+
+struct ReportedForces {
+  std::vector<JointMultipliers> multipliers;
+  std::vector<DriveTorque> drive_torques;
+  std::vector<Reaction> reactions;
+  std::vector<GearReaction> gears;
+  bool nonunique = false; // any of them
+};
+// Of a state by evaluate_reported(), which the workspace leaves.
+ReportedForces report_forces(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
+                             Workspace& w);
 
 } // namespace flyball

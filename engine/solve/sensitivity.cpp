@@ -3,30 +3,54 @@
 #include "engine/mechanism/address.hpp"
 
 namespace flyball {
+namespace {
 
-Eigen::VectorXd sensitivity(const Problem& problem, const Mechanism& mechanism, const Unknowns& z,
-                            const std::string& address, Workspace& w) {
-  const System& system = problem.system;
-  const double value = get_parameter(mechanism, address);
-  const double h = 1e-6 * (std::abs(value) > 1e-100 ? std::abs(value) : 1.);
-  Mechanism varied = mechanism;
-  Parameters numbers;
-  Eigen::VectorXd f[2], phi[2];
-  for (int i : {0, 1}) {
-    set_parameter(varied, address, i == 0 ? value + h : value - h);
-    bind(system, varied, numbers);
-    const Problem there{system, numbers, problem.scaling};
-    evaluate(there, z, 0, w);
-    f[i] = w.residual.f;
-    phi[i] = w.residual.phi;
-  }
-  const Eigen::VectorXd f_rate = (f[0] - f[1]) / (2 * h), phi_rate = (phi[0] - phi[1]) / (2 * h);
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
+// The part with the number at `address` is again as it was.
+void put_back(const Mechanism& mechanism, const std::string& address, Mechanism& varied) {
+  const std::size_t dot = std::min(address.find('.'), address.size() - 1);
+  const std::string name = address.substr(dot + 1, address.find('.', dot + 1) - dot - 1);
+  const auto copy = [](int part, const auto& from, auto& to) {
+    if (part >= 0) to[static_cast<std::size_t>(part)] = from[static_cast<std::size_t>(part)];
+  };
+  copy(body_index(mechanism, name), mechanism.bodies, varied.bodies);
+  copy(joint_index(mechanism, name), mechanism.joints, varied.joints);
+  copy(force_index(mechanism, name), mechanism.forces, varied.forces);
+  varied.gravity = mechanism.gravity;
+  varied.simulation = mechanism.simulation;
+}
+
+} // namespace
+
+std::vector<Eigen::VectorXd> sensitivities(const Problem& problem, const Mechanism& mechanism,
+                                           const Unknowns& z, std::span<const std::string> addresses,
+                                           Workspace& w) {
   if (singular(problem, w)) return {};
-  Eigen::VectorXd step, multipliers;
-  newton_step(problem, f_rate, phi_rate, w, step, multipliers);
-  return step.cwiseProduct(problem.scaling.column);
+  const System& system = problem.system;
+  Mechanism varied;
+  varied.gravity = mechanism.gravity;
+  varied.bodies = mechanism.bodies;
+  varied.joints = mechanism.joints;
+  varied.forces = mechanism.forces;
+  varied.simulation = mechanism.simulation;
+  Parameters numbers;
+  const Problem there{system, numbers, problem.scaling};
+  std::vector<Eigen::VectorXd> rates;
+  Eigen::VectorXd f[2], phi[2], step, multipliers;
+  for (const std::string& address : addresses) {
+    const double value = get_parameter(mechanism, address);
+    const double h = 1e-6 * (std::abs(value) > 1e-100 ? std::abs(value) : 1.);
+    for (int i : {0, 1}) {
+      set_parameter(varied, address, i == 0 ? value + h : value - h);
+      bind(system, varied, numbers);
+      evaluate(there, z, 0, w);
+      f[i] = w.residual.f;
+      phi[i] = w.residual.phi;
+    }
+    put_back(mechanism, address, varied);
+    newton_step(problem, (f[0] - f[1]) / (2 * h), (phi[0] - phi[1]) / (2 * h), w, step, multipliers);
+    rates.push_back(step.cwiseProduct(problem.scaling.column));
+  }
+  return rates;
 }
 
 } // namespace flyball

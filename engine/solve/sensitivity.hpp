@@ -4,14 +4,17 @@
 
 #include "engine/solve/newton.hpp"
 
+#include <span>
 #include <string>
 
 namespace flyball {
 
-// Rate of each coordinate of q_R (rad or m, as a step) per unit of the parameter at `address`, at a steady
-// state z of `mechanism`. df/dp by central differences (relative error about 1e-9). Empty at a singular
-// state, where the answer has no rate. Throws SceneError for an address that does not exist.
-Eigen::VectorXd sensitivity(const Problem& problem, const Mechanism& mechanism, const Unknowns& z,
-                            const std::string& address, Workspace& w);
+// By parameter: the rate of each coordinate of q_R (rad or m, as a step) per unit of the number at that
+// address, at a steady state z of `mechanism` whose balance is factored in the workspace; all use these
+// factors, which stay. df/dp by central differences (relative error about 1e-9). Empty at a singular state,
+// where the answer has no rate. Throws SceneError for an address that does not exist.
+std::vector<Eigen::VectorXd> sensitivities(const Problem& problem, const Mechanism& mechanism,
+                                           const Unknowns& z, std::span<const std::string> addresses,
+                                           Workspace& w);
 
 } // namespace flyball

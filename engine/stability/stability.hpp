@@ -22,7 +22,6 @@ struct Stability {
   std::optional<Floquet> floquet;                // where the linearised motion turns with the drives
   std::optional<FloquetFailure> floquet_failure; // where it does and there are no multipliers
   std::vector<int> neutral; // coordinates of q_R that take part in directions nothing resists
-  double condition = 0;     // 2-norm, of the scaled equations
 };
 
 // Whether f is the gradient of the amended potential at this state although drives ride on drives: its
@@ -33,7 +32,8 @@ bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w);
 // too long.
 bool can_compare_phases(const System& system);
 
-// z must be a steady state. `with_eigenvalues` asks for the full picture, else only the sign is found.
+// z must be a steady state of a dense problem; it is left evaluated and factored unless multipliers judge.
+// `with_eigenvalues` asks for the full picture, else only the sign of a minimum is found.
 Stability find_stability(const Problem& problem, const Unknowns& z, bool with_eigenvalues, Workspace& w);
 
 } // namespace flyball

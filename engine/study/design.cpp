@@ -163,9 +163,11 @@ class Designer {
     Workspace& w = balance_.workspace();
     s.at = response_point(balance_.mechanism(), problem, state.z, error, {true, true}, w);
     s.at.parameter = s.parameter;
-    const Eigen::VectorXd rate = sensitivity(problem, balance_.mechanism(), state.z, address_, w);
-    if (rate.size() > 0)
-      s.rate = coordinate_gradient(system_, problem.parameters, state.z.q, wanted_).dot(rate);
+    evaluate(problem, state.z, 0, w);
+    factor(problem, state.z, w);
+    const auto rates = sensitivities(problem, balance_.mechanism(), state.z, {&address_, 1}, w);
+    if (!rates.empty())
+      s.rate = coordinate_gradient(system_, problem.parameters, state.z.q, wanted_).dot(rates[0]);
     out_.solutions.push_back(std::move(s));
   }
 

@@ -28,7 +28,7 @@ inline void answer_as_drawn(App& app) {
   static std::uint64_t tickets = 0;
   LiveAnswer answer;
   answer.ticket = ++tickets;
-  answer.mechanism = app.mechanism();
+  answer.mechanism = app.document.shared();
   answer.poses = drawn_poses(app.mechanism());
   Solution& solution = answer.solution;
   solution.status = Status::converged;

@@ -18,6 +18,10 @@ Mechanism shipped(const std::string& name) {
   return load_scene(std::string(FLYBALL_ASSETS) + "/scenes/" + name + ".json");
 }
 
+std::shared_ptr<const Mechanism> shared(const Mechanism& mechanism) {
+  return std::make_shared<const Mechanism>(mechanism);
+}
+
 SimulationOptions lasting(double duration) {
   SimulationOptions options;
   options.duration = duration;
@@ -51,7 +55,7 @@ TEST_CASE("a motion in the background is the motion") {
   const Run whole = simulate(governor, lasting(3));
   for (const auto mode : {LiveSolver::Mode::background, LiveSolver::Mode::immediate}) {
     LiveMotion live(mode);
-    const MotionNews news = finished(live, live.start(governor, lasting(3)));
+    const MotionNews news = finished(live, live.start(shared(governor), lasting(3)));
     REQUIRE(news.run);
     CHECK_FALSE(news.error);
     CHECK(news.run->time == whole.time);
@@ -64,7 +68,7 @@ TEST_CASE("a long motion is told of as it grows, and can be stopped") {
   LiveMotion live(LiveSolver::Mode::background);
   SimulationOptions options = lasting(1e6);
   options.damped = false;
-  const std::uint64_t ticket = live.start(shipped("pendulum"), options);
+  const std::uint64_t ticket = live.start(shared(shipped("pendulum")), options);
   std::vector<double> reached;
   const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (reached.size() < 3 && std::chrono::steady_clock::now() < limit)
@@ -85,8 +89,8 @@ TEST_CASE("a newer motion takes the place of the one that runs") {
   LiveMotion live(LiveSolver::Mode::background);
   SimulationOptions endless = lasting(1e6);
   endless.damped = false;
-  live.start(shipped("pendulum"), endless);
-  const std::uint64_t second = live.start(shipped("governor"), lasting(0.5));
+  live.start(shared(shipped("pendulum")), endless);
+  const std::uint64_t second = live.start(shared(shipped("governor")), lasting(0.5));
   const MotionNews news = finished(live, second);
   REQUIRE(news.run);
   CHECK(news.run->time.back() == Approx(0.5));
@@ -96,10 +100,10 @@ TEST_CASE("a newer motion takes the place of the one that runs") {
 TEST_CASE("a motion goes on from any moment with other numbers") {
   Mechanism governor = shipped("governor");
   LiveMotion live(LiveSolver::Mode::immediate);
-  const MotionNews first = finished(live, live.start(governor, lasting(4)));
+  const MotionNews first = finished(live, live.start(shared(governor), lasting(4)));
   REQUIRE(first.run);
   set_parameter(governor, "joints.spin.drive.speed", 14);
-  const MotionNews second = finished(live, live.go_on(governor, lasting(4), first.run, 1.507));
+  const MotionNews second = finished(live, live.go_on(shared(governor), lasting(4), first.run, 1.507));
   REQUIRE(second.run);
   const Run &before = *first.run, &run = *second.run;
   REQUIRE(run.time.size() == before.time.size());
@@ -131,7 +135,7 @@ TEST_CASE("a motion that cannot begin says why") {
   options.start = Start::state;
   options.state.coordinates = {{"nothing", 0, 1, 0}};
   LiveMotion live(LiveSolver::Mode::background);
-  const MotionNews news = finished(live, live.start(crank, options));
+  const MotionNews news = finished(live, live.start(shared(crank), options));
   REQUIRE(news.error);
   CHECK(news.error->size() > 10);
   CHECK_FALSE(news.run);

@@ -11,10 +11,15 @@ using namespace flyball;
 
 namespace {
 
-Mechanism governor(double speed) {
-  Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+// A shipped scene at this speed of its drive "spin" (rad/s).
+std::shared_ptr<const Mechanism> driven(const std::string& name, double speed) {
+  Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/" + name + ".json");
   set_parameter(mechanism, "joints.spin.drive.speed", speed);
-  return mechanism;
+  return std::make_shared<const Mechanism>(std::move(mechanism));
+}
+
+std::shared_ptr<const Mechanism> governor(double speed) {
+  return driven("governor", speed);
 }
 
 // News from the background thread, waited for with a limit.
@@ -62,7 +67,7 @@ TEST_CASE("the immediate mode answers before ask returns") {
   live.ask_poses(0.1);
   const auto poses = live.take_poses();
   REQUIRE(poses);
-  CHECK(poses->poses.size() == answer->mechanism.bodies.size());
+  CHECK(poses->poses.size() == answer->mechanism->bodies.size());
   CHECK(poses->ticket == 1);
 }
 
@@ -87,7 +92,7 @@ TEST_CASE("the newest request wins, and whoever asks never waits for an answer")
   CHECK_FALSE(live.busy());
   Solution direct = Analysis(governor(5 + 0.05 * 299)).solve();
   CHECK(slide(newest->solution) == Approx(slide(direct)).epsilon(1e-9));
-  CHECK(get_parameter(newest->mechanism, "joints.spin.drive.speed") == 5 + 0.05 * 299);
+  CHECK(get_parameter(*newest->mechanism, "joints.spin.drive.speed") == 5 + 0.05 * 299);
 }
 
 TEST_CASE("poses can be asked for while nothing is solved") {
@@ -101,17 +106,29 @@ TEST_CASE("poses can be asked for while nothing is solved") {
   live.ask_poses(half_turn);
   std::optional<LivePoses> poses;
   REQUIRE(news.wait([&] { return (poses = live.take_poses()).has_value(); }));
-  const auto one = static_cast<std::size_t>(body_index(answer->mechanism, "ball1"));
-  const auto two = static_cast<std::size_t>(body_index(answer->mechanism, "ball2"));
+  const auto one = static_cast<std::size_t>(body_index(*answer->mechanism, "ball1"));
+  const auto two = static_cast<std::size_t>(body_index(*answer->mechanism, "ball2"));
   CHECK((poses->poses[one].position - answer->poses[two].position).norm() < 1e-9);
+}
+
+TEST_CASE("a mechanism is shared from the request to the answer") {
+  LiveSolver live(LiveSolver::Mode::immediate);
+  for (const double speed : {10., 11.}) { // the second as an update
+    const auto mechanism = governor(speed);
+    live.ask({.mechanism = mechanism});
+    const auto answer = live.take_answer();
+    REQUIRE(answer);
+    CHECK(answer->mechanism == mechanism);
+    CHECK(mechanism.use_count() == 3); // with the analysis
+  }
 }
 
 TEST_CASE("another mechanism forgets the old one, and one that cannot be compiled says why") {
   LiveSolver live(LiveSolver::Mode::immediate);
   live.ask({.mechanism = governor(11), .another = true});
-  Mechanism broken = governor(11);
+  Mechanism broken = *governor(11);
   broken.joints[0].bodies[1] = "nobody";
-  live.ask({.mechanism = broken, .another = true});
+  live.ask({.mechanism = std::make_shared<const Mechanism>(broken), .another = true});
   const auto answer = live.take_answer();
   REQUIRE(answer);
   REQUIRE(answer->error);
@@ -134,10 +151,8 @@ TEST_CASE("a solver can be left in the middle of its work") {
 namespace {
 
 // Above the speed at which the straight state gets unstable (3.74 rad/s).
-Mechanism conical_pendulum(double speed) {
-  Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/conical_pendulum.json");
-  set_parameter(mechanism, "joints.spin.drive.speed", speed);
-  return mechanism;
+std::shared_ptr<const Mechanism> conical_pendulum(double speed) {
+  return driven("conical_pendulum", speed);
 }
 
 double swing(const Solution& solution) {

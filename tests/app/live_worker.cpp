@@ -90,7 +90,8 @@ TEST_CASE("many that are closed while they run are all joined") {
 }
 
 TEST_CASE("solvers and motions are closed while they compute") {
-  Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const auto mechanism =
+      std::make_shared<const Mechanism>(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
   for (int i = 0; i < 5; ++i) {
     LiveSolver solver(LiveSolver::Mode::background);
     solver.ask({.mechanism = mechanism, .another = true});

@@ -34,6 +34,7 @@ TEST_CASE("a slider that is moved leaves nothing to be saved") {
   const double tried = robot.speed_now();
   REQUIRE(tried > 15);
   CHECK(app.answer.solution.coordinates.back().value != before.coordinates.back().value);
+  CHECK(app.answer.mechanism == app.document.shared()); // the same object, not only an equal one
   CHECK_FALSE(app.document.unsaved());
   CHECK_FALSE(has_unsaved_work(app));
   CHECK(robot.shows("explored/keep"));

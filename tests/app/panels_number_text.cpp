@@ -1,8 +1,12 @@
 #include "app/panels/number_text.hpp"
 #include "app/panels/parameter_list.hpp"
 
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+
+#include <algorithm>
+#include <tuple>
 
 using namespace flyball;
 
@@ -52,6 +56,33 @@ TEST_CASE("every drive speed and spring constant has a slider, the scene's own f
   CHECK(own[1].from == 10);
   CHECK(own[1].to == 100000);
   CHECK(own[1].log);
+}
+
+TEST_CASE("after a number was tried the sliders are those that would be made anew") {
+  Mechanism file = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  Force damper;
+  damper.name = "damper";
+  damper.type = ForceType::spring;
+  damper.stiffness = 5;
+  file.forces.push_back(damper);
+  const auto fields = [](const ParameterControl& c) {
+    return std::tuple(c.address, c.group, c.name, c.what, c.unit, c.value, c.from, c.to, c.log, c.file_value,
+                      c.step);
+  };
+  int kept = 0;
+  for (const std::string& address : parameter_addresses(file))
+    for (const double value : {0., 7.})
+      for (const double next : {0., 3.}) {
+        Mechanism tried = file;
+        set_parameter(tried, address, value);
+        auto controls = parameter_controls(tried, file);
+        set_parameter(tried, address, next);
+        if (!take_value(controls, tried, file, address)) continue;
+        ++kept;
+        INFO(address << " " << value << " " << next);
+        CHECK(std::ranges::equal(controls, parameter_controls(tried, file), {}, fields, fields));
+      }
+  CHECK(kept > 8);
 }
 
 TEST_CASE("a slider stops at round values") {

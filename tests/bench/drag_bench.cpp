@@ -1,8 +1,9 @@
 // How smoothly the window goes on while the governor's stiffness slider is dragged with its response curve
 // open: the interface and everything in the background, without the drawing of pixels, which is the graphics
-// card's.
+// card's. And what a slider's move costs beside the solve in a net of 10 000 point masses.
 #include "app/panels/panels.hpp"
 #include "app/panels/study_panels.hpp"
+#include "tests/bench/large_scenes.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,6 +23,40 @@ constexpr float width = 1280, height = 800; // pixels
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// In ms: what a move of the drive's slider takes on the thread of the window, and everything until the answer
+// is there but for the solve, which Solution::run_time_s tells.
+void move_in_large_net() {
+  constexpr int moves = 12, side = 100;
+  constexpr double speed = 3; // rad/s
+  std::vector<double> window, beside;
+  Mechanism net = bench::spring_net(side, speed);
+  net.sliders = {{.parameter = "joints.spin.drive.speed", .from = 0, .to = 2 * speed, .description = {}}};
+  for (const LiveSolver::Mode mode : {LiveSolver::Mode::background, LiveSolver::Mode::immediate}) {
+    App app({.mode = mode, .on_news = {}, .scenes = {}, .numbers = {}});
+    open_document(app, Document(net));
+    app.mode = ::flyball::Mode::explore;
+    for (int i = 0; i < moves; ++i) {
+      while (solving(app)) {
+        update(app, 0, {600, 400});
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      const auto begin = Clock::now();
+      change_parameter(app, "joints.spin.drive.speed", speed + 1e-3 * (i + 1));
+      const double spent = seconds_since(begin);
+      update(app, 0, {600, 400});
+      if (mode == LiveSolver::Mode::background)
+        window.push_back(1e3 * spent);
+      else
+        beside.push_back(1e3 * (spent - app.answer.solution.run_time_s));
+    }
+  }
+  std::ranges::sort(window);
+  std::ranges::sort(beside);
+  std::printf("\nNet of %d springs, speed moved\n%-34s %8.2f ms\n%-34s %8.2f ms\n", 2 * side * (side + 1),
+              "on the window's thread", window[window.size() / 2], "beside the solve, in all",
+              beside[beside.size() / 2]);
 }
 
 } // namespace
@@ -84,5 +119,6 @@ int main() {
               "frames", static_cast<double>(spent.size()) / duration, wanted, late, "interface, a frame",
               at(0.5), at(0.99), "curves shown anew", static_cast<double>(curves) / duration,
               "solutions shown anew", static_cast<double>(answers) / duration);
+  move_in_large_net();
   ImGui::DestroyContext();
 }

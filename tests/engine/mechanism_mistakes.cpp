@@ -1,10 +1,12 @@
 // Every kind of mistake: where it is reported, and what is said.
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 
 #include "tests/catch.hpp"
 #include "tests/engine/mechanism_everything.hpp"
+#include "tests/engine/mechanism_random.hpp"
 
 #include <limits>
 
@@ -226,11 +228,15 @@ Mechanism three_wheels() {
   return m;
 }
 
-std::string mistakes_of(const Mechanism& mechanism) {
+std::string text_of(const std::vector<SceneError>& mistakes) {
   std::string text;
-  for (const SceneError& error : find_mistakes(mechanism))
+  for (const SceneError& error : mistakes)
     text += error.what() + std::string("\n");
   return text;
+}
+
+std::string mistakes_of(const Mechanism& mechanism) {
+  return text_of(find_mistakes(mechanism));
 }
 
 } // namespace
@@ -354,4 +360,28 @@ TEST_CASE("Numbers that are none are found wherever they stand") {
   check([](Mechanism& m, double x) { m.sliders[0].to = x; }, "sliders[0].range");
   check([](Mechanism& m, double x) { m.simulation.duration = x; }, "simulation.duration");
   check([](Mechanism& m, double x) { m.camera->azimuth = x; }, "view.camera.azimuth");
+}
+
+TEST_CASE("After a number was set the mistakes are those that a look at all parts finds") {
+  std::vector<Mechanism> mechanisms{read_scene(everything)};
+  std::erase_if(mechanisms.emplace_back(mechanisms[0]).joints,
+                [](const Joint& joint) { return joint.type == JointType::gear; });
+  for (const std::string& file : shipped_scenes())
+    mechanisms.push_back(load_scene(file));
+  int wrong = 0;
+  for (const Mechanism& right : mechanisms) {
+    REQUIRE(mistakes_of(right).empty());
+    for (const std::string& address : parameter_addresses(right)) {
+      const double value = get_parameter(right, address);
+      for (const double other : {0., 1e-300, -value, 0.5 * value + 0.1, 2e30, -2e30}) {
+        Mechanism m = right;
+        set_parameter(m, address, other);
+        const std::string all = mistakes_of(m);
+        INFO(m.name << " " << address << " " << other);
+        CHECK(text_of(find_mistakes(m, address)) == all);
+        wrong += !all.empty();
+      }
+    }
+  }
+  CHECK(wrong > 500);
 }
