@@ -51,7 +51,7 @@ void add_solve(CLI::App& app, Ending& ending) {
       ->check(above_zero());
   command
       ->add_option("--modes", options->modes,
-                   "Eigenvalues to print where there are more than 200 coordinates")
+                   "Eigenvalues to print where there are more than 200 coordinates: those nearest to zero")
       ->check(above_zero());
   add_points(*command, options->points);
   command->add_flag("--json", options->json, "Print a JSON object");
