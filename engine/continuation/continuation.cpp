@@ -88,24 +88,25 @@ void Continuation::assemble(const Unknowns& z, double parameter, Bordered& out) 
   evaluate(problem, z, 0, w_);
   out.residual = scaled_residual(problem, w_);
   factor(problem, z, w_);
-  if (problem.system.rows > 0) w_.residual.f.noalias() -= w_.linearization.constraint.transpose() * z.lambda;
+  if (problem.system.rows > 0)
+    w_.residual.f.noalias() -= w_.dense.linearization.constraint.transpose() * z.lambda;
   out.force = w_.residual.f.cwiseProduct(problem.scaling.column);
-  out.basis = w_.constraints.basis();
+  out.basis = w_.dense.constraints().basis();
   const Eigen::Index n = problem.system.nv, k = out.basis.cols();
   out.r0 = out.r1 = Eigen::VectorXd::Zero(n);
-  if (w_.constraints.rank() > 0) {
-    w_.constraints.solve(-w_.residual.phi.cwiseProduct(problem.scaling.row), out.r0);
-    w_.constraints.solve(-phi_rate.cwiseProduct(problem.scaling.row), out.r1);
+  if (w_.dense.constraints().rank() > 0) {
+    w_.dense.constraints().solve(-w_.residual.phi.cwiseProduct(problem.scaling.row), out.r0);
+    w_.dense.constraints().solve(-phi_rate.cwiseProduct(problem.scaling.row), out.r1);
   }
   out.h.resize(k, k + 1);
-  out.h.leftCols(k) = large::projected(w_.scaled_stiffness, out.basis);
+  out.h.leftCols(k) = large::projected(w_.dense.stiffness(), out.basis);
   // A state without loads has stiffness only, one without stiffness loads only.
   double size = n > 0 ? w_.magnitudes.force.cwiseProduct(problem.scaling.column).maxCoeff() : 0;
   if (k > 0) size = std::max(size, out.h.leftCols(k).cwiseAbs().maxCoeff());
   if (!(size > 0)) size = 1;
   out.h.leftCols(k) /= size;
-  out.h.col(k) = out.basis.transpose() * (w_.scaled_stiffness * out.r1 + out.force_rate) / size;
-  out.g = out.basis.transpose() * (out.force + w_.scaled_stiffness * out.r0) / size;
+  out.h.col(k) = out.basis.transpose() * (w_.dense.stiffness() * out.r1 + out.force_rate) / size;
+  out.g = out.basis.transpose() * (out.force + w_.dense.stiffness() * out.r0) / size;
 }
 
 bool Continuation::correct(const Unknowns& from, double parameter, const Eigen::VectorXd& tangent,
@@ -138,8 +139,9 @@ bool Continuation::correct(const Unknowns& from, double parameter, const Eigen::
     to.parameter += step[n] * family_.scale();
     moved += step;
     if (problem.system.rows > 0) {
-      w_.target = -(b.force + w_.scaled_stiffness * step.head(n) + b.force_rate * step[n]);
-      w_.constraints.multipliers(w_.target, w_.scaled_lambda);
+      const Eigen::VectorXd target =
+          -(b.force + w_.dense.stiffness() * step.head(n) + b.force_rate * step[n]);
+      w_.dense.constraints().multipliers(target, w_.scaled_lambda);
       to.z.lambda = w_.scaled_lambda.cwiseProduct(problem.scaling.row);
     }
     if (size < 1e-9) {

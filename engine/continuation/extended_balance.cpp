@@ -44,7 +44,7 @@ ExtendedBalance::ExtendedBalance(const System& system, const Mechanism& mechanis
 double ExtendedBalance::force_size(const Workspace& w) const {
   if (system_.nv == 0) return 1;
   const double size = std::max(w.magnitudes.force.cwiseProduct(scaling_.column).maxCoeff(),
-                               w.scaled_stiffness.cwiseAbs().maxCoeff());
+                               w.dense.stiffness().cwiseAbs().maxCoeff());
   return size > 0 ? size : 1;
 }
 
@@ -95,7 +95,7 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   set(state.parameters);
   const Problem problem = this->problem();
   factor_with_multipliers(problem, state.z, w_);
-  const Eigen::MatrixXd basis = w_.constraints.basis(), stiffness = w_.scaled_stiffness;
+  const Eigen::MatrixXd basis = w_.dense.constraints().basis(), stiffness = w_.dense.stiffness();
   const Eigen::Index n = system_.nv, k = basis.cols(), count = scales_.size();
   const auto conditions = static_cast<Eigen::Index>(conditions_.size());
   const double size = force_size(w_);
@@ -114,12 +114,12 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
                               w_.residual_extended);
   const Eigen::VectorXd phi = w_.residual_extended.phi.cast<double>().cwiseProduct(scaling_.row);
   Eigen::VectorXd force = w_.residual_extended.f.cast<double>().cwiseProduct(scaling_.column);
-  if (w_.constraints.rank() > 0) w_.constraints.solve(-phi, out.r0);
+  if (w_.dense.constraints().rank() > 0) w_.dense.constraints().solve(-phi, out.r0);
   out.matrix.topLeftCorner(k, k) = large::projected(stiffness, basis) / size;
   for (Eigen::Index i = 0; i < count; ++i) {
     Eigen::VectorXd force_rate, phi_rate, r1 = Eigen::VectorXd::Zero(n);
     rates(state, static_cast<std::size_t>(i), force_rate, phi_rate);
-    if (w_.constraints.rank() > 0) w_.constraints.solve(-phi_rate, r1);
+    if (w_.dense.constraints().rank() > 0) w_.dense.constraints().solve(-phi_rate, r1);
     out.columns.col(k + i).head(n) = r1;
     out.matrix.col(k + i).head(k) = basis.transpose() * (stiffness * r1 + force_rate) / size;
   }
@@ -237,9 +237,9 @@ void ExtendedBalance::set_borders(const ExtendedState& state) {
   Unknowns z = state.z;
   set(state.parameters);
   factor_with_multipliers(problem(), z, w_);
-  const Eigen::MatrixXd& basis = w_.constraints.basis();
+  const Eigen::MatrixXd& basis = w_.dense.constraints().basis();
   if (basis.cols() == 0) return;
-  const Eigen::MatrixXd reduced = large::projected(w_.scaled_stiffness, basis);
+  const Eigen::MatrixXd reduced = large::projected(w_.dense.stiffness(), basis);
   if (reduced.rows() >= large::from) {
     const auto smallest = large::smallest_singular(reduced, 1);
     if (!smallest) return;
@@ -255,10 +255,10 @@ void ExtendedBalance::set_borders(const ExtendedState& state) {
 }
 
 Eigen::MatrixXd ExtendedBalance::bordered(const Workspace& w) const {
-  const Eigen::MatrixXd& basis = w.constraints.basis();
+  const Eigen::MatrixXd& basis = w.dense.constraints().basis();
   const Eigen::Index k = basis.cols();
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(k + 1, k + 1);
-  m.topLeftCorner(k, k) = large::projected(w.scaled_stiffness, basis) / size_;
+  m.topLeftCorner(k, k) = large::projected(w.dense.stiffness(), basis) / size_;
   m.col(k).head(k) = basis.transpose() * left_;
   m.row(k).head(k) = right_.transpose() * basis;
   return m;
@@ -281,8 +281,8 @@ double ExtendedBalance::transversality(const ExtendedState& state, std::size_t i
   const Eigen::VectorXd across = solved->head(m.rows() - 1);
   Eigen::VectorXd force, phi, r1 = Eigen::VectorXd::Zero(system_.nv);
   rates(state, index, force, phi);
-  if (w.constraints.rank() > 0) w.constraints.solve(-phi, r1);
-  return across.dot(w.constraints.basis().transpose() * (w.scaled_stiffness * r1 + force)) / size_;
+  if (w.dense.constraints().rank() > 0) w.dense.constraints().solve(-phi, r1);
+  return across.dot(w.dense.constraints().basis().transpose() * (w.dense.stiffness() * r1 + force)) / size_;
 }
 
 } // namespace flyball

@@ -1,6 +1,6 @@
 #include "engine/kkt/body_equations.hpp"
 
-#include "engine/kkt/eliminator.hpp"
+#include "engine/kkt/kkt_system.hpp"
 
 #include <algorithm>
 
@@ -119,7 +119,7 @@ void BodyEquations::lay_out(const Problem& problem, bool symmetric) {
 void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>& k, std::size_t part,
                                bool stiff) {
   const double reach = nodes_.length() * nodes_.length();
-  const double least = Eliminator::own_share * Eliminator::own_share * std::max(mass_, 1e-300) * reach;
+  const double least = KktSystem::own_share * KktSystem::own_share * std::max(mass_, 1e-300) * reach;
   for (int i = nodes_.first_of_part()[part]; i < nodes_.first_of_part()[part + 1]; ++i) {
     BodyNode& x = nodes_[i];
     Sums& sums = sums_[static_cast<std::size_t>(i)];
@@ -133,7 +133,7 @@ void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>&
     const Mat6 inertia = nodes_.scaled(inertia_matrix(x));
     x.weight.setZero();
     for (int c = 0; c < x.columns; ++c)
-      x.weight[c] = std::max(Eliminator::own_share * x.s.col(c).dot(inertia * x.s.col(c)), least);
+      x.weight[c] = std::max(KktSystem::own_share * x.s.col(c).dot(inertia * x.s.col(c)), least);
     sums.metric = inertia + x.d * x.weight.asDiagonal() * x.d.transpose();
   }
 }
@@ -281,7 +281,7 @@ double BodyEquations::noise_of(const Problem& problem, const BodyNode& x,
     const int v = x.v[static_cast<std::size_t>(c)];
     force = std::max(force, magnitudes.force[v] * problem.scaling.column[v]);
   }
-  return Eliminator::rounding * force;
+  return KktSystem::rounding * force;
 }
 
 void BodyEquations::put(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& held) {

@@ -2,7 +2,7 @@
 // springs and loops, where every body feels its neighbours alone.
 //
 // The unknowns are the bodies' small motions X and multipliers: of the directions that tree joints leave
-// fixed, and of the cut joints. With the terms of tree_elimination.hpp and, between two bodies, those of
+// fixed, and of the cut joints. With the terms of tree_kkt.hpp and, between two bodies, those of
 // pair_blocks.hpp the balance of all bodies reads
 //   sum over bodies of K_b X_b + what joints transmit = wrenches of the coordinates' forces
 //   N_l^T (X_l - X_p) = 0 for every tree joint, dq_l = D_l^T (X_l - X_p), N^T S = 0, D^T S = I

@@ -1,5 +1,5 @@
 // How the wrench that one body's inertia and loads ask for changes with its pose: the 6 x 6 stiffness K_b of
-// tree_elimination.hpp, and the body's inertia as a metric of small motions.
+// tree_kkt.hpp, and the body's inertia as a metric of small motions.
 //
 // Motions are (turn, shift of the link's origin), wrenches (moment about that origin, force), world axes. K_b
 // tells the change beyond that the wrench turns along with the body.

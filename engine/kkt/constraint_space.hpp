@@ -16,7 +16,8 @@ class ConstraintSpace {
   int rows() const { return rows_; }
   int rank() const { return rank_; }
   // The smallest pivot that does not count as zero, beside the largest: about how far away, in scaled
-  // coordinates, the loops are from a pose in which one more row depends on the others. 1 where no row counts.
+  // coordinates, the loops are from a pose in which one more row depends on the others. 1 where no row
+  // counts.
   double least_pivot() const { return rank_ > 0 ? qr_.pivot(rank_ - 1) / qr_.pivot(0) : 1; }
   // Orthonormal basis of the null space: (n, n - rank).
   const Eigen::MatrixXd& basis() const { return basis_; }

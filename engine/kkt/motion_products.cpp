@@ -302,7 +302,7 @@ void MotionProducts::velocity(const Eigen::VectorXd& x, Eigen::VectorXd& out) {
 }
 
 // With F the load of the subtree and H what its change is beyond turning along with the node: as in
-// tree_elimination.hpp a node hands on H + (S dq) x* F.
+// tree_kkt.hpp a node hands on H + (S dq) x* F.
 void MotionProducts::stiffness(const Eigen::VectorXd& x, Eigen::VectorXd& out) {
   outwards(x);
   for (Node& n : nodes_)

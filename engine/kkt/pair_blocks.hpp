@@ -1,5 +1,5 @@
 // What acts between two bodies, as the bodies feel it: wrenches on both, and how they change with the motions
-// of both beyond turning along with them (tree_elimination.hpp); and the rows of a cut joint.
+// of both beyond turning along with them (tree_kkt.hpp); and the rows of a cut joint.
 //
 // Wrenches and motions are about the links' origins; a is the first end, b the second.
 #pragma once

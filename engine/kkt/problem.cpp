@@ -1,5 +1,7 @@
 #include "engine/kkt/problem.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 
 void set_scaling(const System& system, const Parameters& p, Scaling& out) {
@@ -27,6 +29,11 @@ void set_scaling(const System& system, const Parameters& p, Scaling& out) {
       }
       out.row[cut.first_row + static_cast<int>(r)] = scale;
     }
+}
+
+double rank_tolerance(const Problem& problem, const Eigen::VectorXd& phi) {
+  const double open = phi.size() > 0 ? phi.cwiseProduct(problem.scaling.row).lpNorm<Eigen::Infinity>() : 0;
+  return std::clamp(10 * open, 1e-10, 1e-3);
 }
 
 } // namespace flyball

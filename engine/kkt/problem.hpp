@@ -21,16 +21,20 @@ struct Problem {
   const Parameters& parameters;
   const Scaling& scaling;
   const std::atomic<bool>* cancel = nullptr;
-  // As the system's elimination says; else by dense matrices whatever their size, which is what studies of
-  // the matrices themselves need.
-  bool eliminated = false;
+  // The system's own, or the dense matrices whatever their size, for studies of the matrices themselves.
+  KktForm form = KktForm::dense;
+
+  // To be taken for the gradient of the amended potential although drives ride on drives: of a descent.
+  bool as_gradient = false;
 
   // The balance is the gradient of the amended potential, so its Jacobian is symmetric where it matters.
-  bool symmetric() const { return system.conservative && system.single_drives; }
-  Elimination elimination() const { return eliminated ? system.elimination : Elimination::dense; }
-  bool is_dense() const { return elimination() == Elimination::dense; }
+  bool symmetric() const { return system.conservative && (system.single_drives || as_gradient); }
   bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
 };
+
+// Pivots of the constraints below this, of the largest, belong to dependent rows: where the loops, whose rows
+// come to `phi` (m, rad or 1), are open, those of the size by which they are; closed, rounding.
+double rank_tolerance(const Problem& problem, const Eigen::VectorXd& phi);
 
 // z of eq. 24.
 struct Unknowns {

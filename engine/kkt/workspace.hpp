@@ -1,35 +1,31 @@
 // Storage that solves reuse, so that repeating one allocates nothing.
 #pragma once
 
-#include "engine/kkt/body_elimination.hpp"
-#include "engine/kkt/constraint_space.hpp"
-#include "engine/kkt/problem.hpp"
-#include "engine/kkt/reduced_hessian.hpp"
-#include "engine/kkt/tree_elimination.hpp"
+#include "engine/kkt/dense_kkt.hpp"
+#include "engine/kkt/sparse_kkt.hpp"
+#include "engine/kkt/tree_kkt.hpp"
 #include "engine/system/extended.hpp"
 
 namespace flyball {
 
-struct Workspace {
-  // Of a problem that is not dense.
-  Eliminator& eliminator(const Problem& problem) {
-    return problem.elimination() == Elimination::tree ? static_cast<Eliminator&>(tree) : bodies;
+struct Workspace : Evaluation {
+  KktSystem& kkt(const Problem& problem) {
+    switch (problem.form) {
+    case KktForm::tree: return tree;
+    case KktForm::sparse: return sparse;
+    case KktForm::dense: break;
+    }
+    return dense;
   }
-  const Eliminator& eliminator(const Problem& problem) const {
-    return const_cast<Workspace*>(this)->eliminator(problem);
-  }
+  const KktSystem& kkt(const Problem& problem) const { return const_cast<Workspace*>(this)->kkt(problem); }
 
-  Kinematics<double> kinematics;
-  Residual<double> residual;
-  Magnitudes magnitudes;
-  Linearization linearization;
-  ConstraintSpace constraints;
-  ReducedHessian hessian;
-  TreeElimination tree;
-  BodyElimination bodies, loops; // of the balance; of the constraints alone
-  Eigen::MatrixXd scaled_jacobian, scaled_stiffness, product, reduced;
-  Eigen::VectorXd scaled_phi, scaled_force, range_step, target, reduced_rhs, reduced_step, noise, scaled_step,
-      scaled_lambda, step, zero_lambda;
+  // The matrices themselves; null where the problem is too large for them.
+  DenseKkt* matrices(const Problem& problem) { return problem.form == KktForm::dense ? &dense : nullptr; }
+
+  DenseKkt dense;
+  TreeKkt tree;
+  SparseKkt sparse;
+  Eigen::VectorXd scaled_phi, scaled_force, projected, scaled_step, scaled_lambda, step, zero_lambda;
   Kinematics<Extended> kinematics_extended;
   Residual<Extended> residual_extended;
   Configuration<Extended> q_extended, lambda_extended;

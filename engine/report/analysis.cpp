@@ -54,7 +54,7 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
 
 // All eigenvalues need the matrices; beyond a size the pivots have to do.
 bool pivots_decide(const Problem& problem) {
-  return problem.system.nv > largest_for_eigenvalues && !problem.is_dense();
+  return problem.system.nv > largest_for_eigenvalues && problem.form != KktForm::dense;
 }
 
 // Whether the linearised motion of a large mechanism turns with the drives, as far as can be told.
@@ -120,7 +120,7 @@ void add_condition(const Problem& problem, const Unknowns& z, bool factored, Wor
     evaluate(whole, z, 0, w);
     factor(whole, z, w);
   }
-  out.condition = w.hessian.condition();
+  out.condition = w.dense.hessian().condition();
 }
 
 std::string search_message(const AllSolutions& all) {
@@ -220,7 +220,7 @@ Solution Analysis::solve(const SolveOptions& options) {
 
 Solution Analysis::solve_through(const SolveOptions& options) {
   State& s = *state_;
-  Problem problem{s.system, s.parameters, s.scaling, options.cancel, true};
+  const Problem problem{s.system, s.parameters, s.scaling, options.cancel, s.system.kkt_form};
   const bool warm = options.warm && s.answered && options.start.empty();
   s.start = warm ? s.answer : s.drawn;
   set_start(s.system, s.parameters, options.start, s.start);
@@ -234,7 +234,6 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   SteadyState& steady = s.steady;
   find_steady_state(problem, s.start, s.drawn, {options.nearest, warm, options.search, options.progress},
                     s.workspace, steady);
-  problem.eliminated = steady.eliminated;
   Stability stability;
   if (steady.holds && steady.found.minimum && steady.phases.empty()) {
     stability.stable = true;
@@ -289,7 +288,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   }
   if (options.details) {
     add_condition(problem, steady.found.z, factored, s.workspace, out);
-    s.add_rates(problem, problem.is_dense() && (factored || out.condition), out);
+    s.add_rates(problem, problem.form == KktForm::dense && (factored || out.condition), out);
   }
   report_progress(options.progress, "reactions");
   const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability, options.points};
@@ -421,7 +420,7 @@ std::vector<Pose> Analysis::poses_at(double t) const {
 std::vector<VibrationMode> Analysis::modes(int count) const {
   State& s = *state_;
   if (!s.settled) return {};
-  const Problem problem{s.system, s.parameters, s.scaling, nullptr, s.steady.eliminated};
+  const Problem problem{s.system, s.parameters, s.scaling, nullptr, s.system.kkt_form};
   const Unknowns& z = s.steady.found.z;
   if (!pivots_decide(problem)) return find_modes({s.system, s.parameters, s.scaling}, z, s.workspace);
   if (may_vary(problem, z, sample_phases(s.system, s.parameters), s.workspace)) return {};

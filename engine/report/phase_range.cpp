@@ -29,7 +29,7 @@ class Torques {
         turned_.links[l].start =
             problem_.parameters.links[l].start + groups_[g].turns[i] * angles[static_cast<Eigen::Index>(g)];
       }
-    const Problem there{system, turned_, problem_.scaling, problem_.cancel, problem_.eliminated};
+    const Problem there{system, turned_, problem_.scaling, problem_.cancel, problem_.form};
     const Unknowns z = with_reported_multipliers(there, q_, 0, w_);
     const TransmittedForces forces =
         transmitted_forces(system, turned_, z.lambda, w_.kinematics, w_.residual);

@@ -89,12 +89,7 @@ Eigen::VectorXd self_balanced_multipliers(const Problem& problem, Workspace& w) 
   }
   const Eigen::VectorXd target = force.cwiseProduct(problem.scaling.column);
   Eigen::VectorXd found;
-  if (problem.is_dense()) {
-    found = w.constraints.least_norm_multipliers(target);
-  } else {
-    w.zero_lambda.setZero(system.rows);
-    w.loops.solve(target, w.zero_lambda, w.range_step, found);
-  }
+  w.kkt(problem).balance_with_least_norm(target, found);
   return (arbitrary - found).cwiseProduct(problem.scaling.row);
 }
 
@@ -269,9 +264,9 @@ Unknowns with_reported_multipliers(const Problem& problem, const Eigen::VectorXd
   evaluate_residual<double>(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
   if (problem.system.rows == 0) return z;
   factor_constraints(problem, w);
-  best_multipliers(problem, w, z.lambda);
-  if (problem.is_dense())
-    z.lambda = w.constraints.least_norm_multipliers(w.target).cwiseProduct(problem.scaling.row);
+  w.scaled_force = -w.residual.f.cwiseProduct(problem.scaling.column);
+  w.kkt(problem).balance_with_least_norm(w.scaled_force, w.scaled_lambda);
+  z.lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
   return z;
 }
 

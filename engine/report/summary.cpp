@@ -56,9 +56,9 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
           ? "general matrices: the forces are conservative, a symmetric one serves"
           : "general matrices");
   if (system.nv > 0)
-    out.in.emplace_back(system.elimination == Elimination::tree
+    out.in.emplace_back(system.kkt_form == KktForm::tree
                             ? "elimination along the tree: cost in proportion to the bodies"
-                        : system.elimination == Elimination::bodies
+                        : system.kkt_form == KktForm::sparse
                             ? "sparse equations of all bodies: each feels its neighbours alone"
                             : "dense equations: the fastest for few coordinates");
   say(!p.phase_free, p.phase_free

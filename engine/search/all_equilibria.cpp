@@ -146,7 +146,7 @@ class Searcher {
   // rounding makes one more row count.
   double uncertainty(const NewtonOutcome& outcome) const {
     constexpr double half = 1e-4, singular_pose = 1e-3;
-    const double pivot = w_.constraints.least_pivot();
+    const double pivot = w_.dense.constraints().least_pivot();
     if (pivot < singular_pose) return std::max(half, 10 * pivot);
     return outcome.linear ? half : alike;
   }
@@ -166,8 +166,8 @@ class Searcher {
     if (p_.system.conservative)
       out.potential = amended_potential(p_.system, p_.parameters, z.q, w_.kinematics);
     factor(p_, z, w_);
-    if (outcome.linear || !w_.hessian.known() || !w_.hessian.singular()) return out;
-    const Eigen::MatrixXd flat = w_.constraints.basis() * w_.hessian.null_basis();
+    if (outcome.linear || !w_.dense.hessian().known() || !w_.dense.hessian().singular()) return out;
+    const Eigen::MatrixXd flat = w_.dense.constraints().basis() * w_.dense.hessian().null_basis();
     for (int v = 0; v < p_.system.nv; ++v)
       if (largest_size(flat.row(v)) > 1e-6 * largest_size(flat)) out.neutral.push_back(v);
     return out;
@@ -240,8 +240,9 @@ class Searcher {
       evaluate(p_, z, 0, w_);
       if (!std::isfinite(scaled_residual(p_, w_))) return false;
       factor(p_, z, w_);
-      if (!w_.hessian.known()) return false;
-      if (p_.system.rows > 0) w_.residual.f.noalias() -= w_.linearization.constraint.transpose() * z.lambda;
+      if (!w_.dense.hessian().known()) return false;
+      if (p_.system.rows > 0)
+        w_.residual.f.noalias() -= w_.dense.linearization.constraint.transpose() * z.lambda;
       newton_step(p_, w_.residual.f, w_.residual.phi, w_, w_.scaled_step, z.lambda);
       const double size = largest_size(w_.scaled_step);
       if (!std::isfinite(size) || size == 0) return false;

@@ -2,7 +2,7 @@
 
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/text.hpp"
-#include "engine/solve/descent.hpp"
+#include "engine/solve/eigenvector_descent.hpp"
 #include "engine/solve/homotopy.hpp"
 #include "engine/solve/trust_region.hpp"
 #include "engine/stability/gyroscopic_stability.hpp"
@@ -19,7 +19,8 @@ class Search {
  public:
   Search(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
          std::vector<double>& history, Found& found)
-      : p_(problem), start_(start), nearest_(nearest), warm_(warm), w_(w), history_(history), found_(found) {}
+      : p_(problem), start_(start), nearest_(nearest), warm_(warm), large_(problem.form != KktForm::dense),
+        descends_(!nearest && has_descent(problem)), w_(w), history_(history), found_(found) {}
 
   void run() {
     found_.status = Status::not_converged;
@@ -34,9 +35,10 @@ class Search {
       if (assemble(p_, w_.assembled, 0, w_)) begin_ = energy_at(w_.assembled);
     }
     NewtonSettings plain;
+    plain.impatient = large_;
     plain.trusting = warm_;
     // Where the way downhill comes next it leads to a minimum with fewer steps.
-    plain.to_minimum = has_descent() && !p_.is_dense() && !warm_;
+    plain.to_minimum = descends_ && large_ && !warm_;
     if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, plain, &history_); }))
       return;
     if (p_.cancelled()) return cancelled();
@@ -48,7 +50,7 @@ class Search {
       w_.assembled = candidate_.q; // Newton-Raphson found a way that Gauss-Newton did not
     }
     // In large mechanisms, where it takes few iterations, the way that leads to a stable state comes first.
-    const bool downhill_first = has_descent() && !p_.is_dense();
+    const bool downhill_first = descends_ && large_;
     if (downhill_first && go_downhill()) return;
     if (p_.cancelled()) return cancelled();
     if (!arrived_) {
@@ -63,7 +65,7 @@ class Search {
         return;
       if (p_.cancelled()) return cancelled();
     }
-    if (has_descent() && !downhill_first && go_downhill()) return;
+    if (descends_ && !downhill_first && go_downhill()) return;
     if (p_.cancelled()) return cancelled();
     settle_for_unstable();
   }
@@ -139,7 +141,7 @@ class Search {
   // Whether Newton-Raphson's last step was rounding, and taken from a balance with these multipliers: then
   // the factors that it used are those of the state found.
   bool still_factored(const NewtonOutcome& outcome) const {
-    const double rounding = p_.is_dense() ? 1e-14 : 1e-12; // more bodies, more of it
+    const double rounding = large_ ? 1e-12 : 1e-14; // more bodies, more of it
     return !outcome.linear && outcome.last_step < rounding && history_.size() >= 2 &&
            history_[history_.size() - 2] < rounding;
   }
@@ -149,22 +151,18 @@ class Search {
     if (!factored) factor(p_, found_.z, w_);
     if (p_.symmetric()) {
       potential_ = true;
-      found_.minimum = positive_definite(p_, w_);
-      unstable_ = !found_.minimum && !(p_.is_dense() ? only_flat(w_.hessian) : only_flat());
+      found_.minimum = w_.kkt(p_).positive_definite();
+      unstable_ = !found_.minimum && !only_flat();
       return;
     }
-    if (!p_.is_dense()) return;
+    if (large_) return;
     potential_ = !nearest_ && has_potential(p_, found_.z, w_);
     found_.minimum = unstable_ = false;
     if (!potential_) return;
     ReducedHessian energy;
-    energy.factor(w_.constraints.rank() == 0 ? w_.scaled_stiffness : w_.reduced, w_.noise, true);
+    energy.factor(w_.dense.reduced(), w_.dense.noise(), true);
     found_.minimum = energy.positive_definite();
     unstable_ = !found_.minimum && !only_flat(energy);
-  }
-
-  bool has_descent() const {
-    return p_.system.conservative && !nearest_ && (p_.is_dense() || p_.symmetric());
   }
 
   static bool only_flat(const ReducedHessian& hessian) {
@@ -175,21 +173,21 @@ class Search {
   double curvature() const {
     const double reach = p_.parameters.length;
     return amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics).magnitude /
-           (w_.eliminator(p_).mass() * reach * reach);
+           (w_.kkt(p_).mass() * reach * reach);
   }
 
   // Rounding makes some of many directions that nothing resists a little stiff, either way, and along loops
   // they bend. Then this leaves the balance factored with what keeps them still.
   bool only_flat() {
-    Eliminator& e = w_.eliminator(p_);
-    const int negative = e.negative_count();
-    const std::size_t flat = e.flat().size();
-    if (negative == 0 && (p_.system.rows == 0 || flat == e.loose())) return true;
+    KktSystem& kkt = w_.kkt(p_);
+    const int negative = kkt.negative_count(), null = kkt.null_count();
+    if (kkt.exact_inertia()) return negative == 0;
+    if (negative == 0 && (p_.system.rows == 0 || null == kkt.force_free_count())) return true;
     constexpr double rounding = 1e-5;
-    e.factor(rounding * curvature());
-    const bool none_falls = e.negative_count() == 0;
-    const bool to_be_held = negative > 0 || e.flat().size() < flat; // the rest feels nothing at all
-    e.factor(none_falls && to_be_held ? still * curvature() : 0);
+    kkt.factor(rounding * curvature());
+    const bool none_falls = kkt.negative_count() == 0;
+    const bool to_be_held = negative > 0 || kkt.null_count() < null; // the rest feels nothing at all
+    kkt.factor(none_falls && to_be_held ? still * curvature() : 0);
     return none_falls;
   }
 
@@ -197,6 +195,7 @@ class Search {
   bool arrive(NewtonOutcome& outcome) {
     const Eigen::VectorXd near = found_.z.q;
     NewtonSettings few;
+    few.impatient = large_;
     few.max_iterations = 10;
     outcome = newton(p_, found_.z, w_, few, &history_);
     found_.iterations += outcome.iterations;
@@ -209,15 +208,16 @@ class Search {
   NewtonOutcome finish(bool factored) {
     const Eigen::VectorXd bottom = found_.z.q;
     NewtonSettings free;
+    free.impatient = large_;
     free.factored = factored;
     const NewtonOutcome plain = newton(p_, found_.z, w_, free, &history_);
     found_.iterations += plain.iterations;
-    if (p_.is_dense() || fell_ || p_.cancelled() || (plain.converged && plain.largest_step <= 0.2))
-      return plain;
+    if (fell_ || p_.cancelled() || (plain.converged && plain.largest_step <= 0.2)) return plain;
     found_.z.q = bottom;
     found_.z.lambda.setZero(p_.system.rows);
     evaluate(p_, found_.z, 0, w_);
     NewtonSettings settings;
+    settings.impatient = large_;
     settings.proximal = still * curvature();
     const NewtonOutcome held = newton(p_, found_.z, w_, settings, &history_);
     found_.iterations += held.iterations;
@@ -258,16 +258,14 @@ class Search {
     }
   }
 
-  // Small trees are solved densely, but go down by what they trust, too: it takes far fewer iterations.
   bool go_downhill() {
-    const auto trusting = [&](bool all_the_way) {
+    const auto by_trust_region = [&](bool all_the_way) {
       const bool falls = falls_at_start_ && !all_the_way && w_.assembled == start_;
-      return descend_by_trust(p_, found_.z, w_, &history_, all_the_way, falls);
+      return descend(p_, found_.z, w_, &history_, all_the_way, falls);
     };
-    const bool trusted = !p_.is_dense() || (p_.symmetric() && is_plain_tree(p_.system));
-    if (trusted && go_downhill(trusting)) return true;
-    return p_.is_dense() && !p_.cancelled() &&
-           go_downhill([&](bool) { return descend(p_, found_.z, w_, &history_); });
+    if (go_downhill(by_trust_region)) return true;
+    return !large_ && !p_.cancelled() &&
+           go_downhill([&](bool) { return descend_by_eigenvectors(p_, found_.z, w_, &history_); });
   }
 
   template <class Descent>
@@ -294,7 +292,7 @@ class Search {
     fell_ = false;
     found_.newton = outcome;
     const bool left_unstable = arrived_ && unstable_;
-    judge(!p_.is_dense() && w_.eliminator(p_).shift() == 0 && still_factored(outcome));
+    judge(w_.kkt(p_).shift() == 0 && still_factored(outcome));
     if (potential_ && unstable_) return false;
     // Newton may have been right all along, by a way that had to be checked.
     if (arrived_ && !left_unstable && candidate_.q.size() > 0 && same(candidate_.q, found_.z.q)) {
@@ -345,7 +343,7 @@ class Search {
     found_.net.reset();
     std::vector<std::string_view> tried{"Newton-Raphson", "its damped form"};
     if (p_.parameters.moving) tried.emplace_back("homotopy from rest");
-    if (has_descent()) tried.emplace_back("descent of the potential");
+    if (descends_) tried.emplace_back("descent of the potential");
     found_.message =
         word_list(tried, "and") +
         (fell_
@@ -356,6 +354,8 @@ class Search {
   const Problem& p_;
   const Eigen::VectorXd& start_;
   const bool nearest_, warm_;
+  const bool large_;    // many bodies: what leads to a minimum in few iterations comes first
+  const bool descends_; // there is a potential to go down by
   Workspace& w_;
   std::vector<double>& history_;
   Found& found_;

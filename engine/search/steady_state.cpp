@@ -115,41 +115,33 @@ Existence check_refined(const Problem& problem, const Unknowns& z, const std::ve
 
 void find_steady_state(const Problem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& drawn,
                        const SteadyStateOptions& options, Workspace& w, SteadyState& out) {
-  Problem p{problem.system, problem.parameters, problem.scaling, problem.cancel, problem.eliminated};
   out.holds = false;
   out.existence = {};
   out.tried.clear();
   out.start = start;
-  find_equilibrium(p, out.start, options.nearest, options.warm, w, out.history, out.found);
+  find_equilibrium(problem, out.start, options.nearest, options.warm, w, out.history, out.found);
   // A neighbour's answer that had to be left goes back to the definition: what the drawn pose reaches.
   const bool left =
-      out.found.status != Status::converged || out.found.net || (p.symmetric() && !out.found.minimum);
-  if (options.warm && left && !p.cancelled()) {
+      out.found.status != Status::converged || out.found.net || (problem.symmetric() && !out.found.minimum);
+  if (options.warm && left && !problem.cancelled()) {
     out.start = drawn;
-    find_equilibrium(p, out.start, options.nearest, false, w, out.history, out.found);
+    find_equilibrium(problem, out.start, options.nearest, false, w, out.history, out.found);
   }
-  // The dense equations catch some that elimination does not.
-  if (out.found.status == Status::not_converged && !p.is_dense() &&
-      p.system.nv <= largest_for_answer_search && !p.cancelled()) {
-    p.eliminated = false;
-    find_equilibrium(p, out.start, options.nearest, false, w, out.history, out.found);
-  }
-  out.eliminated = p.eliminated;
-  out.phases = sample_phases(p.system, p.parameters);
+  out.phases = sample_phases(problem.system, problem.parameters);
   if (out.found.status == Status::converged) {
-    refine(p, out.found.z, out.found.newton, w, out.error);
-    if (out.found.fell && !is_known(p, out.found.z.q, drawn, out.error)) {
+    refine(problem, out.found.z, out.found.newton, w, out.error);
+    if (out.found.fell && !is_known(problem, out.found.z.q, drawn, out.error)) {
       out.found.status = Status::not_converged;
       out.found.message = "The potential falls on, hundreds of times the mechanism's reach away.";
     }
   }
   if (out.found.status == Status::converged) {
-    out.existence = check_refined(p, out.found.z, out.phases, w, out.error);
+    out.existence = check_refined(problem, out.found.z, out.phases, w, out.error);
     out.holds = out.existence.holds;
   }
-  if (out.holds || options.nearest || p.cancelled()) return;
+  if (out.holds || options.nearest || problem.cancelled()) return;
   report_progress(options.progress, "searching for another steady state");
-  out.tried = search_another(p, drawn, options.seconds, w, out);
+  out.tried = search_another(problem, drawn, options.seconds, w, out);
 }
 
 std::string describe(const AnswerSearch& search) {

@@ -39,7 +39,6 @@ struct SteadyState {
   Found found;
   Existence existence;
   bool holds = false;         // found, and at every phase
-  bool eliminated = true;     // found by Problem::eliminated equations: what follows should use the same
   std::string tried;          // where it does not hold: what the search did, in a sentence
   std::vector<double> phases; // s, at which it was looked at; none where nothing turns
   std::vector<double> history;

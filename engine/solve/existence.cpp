@@ -60,22 +60,14 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
       if (left > tolerance * size && left / size > result.violation)
         result = {false, false, t, left / size, -1, result.left};
     };
-    if (problem.system.rows > 0 && !problem.is_dense()) { // with the multipliers that do best
+    if (problem.system.rows > 0) { // with the multipliers that do best
       Unknowns z{q, {}};
       best_multipliers(problem, w, z.lambda);
       evaluate(problem, z, t, w);
       w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
     }
-    if (problem.system.rows == 0 || !problem.is_dense()) {
-      for (Eigen::Index k = 0; k < w.scaled_force.size(); ++k)
-        judge(std::abs(w.scaled_force[k]), w.magnitudes.force[k] * problem.scaling.column[k]);
-      continue;
-    }
-    const Eigen::MatrixXd& basis = w.constraints.basis();
-    w.reduced_rhs.noalias() = basis.transpose() * w.scaled_force;
-    for (Eigen::Index k = 0; k < basis.cols(); ++k)
-      judge(std::abs(w.reduced_rhs[k]),
-            basis.col(k).cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column)));
+    for (Eigen::Index k = 0; k < w.scaled_force.size(); ++k)
+      judge(std::abs(w.scaled_force[k]), w.magnitudes.force[k] * problem.scaling.column[k]);
   }
   return result;
 }
@@ -114,22 +106,16 @@ std::string blame(const Problem& problem, const Mechanism& mechanism, const Eige
   }
   for (CutDamperParameters& d : only.cut_dampers)
     d.damping = 0;
-  const Problem part{system, only, problem.scaling, problem.cancel, problem.eliminated};
+  const Problem part{system, only, problem.scaling, problem.cancel, problem.form};
   // How much the projected force of what is left in `only` changes from the drawn phase to the bad one.
   const auto change = [&] {
     Eigen::VectorXd f[2];
     for (int i : {0, 1}) {
       evaluate_phase(part, q, i == 0 ? 0. : phase, w);
-      f[i] = w.residual.f.cwiseProduct(problem.scaling.column);
-      if (system.rows == 0) continue;
-      if (problem.is_dense()) {
-        f[i] = w.constraints.basis().transpose() * f[i];
-      } else {
-        const Eigen::VectorXd whole = f[i];
-        w.loops.solve(whole, f[i]);
-      }
+      w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
+      w.kkt(part).project(w.scaled_force, f[i]);
     }
-    return f[0].size() == f[1].size() ? (f[1] - f[0]).norm() : 0.;
+    return (f[1] - f[0]).norm();
   };
   double worst = 0;
   std::string phrase = "the balance";

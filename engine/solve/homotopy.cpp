@@ -4,7 +4,7 @@ namespace flyball {
 
 NewtonOutcome homotopy(const Problem& problem, Unknowns& z, Workspace& w, std::vector<double>* history) {
   Parameters slowed = problem.parameters;
-  const Problem part{problem.system, slowed, problem.scaling, problem.cancel, problem.eliminated};
+  const Problem part{problem.system, slowed, problem.scaling, problem.cancel, problem.form};
   int iterations = 0;
   const auto solve_at = [&](double squared, Unknowns& at, bool damped) {
     slowed.speed_scale = std::sqrt(squared) * problem.parameters.speed_scale;

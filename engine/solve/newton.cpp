@@ -1,58 +1,16 @@
 #include "engine/solve/newton.hpp"
 
 #include "engine/linear/interruption.hpp"
-#include "engine/linear/large.hpp"
 #include "engine/linear/largest.hpp"
-#include "engine/linear/spectral.hpp"
 #include "engine/system/constraint_row.hpp"
 
 namespace flyball {
 namespace {
 
-// Dependent rows have singular values of the size by which the loops are open; closed, of rounding.
-double rank_tolerance(const Problem& problem, const Eigen::VectorXd& phi) {
-  const double open = phi.size() > 0 ? phi.cwiseProduct(problem.scaling.row).lpNorm<Eigen::Infinity>() : 0;
-  return std::clamp(10 * open, 1e-10, 1e-3);
-}
-
 void apply_step(const Problem& problem, const Eigen::VectorXd& scaled_step, double fraction,
                 Eigen::VectorXd& q, Workspace& w) {
   w.step = fraction * scaled_step.cwiseProduct(problem.scaling.column);
   retract<double>(problem.system, w.step, q);
-}
-
-// A point mass that may turn feels nothing of it, but the terms of its balance cancel with rounding only: of
-// the forces that act along its joint's other coordinates, which nothing is there to drown.
-void clear_rounding(const Problem& problem, Workspace& w) {
-  const System& system = problem.system;
-  for (std::size_t l = 0; l < system.links.size(); ++l) {
-    const Link& link = system.links[l];
-    if (link.v < 0 || link.type != LinkType::spherical) continue;
-    double force = w.magnitudes.link_force[l] * problem.parameters.length;
-    for (int i = static_cast<int>(l); i >= 0; i = system.links[static_cast<std::size_t>(i)].parent) {
-      const Link& other = system.links[static_cast<std::size_t>(i)];
-      if (other.tree_joint != link.tree_joint) break;
-      if (other.v >= 0)
-        force = std::max(force, w.magnitudes.force[other.v] * problem.scaling.column[other.v]);
-    }
-    const double rounding = 1e-15 * force;
-    for (int v = link.v; v < link.v + 3; ++v) {
-      if (w.scaled_stiffness.row(v).lpNorm<Eigen::Infinity>() > rounding ||
-          w.scaled_stiffness.col(v).lpNorm<Eigen::Infinity>() > rounding)
-        continue;
-      w.scaled_stiffness.row(v).setZero();
-      w.scaled_stiffness.col(v).setZero();
-    }
-  }
-}
-
-void factor_dense_constraints(const Problem& problem, Workspace& w) {
-  w.scaled_jacobian.resize(problem.system.rows, problem.system.nv);
-  for (int j = 0; j < problem.system.nv; ++j)
-    for (int i = 0; i < problem.system.rows; ++i)
-      w.scaled_jacobian(i, j) =
-          w.linearization.constraint(i, j) * problem.scaling.row[i] * problem.scaling.column[j];
-  w.constraints.factor(w.scaled_jacobian, rank_tolerance(problem, w.residual.phi));
 }
 
 constexpr double far = 1e8, farthest = 1e14; // scaled
@@ -72,16 +30,8 @@ double merit(const Problem& problem, Workspace& w) {
   w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
   double sum = 0;
   const double size = std::max(1e-300, largest(w.magnitudes.force.cwiseProduct(problem.scaling.column)));
-  if (problem.system.rows == 0) {
-    sum += (w.scaled_force / size).squaredNorm();
-  } else if (problem.is_dense()) {
-    w.reduced_rhs.noalias() = w.constraints.basis().transpose() * w.scaled_force;
-    sum += (w.reduced_rhs / size).squaredNorm();
-  } else { // in the metric, at the mass and reach of the whole
-    w.loops.solve(w.scaled_force, w.reduced_rhs);
-    sum += std::max(0., w.reduced_rhs.dot(w.scaled_force)) * w.loops.mass() *
-           (problem.parameters.length / size) * (problem.parameters.length / size);
-  }
+  w.kkt(problem).project(w.scaled_force, w.projected);
+  sum += std::max(0., w.projected.dot(w.scaled_force)) / (size * size);
   sum += w.residual.phi.cwiseProduct(problem.scaling.row).squaredNorm();
   return std::sqrt(sum);
 }
@@ -89,10 +39,6 @@ double merit(const Problem& problem, Workspace& w) {
 // The balance with the multipliers' forces taken off again.
 void take_off_multipliers(const Problem& problem, const Eigen::VectorXd& lambda, Workspace& w) {
   if (problem.system.rows == 0) return;
-  if (problem.is_dense()) {
-    w.residual.f.noalias() -= w.linearization.constraint.transpose() * lambda;
-    return;
-  }
   const auto take_off = [&](const SystemPart& part, std::size_t) {
     for (const int n : part.cuts) {
       const auto c = static_cast<std::size_t>(n);
@@ -152,106 +98,29 @@ double scaled_residual(const Problem& problem, const Workspace& w) {
 }
 
 void factor_constraints(const Problem& problem, Workspace& w) {
-  if (problem.system.rows > 0 && !problem.is_dense()) {
-    const double tolerance = rank_tolerance(problem, w.residual.phi); // pivots are singular values squared
-    w.loops.linearize_metric(problem, w.kinematics, std::max(tolerance * tolerance, 1e-10));
-    w.loops.factor();
-    return;
-  }
-  if (!problem.is_dense()) return;
-  linearize_constraints(problem.system, problem.parameters, w.kinematics, w.linearization);
-  factor_dense_constraints(problem, w);
+  w.kkt(problem).factor_constraints(problem, w);
 }
 
-int independent_rows(const Problem& problem, const Workspace& w) {
-  const int rows = problem.system.rows;
-  if (rows == 0) return 0;
-  if (problem.is_dense()) return w.constraints.rank();
-  if (w.loops.redundant() <= rows) return rows - w.loops.redundant();
-  // Chains of bodies without mass leave the metric singular by itself, which its pivots do not tell apart
-  // from redundant rows: the rank of the rows alone.
-  Linearization l;
-  linearize_constraints(problem.system, problem.parameters, w.kinematics, l);
-  PivotedQr qr;
-  if (!qr.compute(problem.scaling.column.asDiagonal() * l.constraint.transpose() *
-                  problem.scaling.row.asDiagonal()))
-    return 0;
-  return static_cast<int>(qr.rank(rank_tolerance(problem, w.residual.phi)));
+int independent_rows(const Problem& problem, Workspace& w) {
+  return w.kkt(problem).independent_rows(problem, w);
 }
 
 void best_multipliers(const Problem& problem, Workspace& w, Eigen::VectorXd& lambda) {
-  w.target = -w.residual.f.cwiseProduct(problem.scaling.column);
-  if (problem.system.rows == 0) {
-    lambda.resize(0);
-    return;
-  }
-  if (problem.is_dense()) {
-    w.constraints.multipliers(w.target, w.scaled_lambda);
-  } else {
-    w.zero_lambda.setZero(problem.system.rows);
-    w.loops.solve(w.target, w.zero_lambda, w.range_step, w.scaled_lambda);
-  }
+  w.scaled_force = -w.residual.f.cwiseProduct(problem.scaling.column);
+  w.kkt(problem).balance(w.scaled_force, w.scaled_lambda);
   lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
 }
 
 void close(const Problem& problem, Workspace& w, Eigen::VectorXd& scaled_step) {
   w.scaled_phi = -w.residual.phi.cwiseProduct(problem.scaling.row);
-  if (problem.is_dense()) {
-    w.constraints.solve(w.scaled_phi, scaled_step);
-    return;
-  }
-  w.reduced_rhs.setZero(problem.system.nv);
-  w.loops.solve(w.reduced_rhs, w.scaled_phi, scaled_step, w.scaled_lambda);
-}
-
-bool positive_definite(const Problem& problem, const Workspace& w) {
-  return problem.is_dense() ? w.hessian.positive_definite() : w.eliminator(problem).positive_definite();
-}
-
-bool singular(const Problem& problem, const Workspace& w) {
-  return problem.is_dense() ? w.hessian.singular() : !w.eliminator(problem).flat().empty();
+  w.kkt(problem).close(w.scaled_phi, scaled_step);
 }
 
 void factor(const Problem& problem, const Unknowns& z, Workspace& w) {
   interruption_point();
-  if (!problem.is_dense()) {
-    Eliminator& eliminator = w.eliminator(problem);
-    eliminator.linearize(problem, z, w.kinematics, w.residual, w.magnitudes);
-    eliminator.factor();
-    return;
-  }
-  linearize(problem.system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.linearization);
-  interruption_point();
-  factor_dense_constraints(problem, w);
-  const int n = problem.system.nv;
-  w.scaled_stiffness.resize(n, n);
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i)
-      w.scaled_stiffness(i, j) =
-          w.linearization.stiffness(i, j) * problem.scaling.column[i] * problem.scaling.column[j];
-  clear_rounding(problem, w);
-  // Below this a stiffness is rounding: the forces behind it, per radian or reach.
-  const double rounding = 1e-15;
-  if (w.constraints.rank() == 0) {
-    w.noise = rounding * w.magnitudes.force.cwiseProduct(problem.scaling.column);
-    w.hessian.factor(w.scaled_stiffness, w.noise, problem.symmetric());
-    return;
-  }
-  const Eigen::MatrixXd& basis = w.constraints.basis();
-  if (n < large::from) {
-    w.product.noalias() = w.scaled_stiffness * basis;
-    w.reduced.noalias() = basis.transpose() * w.product;
-  } else {
-    w.reduced = large::projected(w.scaled_stiffness, basis);
-  }
-  w.noise.resize(basis.cols());
-  for (Eigen::Index k = 0; k < basis.cols(); ++k) {
-    double size = 0;
-    for (int i = 0; i < n; ++i)
-      size += basis(i, k) * basis(i, k) * w.magnitudes.force[i] * problem.scaling.column[i];
-    w.noise[k] = rounding * size;
-  }
-  w.hessian.factor(w.reduced, w.noise, problem.symmetric());
+  KktSystem& kkt = w.kkt(problem);
+  kkt.linearize(problem, z, w);
+  kkt.factor();
 }
 
 void evaluate_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) {
@@ -271,39 +140,16 @@ void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w) 
 
 void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::VectorXd& phi, Workspace& w,
                  Eigen::VectorXd& scaled_step, Eigen::VectorXd& lambda) {
-  w.scaled_force = f.cwiseProduct(problem.scaling.column);
-  if (!problem.is_dense()) {
-    w.reduced_rhs = -w.scaled_force;
-    w.scaled_phi = -phi.cwiseProduct(problem.scaling.row);
-    w.eliminator(problem).solve(w.reduced_rhs, w.scaled_phi, scaled_step, w.scaled_lambda);
-    lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
-    return;
-  }
-  if (w.constraints.rank() == 0) {
-    w.reduced_rhs = -w.scaled_force;
-    w.hessian.solve(w.reduced_rhs, scaled_step);
-    lambda.setZero(problem.system.rows);
-    return;
-  }
+  w.scaled_force = -f.cwiseProduct(problem.scaling.column);
   w.scaled_phi = -phi.cwiseProduct(problem.scaling.row);
-  w.constraints.solve(w.scaled_phi, w.range_step);
-  w.target = -w.scaled_force;
-  w.target.noalias() -= w.scaled_stiffness * w.range_step;
-  const Eigen::MatrixXd& basis = w.constraints.basis();
-  w.reduced_rhs.noalias() = basis.transpose() * w.target;
-  w.hessian.solve(w.reduced_rhs, w.reduced_step);
-  scaled_step = w.range_step;
-  scaled_step.noalias() += basis * w.reduced_step;
-  // Multipliers that balance what the step leaves: jacobian^T lambda = -(f + K step).
-  w.target = -w.scaled_force;
-  w.target.noalias() -= w.scaled_stiffness * scaled_step;
-  w.constraints.multipliers(w.target, w.scaled_lambda);
+  w.kkt(problem).solve(w.scaled_force, w.scaled_phi, scaled_step, w.scaled_lambda);
   lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
 }
 
 NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const NewtonSettings& settings,
                      std::vector<double>* history) {
   NewtonOutcome outcome;
+  KktSystem& kkt = w.kkt(problem);
   w.zero_lambda.setZero(problem.system.rows);
   if (settings.to_minimum) // what loops carry decides whether the potential falls
     evaluate_with_multipliers(problem, z, w);
@@ -318,25 +164,23 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     if (outcome.converged || i >= settings.max_iterations || !std::isfinite(residual) || problem.cancelled())
       break;
     if (i > 0 || !settings.factored) factor(problem, z, w);
-    if (settings.proximal > 0) w.eliminator(problem).factor(settings.proximal);
-    if (!w.hessian.known()) break;
+    if (settings.proximal > 0) kkt.factor(settings.proximal);
+    if (!kkt.known()) break;
     // At an unstable equilibrium it stays, to say so.
     constexpr double there = 1e-6;
-    if (settings.to_minimum && residual > there && w.eliminator(problem).negative_count() > 0) {
+    if (settings.to_minimum && residual > there && kkt.negative_count() > 0) {
       outcome.falls = true;
       break;
     }
     w.trial.q = z.q;
-    const bool corrects = !problem.is_dense() && contracts;
-    find_step(problem, !corrects, z, w);
+    find_step(problem, !contracts, z, w);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > farthest) break;
-    if (settings.to_minimum && size > there && w.eliminator(problem).negative_count() > 0) break;
-    // In large mechanisms steps that stay long lead nowhere and cost much.
-    if (!problem.is_dense() && !settings.damped && i >= 3 && size > 1 && size > 0.5 * previous_step) break;
+    if (settings.to_minimum && size > there && kkt.negative_count() > 0) break;
+    if (settings.impatient && i >= 3 && size > 1 && size > 0.5 * previous_step) break;
     double fraction = 1;
     if (settings.damped) {
-      if (!problem.is_dense()) factor_constraints(problem, w); // the balance has its own factors
+      kkt.complete_constraints(problem, w);
       const double start = merit(problem, w);
       for (;; fraction /= 2) {
         z.q = w.trial.q;
@@ -357,8 +201,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     // From below that the next step is the last, and at rounding.
     constexpr double almost_there = 1e-8;
     const bool short_step = size < 1e-4 && size > almost_there;
-    if (short_step && problem.elimination() == Elimination::bodies && !settings.damped &&
-        settings.proximal == 0)
+    if (short_step && kkt.factors_cost_more() && !settings.damped && settings.proximal == 0)
       step_again(problem, size, z, w);
     // So far away only a balance that is as good as linear leads.
     if (size > far && !(scaled_residual(problem, w) < 1e-6)) break;
@@ -376,7 +219,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
       const double left = scaled_residual(problem, w);
       if (left > 1e-8) break;
       // Where a direction has no stiffness, short steps tell nothing of the force along it.
-      outcome.converged = !singular(problem, w) || (left <= 1e-13 && outcome.largest_step <= far);
+      outcome.converged = !kkt.singular() || (left <= 1e-13 && outcome.largest_step <= far);
     } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {
       outcome.converged = outcome.linear = true;
     }

@@ -1,6 +1,5 @@
-// Newton-Raphson on z = [q_R; lambda] (eqs. 21 and 22), by the null-space method: the step closes the loops
-// in the range of Phi_q^T and balances the forces in its null space, so redundant constraints do no harm and
-// the definiteness of the balance is known at every iteration.
+// Newton-Raphson on z = [q_R; lambda] (eqs. 21 and 22). The KKT matrix tells its inertia, so the definiteness
+// of the balance is known at every iteration.
 #pragma once
 
 #include "engine/kkt/workspace.hpp"
@@ -23,17 +22,12 @@ void factor_constraints(const Problem& problem, Workspace& w);
 
 // Of the factored constraints: how many do not follow from others; the multipliers that balance the evaluated
 // forces (without multipliers) best, in N or N m; the shortest scaled step that closes the loops.
-int independent_rows(const Problem& problem, const Workspace& w);
+int independent_rows(const Problem& problem, Workspace& w);
 void best_multipliers(const Problem& problem, Workspace& w, Eigen::VectorXd& lambda);
 void close(const Problem& problem, Workspace& w, Eigen::VectorXd& scaled_step);
 
 // Linearises and factors at an evaluated state.
 void factor(const Problem& problem, const Unknowns& z, Workspace& w);
-
-// Of the factored balance, where it is the gradient of a potential.
-bool positive_definite(const Problem& problem, const Workspace& w);
-// Some direction has no stiffness.
-bool singular(const Problem& problem, const Workspace& w);
 
 // At any state, with the multipliers that balance it best: evaluates; and factors, too.
 void evaluate_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w);
@@ -48,14 +42,16 @@ struct NewtonSettings {
   int max_iterations = 30;
   bool damped = false;          // halve steps until the scaled residual falls
   double step_tolerance = 1e-9; // scaled; quadratic convergence puts the error at its square
-  // 1/s^2, of the metric added to the stiffness of an eliminated problem: it keeps still what nothing
-  // resists, where rounding and what is left of the forces look like a little stiffness of either sign
-  // (regularised Newton method; Li, Fukushima, Qi, Yamashita, Regularized Newton methods for convex
-  // minimization problems with singular solutions, 2004).
+  // 1/s^2, of the metric added to the stiffness: it keeps still what nothing resists, where rounding and what
+  // is left of the forces look like a little stiffness of either sign (regularised Newton method; Li,
+  // Fukushima, Qi, Yamashita, Regularized Newton methods for convex minimization problems with singular
+  // solutions, 2004).
   double proximal = 0;
   bool trusting = false;   // stop where the next step would be within the tolerance by the last two's ratio
   bool to_minimum = false; // of a large mechanism: give up where the potential falls some way
-  bool factored = false;   // the balance at z is evaluated and factored, and the first step takes that
+  bool impatient =
+      false;             // give up where steps stay long: in large mechanisms they lead nowhere and cost much
+  bool factored = false; // the balance at z is evaluated and factored, and the first step takes that
 };
 
 struct NewtonOutcome {

@@ -1,7 +1,5 @@
 #include "engine/solve/refine.hpp"
 
-#include "engine/kkt/eliminator.hpp"
-
 #include <bit>
 
 namespace flyball {
@@ -133,14 +131,15 @@ class SoftDirection {
   // The Newton step with a stiffness along the direction like those of the others.
   void find_way_back() {
     factor(p_, moved_, w_);
-    const Eigen::MatrixXd& basis = w_.constraints.basis();
+    const Eigen::MatrixXd& basis = w_.dense.constraints().basis();
     // Where the scale is none nothing is felt at all.
-    const Eigen::ArrayXd unit = (w_.hessian.scale().array() > 0).select(1 / w_.hessian.scale().array(), 0);
+    const Eigen::ArrayXd unit =
+        (w_.dense.hessian().scale().array() > 0).select(1 / w_.dense.hessian().scale().array(), 0);
     const Eigen::VectorXd held = (basis.transpose() * direction_).cwiseProduct(unit.matrix()).normalized();
     const Eigen::VectorXd by_coordinate = held.cwiseProduct(unit.matrix());
-    stiffness_ = w_.constraints.rank() == 0 ? w_.scaled_stiffness : w_.reduced;
+    stiffness_ = w_.dense.reduced();
     stiffness_ += by_coordinate * by_coordinate.transpose();
-    hessian_.factor(stiffness_, w_.noise, p_.symmetric());
+    hessian_.factor(stiffness_, w_.dense.noise(), p_.symmetric());
     const Eigen::VectorXd rhs = -basis.transpose() * w_.residual.f.cwiseProduct(p_.scaling.column);
     hessian_.solve(rhs, back_);
     w_.scaled_step = basis * back_;
@@ -177,17 +176,17 @@ double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorX
 // Whether loops whose equations depend on each other here do so no longer some way along: arms straight, a
 // linkage flat. There lengths change with the square of the angles.
 bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) {
-  const int rank = w.constraints.rank();
+  const int rank = w.dense.constraints().rank();
   w.trial.q = z.q;
   w.trial.lambda = z.lambda;
   w.scaled_step.setZero(problem.system.nv);
-  for (Eigen::Index c = 0; c < w.constraints.basis().cols(); ++c)
-    w.scaled_step += 1e-4 * w.constraints.basis().col(c);
+  for (Eigen::Index c = 0; c < w.dense.constraints().basis().cols(); ++c)
+    w.scaled_step += 1e-4 * w.dense.constraints().basis().col(c);
   w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
   retract<double>(problem.system, w.step, w.trial.q);
   evaluate(problem, w.trial, 0, w);
   factor_constraints(problem, w);
-  const bool more = w.constraints.rank() > rank;
+  const bool more = w.dense.constraints().rank() > rank;
   evaluate(problem, z, 0, w);
   factor(problem, z, w);
   return more;
@@ -200,14 +199,14 @@ double asked_for(const Problem& problem, const Eigen::VectorXd& direction, const
   const double force =
       std::abs(direction.dot(w.residual.f.cwiseProduct(problem.scaling.column))) +
       8 * extended_rounding * size.dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
-  const double stiffness = std::abs(direction.dot(w.scaled_stiffness * direction));
+  const double stiffness = std::abs(direction.dot(w.dense.stiffness() * direction));
   const double noise =
-      8 * std::numeric_limits<double>::epsilon() * size.dot(w.scaled_stiffness.cwiseAbs() * size);
+      8 * std::numeric_limits<double>::epsilon() * size.dot(w.dense.stiffness().cwiseAbs() * size);
   return stiffness > noise ? force / stiffness : 0;
 }
 
 void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, Eigen::VectorXd& error) {
-  Eigen::MatrixXd flat = w.constraints.basis() * w.hessian.null_basis();
+  Eigen::MatrixXd flat = w.dense.constraints().basis() * w.dense.hessian().null_basis();
   Eigen::VectorXd asked = Eigen::VectorXd::Zero(flat.cols());
   evaluate_extended(problem, z, w);
   for (Eigen::Index c = 0; c < flat.cols(); ++c) {
@@ -234,12 +233,11 @@ void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, 
 // A metric that held what seemed to feel nothing shortens the steps along what feels a little: without it,
 // unless something is flat indeed.
 void let_go(const Problem& problem, Workspace& w) {
-  if (problem.is_dense()) return;
-  Eliminator& e = w.eliminator(problem);
-  const double shift = e.shift();
+  KktSystem& kkt = w.kkt(problem);
+  const double shift = kkt.shift();
   if (shift == 0) return;
-  e.factor();
-  if (e.flat().size() > e.loose()) e.factor(shift);
+  kkt.factor();
+  if (kkt.null_count() > kkt.force_free_count()) kkt.factor(shift);
 }
 
 } // namespace
@@ -252,6 +250,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   w.data_error.setZero(system.nv);
   if (system.nv == 0) return;
   let_go(problem, w);
+  const DenseKkt* dense = w.matrices(problem);
   double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
   constexpr int last_round = 4;
   for (int round = 0; round <= last_round; ++round) {
@@ -263,9 +262,9 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
     const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
     w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
     error = w.step.cwiseAbs();
-    if (problem.is_dense() && w.constraints.rank() < system.rows) {
+    if (dense && dense->constraints().rank() < system.rows) {
       w.scaled_phi = w.residual.phi.cwiseProduct(problem.scaling.row);
-      w.scaled_phi.noalias() += w.scaled_jacobian * w.scaled_step;
+      w.scaled_phi.noalias() += dense->jacobian() * w.scaled_step;
       opening = w.scaled_phi.lpNorm<Eigen::Infinity>();
     }
     if (size > 0.5 * previous) { // no longer contracting: rounding, or a singular state
@@ -284,10 +283,10 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   add_noise(problem, left, opening, w, error);
   add_rounding_of_data(problem, w, w.data_error);
   error += extended_rounding * problem.scaling.column;
-  if (problem.is_dense() && w.constraints.rank() < std::min(system.rows, system.nv) &&
+  if (dense && dense->constraints().rank() < std::min(system.rows, system.nv) &&
       at_singular_loops(problem, z, w))
     error += 4 * std::sqrt(opening + extended_rounding) * problem.scaling.column;
-  if (problem.is_dense() && w.hessian.singular()) add_singular_directions(problem, z, w, error);
+  if (dense && dense->singular()) add_singular_directions(problem, z, w, error);
   for (const Link& link : system.links) {
     if (link.v < 0) continue;
     const int n = link.type == LinkType::spherical ? 3 : 1;

@@ -24,7 +24,7 @@ void put_back(const Mechanism& mechanism, const std::string& address, Mechanism&
 std::vector<Eigen::VectorXd> sensitivities(const Problem& problem, const Mechanism& mechanism,
                                            const Unknowns& z, std::span<const std::string> addresses,
                                            Workspace& w) {
-  if (singular(problem, w)) return {};
+  if (w.kkt(problem).singular()) return {};
   const System& system = problem.system;
   Mechanism varied;
   varied.gravity = mechanism.gravity;

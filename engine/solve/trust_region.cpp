@@ -15,9 +15,7 @@ constexpr double farthest_turn = 1;
 class TrustRegion {
  public:
   TrustRegion(const Problem& problem, Unknowns& z, Workspace& w, std::vector<double>* history)
-      : p_(problem), z_(z), w_(w),
-        e_(problem.is_dense() ? static_cast<Eliminator&>(w.tree) : w.eliminator(problem)), history_(history) {
-  }
+      : p_(problem), z_(z), w_(w), kkt_(w.kkt(problem)), history_(history) {}
 
   DescentOutcome run(bool all_the_way, bool falls) {
     falls_ = falls;
@@ -27,7 +25,7 @@ class TrustRegion {
     } else {
       linearize_here();
     }
-    unit_ = std::sqrt(e_.mass()) * p_.parameters.length;
+    unit_ = std::sqrt(kkt_.mass()) * p_.parameters.length;
     radius_ = 0.5 * unit_;
     double travelled = 0;
     int shortened = 0;
@@ -39,7 +37,7 @@ class TrustRegion {
         shorten_step(0.25);
       const double size = step_.lpNorm<Eigen::Infinity>();
       if (shortened == 0 && (shift_ == 0 || shy_) && size < 1e-8)
-        return {DescentEnd::minimum, i, !p_.is_dense() && e_.shift() == 0 && !convex_};
+        return {DescentEnd::minimum, i, kkt_.shift() == 0 && !convex_};
       if (!(predicted_ > 0) || !std::isfinite(size))
         return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
       Trial trial = move(1);
@@ -137,7 +135,8 @@ class TrustRegion {
       const double open = w_.residual.phi.cwiseProduct(p_.scaling.row).lpNorm<Eigen::Infinity>();
       if (open < 1e-13) return true;
       if (open < 1e-6 && w_.residual.phi.cwiseAbs().dot(z_.lambda.cwiseAbs()) < enough) return true;
-      if (!(open < 2 * before) || (!(open < 0.5 * before) && ++slow > 3)) return open < 1e-11;
+      if (!(open < 2 * before) || (!(open < 0.5 * before) && ++slow > 3))
+        return open < std::max(1e-11, std::min(2 * open_, 1e-9));
       if (!(open < 0.1 * before) && i > 0) {
         factor_constraints(p_, w_);
         almost_there_ = true;
@@ -188,7 +187,7 @@ class TrustRegion {
 
   void linearize_evaluated() {
     take_in();
-    e_.linearize(p_, z_, w_.kinematics, w_.residual, w_.magnitudes);
+    kkt_.linearize(p_, z_, w_);
   }
 
   // What has been evaluated at z_.
@@ -196,6 +195,7 @@ class TrustRegion {
     if (history_) history_->push_back(scaled_residual(p_, w_));
     gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
     force_ = largest(w_.magnitudes.force.cwiseProduct(p_.scaling.column));
+    open_ = p_.system.rows == 0 ? 0 : w_.residual.phi.cwiseProduct(p_.scaling.row).lpNorm<Eigen::Infinity>();
     convex_ = false;
     least_shift_ = 0;
   }
@@ -203,20 +203,20 @@ class TrustRegion {
   // The step for K + shift W; true where that is positive definite, apart from directions that nothing
   // resists and nothing pushes.
   bool solve_with(double shift) {
-    e_.factor(shift);
-    if (e_.negative_count() > 0) return false;
-    for (const Eliminator::Flat& flat : e_.flat()) {
+    kkt_.factor(shift);
+    if (kkt_.negative_count() > 0) return false;
+    for (const KktSystem::NullDirection& direction : kkt_.null_directions()) {
       double push = 0;
-      for (const auto& [v, share] : flat)
+      for (const auto& [v, share] : direction)
         push += share * gradient_[v];
       if (std::abs(push) > 1e-9 * force_) return false;
     }
     shift_ = shift;
     rhs_ = -gradient_;
-    e_.solve(rhs_, step_);
-    multipliers_ = e_.multipliers();
-    const bool held = e_.hold_turns(farthest_turn, step_);
-    length_ = std::sqrt(e_.metric_of_solution(step_, metric_step_));
+    kkt_.solve(rhs_, step_);
+    multipliers_ = kkt_.multipliers();
+    const bool held = kkt_.limit_turns(farthest_turn, step_);
+    length_ = std::sqrt(kkt_.metric_of_solution(step_, metric_step_));
     // What is held promises more; along the rest the model has come to its end.
     predicted_ = (-gradient_.dot(step_) + (held ? 0 : shift * length_ * length_)) / 2;
     return std::isfinite(length_);
@@ -245,20 +245,21 @@ class TrustRegion {
     if (low == 0 && !in_vain && solve_with(0)) {
       if (length_ <= 1.25 * radius_) return;
       low_definite = true;
-    } else if (!convex_ && e_.linearize_convex(p_, z_, w_.kinematics, w_.residual, w_.magnitudes)) {
+    } else if (!convex_ && kkt_.linearize_convex(p_, z_, w_)) {
       convex_ = true;
       least_shift_ = low = 0;
       low_definite = solve_with(0);
       if (low_definite && step_.lpNorm<Eigen::Infinity>() < 1e-6) {
-        e_.linearize(p_, z_, w_.kinematics, w_.residual, w_.magnitudes);
+        kkt_.linearize(p_, z_, w_);
         low_definite = false;
       } else if (low_definite && length_ <= 1.25 * radius_) {
         return;
       }
     }
-    double shift = low_definite      ? low + newton_on_length()
-                   : last_shift_ > 0 ? std::max(last_shift_, 2 * low)
-                                     : std::max(potential_.magnitude / (unit_ * unit_), 1e-300);
+    double shift = low_definite ? low + newton_on_length()
+                   : last_shift_ > 0
+                       ? std::max(last_shift_, 2 * low)
+                       : std::max(std::max(potential_.magnitude, force_) / (unit_ * unit_), 1e-300);
     for (int tries = 0; tries < 100; ++tries) {
       if (!solve_with(shift)) {
         least_shift_ = low = std::max(low, shift);
@@ -312,7 +313,7 @@ class TrustRegion {
 
   // What to add to the shift for a step as long as the radius, by Newton's method on 1/length.
   double newton_on_length() {
-    e_.solve(metric_step_, other_);
+    kkt_.solve(metric_step_, other_);
     const double decline = metric_step_.dot(other_);
     return decline > 0 ? length_ * length_ / decline * (length_ - radius_) / radius_ : 0;
   }
@@ -325,11 +326,11 @@ class TrustRegion {
     way_.resize(step_.size());
     for (double& x : way_)
       x = any(random);
-    double size = std::sqrt(e_.metric(way_, other_));
+    double size = std::sqrt(kkt_.metric(way_, other_));
     for (int i = 0; i < 6; ++i) {
       way_image_ = other_ / size;
-      e_.solve(way_image_, way_);
-      size = std::sqrt(e_.metric_of_solution(way_, other_));
+      kkt_.solve(way_image_, way_);
+      size = std::sqrt(kkt_.metric_of_solution(way_, other_));
     }
     way_ /= size;
     way_image_ /= size;
@@ -338,7 +339,7 @@ class TrustRegion {
   // Away from balance curvatures of the size of the forces come and go with the choice of coordinates, as
   // along turns that nothing resists: bent coordinates q = r + C(r, r) / 2 add C of the gradient to them.
   bool falls_by_coordinates() const {
-    const double fall = e_.shift() - way_image_.dot(way_);
+    const double fall = kkt_.shift() - way_image_.dot(way_);
     return fall < 2 * gradient_.norm() * way_.squaredNorm();
   }
 
@@ -374,12 +375,13 @@ class TrustRegion {
   const Problem& p_;
   Unknowns& z_;
   Workspace& w_;
-  Eliminator& e_;
+  KktSystem& kkt_;
   std::vector<double>* history_;
   Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
   Eigen::VectorXd multipliers_;     // their change by the step, scaled
   Eigen::VectorXd way_, way_image_; // of lowest curvature, and what was factored times it
   Potential potential_;
+  double open_ = 0; // the loops, at z_, scaled
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
   double shift_ = 0, last_shift_ = 0;
   double least_shift_ = 0;         // below this K + shift W is known not to be positive definite
@@ -393,9 +395,19 @@ class TrustRegion {
 
 } // namespace
 
-DescentOutcome descend_by_trust(const Problem& problem, Unknowns& z, Workspace& w,
-                                std::vector<double>* history, bool all_the_way, bool falls) {
-  return TrustRegion(problem, z, w, history).run(all_the_way, falls);
+bool has_descent(const Problem& problem) {
+  return problem.system.conservative && (problem.symmetric() || problem.form == KktForm::dense);
+}
+
+DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::vector<double>* history,
+                       bool all_the_way, bool falls) {
+  Problem potential = problem;
+  potential.as_gradient = true;
+  // Which limits turns, and keeps light parts beside heavy ones apart.
+  if (is_plain_tree(problem.system) && problem.system.single_drives) potential.form = KktForm::tree;
+  DescentOutcome outcome = TrustRegion(potential, z, w, history).run(all_the_way, falls);
+  outcome.factored = outcome.factored && potential.form == problem.form && problem.symmetric();
+  return outcome;
 }
 
 } // namespace flyball

@@ -1,6 +1,6 @@
 #include "engine/solve/unbounded.hpp"
 
-#include "engine/solve/trust_region.hpp"
+#include "engine/solve/eigenvector_descent.hpp"
 #include "engine/system/linearization.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class Search {
   Unbounded run() {
     if (p_.system.nv == 0 || !assemble(p_, start_, 0, w_)) return {};
     along_coordinates();
-    if (pushed_.empty() && p_.system.conservative && (p_.is_dense() || p_.symmetric())) downhill();
+    if (pushed_.empty() && has_descent(p_)) downhill();
     Unbounded out;
     if (pushed_.empty() || p_.cancelled()) return out;
     blame(out);
@@ -77,8 +77,8 @@ class Search {
     const Eigen::VectorXd slopes = w_.residual.f, sizes = w_.magnitudes.force;
     Eigen::MatrixXd loops;
     if (system.rows > 0) {
-      linearize_constraints(system, p_.parameters, w_.kinematics, w_.linearization);
-      loops = w_.linearization.constraint;
+      linearize_constraints(system, p_.parameters, w_.kinematics, w_.dense.linearization);
+      loops = w_.dense.linearization.constraint;
     }
     for (const Link& link : system.links) {
       if (p_.cancelled()) return;
@@ -97,12 +97,10 @@ class Search {
   // A descent without a bottom shows by what has moved.
   void downhill() {
     Unknowns z{start_, Eigen::VectorXd::Zero(p_.system.rows)};
-    const bool trusted = !p_.is_dense() || (p_.symmetric() && is_plain_tree(p_.system));
-    DescentOutcome descent;
-    if (trusted) descent = descend_by_trust(p_, z, w_, nullptr, true, false);
-    if (descent.end != DescentEnd::unbounded && p_.is_dense() && !p_.cancelled()) {
+    DescentOutcome descent = descend(p_, z, w_, nullptr, true, false);
+    if (descent.end != DescentEnd::unbounded && p_.form == KktForm::dense && !p_.cancelled()) {
       z = {start_, Eigen::VectorXd::Zero(p_.system.rows)};
-      descent = descend(p_, z, w_, nullptr);
+      descent = descend_by_eigenvectors(p_, z, w_, nullptr);
     }
     if (descent.end != DescentEnd::unbounded || !z.q.allFinite()) return;
     end_ = z.q;
@@ -139,7 +137,7 @@ class Search {
     const auto without = [&](const auto& change) {
       Parameters parameters = p_.parameters;
       change(parameters);
-      const double rest = push({p_.system, parameters, p_.scaling, p_.cancel, p_.eliminated});
+      const double rest = push({p_.system, parameters, p_.scaling, p_.cancel, p_.form});
       return rest >= 1e-6 * whole; // `whole` is negative
     };
     out.by_weight = p_.parameters.gravity.norm() > 0 && without([](Parameters& p) { p.gravity.setZero(); });
@@ -206,20 +204,17 @@ bool weight_turns(const Problem& problem, const Eigen::VectorXd& q, double t, Wo
   if (!(problem.parameters.gravity.norm() > 0)) return false;
   Parameters weightless = problem.parameters;
   weightless.gravity.setZero();
-  const bool dense = problem.system.rows > 0 && problem.system.nv > largest_with_loops;
-  if (dense) return false; // projecting on the loops would take too long
   // How much the balance on the closed loops changes from the drawn phase.
   const auto change = [&](const Parameters& parameters) {
-    const Problem part{problem.system, parameters, problem.scaling, problem.cancel};
+    const Problem part{problem.system, parameters, problem.scaling, problem.cancel, problem.form};
     Eigen::VectorXd f[2];
     for (const int i : {0, 1}) {
       evaluate(part, {q, Eigen::VectorXd::Zero(problem.system.rows)}, i == 0 ? 0 : t, w);
-      f[i] = w.residual.f.cwiseProduct(problem.scaling.column);
-      if (problem.system.rows == 0) continue;
       factor_constraints(part, w);
-      f[i] = Eigen::VectorXd(w.constraints.basis().transpose() * f[i]);
+      w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
+      w.kkt(part).project(w.scaled_force, f[i]);
     }
-    return f[0].size() == f[1].size() ? (f[1] - f[0]).norm() : std::numeric_limits<double>::infinity();
+    return (f[1] - f[0]).norm();
   };
   const double whole = change(problem.parameters);
   return std::isfinite(whole) && change(weightless) <= 1e-6 * whole;

@@ -15,10 +15,10 @@ bool is_gyroscopically_stable(const Problem& problem, const Unknowns& z, Workspa
   evaluate(whole, z, 0, w);
   factor(whole, z, w);
   // Without gyroscopic forces what falls goes on falling: no eigenvalues are needed to know.
-  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.linearization);
-  const Eigen::MatrixXd basis = problem.scaling.column.asDiagonal() * w.constraints.basis();
-  const Eigen::MatrixXd velocity = basis.transpose() * w.linearization.velocity * basis;
-  const double rounding = 1e-14 * basis.squaredNorm() * w.linearization.velocity.norm();
+  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
+  const Eigen::MatrixXd basis = problem.scaling.column.asDiagonal() * w.dense.constraints().basis();
+  const Eigen::MatrixXd velocity = basis.transpose() * w.dense.linearization.velocity * basis;
+  const double rounding = 1e-14 * basis.squaredNorm() * w.dense.linearization.velocity.norm();
   if ((velocity - velocity.transpose()).norm() <= rounding) return false;
   const Stability stability = find_stability(whole, z, false, w);
   return stability.reason == StabilityReason::gyroscopic_only ||

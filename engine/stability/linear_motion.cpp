@@ -44,16 +44,16 @@ LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, dou
     factor_constraints(dense, w);
     best_multipliers(dense, w, z.lambda);
     evaluate_forces(dense, z, w);
-    out.basis = w.constraints.basis();
+    out.basis = w.dense.constraints().basis();
   } else {
     out.basis.setIdentity(system.nv, system.nv);
   }
-  linearize(system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.linearization);
-  linearize_motion(system, problem.parameters, z.q, w.kinematics, w.linearization);
+  linearize(system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.dense.linearization);
+  linearize_motion(system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
   const auto s = problem.scaling.column.asDiagonal();
-  out.mass = s * w.linearization.mass * s;
-  out.velocity = s * w.linearization.velocity * s;
-  out.stiffness = s * w.linearization.stiffness * s;
+  out.mass = s * w.dense.linearization.mass * s;
+  out.velocity = s * w.dense.linearization.velocity * s;
+  out.stiffness = s * w.dense.linearization.stiffness * s;
   out.force = w.magnitudes.force.cwiseProduct(problem.scaling.column);
   return out;
 }

@@ -31,22 +31,21 @@ class ShiftedMotion {
 
   MotionProducts products;
 
-  bool on_tree() const { return problem_.elimination() == Elimination::tree; }
+  bool on_tree() const { return problem_.form == KktForm::tree; }
 
   // Factors K + rate (C + G) + rate^2 M. Only trees can have a rate.
   void shift_to(double rate) {
     rate_ = rate;
     if (on_tree())
-      tree_.linearize_motion(problem_, z_, w_.kinematics, w_.residual, w_.magnitudes, rate,
-                             rate != 0 && products.velocity_matters());
+      tree_.linearize_motion(problem_, z_, w_, rate, rate != 0 && products.velocity_matters());
     else
-      bodies_.linearize(problem_, z_, w_.kinematics, w_.residual, w_.magnitudes);
+      sparse_.linearize(problem_, z_, w_);
     factors().factor();
   }
   double rate() const { return rate_; }
 
   // Directions that feel no stiffness, beside those that feel nothing at all.
-  bool singular() { return factors().flat().size() > factors().loose(); }
+  bool singular() { return factors().null_count() > factors().force_free_count(); }
 
   // x with the constant term times x and constraint forces, by `lambda`, equal to rhs.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
@@ -58,7 +57,7 @@ class ShiftedMotion {
   // About the lowest rate, 1/s: by a few inverse iterations on what moves at all. Zero where nothing resists.
   double about_lowest() {
     constexpr int iterations = 4;
-    Eliminator& e = factors();
+    KktSystem& e = factors();
     Eigen::VectorXd x(products.coordinates()), y;
     std::mt19937 random(3);
     for (double& entry : x)
@@ -88,12 +87,12 @@ class ShiftedMotion {
   }
 
  private:
-  Eliminator& factors() { return on_tree() ? static_cast<Eliminator&>(tree_) : bodies_; }
+  KktSystem& factors() { return on_tree() ? static_cast<KktSystem&>(tree_) : sparse_; }
   const Problem& problem_;
   const Unknowns& z_;
   Workspace& w_;
-  TreeElimination tree_;
-  BodyElimination bodies_;
+  TreeKkt tree_;
+  SparseKkt sparse_;
   double rate_ = 0;
   Eigen::VectorXd none_;
 };

@@ -24,13 +24,13 @@ struct ReducedMotion {
 ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspace& w) {
   evaluate(problem, z, 0, w);
   factor(problem, z, w);
-  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.linearization);
-  const Eigen::MatrixXd& basis = w.constraints.basis();
+  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
+  const Eigen::MatrixXd& basis = w.dense.constraints().basis();
   const auto& s = problem.scaling.column;
   ReducedMotion out;
-  out.mass = large::projected(s.asDiagonal() * w.linearization.mass * s.asDiagonal(), basis);
-  out.velocity = large::projected(s.asDiagonal() * w.linearization.velocity * s.asDiagonal(), basis);
-  out.stiffness = large::projected(w.scaled_stiffness, basis);
+  out.mass = large::projected(s.asDiagonal() * w.dense.linearization.mass * s.asDiagonal(), basis);
+  out.velocity = large::projected(s.asDiagonal() * w.dense.linearization.velocity * s.asDiagonal(), basis);
+  out.stiffness = large::projected(w.dense.stiffness(), basis);
   const double m = out.mass.norm(), k = out.stiffness.norm();
   if (m > 0 && k > 0) out.rate = std::sqrt(k / m);
   out.velocity *= out.rate;
@@ -171,7 +171,7 @@ std::vector<VibrationMode> find_modes(const Problem& problem, const Unknowns& z,
     for (Eigen::Index j = 0; j < shapes.vectors.cols(); ++j) {
       const double residual = shapes.residuals[static_cast<std::size_t>(j)];
       if (j > 0 && !(residual <= 1e-10)) break;
-      modes.push_back(describe_mode(problem, z.q, w.constraints.basis() * shapes.vectors.col(j),
+      modes.push_back(describe_mode(problem, z.q, w.dense.constraints().basis() * shapes.vectors.col(j),
                                     cluster[static_cast<std::size_t>(j)], residual));
     }
   }
@@ -200,13 +200,8 @@ StabilityEvidence stability_evidence(const Problem& problem, const Unknowns& z, 
   evaluate(problem, z, 0, w);
   factor(problem, z, w);
   out.potential = has_potential(problem, z, w);
-  const Eigen::MatrixXd& basis = w.constraints.basis();
-  w.noise.resize(basis.cols());
-  for (Eigen::Index i = 0; i < basis.cols(); ++i)
-    w.noise[i] =
-        1e-15 * basis.col(i).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
   ReducedHessian energy;
-  energy.factor(large::projected(w.scaled_stiffness, basis), w.noise, out.potential);
+  energy.factor(w.dense.reduced(), w.dense.noise(), out.potential);
   out.flat = energy.null_count();
   if (out.potential && !energy.positive_definite() && energy.size() > 0) {
     if (energy.decompose())

@@ -13,7 +13,7 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
                     Workspace& w) {
   Unknowns moved = z;
   Eigen::VectorXd step = way, multipliers;
-  const double shift = w.eliminator(problem).shift();
+  const double shift = w.kkt(problem).shift();
   const auto balanced = [&] {
     const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     const double left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
@@ -32,7 +32,7 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
       if (balanced()) return true;
     }
     factor(problem, moved, w);
-    if (shift > 0) w.eliminator(problem).factor(shift);
+    if (shift > 0) w.kkt(problem).factor(shift);
     newton_step(problem, w.residual.f, w.residual.phi, w, step, multipliers);
     if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
   }
@@ -44,7 +44,7 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
   constexpr int samples = 4, iterations = 4;
   constexpr double rounding = 1e-11; // the way is short, since what is held comes back far along it
   Stability out;
-  Eliminator& e = w.eliminator(problem);
+  KktSystem& e = w.kkt(problem);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any(-1, 1);
   Eigen::VectorXd way, one(problem.system.nv), image;
@@ -61,7 +61,7 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
       if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
     if (i == 0) way = one;
   }
-  for (const Eliminator::Flat& f : e.flat()) // and what feels nothing at all
+  for (const KktSystem::NullDirection& f : e.null_directions()) // and what feels nothing at all
     for (const auto& [v, share] : f)
       if (std::abs(share) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
   const bool balanced = stays_balanced(problem, z, 0.002 * way, rounding, w) &&
@@ -77,31 +77,31 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
 Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w) {
   Stability out;
   if (!problem.symmetric()) return out;
-  if (w.eliminator(problem).shift() > 0) return of_held_directions(problem, z, w);
-  const int negative = w.eliminator(problem).negative_count();
-  if (w.eliminator(problem).positive_definite()) {
+  if (w.kkt(problem).shift() > 0) return of_held_directions(problem, z, w);
+  const int negative = w.kkt(problem).negative_count();
+  if (w.kkt(problem).positive_definite()) {
     out.stable = true;
     out.reason = StabilityReason::minimum;
   } else if (negative % 2 == 1) {
     out.stable = false;
     out.reason = StabilityReason::unstable;
   }
-  if (w.eliminator(problem).flat().empty()) return out;
+  if (!w.kkt(problem).singular()) return out;
 
   // All at once: either nothing resists any of them, or the state is singular.
-  const std::vector<Eliminator::Flat> flat = w.eliminator(problem).flat();
+  const std::vector<KktSystem::NullDirection> flat = w.kkt(problem).null_directions();
   Eigen::VectorXd all = Eigen::VectorXd::Zero(problem.system.nv), one;
   std::vector<bool> takes_part(static_cast<std::size_t>(problem.system.nv));
   if (flat.size() <= 100) {
-    for (const Eliminator::Flat& f : flat) {
-      w.eliminator(problem).direction_of(f, one);
+    for (const KktSystem::NullDirection& f : flat) {
+      w.kkt(problem).direction_of(f, one);
       one /= one.lpNorm<Eigen::Infinity>();
       for (int v = 0; v < problem.system.nv; ++v)
         if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
       all += one;
     }
   } else { // each by itself would cost too much: without what follows beyond
-    for (const Eliminator::Flat& f : flat)
+    for (const KktSystem::NullDirection& f : flat)
       for (const auto& [v, share] : f)
         if (std::abs(share) > 1e-6) {
           takes_part[static_cast<std::size_t>(v)] = true;

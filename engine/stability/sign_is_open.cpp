@@ -4,24 +4,27 @@ namespace flyball {
 
 bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& error, bool minimum,
                   Workspace& w) {
-  if (problem.system.nv == 0 || !problem.is_dense() || !problem.symmetric()) return false;
+  DenseKkt* dense = w.matrices(problem);
+  if (problem.system.nv == 0 || !dense || !problem.symmetric()) return false;
   const double away = error.cwiseQuotient(problem.scaling.column).lpNorm<Eigen::Infinity>();
   if (minimum && away < 1e-11) return false;
   Unknowns here = z;
   factor_with_multipliers(problem, here, w);
-  if (w.hessian.size() == 0) return false;
-  if (w.hessian.singular()) {
+  ReducedHessian& hessian = dense->hessian();
+  if (hessian.size() == 0) return false;
+  if (hessian.singular()) {
     // Whatever is left open in a direction without stiffness, another one may fall for certain.
     constexpr double certain = 1e-6;
-    return !(w.hessian.decompose() && w.hessian.eigenvalues()[0] < -certain);
+    return !(hessian.decompose() && hessian.eigenvalues()[0] < -certain);
   }
-  if (!w.hessian.decompose()) return true;
+  if (!hessian.decompose()) return true;
   Eigen::Index softest = 0;
-  w.hessian.eigenvalues().cwiseAbs().minCoeff(&softest);
-  Eigen::VectorXd way = w.hessian.eigenvectors().col(softest).cwiseProduct(w.hessian.scale());
-  if (problem.system.rows > 0 && w.constraints.rank() > 0) way = (w.constraints.basis() * way).eval();
+  hessian.eigenvalues().cwiseAbs().minCoeff(&softest);
+  Eigen::VectorXd way = hessian.eigenvectors().col(softest).cwiseProduct(hessian.scale());
+  if (problem.system.rows > 0 && dense->constraints().rank() > 0)
+    way = (dense->constraints().basis() * way).eval();
   way /= way.lpNorm<Eigen::Infinity>();
-  const auto stiffness = [&] { return way.dot(w.scaled_stiffness * way); };
+  const auto stiffness = [&] { return way.dot(dense->stiffness() * way); };
   const double noise = 4 * std::numeric_limits<double>::epsilon() *
                        way.cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
   const double least = stiffness();

@@ -27,7 +27,7 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Matr
     retract<double>(problem.system, w.step, moved.q);
     if (!assemble(problem, moved.q, 0, w)) return false;
     evaluate_with_multipliers(problem, moved, w);
-    const Eigen::MatrixXd& basis = w.constraints.basis();
+    const Eigen::MatrixXd& basis = w.dense.constraints().basis();
     const Eigen::VectorXd left = basis.transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
     const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
@@ -35,7 +35,7 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Matr
     const auto all = orthonormal_completion(basis.transpose() * flat);
     if (!all || all->cols() <= flat.cols()) return false;
     const auto rest = all->rightCols(all->cols() - flat.cols());
-    const auto solved = least_squares(large::projected(w.scaled_stiffness, basis) * rest, -left);
+    const auto solved = least_squares(large::projected(w.dense.stiffness(), basis) * rest, -left);
     if (!solved) return false;
     step = basis * (rest * *solved);
     if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
@@ -129,7 +129,7 @@ bool can_compare_phases(const System& system) {
 bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
   if (!problem.system.conservative) return false;
   if (problem.system.single_drives) return true;
-  const Eigen::MatrixXd k = w.scaled_stiffness;
+  const Eigen::MatrixXd k = w.dense.stiffness();
   if ((k - k.transpose()).norm() > 1e-9 * k.norm()) return false;
   // Second differences of U + lambda . Phi, whose gradient is f.
   const auto lagrangian = [&](int i, double step) {
@@ -161,14 +161,10 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   evaluate(problem, z, 0, w);
   factor(problem, z, w);
   const bool potential = has_potential(problem, z, w);
-  const Eigen::MatrixXd basis = w.constraints.basis();
+  const Eigen::MatrixXd basis = w.dense.constraints().basis();
   ReducedHessian energy; // symmetric where there is a potential, whatever Newton used
-  const Eigen::MatrixXd reduced = large::projected(w.scaled_stiffness, basis);
-  w.noise.resize(basis.cols());
-  for (Eigen::Index i = 0; i < basis.cols(); ++i)
-    w.noise[i] =
-        1e-15 * basis.col(i).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
-  energy.factor(reduced, w.noise, potential);
+  const Eigen::MatrixXd reduced = w.dense.reduced();
+  energy.factor(reduced, w.dense.noise(), potential);
   const bool minimum = potential && !varies && energy.positive_definite();
   if (minimum) {
     out.stable = true;
@@ -211,12 +207,12 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   }
   if (minimum && !with_eigenvalues) return out;
 
-  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.linearization);
+  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
   const auto& s = problem.scaling.column;
   const Eigen::MatrixXd mass =
-      large::projected(s.asDiagonal() * w.linearization.mass * s.asDiagonal(), basis);
+      large::projected(s.asDiagonal() * w.dense.linearization.mass * s.asDiagonal(), basis);
   const Eigen::MatrixXd velocity =
-      large::projected(s.asDiagonal() * w.linearization.velocity * s.asDiagonal(), basis);
+      large::projected(s.asDiagonal() * w.dense.linearization.velocity * s.asDiagonal(), basis);
   Eigen::MatrixXd stiffness = reduced;
   if (potential) stiffness = (reduced + reduced.transpose()) / 2;
   out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);

@@ -153,9 +153,9 @@ class Direct {
   // What no multipliers balance, and how far the loops are open, relative to the terms they are made of.
   double balance(Workspace& w) const {
     const Eigen::VectorXd force =
-        w.constraints.basis().transpose() * w.residual.f.cwiseProduct(scaling_.column);
-    const Eigen::VectorXd size =
-        w.constraints.basis().cwiseAbs().transpose() * w.magnitudes.force.cwiseProduct(scaling_.column);
+        w.dense.constraints().basis().transpose() * w.residual.f.cwiseProduct(scaling_.column);
+    const Eigen::VectorXd size = w.dense.constraints().basis().cwiseAbs().transpose() *
+                                 w.magnitudes.force.cwiseProduct(scaling_.column);
     double worst = 0;
     for (Eigen::Index i = 0; i < force.size(); ++i)
       if (size[i] > 0) worst = std::max(worst, std::abs(force[i]) / size[i]);

@@ -56,7 +56,7 @@ class Compiler {
     add_forces();
     list_coordinates();
     classify();
-    choose_elimination();
+    choose_kkt_form();
     s_.division = divide(s_);
     return std::move(s_);
   }
@@ -505,15 +505,15 @@ class Compiler {
   }
 
   // Below some coordinates the dense equations are faster (measured: `flyball_bench`, chains).
-  void choose_elimination() {
+  void choose_kkt_form() {
     // Without a potential stability asks for eigenvalues, and so for the matrices, as far as those are found.
     constexpr int few = 8, few_for_bodies = 60, few_without_potential = 200;
     const bool potential = s_.conservative && s_.single_drives;
     if (!no_drive_rides(s_) || s_.nv <= (potential ? few : few_without_potential)) return;
     if (is_plain_tree(s_))
-      s_.elimination = Elimination::tree;
+      s_.kkt_form = KktForm::tree;
     else if (s_.nv > few_for_bodies)
-      s_.elimination = Elimination::bodies;
+      s_.kkt_form = KktForm::sparse;
   }
 
   const Mechanism& m_;

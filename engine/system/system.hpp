@@ -132,11 +132,11 @@ struct CutChoice {
   std::vector<int> cut; // joints of the mechanism to cut, beyond those marked; empty: by preference
 };
 
-// How the linearised balance is solved. See Problem::elimination().
-enum class Elimination {
+// The form of the KKT matrix (kkt/kkt_system.hpp).
+enum class KktForm {
   dense,  // as a matrix of all coordinates: the fastest for few of them
   tree,   // along the tree, in proportion to the bodies
-  bodies, // as the sparse equations of all bodies and loops
+  sparse, // as the sparse equations of all bodies and loops
 };
 
 struct System {
@@ -160,7 +160,7 @@ struct System {
   // No drive rides on another or on a free coordinate: the inertia forces then have a potential, too (see
   // potential.hpp).
   bool single_drives = true;
-  Elimination elimination = Elimination::dense;
+  KktForm kkt_form = KktForm::dense;
   Division division;
 };
 

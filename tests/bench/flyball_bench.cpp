@@ -38,7 +38,7 @@ struct Case {
     answer = found.z;
     answer.lambda.resize(system.rows);
   }
-  Problem problem() const { return {system, parameters, scaling, nullptr, true}; }
+  Problem problem() const { return {system, parameters, scaling, nullptr, system.kkt_form}; }
   void take_numbers() {
     bind(system, mechanism, parameters);
     set_scaling(system, parameters, scaling);
@@ -102,8 +102,8 @@ void add_parts(const std::string& name, Mechanism mechanism) {
   });
   add(name, c, "linearise", [](Case& x) {
     linearize(x.system, x.parameters, x.answer.q, x.answer.lambda, x.workspace.kinematics,
-              x.workspace.residual, x.workspace.linearization);
-    benchmark::DoNotOptimize(x.workspace.linearization.stiffness.data());
+              x.workspace.residual, x.workspace.dense.linearization);
+    benchmark::DoNotOptimize(x.workspace.dense.linearization.stiffness.data());
   });
   add(name, c, "iteration", [](Case& x) {
     const Problem p = x.problem();

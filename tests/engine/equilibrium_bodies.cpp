@@ -85,30 +85,32 @@ struct Case {
   Workspace sparse, dense;
 
   explicit Case(Mechanism m) : mechanism(std::move(m)), system(compile(mechanism)) {
-    system.elimination = Elimination::bodies;
+    system.kkt_form = KktForm::sparse;
     bind(system, mechanism, parameters);
     set_scaling(system, parameters, scaling);
     drawn_configuration(system, parameters, z.q);
     z.lambda.setZero(system.rows);
   }
-  Problem problem(bool eliminated) const { return {system, parameters, scaling, nullptr, eliminated}; }
+  Problem problem(bool large) const {
+    return {system, parameters, scaling, nullptr, large ? KktForm::sparse : KktForm::dense};
+  }
   void factor_at(const Eigen::VectorXd& step) {
     retract<double>(system, step, z.q);
-    for (const bool eliminated : {false, true}) {
-      Workspace& w = eliminated ? sparse : dense;
-      evaluate(problem(eliminated), z, 0, w);
-      factor(problem(eliminated), z, w);
+    for (const bool large : {false, true}) {
+      Workspace& w = large ? sparse : dense;
+      evaluate(problem(large), z, 0, w);
+      factor(problem(large), z, w);
     }
   }
   // The whole matrix of eq. 21, scaled.
   Eigen::MatrixXd matrix() const {
     const Eigen::Index n = system.nv, m = system.rows;
-    Eigen::MatrixXd k = dense.scaled_stiffness;
+    Eigen::MatrixXd k = dense.dense.stiffness();
     if (problem(false).symmetric()) k = ((k + k.transpose()) / 2).eval();
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n + m, n + m);
     all.topLeftCorner(n, n) = k;
-    all.bottomLeftCorner(m, n) = dense.scaled_jacobian;
-    all.topRightCorner(n, m) = dense.scaled_jacobian.transpose();
+    all.bottomLeftCorner(m, n) = dense.dense.jacobian();
+    all.topRightCorner(n, m) = dense.dense.jacobian().transpose();
     return all;
   }
 };
@@ -144,9 +146,9 @@ Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
     const Eigen::MatrixXd all = x.matrix();
     const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(all).singularValues();
     if (values.minCoeff() < 1e-9 * values.maxCoeff()) continue;
-    REQUIRE(x.sparse.bodies.flat().empty());
-    REQUIRE(x.sparse.bodies.redundant() == 0);
-    x.sparse.bodies.solve(rhs, closing, solved, lambda);
+    REQUIRE(x.sparse.sparse.null_directions().empty());
+    REQUIRE(x.sparse.sparse.redundant() == 0);
+    x.sparse.sparse.solve(rhs, closing, solved, lambda);
     Eigen::VectorXd whole(all.rows()), right(all.rows());
     whole << solved, lambda;
     right << rhs, closing;
@@ -154,7 +156,7 @@ Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
     const bool potential = x.problem(true).symmetric();
     if (potential) {
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(all, Eigen::EigenvaluesOnly);
-      CHECK(x.sparse.bodies.negative_count() == (eigen.eigenvalues().array() < 0).count() - x.system.rows);
+      CHECK(x.sparse.sparse.negative_count() == (eigen.eigenvalues().array() < 0).count() - x.system.rows);
     }
     ++(potential ? tried.symmetric : tried.unsymmetric);
     tried.divided += x.system.division.parts.size() > 1;
@@ -162,15 +164,25 @@ Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
   return tried;
 }
 
-// [W, J^T; J, 0] [y; lambda] = [force; closing]: J y closes, and constraint forces do the rest of W y.
+// The shortest y with J y = closing; and of a force what is left by the multipliers that balance it best, as
+// W times the motion that it causes, which keeps the loops closed.
 void check_metric(Case& x, const Eigen::VectorXd& force) {
   factor_constraints(x.problem(true), x.sparse);
+  SparseKkt& kkt = x.sparse.sparse;
+  const Eigen::MatrixXd& jacobian = x.dense.dense.jacobian();
   const Eigen::VectorXd closing = Eigen::VectorXd::LinSpaced(x.system.rows, -1, 2);
-  Eigen::VectorXd y, lambda, product;
-  x.sparse.loops.solve(force, closing, y, lambda);
-  CHECK((x.dense.scaled_jacobian * y - closing).norm() < 1e-8 * closing.norm());
-  x.sparse.loops.metric(y, product);
-  CHECK((product + x.dense.scaled_jacobian.transpose() * lambda - force).norm() < 1e-8 * product.norm());
+  Eigen::VectorXd y, motion, lambda, product;
+  kkt.close(closing, y);
+  CHECK((jacobian * y - closing).norm() < 1e-8 * closing.norm());
+  kkt.project(force, motion);
+  motion /= kkt.mass() * x.parameters.length * x.parameters.length;
+  kkt.balance(force, lambda);
+  kkt.metric(motion, product);
+  CHECK((jacobian * motion).norm() <= 1e-8 * motion.norm() * jacobian.norm());
+  CHECK((product + jacobian.transpose() * lambda - force).norm() <= 1e-8 * force.norm());
+  kkt.metric(y, product); // is balanced by constraint forces alone
+  kkt.balance(product, lambda);
+  CHECK((product - jacobian.transpose() * lambda).norm() < 1e-8 * product.norm());
 }
 
 } // namespace
@@ -205,7 +217,7 @@ TEST_CASE("the metric of the bodies' equations is that of the motion") {
     if (x.system.nv == 0 || x.system.rows == 0 || !no_drive_rides(x.system)) continue;
     CAPTURE(seed);
     x.factor_at(Eigen::VectorXd::Zero(x.system.nv));
-    if (x.dense.constraints.rank() < x.system.rows) continue;
+    if (x.dense.dense.constraints().rank() < x.system.rows) continue;
     check_metric(x, Eigen::VectorXd::Zero(x.system.nv));
     ++tried;
   }
@@ -243,7 +255,7 @@ TEST_CASE("the metric of a net is that of the motion, whatever hangs on its knot
       force[i] = any(random);
     }
     x.factor_at(step);
-    REQUIRE(x.dense.constraints.rank() == x.system.rows);
+    REQUIRE(x.dense.dense.constraints().rank() == x.system.rows);
     check_metric(x, force);
   }
 }
@@ -301,7 +313,7 @@ TEST_CASE("a net of cables comes to rest as long as it was drawn") {
 TEST_CASE("without compression a net of cables is stiffer, and in nothing else different") {
   Case x(cable_net(5, 3));
   const Problem problem = x.problem(true);
-  BodyElimination& bodies = x.sparse.bodies;
+  SparseKkt& bodies = x.sparse.sparse;
   int fewer = 0;
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
@@ -311,10 +323,8 @@ TEST_CASE("without compression a net of cables is stiffer, and in nothing else d
       lambda = any(random);
     const auto take_in = [&](bool convex) {
       evaluate(problem, x.z, 0, x.sparse);
-      bodies.linearize(problem, x.z, x.sparse.kinematics, x.sparse.residual, x.sparse.magnitudes);
-      if (convex)
-        REQUIRE(bodies.linearize_convex(problem, x.z, x.sparse.kinematics, x.sparse.residual,
-                                        x.sparse.magnitudes));
+      bodies.linearize(problem, x.z, x.sparse);
+      if (convex) REQUIRE(bodies.linearize_convex(problem, x.z, x.sparse));
       bodies.factor();
       return bodies.negative_count();
     };
@@ -324,8 +334,7 @@ TEST_CASE("without compression a net of cables is stiffer, and in nothing else d
     for (double& lambda : x.z.lambda) // all pull
       lambda = std::abs(lambda);
     take_in(false);
-    CHECK(
-        !bodies.linearize_convex(problem, x.z, x.sparse.kinematics, x.sparse.residual, x.sparse.magnitudes));
+    CHECK(!bodies.linearize_convex(problem, x.z, x.sparse));
   }
   CHECK(fewer > 10);
 }

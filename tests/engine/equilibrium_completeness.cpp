@@ -56,7 +56,7 @@ bool has_family(const Problem& problem, const EquilibriumList& list, Workspace& 
   return std::ranges::any_of(list.states, [&](const Unknowns& z) {
     evaluate(problem, z, 0, w);
     factor(problem, z, w);
-    return singular(problem, w);
+    return w.kkt(problem).singular();
   });
 }
 

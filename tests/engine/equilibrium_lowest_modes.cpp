@@ -55,17 +55,17 @@ Mechanism chain(const ChainOptions& o) {
   return m;
 }
 
-// The steady state of a mechanism found by elimination, and its modes both ways.
+// The steady state of a mechanism found by form, and its modes both ways.
 struct BothModes {
   std::vector<VibrationMode> dense; // the nearest to zero first
   LowestModes lowest;
 };
 
 // Nothing where Newton-Raphson does not converge from the drawn pose.
-std::optional<BothModes> modes_both_ways(const Mechanism& m, Elimination elimination, int count) {
+std::optional<BothModes> modes_both_ways(const Mechanism& m, KktForm form, int count) {
   validate(m);
   System system = compile(m);
-  system.elimination = elimination;
+  system.kkt_form = form;
   Parameters parameters;
   Scaling scaling;
   Unknowns z;
@@ -73,7 +73,7 @@ std::optional<BothModes> modes_both_ways(const Mechanism& m, Elimination elimina
   set_scaling(system, parameters, scaling);
   drawn_configuration(system, parameters, z.q);
   z.lambda.setZero(system.rows);
-  const Problem dense{system, parameters, scaling}, large{system, parameters, scaling, nullptr, true};
+  const Problem dense{system, parameters, scaling}, large{system, parameters, scaling, nullptr, form};
   Workspace w;
   NewtonSettings settings;
   settings.damped = true;
@@ -85,8 +85,8 @@ std::optional<BothModes> modes_both_ways(const Mechanism& m, Elimination elimina
   return out;
 }
 
-BothModes both_modes(const Mechanism& m, Elimination elimination, int count) {
-  auto modes = modes_both_ways(m, elimination, count);
+BothModes both_modes(const Mechanism& m, KktForm form, int count) {
+  auto modes = modes_both_ways(m, form, count);
   REQUIRE(modes);
   return *modes;
 }
@@ -140,8 +140,8 @@ TEST_CASE("products with the matrices of the motion are those of the dense ones"
     z.lambda = 10 * random_vector(system.rows);
     Workspace w;
     evaluate(problem, z, 0, w);
-    linearize(system, parameters, z.q, z.lambda, w.kinematics, w.residual, w.linearization);
-    linearize_motion(system, parameters, z.q, w.kinematics, w.linearization);
+    linearize(system, parameters, z.q, z.lambda, w.kinematics, w.residual, w.dense.linearization);
+    linearize_motion(system, parameters, z.q, w.kinematics, w.dense.linearization);
     MotionProducts products;
     products.linearize(problem, z, w.kinematics, w.residual);
     const Eigen::VectorXd x = random_vector(system.nv), lambda = random_vector(system.rows);
@@ -152,14 +152,14 @@ TEST_CASE("products with the matrices of the motion are those of the dense ones"
       CHECK(size_of(got - a * x) <= 1e-12 * size_of(a.cwiseAbs() * x.cwiseAbs()));
     };
     products.mass(x, got);
-    agrees(w.linearization.mass, "mass");
+    agrees(w.dense.linearization.mass, "mass");
     products.velocity(x, got);
-    agrees(w.linearization.velocity, "velocity");
-    CHECK(products.velocity_matters() == (w.linearization.velocity.norm() > 1e-12));
+    agrees(w.dense.linearization.velocity, "velocity");
+    CHECK(products.velocity_matters() == (w.dense.linearization.velocity.norm() > 1e-12));
     products.stiffness(x, got);
-    agrees(w.linearization.stiffness, "stiffness");
+    agrees(w.dense.linearization.stiffness, "stiffness");
     products.constraint_transposed(lambda, got);
-    const Eigen::VectorXd forces = scaling.column.cwiseProduct(w.linearization.constraint.transpose() *
+    const Eigen::VectorXd forces = scaling.column.cwiseProduct(w.dense.linearization.constraint.transpose() *
                                                                scaling.row.cwiseProduct(lambda));
     CHECK(size_of(got - forces) <= 1e-12 * (1 + size_of(forces)));
     with_loops += system.rows > 0;
@@ -177,12 +177,12 @@ TEST_CASE("the lowest modes of chains are those of the matrices", "[modes]") {
       for (const double drag : {0., 0.01}) {
         if (drag > 0 && joint == JointType::universal && damping > 0) continue;
         CAPTURE(static_cast<int>(joint), damping, drag);
-        check_modes(
-            both_modes(chain({.damping = damping, .joint = joint, .drag = drag}), Elimination::tree, 10), 10);
+        check_modes(both_modes(chain({.damping = damping, .joint = joint, .drag = drag}), KktForm::tree, 10),
+                    10);
       }
   // And from the sparse equations of the bodies, with a loop.
-  check_modes(both_modes(chain({.joint = JointType::universal, .loop = true}), Elimination::bodies, 8), 8);
-  check_modes(both_modes(chain({.damping = 1e-3, .loop = true}), Elimination::bodies, 8), 8);
+  check_modes(both_modes(chain({.joint = JointType::universal, .loop = true}), KktForm::sparse, 8), 8);
+  check_modes(both_modes(chain({.damping = 1e-3, .loop = true}), KktForm::sparse, 8), 8);
 }
 
 // Blocks on a spoke that turns with it, each on the one before by a spring and a damper. With lambda_j = 4
@@ -251,7 +251,7 @@ TEST_CASE("repeated eigenvalues come as often as they are", "[modes]") {
   for (const double damping : {0., 0.1}) {
     for (std::size_t i = 1; i < m.joints.size(); ++i)
       m.joints[i].coordinates[0].damping = damping;
-    const BothModes modes = both_modes(m, Elimination::tree, 12);
+    const BothModes modes = both_modes(m, KktForm::tree, 12);
     check_modes(modes, 12);
     for (std::size_t i = 0; i < 12 && damping == 0; ++i) {
       const double square = standard_gravity * (1. + static_cast<double>(i / 5));
@@ -264,7 +264,7 @@ TEST_CASE("a direction that nothing resists is a mode at zero", "[modes]") {
   for (const double damping : {0., 2e-4}) {
     Mechanism m = chain({.links = 30, .damping = damping, .joint = JointType::universal});
     m.joints[0].coordinates[0].drive.reset();
-    const BothModes modes = both_modes(m, Elimination::tree, 8);
+    const BothModes modes = both_modes(m, KktForm::tree, 8);
     INFO(modes.lowest.failure);
     REQUIRE(modes.lowest.modes.size() == 8);
     CHECK(modes.lowest.modes[0].eigenvalue == 0.);
@@ -292,7 +292,7 @@ TEST_CASE("the lowest modes of random trees and loops are those of the matrices"
     if (system.nv < 4 || !no_drive_rides(system)) continue;
     const bool tree = is_plain_tree(system);
     CAPTURE(seed);
-    const auto modes = modes_both_ways(m, tree ? Elimination::tree : Elimination::bodies, 3);
+    const auto modes = modes_both_ways(m, tree ? KktForm::tree : KktForm::sparse, 3);
     if (!modes || modes->dense.size() < 6) continue;
     check_modes(*modes, 3);
     ++(tree ? trees : loops);

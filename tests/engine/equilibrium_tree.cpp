@@ -29,14 +29,16 @@ struct BothWays {
   Workspace tree, dense;
 
   explicit BothWays(Mechanism m) : mechanism(std::move(m)), system(compile(mechanism)) {
-    system.elimination = Elimination::tree;
+    system.kkt_form = KktForm::tree;
     bind(system, mechanism, parameters);
     set_scaling(system, parameters, scaling);
     drawn_configuration(system, parameters, z.q);
     z.lambda.resize(0);
   }
 
-  Problem problem(bool whole) const { return {system, parameters, scaling, nullptr, !whole}; }
+  Problem problem(bool whole) const {
+    return {system, parameters, scaling, nullptr, whole ? KktForm::dense : KktForm::tree};
+  }
 
   void factor_at(const Eigen::VectorXd& step) {
     retract<double>(system, step, z.q);
@@ -63,7 +65,7 @@ double size_of(const Eigen::VectorXd& v) {
 
 TEST_CASE("a step by elimination along the tree solves the dense equations") {
   int symmetric = 0, unsymmetric = 0, with_drag = 0;
-  TreeElimination used; // for one system after the other
+  TreeKkt used; // for one system after the other
   for (std::uint32_t seed = 1; seed <= 800; ++seed) {
     ref::RandomOptions options = open_trees();
     options.conservative = seed % 2 == 0;
@@ -79,13 +81,13 @@ TEST_CASE("a step by elimination along the tree solves the dense equations") {
       rhs[i] = any(random);
     }
     x.factor_at(step);
-    Eigen::MatrixXd k = x.dense.scaled_stiffness;
+    Eigen::MatrixXd k = x.dense.dense.stiffness();
     const bool potential = x.problem(false).symmetric();
     if (potential) k = ((k + k.transpose()) / 2).eval();
     const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(k).singularValues();
-    if (values.minCoeff() < 1e-9 * values.maxCoeff() || !x.tree.tree.flat().empty()) continue;
+    if (values.minCoeff() < 1e-9 * values.maxCoeff() || !x.tree.tree.null_directions().empty()) continue;
     x.tree.tree.solve(rhs, solved);
-    used.linearize(x.problem(false), x.z, x.tree.kinematics, x.tree.residual, x.tree.magnitudes);
+    used.linearize(x.problem(false), x.z, x.tree);
     used.factor();
     used.solve(rhs, by_used);
     CHECK(by_used == solved);
@@ -143,10 +145,10 @@ TEST_CASE("bodies are held from turning too far, and the others do as they would
     x.tree.tree.solve(rhs, free);
     step = free;
     CAPTURE(seed);
-    CHECK_FALSE(x.tree.tree.hold_turns(1e12, step));
+    CHECK_FALSE(x.tree.tree.limit_turns(1e12, step));
     CHECK(step == free);
     const double most = 1e-3 * free.norm();
-    if (!x.tree.tree.hold_turns(most, step)) continue;
+    if (!x.tree.tree.limit_turns(most, step)) continue;
     ++held;
     std::vector<Vec3> turn(x.system.links.size());
     std::vector<bool> as_solved(turn.size(), true);
@@ -233,7 +235,7 @@ TEST_CASE("the signs of the pivots agree with the eigenvalues") {
   for (const double speed : {3., 5., 10., 15.}) {
     BothWays x(hanging_chain(60, speed));
     x.factor_at(Eigen::VectorXd::Zero(x.system.nv));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(x.dense.scaled_stiffness,
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(x.dense.dense.stiffness(),
                                                                Eigen::EigenvaluesOnly);
     CAPTURE(speed);
     CHECK(x.tree.tree.negative_count() == (eigen.eigenvalues().array() < 0).count());

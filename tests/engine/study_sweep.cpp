@@ -89,7 +89,7 @@ TEST_CASE("the number of threads changes nothing") {
 // The sparse solver behind them is not made for several threads.
 TEST_CASE("large nets are swept on several threads, too") {
   for (const Mechanism& m : {bench::spring_net(8, 3), bench::cable_net(8, 3)}) {
-    REQUIRE(compile(m).elimination == Elimination::bodies);
+    REQUIRE(compile(m).kkt_form == KktForm::sparse);
     const Variation speed{"joints.spin.drive.speed", 2, 4, 8};
     const std::vector<SweepPoint> one = sweep(m, std::span(&speed, 1), 1);
     const std::vector<SweepPoint> many = sweep(m, std::span(&speed, 1), 4);

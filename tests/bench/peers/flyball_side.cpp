@@ -33,7 +33,7 @@ struct Solve {
     set_scaling(system, parameters, scaling);
     drawn_configuration(system, parameters, drawn);
   }
-  Problem problem() const { return {system, parameters, scaling, nullptr, true}; }
+  Problem problem() const { return {system, parameters, scaling, nullptr, system.kkt_form}; }
   void cold() {
     find_equilibrium(problem(), drawn, false, false, workspace, history, found);
     if (found.status == Status::converged) refine(problem(), found.z, found.newton, workspace, error);

@@ -1,4 +1,4 @@
-#include "engine/kkt/tree_elimination.hpp"
+#include "engine/kkt/tree_kkt.hpp"
 
 #include "engine/linear/spectral.hpp"
 
@@ -31,7 +31,7 @@ void shift_origin(const Vec3& arm, bool, SubtreeSizes& s) {
   s.heavy_mf += r * s.heavy_f;
 }
 
-Eliminator::Flat way(int v, const Vec3& direction) {
+KktSystem::NullDirection way(int v, const Vec3& direction) {
   return {{v, direction[0]}, {v + 1, direction[1]}, {v + 2, direction[2]}};
 }
 
@@ -41,7 +41,7 @@ Eliminator::Flat way(int v, const Vec3& direction) {
 // turns into what they hand on themselves, both about the node's origin. What goes to the next node is never
 // stored.
 template <class Sum, class Visit>
-void TreeElimination::inwards(std::vector<Sum>& branches, Visit visit) {
+void TreeKkt::inwards(std::vector<Sum>& branches, Visit visit) {
   branches.resize(static_cast<std::size_t>(branching_));
   Sum sum;
   bool handed = false; // `sum` is for this node
@@ -68,7 +68,7 @@ void TreeElimination::inwards(std::vector<Sum>& branches, Visit visit) {
 }
 
 // Sets what is known of node i before its children.
-void TreeElimination::place(int i, const Link& link) {
+void TreeKkt::place(int i, const Link& link) {
   Node& n = nodes_[static_cast<std::size_t>(i)];
   n.parent = link.parent < 0 ? -1 : node_of_link_[static_cast<std::size_t>(link.parent)];
   n.v = link.v;
@@ -84,9 +84,8 @@ void TreeElimination::place(int i, const Link& link) {
   p.last = i;
 }
 
-void TreeElimination::set_joint(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k,
-                                const Magnitudes& magnitudes, const SubtreeSizes& sizes, double least,
-                                Node& n) {
+void TreeKkt::set_joint(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k,
+                        const Magnitudes& magnitudes, const SubtreeSizes& sizes, double least, Node& n) {
   const auto l = static_cast<std::size_t>(n.link);
   const Link& link = problem.system.links[l];
   const LinkParameters& lp = problem.parameters.links[l];
@@ -120,7 +119,7 @@ void TreeElimination::set_joint(const Problem& problem, const Eigen::VectorXd& q
 }
 
 // What the bodies' accelerations and velocities ask for.
-void TreeElimination::add_motion(const Problem& problem, const Kinematics<double>& k) {
+void TreeKkt::add_motion(const Problem& problem, const Kinematics<double>& k) {
   for (Node& n : nodes_) {
     if (n.massless()) continue;
     BodyInertia body = n;
@@ -140,14 +139,14 @@ void TreeElimination::add_motion(const Problem& problem, const Kinematics<double
   }
 }
 
-void TreeElimination::linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
-                                const Residual<double>& residual, const Magnitudes& magnitudes) {
-  linearize_motion(problem, z, k, residual, magnitudes, 0, false);
+void TreeKkt::linearize(const Problem& problem, const Unknowns& z, const Evaluation& at) {
+  linearize_motion(problem, z, at, 0, false);
 }
 
-void TreeElimination::linearize_motion(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
-                                       const Residual<double>& residual, const Magnitudes& magnitudes,
-                                       double rate, bool with_velocities) {
+void TreeKkt::linearize_motion(const Problem& problem, const Unknowns& z, const Evaluation& at, double rate,
+                               bool with_velocities) {
+  const Kinematics<double>& k = at.kinematics;
+  const Residual<double>& residual = at.residual;
   const System& system = problem.system;
   rate_ = rate;
   with_velocities_ = with_velocities;
@@ -175,9 +174,9 @@ void TreeElimination::linearize_motion(const Problem& problem, const Unknowns& z
   }
   for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
     const BodyForceElement& e = system.body_forces[i];
-    const int at = e.link < 0 ? -1 : node_of_link_[static_cast<std::size_t>(e.link)];
-    if (at >= 0)
-      add_body_force(e, problem.parameters.body_forces[i], k, nodes_[static_cast<std::size_t>(at)].own);
+    const int node = e.link < 0 ? -1 : node_of_link_[static_cast<std::size_t>(e.link)];
+    if (node >= 0)
+      add_body_force(e, problem.parameters.body_forces[i], k, nodes_[static_cast<std::size_t>(node)].own);
   }
   if (rate != 0) add_motion(problem, k);
   const double least =
@@ -190,11 +189,11 @@ void TreeElimination::linearize_motion(const Problem& problem, const Unknowns& z
     sizes.heavy_m += n.inertia.norm() + n.turning;
     sizes.heavy_mf += n.first_moment.norm();
     sizes.heavy_f += n.mass;
-    set_joint(problem, z.q, k, magnitudes, sizes, least, n);
+    set_joint(problem, z.q, k, at.magnitudes, sizes, least, n);
   });
 }
 
-void TreeElimination::eliminate_one(Node& n, double shift, Mat6& h) {
+void TreeKkt::eliminate_one(Node& n, double shift, Mat6& h) {
   n.u.noalias() = h.middleCols<3>(n.at()) * n.axis;
   const double pivot = n.axis.dot(n.u.segment<3>(n.at())) + n.joint + shift * n.metric;
   Vec6 turn;
@@ -211,7 +210,7 @@ void TreeElimination::eliminate_one(Node& n, double shift, Mat6& h) {
   }
   if (!(std::abs(pivot) > n.noise)) {
     n.inverse = 0;
-    flat_.push_back({{n.v, 1.}});
+    directions_.push_back({{n.v, 1.}});
     return;
   }
   n.inverse = 1 / pivot;
@@ -220,7 +219,7 @@ void TreeElimination::eliminate_one(Node& n, double shift, Mat6& h) {
   h.noalias() -= scaled * r.transpose();
 }
 
-void TreeElimination::eliminate_three(Node& n, double shift, Mat6& h) {
+void TreeKkt::eliminate_three(Node& n, double shift, Mat6& h) {
   Ball& b = balls_[static_cast<std::size_t>(n.ball)];
   b.u = h * b.s;
   Mat3 pivot = b.s.transpose() * b.u + b.joint;
@@ -249,7 +248,7 @@ void TreeElimination::eliminate_three(Node& n, double shift, Mat6& h) {
       const double value = eigen.values[c];
       const bool flat = !(std::abs(value) > noise);
       inverse[c] = flat ? 0 : 1 / value;
-      if (flat) flat_.push_back(way(n.v, eigen.vectors.col(c)));
+      if (flat) directions_.push_back(way(n.v, eigen.vectors.col(c)));
       if (!flat && value < 0) ++negative_;
     }
     b.inverse = eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
@@ -259,16 +258,16 @@ void TreeElimination::eliminate_three(Node& n, double shift, Mat6& h) {
     for (int c = 0; c < 3; ++c) {
       const bool flat = !(svd.values[c] > noise);
       inverse[c] = flat ? 0 : 1 / svd.values[c];
-      if (flat) flat_.push_back(way(n.v, svd.right.col(c)));
+      if (flat) directions_.push_back(way(n.v, svd.right.col(c)));
     }
     b.inverse = svd.right * inverse.asDiagonal() * svd.left.transpose();
   }
   h.noalias() -= b.u * b.inverse * b.r.transpose();
 }
 
-void TreeElimination::factor(double shift) {
+void TreeKkt::factor(double shift) {
   shift_ = shift;
-  flat_.clear();
+  directions_.clear();
   negative_ = 0;
   inwards(stiffness_branches_, [&](Node& n, Mat6& h) {
     h += n.own;
@@ -278,10 +277,11 @@ void TreeElimination::factor(double shift) {
     else if (n.ball >= 0)
       eliminate_three(n, shift, h);
   });
+  null_ = static_cast<int>(directions_.size());
 }
 
-void TreeElimination::solve_to(double, const Eigen::VectorXd& rhs, const Eigen::VectorXd&, Eigen::VectorXd& x,
-                               Eigen::VectorXd& lambda) {
+void TreeKkt::solve_to(double, const Eigen::VectorXd& rhs, const Eigen::VectorXd&, Eigen::VectorXd& x,
+                       Eigen::VectorXd& lambda) {
   lambda.resize(0);
   x.resize(rhs.size());
   inwards(wrench_branches_, [&](Node& n, Vec6& g) {
@@ -299,7 +299,7 @@ void TreeElimination::solve_to(double, const Eigen::VectorXd& rhs, const Eigen::
 
 // From e, what each coordinate would do were its parent held, to the motion of all, none turning further than
 // `most`.
-void TreeElimination::outwards(double most, Eigen::VectorXd& x) {
+void TreeKkt::outwards(double most, Eigen::VectorXd& x) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     Node& n = nodes_[i];
     if (n.parent >= 0)
@@ -326,16 +326,16 @@ void TreeElimination::outwards(double most, Eigen::VectorXd& x) {
   }
 }
 
-bool TreeElimination::hold_turns(double most, Eigen::VectorXd& x) {
+bool TreeKkt::limit_turns(double most, Eigen::VectorXd& x) {
   const bool far = std::ranges::any_of(
       nodes_, [&](const Node& n) { return n.motion.head<3>().squaredNorm() > most * most; });
   if (far) outwards(most, x);
   return far;
 }
 
-void TreeElimination::direction_of(const Flat& flat, Eigen::VectorXd& x) {
+void TreeKkt::direction_of(const NullDirection& direction, Eigen::VectorXd& x) {
   x.setZero(size_);
-  for (const auto& [v, share] : flat)
+  for (const auto& [v, share] : direction)
     x[v] = share;
   for (Node& n : nodes_) {
     if (n.one())
@@ -346,7 +346,7 @@ void TreeElimination::direction_of(const Flat& flat, Eigen::VectorXd& x) {
   outwards(std::numeric_limits<double>::infinity(), x);
 }
 
-double TreeElimination::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
+double TreeKkt::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
   for (Node& n : nodes_) {
     n.motion.setZero();
     if (n.parent >= 0) n.motion = carried(nodes_[static_cast<std::size_t>(n.parent)].motion, n.arm);
@@ -359,7 +359,7 @@ double TreeElimination::metric(const Eigen::VectorXd& x, Eigen::VectorXd& produc
 }
 
 // Everything moves as the solution says.
-double TreeElimination::metric_of_solution(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
+double TreeKkt::metric_of_solution(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
   product.resize(x.size());
   double square = 0;
   inwards(wrench_branches_, [&](Node& n, Vec6& g) {

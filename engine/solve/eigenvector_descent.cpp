@@ -1,6 +1,5 @@
-#include "engine/solve/descent.hpp"
+#include "engine/solve/eigenvector_descent.hpp"
 
-#include "engine/linear/large.hpp"
 #include "engine/linear/largest.hpp"
 
 namespace flyball {
@@ -15,7 +14,8 @@ double potential_at(const Problem& problem, const Eigen::VectorXd& q, Workspace&
 
 } // namespace
 
-DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::vector<double>* history) {
+DescentOutcome descend_by_eigenvectors(const Problem& problem, Unknowns& z, Workspace& w,
+                                       std::vector<double>* history) {
   DescentOutcome outcome;
   double radius = 0.25, magnitude = 0, travelled = 0;
   double u = potential_at(problem, z.q, w, magnitude);
@@ -26,15 +26,10 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
     if (problem.cancelled()) return {DescentEnd::cancelled, i};
     factor_with_multipliers(problem, z, w);
     if (history) history->push_back(scaled_residual(problem, w));
-    const Eigen::MatrixXd& basis = w.constraints.basis();
+    const Eigen::MatrixXd& basis = w.dense.constraints().basis();
     if (basis.cols() == 0) return {DescentEnd::minimum, i};
     gradient = basis.transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
-    const Eigen::MatrixXd reduced = large::projected(w.scaled_stiffness, basis);
-    w.noise = Eigen::VectorXd::Zero(basis.cols());
-    for (Eigen::Index k = 0; k < basis.cols(); ++k)
-      w.noise[k] =
-          1e-15 * basis.col(k).cwiseAbs2().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
-    hessian.factor(reduced, w.noise, true);
+    hessian.factor(w.dense.reduced(), w.dense.noise(), true);
     if (!hessian.decompose()) return {DescentEnd::stalled, i};
 
     // In equilibrated coordinates: step along each eigenvector against the gradient, with |eigenvalue|.
@@ -52,8 +47,9 @@ DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::v
         lowest = mu;
         lowest_index = k;
       }
-      const Eigen::VectorXd way = basis * hessian.eigenvectors().col(k).cwiseProduct(hessian.scale());
-      const double length = way.lpNorm<Eigen::Infinity>();
+      const Eigen::VectorXd along_vector =
+          basis * hessian.eigenvectors().col(k).cwiseProduct(hessian.scale());
+      const double length = along_vector.lpNorm<Eigen::Infinity>();
       if (length == 0) continue; // what feels nothing at all
       double distance = std::abs(along / mu) * length;
       if (std::abs(mu) <= ReducedHessian::zero) {

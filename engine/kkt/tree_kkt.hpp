@@ -21,7 +21,7 @@
 #pragma once
 
 #include "engine/kkt/body_stiffness.hpp"
-#include "engine/kkt/eliminator.hpp"
+#include "engine/kkt/kkt_system.hpp"
 
 namespace flyball {
 
@@ -34,20 +34,19 @@ struct SubtreeSizes {
   }
 };
 
-class TreeElimination final : public Eliminator {
+class TreeKkt final : public KktSystem {
  public:
   // Of a system with is_plain_tree().
-  void linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
-                 const Residual<double>& residual, const Magnitudes& magnitudes) override;
+  void linearize(const Problem& problem, const Unknowns& z, const Evaluation& evaluation) override;
   // Takes in K + rate^2 M, or with velocities K + rate (C + G) + rate^2 M, in the place of K (rate in 1/s).
-  void linearize_motion(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
-                        const Residual<double>& residual, const Magnitudes& magnitudes, double rate,
+  void linearize_motion(const Problem& problem, const Unknowns& z, const Evaluation& evaluation, double rate,
                         bool with_velocities);
   void factor(double shift = 0) override;
-  bool hold_turns(double most, Eigen::VectorXd& x) override;
+  bool limit_turns(double most, Eigen::VectorXd& x) override;
   double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
   double metric_of_solution(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
-  void direction_of(const Flat& flat, Eigen::VectorXd& x) override;
+  const std::vector<NullDirection>& null_directions() override { return directions_; }
+  void direction_of(const NullDirection& direction, Eigen::VectorXd& x) override;
 
  private:
   void solve_to(double enough, const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
@@ -101,7 +100,7 @@ class TreeElimination final : public Eliminator {
   std::vector<Vec6> wrench_branches_;
   std::vector<SubtreeSizes> size_branches_;
   int branching_ = 0; // nodes with children that are not the next node
-  int size_ = 0;
+  std::vector<NullDirection> directions_;
 };
 
 } // namespace flyball
