@@ -212,7 +212,7 @@ class Search {
     free.factored = factored;
     const NewtonOutcome plain = newton(p_, found_.z, w_, free, &history_);
     found_.iterations += plain.iterations;
-    if (fell_ || p_.cancelled() || (plain.converged && plain.largest_step <= 0.2)) return plain;
+    if (!large_ || fell_ || p_.cancelled() || (plain.converged && plain.largest_step <= 0.2)) return plain;
     found_.z.q = bottom;
     found_.z.lambda.setZero(p_.system.rows);
     evaluate(p_, found_.z, 0, w_);
