@@ -24,6 +24,13 @@ bool is_called(const System& system, const CoordinateInfo& c, std::string_view n
          (coordinate_count(joint.type) == 1 && name == joint.name);
 }
 
+// The number of free coordinates from which on motion along the tree is the faster one.
+constexpr int few = 16;
+
+bool is_tree(const System& system) {
+  return system.rows == 0 && system.springs.empty() && system.cut_dampers.empty();
+}
+
 } // namespace
 
 MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
@@ -34,6 +41,7 @@ MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   bind(m.system, mechanism, m.parameters);
   set_scaling(m.system, m.parameters, m.scaling);
   m.parameters.moving = true;
+  m.along_tree = is_tree(m.system) && m.system.nv > few;
   if (damped) return m;
   for (LinkParameters& l : m.parameters.links)
     for (CoordinateForce& f : l.force)
