@@ -8,13 +8,19 @@ namespace flyball {
 
 ArticulatedBodies::ArticulatedBodies(const System& released, int free)
     : nodes_(released.links.size()), joints_(released, free) {
-  for (std::size_t l = 0; l < nodes_.size(); ++l)
-    nodes_[l].parent = released.links[l].parent;
+  for (std::size_t l = 0; l < nodes_.size(); ++l) {
+    const int parent = released.links[l].parent;
+    nodes_[l].parent = parent;
+    if (parent < 0) continue;
+    const auto p = static_cast<std::size_t>(parent);
+    nodes_[l].holder = joints_.gives_way(p) ? parent : nodes_[p].holder;
+  }
 }
 
-// What the parent feels of the node, about the parent's origin, and what the joint has taken off it.
+// What the node is felt as beyond its joint, about its own origin. Adds what that has taken off to the joint
+// next to the root.
 template <int N>
-bool ArticulatedBodies::eliminate(const Node& n, Joint<N>& j, Mat6& left, double& turned, double& shifted) {
+bool ArticulatedBodies::eliminate(const Node& n, Joint<N>& j, Mat6& left) {
   j.u.noalias() = n.inertia * j.s;
   const Eigen::Matrix<double, N, N> pivot = j.s.transpose() * j.u;
   double least = pivot(0, 0);
@@ -34,11 +40,12 @@ bool ArticulatedBodies::eliminate(const Node& n, Joint<N>& j, Mat6& left, double
   lightest_ = std::min(lightest_, least / size);
   const Eigen::Matrix<double, 6, N> answer = j.u * j.inverse;
   left.noalias() -= answer * j.u.transpose();
-  turned = shifted = 0;
+  if (n.holder < 0) return true;
+  Node& holder = nodes_[static_cast<std::size_t>(n.holder)];
   for (int c = 0; c < N; ++c) {
-    const Vec6 u = about(j.u.col(c), n.arm), x = about(answer.col(c), n.arm);
-    turned += u.head<3>().dot(x.head<3>());
-    shifted += u.tail<3>().dot(x.tail<3>());
+    const Vec6 u = about(j.u.col(c), n.reach), x = about(answer.col(c), n.reach);
+    holder.turned += u.head<3>().dot(x.head<3>());
+    holder.shifted += u.tail<3>().dot(x.tail<3>());
   }
   return true;
 }
@@ -52,6 +59,7 @@ bool ArticulatedBodies::factor(const Parameters& p, const Kinematics<double>& k)
     n.inertia = inertia_matrix(body);
     n.turned = n.shifted = 0;
     n.arm = k.links[l].o - k.at(n.parent).o;
+    n.reach = k.links[l].o - k.at(n.holder).o;
     joints_.visit(l, [&]<int N>(int v, Joint<N>& j) {
       for (int c = 0; c < N; ++c) {
         const Column<double>& column = k.columns[static_cast<std::size_t>(v + c)];
@@ -66,17 +74,12 @@ bool ArticulatedBodies::factor(const Parameters& p, const Kinematics<double>& k)
   for (std::size_t l = nodes_.size(); l-- > 0 && positive;) {
     Node& n = nodes_[l];
     Mat6 left = n.inertia;
-    // Of a body that is one with its parent at most this, about the parent's origin.
-    double turned = 2 * (n.turned + n.arm.squaredNorm() * n.shifted), shifted = n.shifted;
-    joints_.visit(l, [&](int, auto& joint) { positive = eliminate(n, joint, left, turned, shifted); });
+    joints_.visit(l, [&](int, auto& joint) { positive = eliminate(n, joint, left); });
     if (n.parent < 0) continue;
-    Node& parent = nodes_[static_cast<std::size_t>(n.parent)];
     const Mat3 arm = skew(n.arm);
     left.topRows<3>() += arm * left.bottomRows<3>();
     left.leftCols<3>() -= left.rightCols<3>() * arm;
-    parent.inertia += left;
-    parent.turned += turned;
-    parent.shifted += shifted;
+    nodes_[static_cast<std::size_t>(n.parent)].inertia += left;
   }
   return positive;
 }

@@ -22,10 +22,10 @@ class ArticulatedBodies {
 
   // Takes in the bodies' inertias and eliminates. False where a pivot is not positive.
   bool factor(const Parameters& parameters, const Kinematics<double>& kinematics);
-  // Whether every free coordinate moves mass: no pivot is nearly rounding beside what it is the rest of, the
-  // joint's inertia with the joints next beyond held. There is a wide margin, since what does not go along
-  // the tree goes by dense matrices.
-  bool carry_all() const { return lightest_ > 1e-10; }
+  // Whether every free coordinate moves mass, of the last factor(): no pivot is near rounding beside the body
+  // that it is of, had the joints next beyond not given way. (Hinges of an even chain of n links have about
+  // 1/n^3 of that.)
+  bool carry_all() const { return lightest_ > no_mass; }
   bool overflowed() const { return overflowed_; }
 
   // Solves M a + f + (what the wrenches are along the coordinates) = 0 for the first entries of a, which are
@@ -36,6 +36,8 @@ class ArticulatedBodies {
   Vec6 transmitted(std::size_t link, const std::vector<Vec6>& wrenches) const;
 
  private:
+  static constexpr double no_mass = 1e-11; // rounding leaves up to 1e-13
+
   // Of a joint of N coordinates.
   template <int N>
   struct Joint {
@@ -45,14 +47,15 @@ class ArticulatedBodies {
   };
   struct Node {
     int parent = -1;
-    Vec3 arm; // m, from the parent's origin
+    int holder = -1; // the nearest with a joint that gives way towards the root
+    Vec3 arm, reach; // m, from the parent's origin, and from the holder's
     Mat6 inertia;
     double turned = 0, shifted = 0; // traces of what joints next beyond have taken off it, kg m^2 and kg
     Vec6 motion;
   };
 
   template <int N>
-  bool eliminate(const Node& n, Joint<N>& j, Mat6& left, double& turned, double& shifted);
+  bool eliminate(const Node& n, Joint<N>& joint, Mat6& left);
 
   std::vector<Node> nodes_; // by link
   TreeJoints<Joint> joints_;

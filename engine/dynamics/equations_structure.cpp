@@ -150,6 +150,11 @@ bool Equations::choose_tree(double t, const Eigen::VectorXd& q, const Eigen::Vec
   place();
   if (!tree_->factor(point()) || !tree_->carries_all()) return false;
   solver_ = &*tree_;
+  damped_ = standing_ = 0;
+  idle_.clear();
+  regular_.clear();
+  for (int v = 0; v < n_; ++v)
+    regular_.push_back(v);
   return true;
 }
 

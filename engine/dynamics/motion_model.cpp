@@ -24,7 +24,8 @@ bool is_called(const System& system, const CoordinateInfo& c, std::string_view n
          (coordinate_count(joint.type) == 1 && name == joint.name);
 }
 
-// The number of free coordinates from which on motion along the tree is the faster one.
+// Free coordinates up to which dense matrices are the faster ones: in a chain an evaluation takes 2.2 against
+// 2.4 us with 8 coordinates, 6.9 against 6.0 with 20, and 41 against 14 with 60.
 constexpr int few = 16;
 
 bool is_tree(const System& system) {

@@ -35,6 +35,7 @@ class TreeJoints {
       visit(slot.v, singles_[static_cast<std::size_t>(slot.joint)]);
   }
 
+  bool gives_way(std::size_t link) const { return slots_[link].v >= 0; }
   // Which of the balls, in the order of their links.
   std::size_t ball(std::size_t link) const { return static_cast<std::size_t>(slots_[link].joint); }
 
