@@ -2,8 +2,6 @@
 
 #include "engine/kkt/constraint_space.hpp"
 #include "engine/linear/interruption.hpp"
-#include "engine/mechanism/text.hpp"
-#include "engine/system/constraint_row.hpp"
 
 namespace flyball {
 
@@ -23,7 +21,9 @@ std::vector<StopElement> list_stops(const System& system, const Parameters& p) {
 
 Equations::Equations(const MotionModel& model, const Watch& watch)
     : model_(model), watch_(watch), system_(model.released), parameters_(model.parameters),
-      n_(model.system.nv), drives_(static_cast<int>(model.system.drives.size())) {
+      n_(model.system.nv), drives_(static_cast<int>(model.system.drives.size())),
+      dense_(model, rows_, regular_) {
+  if (model.along_tree) tree_.emplace(model);
   q_.setZero(system_.nq);
   u_.setZero(system_.nv);
   s_.setZero(system_.nv);
@@ -96,66 +96,8 @@ void Equations::place(const Eigen::VectorXd* s, const Eigen::VectorXd* a) {
   move(system_, parameters_, {q_, u_, s, a}, kinematics_, carried_);
 }
 
-void Equations::fill_gradient() {
-  gradient_.setZero(static_cast<Eigen::Index>(rows_.size()), system_.nv);
-  std::size_t next = 0;
-  for (std::size_t c = 0; c < system_.cuts.size() && next < rows_.size(); ++c) {
-    const CutJoint& cut = system_.cuts[c];
-    const int end = cut.first_row + static_cast<int>(cut.rows.size());
-    for (; next < rows_.size() && rows_[next] < end; ++next) {
-      const auto at = static_cast<Eigen::Index>(next);
-      row_gradient(cut, parameters_.cuts[c], cut.rows[static_cast<std::size_t>(rows_[next] - cut.first_row)],
-                   kinematics_, [&](int v, double g) { gradient_(at, v) += g; });
-      gradient_.row(at) *= model_.scaling.row[rows_[next]];
-    }
-  }
-  const auto regular = static_cast<Eigen::Index>(regular_.size());
-  scaled_gradient_.resize(gradient_.rows(), regular);
-  for (Eigen::Index j = 0; j < regular; ++j) {
-    const int v = regular_[static_cast<std::size_t>(j)];
-    scaled_gradient_.col(j) = gradient_.col(v) * model_.scaling.column[v];
-  }
-}
-
-bool Equations::factor() {
-  evaluate_mass(system_, parameters_, kinematics_, mass_);
-  fill_gradient();
-  const auto regular = static_cast<Eigen::Index>(regular_.size());
-  const Eigen::VectorXd& column = model_.scaling.column;
-  scaled_mass_.resize(regular, regular);
-  for (Eigen::Index j = 0; j < regular; ++j) {
-    const int v = regular_[static_cast<std::size_t>(j)];
-    for (Eigen::Index i = 0; i < regular; ++i) {
-      const int w = regular_[static_cast<std::size_t>(i)];
-      scaled_mass_(i, j) = mass_.mass(w, v) * column[w] * column[v];
-    }
-  }
-  return saddle_.factor_constraints(scaled_gradient_) && saddle_.factor_mass(scaled_mass_);
-}
-
-void Equations::forces() {
-  const Eigen::VectorXd& q = sided_configuration();
-  evaluate_residual<double>(system_, parameters_, q, zero_lambda_, kinematics_, residual_);
-  force_ = residual_.f;
-  add_coordinate_damping(system_, parameters_, q, u_, force_);
-}
-
-bool Equations::solve_motion(const Eigen::VectorXd& force, const Eigen::VectorXd& bias, Eigen::VectorXd& a) {
-  const Eigen::VectorXd& column = model_.scaling.column;
-  target_force_.resize(static_cast<Eigen::Index>(regular_.size()));
-  target_rows_.resize(static_cast<Eigen::Index>(rows_.size()));
-  for (std::size_t i = 0; i < regular_.size(); ++i)
-    target_force_[static_cast<Eigen::Index>(i)] = -force[regular_[i]] * column[regular_[i]];
-  for (std::size_t r = 0; r < rows_.size(); ++r)
-    target_rows_[static_cast<Eigen::Index>(r)] = -bias[rows_[r]] * model_.scaling.row[rows_[r]];
-  saddle_.solve(target_force_, target_rows_, scaled_a_, scaled_lambda_);
-  a.setZero(n_);
-  lambda_.setZero(system_.rows);
-  for (std::size_t i = 0; i < regular_.size(); ++i)
-    a[regular_[i]] = scaled_a_[static_cast<Eigen::Index>(i)] * column[regular_[i]];
-  for (std::size_t r = 0; r < rows_.size(); ++r)
-    lambda_[rows_[r]] = scaled_lambda_[static_cast<Eigen::Index>(r)] * model_.scaling.row[rows_[r]];
-  return a.allFinite() && lambda_.allFinite();
+MotionPoint Equations::point() {
+  return {parameters_, sided_configuration(), u_, kinematics_, carried_};
 }
 
 bool Equations::evaluate(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s) {
@@ -173,15 +115,14 @@ bool Equations::evaluate_uncaught(double t, const Eigen::VectorXd& q, const Eige
   load(t, q, s);
   s_ = u_;
   place();
-  if (!factor()) return false;
+  const MotionPoint here = point();
+  if (!solver_->factor(here)) return false;
   if (!idle_.empty()) {
     if (!find_null_directions() || !find_damped_velocity()) return false;
     if (standing_ > 0 && !find_standing_velocity()) return false;
     place(&s_);
   }
-  forces();
-  constraint_accelerations(system_, parameters_, nullptr, kinematics_, carried_, bias_);
-  if (!solve_motion(force_, bias_, a_)) return false;
+  if (!solver_->accelerate(here, a_, lambda_)) return false;
   if (standing_ > 0) {
     const auto kinds = kinds_.middleCols(damped_, standing_);
     standing_force_ = kinds.transpose() * null_force();
@@ -194,7 +135,7 @@ bool Equations::reduce(double t, const Eigen::VectorXd& q, const Eigen::VectorXd
   if (idle_.empty()) return true;
   load(t, q, u);
   place();
-  if (!factor() || !find_null_directions()) return false;
+  if (!dense_.factor(point()) || !find_null_directions()) return false;
   Eigen::VectorXd idle(static_cast<Eigen::Index>(idle_.size()));
   for (std::size_t i = 0; i < idle_.size(); ++i)
     idle[static_cast<Eigen::Index>(i)] = u[idle_[i]] / model_.scaling.column[idle_[i]];
@@ -204,39 +145,10 @@ bool Equations::reduce(double t, const Eigen::VectorXd& q, const Eigen::VectorXd
   return true;
 }
 
-std::string Equations::unsolved() const {
-  if (!mass_.mass.allFinite()) return "the numbers overflow";
-  if (!(saddle_.independence() > 1e-12))
-    return "the equations of its loops are not independent to rounding at this position";
-  int light = -1, heavy = -1;
-  const auto inertia = [&](int v) {
-    return mass_.mass(v, v) * model_.scaling.column[v] * model_.scaling.column[v];
-  };
-  for (const int v : regular_) {
-    if (light < 0 || inertia(v) < inertia(light)) light = v;
-    if (heavy < 0 || inertia(v) > inertia(heavy)) heavy = v;
-  }
-  if (light < 0 || !(inertia(light) < 1e-10 * inertia(heavy)))
-    return "the mass matrix is singular to rounding";
-  return "the inertias that move with " + name_of_coordinate(model_, heavy) + " and with " +
-         name_of_coordinate(model_, light) + " are " + rounded_text(inertia(heavy), 2) + " and " +
-         rounded_text(inertia(light), 2) +
-         " kg m^2, too far apart for double precision; masses and lengths of like sizes mend that";
-}
-
-double Equations::drive_force(int d) const {
-  double force = force_[n_ + d];
-  for (int i = 0; i < n_; ++i)
-    force += mass_.mass(n_ + d, i) * a_[i];
-  for (Eigen::Index r = 0; r < gradient_.rows(); ++r)
-    force += gradient_(r, n_ + d) * scaled_lambda_[r];
-  return force;
-}
-
 double Equations::drive_power() const {
   double power = 0;
   for (int d = 0; d < drives_; ++d)
-    power += drive_force(d) * u_[n_ + d];
+    power += solver_->drive_force(d) * u_[n_ + d];
   return power;
 }
 
@@ -262,7 +174,7 @@ double Equations::energy_scale() {
 }
 
 double Equations::position_drift() const {
-  return residual_.phi.size() > 0 ? residual_.phi.lpNorm<Eigen::Infinity>() : 0;
+  return system_.rows > 0 ? dense_.phi().lpNorm<Eigen::Infinity>() : 0;
 }
 
 double Equations::velocity_drift() {
@@ -301,9 +213,9 @@ Equations::Pencil Equations::pencil() {
   evaluate_residual<double>(system_, parameters_, q_, lambda_, kinematics_, moving_residual_);
   linearize(system_, parameters_, q_, lambda_, kinematics_, moving_residual_, linearization_);
   linearize_motion(system_, parameters_, q_, kinematics_, linearization_);
-  Eigen::MatrixXd scaled(gradient_.rows(), n_);
+  Eigen::MatrixXd scaled(dense_.gradient().rows(), n_);
   for (int v = 0; v < n_; ++v)
-    scaled.col(v) = gradient_.col(v) * model_.scaling.column[v];
+    scaled.col(v) = dense_.gradient().col(v) * model_.scaling.column[v];
   ConstraintSpace space;
   space.factor(scaled, 1e-9);
   const Eigen::MatrixXd basis = model_.scaling.column.asDiagonal() * space.basis();
@@ -313,22 +225,10 @@ Equations::Pencil Equations::pencil() {
   return {project(linearization_.mass), project(linearization_.velocity), project(linearization_.stiffness)};
 }
 
-void Equations::acceleration_derivatives(Eigen::MatrixXd& with_q, Eigen::MatrixXd& with_s) {
+bool Equations::linearise() {
   full_a_.head(n_) = a_;
   place(nullptr, &full_a_);
-  const Eigen::VectorXd& q = sided_configuration();
-  evaluate_residual<double>(system_, parameters_, q, lambda_, kinematics_, moving_residual_);
-  linearize(system_, parameters_, q, lambda_, kinematics_, moving_residual_, linearization_);
-  linearize_motion(system_, parameters_, q, kinematics_, linearization_);
-  add_coordinate_damping_stiffness(system_, parameters_, q, u_, linearization_.stiffness);
-  const auto column = model_.scaling.column.asDiagonal();
-  const auto respond = [&](const Eigen::MatrixXd& change, Eigen::MatrixXd& out) {
-    out = -(column * change.topLeftCorner(n_, n_));
-    saddle_.respond(out);
-    out = column * out;
-  };
-  respond(linearization_.stiffness, with_q);
-  respond(linearization_.velocity, with_s);
+  return solver_->linearise(point(), lambda_);
 }
 
 } // namespace flyball

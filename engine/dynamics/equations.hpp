@@ -8,10 +8,9 @@
 // directions ("idle" ones). s = u where every direction has mass.
 #pragma once
 
-#include "engine/dynamics/motion_model.hpp"
-#include "engine/dynamics/saddle_point.hpp"
+#include "engine/dynamics/dense_motion.hpp"
+#include "engine/dynamics/tree_motion.hpp"
 #include "engine/dynamics/watch.hpp"
-#include "engine/system/motion.hpp"
 #include "engine/system/reactions.hpp"
 
 namespace flyball {
@@ -38,6 +37,8 @@ class Equations {
  public:
   // Where `watch` is over, what evaluates fails.
   explicit Equations(const MotionModel& model, const Watch& watch);
+  Equations(const Equations&) = delete;
+  Equations& operator=(const Equations&) = delete;
 
   // Finds independent constraints and null directions at a state whose loops are closed; `u` is a velocity
   // that keeps them closed. Moves what stands in balance into it, in q. Throws SceneError, naming joints,
@@ -55,7 +56,7 @@ class Equations {
   [[nodiscard]] bool reduce(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u, Eigen::VectorXd& s);
   [[nodiscard]] bool evaluate(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s);
   // Why they cannot, as a clause: which numbers are too far apart.
-  std::string unsolved() const;
+  std::string unsolved() const { return solver_->unsolved(); }
 
   // Of the last evaluation. Configuration and velocity of the released system, drives last.
   const Eigen::VectorXd& configuration() const { return q_; }
@@ -63,9 +64,9 @@ class Equations {
   const Eigen::VectorXd& acceleration() const { return a_; } // s' of the free coordinates, q_R'' where s = u
   const Eigen::VectorXd& multipliers() const { return lambda_; } // all rows; zero on dependent ones
   const Kinematics<double>& kinematics() const { return kinematics_; }
-  const Eigen::MatrixXd& mass() const { return mass_.mass; }
-  double drive_force(int drive) const; // N m or N: what the coordinate of System::drives asks for
-  double drive_power() const;          // W, of all drives
+  // N m or N: what the coordinate of System::drives asks for.
+  double drive_force(int drive) const { return solver_->drive_force(drive); }
+  double drive_power() const; // W, of all drives
   ForcePowers powers();
   double stored_energy() const; // J
   double energy_scale();        // J, of the motion and of what the forces do over a radian or the reach
@@ -76,7 +77,7 @@ class Equations {
   // The same with the velocity changed by an impulse of the constraints, so that momentum is kept.
   bool catch_up(double t, Eigen::VectorXd& q, Eigen::VectorXd& s);
   // The smallest pivot of the independent constraint rows over the largest, of the last evaluation.
-  double independence() const { return saddle_.independence(); }
+  double independence() const { return dense_.saddle().independence(); }
   bool needs_projection() const { return !rows_.empty() || standing_ > 0; }
 
   // How far the loops are open, and how fast they open: the largest row (m, rad or 1), at an evaluated state.
@@ -99,10 +100,11 @@ class Equations {
     Eigen::MatrixXd mass, velocity, stiffness;
   };
   Pencil pencil();
-  // Derivatives of the acceleration at the evaluated state, for the iterations of implicit steps: (n, n) with
-  // a tangent step of q, in the axes of retract(), and with s. Not for what has massless bodies. The rates of
-  // the constraints' own curvature are left out: they are no stiffness, and cost third derivatives.
-  void acceleration_derivatives(Eigen::MatrixXd& with_q, Eigen::MatrixXd& with_s);
+  // Takes in the derivatives of the acceleration at the evaluated state, for the iterations of implicit
+  // steps. Not for what has massless bodies. False where they are not finite.
+  bool linearise();
+  // What solves the equations, and those steps.
+  MotionSolver& solver() { return *solver_; }
 
   const MotionModel& model() const { return model_; }
 
@@ -110,10 +112,9 @@ class Equations {
   bool evaluate_uncaught(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s);
   void load(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
   void place(const Eigen::VectorXd* s = nullptr, const Eigen::VectorXd* a = nullptr);
-  bool factor();
-  void fill_gradient();
-  void forces();
+  MotionPoint point();
   const Eigen::VectorXd& sided_configuration();
+  bool choose_tree(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
   void choose_structure(double t, Eigen::VectorXd& q, const Eigen::VectorXd& u);
   void choose_rows();
   void choose_idle();
@@ -128,7 +129,6 @@ class Equations {
   [[nodiscard]] bool sort_kinds(const Eigen::MatrixXd& damping);
   Eigen::VectorXd null_force() const;
   Eigen::VectorXd null_motion(const Eigen::VectorXd& idle) const;
-  bool solve_motion(const Eigen::VectorXd& force, const Eigen::VectorXd& bias, Eigen::VectorXd& a);
   [[nodiscard]] bool find_standing_balance(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, int limit);
   double open_rows();
   bool close_loops(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, double& shift);
@@ -150,13 +150,10 @@ class Equations {
   Eigen::VectorXd q_, sided_q_, u_, s_, a_, lambda_;
   Kinematics<double> kinematics_;
   std::vector<LinkRates> carried_;
-  MassMatrix mass_;
-  Eigen::MatrixXd gradient_; // (independent rows, all coordinates), rows scaled
-  Eigen::MatrixXd scaled_mass_, scaled_gradient_;
-  SaddlePoint saddle_;
-  Residual<double> residual_;
-  Eigen::VectorXd zero_lambda_, force_, row_values_, bias_, target_force_, target_rows_, scaled_a_,
-      scaled_lambda_, full_a_, step_;
+  DenseMotion dense_;
+  std::optional<TreeMotion> tree_; // of a model that goes along it
+  MotionSolver* solver_ = &dense_; // one of these
+  Eigen::VectorXd row_values_, bias_, target_force_, target_rows_, scaled_a_, scaled_lambda_, full_a_, step_;
 
   // Null directions Y of M and Phi_q in scaled coordinates, the identity on the idle ones: (n, idle).
   Eigen::MatrixXd null_, damping_, null_damping_, kinds_, standing_stiffness_;
@@ -164,6 +161,7 @@ class Equations {
   double chosen_independence_ = 1;
   double least_damping_ = 0;
   double null_mass_ = 0; // what mass is left on them, relative
+  Eigen::VectorXd zero_lambda_;
   Linearization linearization_;
   Residual<double> moving_residual_;
   Magnitudes magnitudes_;

@@ -15,23 +15,24 @@ bool Equations::find_null_directions() {
   null_.setZero(n_, static_cast<Eigen::Index>(idle_.size()));
   null_mass_ = 0;
   target_force_.resize(regular);
+  const MassMatrix& m = dense_.mass();
   for (std::size_t k = 0; k < idle_.size(); ++k) {
     const int v = idle_[k];
     for (Eigen::Index i = 0; i < regular; ++i) {
       const int w = regular_[static_cast<std::size_t>(i)];
-      target_force_[i] = -mass_.mass(w, v) * column[w] * column[v];
+      target_force_[i] = -m.mass(w, v) * column[w] * column[v];
     }
-    target_rows_ = -gradient_.col(v) * column[v];
-    saddle_.solve(target_force_, target_rows_, scaled_a_, scaled_lambda_);
+    target_rows_ = -dense_.gradient().col(v) * column[v];
+    dense_.saddle().solve(target_force_, target_rows_, scaled_a_, scaled_lambda_);
     if (!scaled_a_.allFinite()) return false;
     const auto c = static_cast<Eigen::Index>(k);
-    double left = mass_.mass(v, v) * column[v] * column[v];
+    double left = m.mass(v, v) * column[v] * column[v];
     for (Eigen::Index i = 0; i < regular; ++i) {
       null_(regular_[static_cast<std::size_t>(i)], c) = scaled_a_[i];
       left -= target_force_[i] * scaled_a_[i];
     }
     null_(v, c) = 1;
-    const double size = mass_.size[v] * column[v] * column[v];
+    const double size = m.size[v] * column[v] * column[v];
     if (size > 0) null_mass_ = std::max(null_mass_, std::abs(left) / size);
   }
   return true;
@@ -39,7 +40,7 @@ bool Equations::find_null_directions() {
 
 // The forces at the state along the null directions, N m.
 Eigen::VectorXd Equations::null_force() const {
-  return null_.transpose() * force_.head(n_).cwiseProduct(model_.scaling.column);
+  return null_.transpose() * dense_.force().head(n_).cwiseProduct(model_.scaling.column);
 }
 
 Eigen::VectorXd Equations::null_motion(const Eigen::VectorXd& idle) const {
@@ -62,7 +63,7 @@ bool Equations::find_damped_velocity() {
   for (int i = 0; i < 50 && !watch_.over(); ++i) {
     u_.head(n_) = s_.head(n_) + null_motion(idle_velocity_);
     place();
-    forces();
+    dense_.evaluate_forces(point());
     evaluate_damping(damping_);
     const auto& column = model_.scaling.column;
     null_damping_.noalias() = null_.transpose() * column.asDiagonal() * damping_.topLeftCorner(n_, n_) *
@@ -115,9 +116,7 @@ bool Equations::sort_kinds(const Eigen::MatrixXd& damping) {
 // Here its stiffness along them, and how fast the balance changes while they stand still.
 bool Equations::find_standing_stiffness() {
   place();
-  forces();
-  constraint_accelerations(system_, parameters_, nullptr, kinematics_, carried_, bias_);
-  if (!solve_motion(force_, bias_, a_)) return false;
+  if (!dense_.accelerate(point(), a_, lambda_)) return false;
   full_a_.head(n_) = a_;
   place(nullptr, &full_a_);
   evaluate_residual<double>(system_, parameters_, q_, lambda_, kinematics_, moving_residual_);

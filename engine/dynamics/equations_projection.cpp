@@ -27,11 +27,10 @@ bool Equations::close_loops(double t, Eigen::VectorXd& q, const Eigen::VectorXd&
     place();
     const double open = open_rows();
     if (!std::isfinite(open)) return false;
-    fill_gradient();
-    if (!saddle_.factor_constraints(scaled_gradient_)) return false;
+    if (!dense_.factor_constraints(point())) return false;
     // Rounding leaves a few units in the last place, and further steps only stir them.
     if (open < 2e-16 || (i > 0 && open < 1e-13 && open > 0.3 * previous)) return true;
-    saddle_.shortest(row_values_, scaled_a_);
+    dense_.saddle().shortest(row_values_, scaled_a_);
     for (std::size_t j = 0; j < regular_.size(); ++j)
       step_[regular_[j]] = scaled_a_[static_cast<Eigen::Index>(j)] * model_.scaling.column[regular_[j]];
     shift += scaled_a_.lpNorm<Eigen::Infinity>();
@@ -47,10 +46,9 @@ bool Equations::catch_up(double t, Eigen::VectorXd& q, Eigen::VectorXd& s) {
   if (!close_loops(t, q, s, moved)) return false;
   load(t, q, s);
   place();
-  if (!factor()) return false;
+  if (!dense_.factor(point())) return false;
   constraint_rates(system_, parameters_, u_, kinematics_, carried_, bias_);
-  force_.setZero(system_.nv);
-  if (!solve_motion(force_, bias_, a_)) return false;
+  if (!dense_.solve(Eigen::VectorXd::Zero(system_.nv), bias_, a_, lambda_)) return false;
   s += a_;
   return project(t, q, s);
 }
@@ -76,7 +74,7 @@ bool Equations::project(double t, Eigen::VectorXd& q, Eigen::VectorXd& s, double
       row_values_.resize(static_cast<Eigen::Index>(rows_.size()));
       for (std::size_t r = 0; r < rows_.size(); ++r)
         row_values_[static_cast<Eigen::Index>(r)] = -bias_[rows_[r]] * model_.scaling.row[rows_[r]];
-      saddle_.shortest(row_values_, scaled_a_);
+      dense_.saddle().shortest(row_values_, scaled_a_);
       for (std::size_t j = 0; j < regular_.size(); ++j)
         s[regular_[j]] += scaled_a_[static_cast<Eigen::Index>(j)] * model_.scaling.column[regular_[j]];
     }

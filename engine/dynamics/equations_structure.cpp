@@ -62,16 +62,17 @@ void Equations::choose_rows() {
 // for them.
 void Equations::choose_idle() {
   idle_.clear();
-  evaluate_mass(system_, parameters_, kinematics_, mass_);
+  dense_.evaluate_mass(point());
+  const MassMatrix& m = dense_.mass();
   interruption_point();
   // In units in which every coordinate alone would have mass one or less.
   double largest = 0;
   for (int v = 0; v < n_; ++v)
-    largest = std::max(largest, mass_.size[v] * model_.scaling.column[v] * model_.scaling.column[v]);
+    largest = std::max(largest, m.size[v] * model_.scaling.column[v] * model_.scaling.column[v]);
   Eigen::VectorXd unit(n_);
   for (int v = 0; v < n_; ++v)
-    unit[v] = mass_.size[v] > 0 ? 1 / std::sqrt(mass_.size[v])
-                                : model_.scaling.column[v] / std::sqrt(largest > 0 ? largest : 1);
+    unit[v] = m.size[v] > 0 ? 1 / std::sqrt(m.size[v])
+                            : model_.scaling.column[v] / std::sqrt(largest > 0 ? largest : 1);
   ConstraintSpace space;
   Eigen::MatrixXd scaled(static_cast<Eigen::Index>(rows_.size()), n_);
   for (std::size_t r = 0; r < rows_.size(); ++r)
@@ -82,7 +83,7 @@ void Equations::choose_idle() {
   interruption_point();
   const Eigen::MatrixXd basis = unit.asDiagonal() * space.basis();
   interruption_point();
-  const Eigen::MatrixXd weighed = unit.asDiagonal() * mass_.mass.topLeftCorner(n_, n_) * unit.asDiagonal();
+  const Eigen::MatrixXd weighed = unit.asDiagonal() * m.mass.topLeftCorner(n_, n_) * unit.asDiagonal();
   const Eigen::MatrixXd reduced = large::projected(weighed, space.basis());
   if (reduced.rows() > 0) {
     SymmetricEigen eigen;
@@ -138,17 +139,32 @@ void Equations::choose_kinds() {
 
 bool Equations::analyse(double t, Eigen::VectorXd& q, const Eigen::VectorXd& u) {
   const std::vector<int> rows = rows_, idle = idle_;
-  choose_structure(t, q, u);
+  if (!choose_tree(t, q, u)) choose_structure(t, q, u);
   return rows_ != rows || idle_ != idle;
 }
 
+// Along the tree, if all that moves has mass.
+bool Equations::choose_tree(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u) {
+  if (!tree_) return false;
+  load(t, q, u);
+  place();
+  if (!tree_->factor(point()) || !tree_->carries_all()) return false;
+  solver_ = &*tree_;
+  damped_ = standing_ = 0;
+  idle_.clear();
+  regular_.clear();
+  for (int v = 0; v < n_; ++v)
+    regular_.push_back(v);
+  return true;
+}
+
 void Equations::choose_structure(double t, Eigen::VectorXd& q, const Eigen::VectorXd& u) {
+  solver_ = &dense_;
   load(t, q, u);
   place();
   choose_rows();
   choose_idle();
-  fill_gradient();
-  chosen_independence_ = saddle_.factor_constraints(scaled_gradient_) ? saddle_.independence() : 0;
+  chosen_independence_ = dense_.factor_constraints(point()) ? independence() : 0;
   damped_ = standing_ = 0;
   const auto count = static_cast<Eigen::Index>(idle_.size());
   null_.setZero(n_, count);
@@ -165,7 +181,7 @@ void Equations::choose_structure(double t, Eigen::VectorXd& q, const Eigen::Vect
   load(t, q, s);
   s_ = u_;
   place();
-  if (!factor() || !find_null_directions()) refuse(unsolved());
+  if (!dense_.factor(point()) || !find_null_directions()) refuse(unsolved());
   if (!find_damped_velocity()) refuse(motion_of(kinds_) + " gets no velocity from the balance of forces");
   if (!find_standing_stiffness()) refuse(unsolved());
   const Eigen::MatrixXd column = model_.scaling.column.asDiagonal();
@@ -214,10 +230,11 @@ bool Equations::find_standing_balance(double t, Eigen::VectorXd& q, const Eigen:
 
 bool Equations::structure_changed() const {
   if (static_cast<int>(rows_.size()) < system_.rows) {
-    if (saddle_.independence() < 1e-3 * chosen_independence_) return true;
+    if (independence() < 1e-3 * chosen_independence_) return true;
     // Rows that followed from the others may do so no longer.
-    if (residual_.phi.cwiseProduct(model_.scaling.row).lpNorm<Eigen::Infinity>() > 1e-7) return true;
+    if (dense_.phi().cwiseProduct(model_.scaling.row).lpNorm<Eigen::Infinity>() > 1e-7) return true;
   }
+  if (solver_ != &dense_) return !tree_->carries_all();
   if (idle_.empty()) return false;
   return null_mass_ > 1e-9 || null_.cwiseAbs().maxCoeff() > 1e3;
 }
@@ -235,7 +252,7 @@ std::string Equations::trouble() const {
   const Eigen::Index loose = null_.cols() - damped_ - standing_;
   if (loose == 0) return "";
   const Eigen::MatrixXd directions = null_ * kinds_.rightCols(loose);
-  const Eigen::VectorXd force = force_.head(n_).cwiseProduct(model_.scaling.column);
+  const Eigen::VectorXd force = dense_.force().head(n_).cwiseProduct(model_.scaling.column);
   Magnitudes sizes;
   evaluate_magnitudes(system_, parameters_, q_, lambda_, kinematics_, sizes);
   const Eigen::VectorXd size =

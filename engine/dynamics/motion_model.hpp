@@ -13,6 +13,8 @@ struct MotionModel {
   System released;       // the same with drives as coordinates
   Parameters parameters; // of both; dampers zero where the motion is to be undamped
   Scaling scaling;       // of the free coordinates and the constraint rows
+  // The equations of motion are solved along the tree (tree_motion.hpp), as far as all that moves has mass.
+  bool along_tree = false;
   std::vector<std::string> notes;
 
   Problem problem() const { return {system, parameters, scaling}; }

@@ -5,11 +5,11 @@
 namespace flyball {
 
 bool NewtonMatrix::take_derivatives(Equations& equations, const double* y) {
-  whole_ = false;
   const System& system = equations.model().system;
   nq_ = system.nq;
   nv_ = system.nv;
-  equations.acceleration_derivatives(with_q_, with_s_);
+  solver_ = &equations.solver();
+  const bool taken = equations.linearise();
   rotations_.clear();
   scalars_.clear();
   for (const Link& link : system.links) {
@@ -29,12 +29,13 @@ bool NewtonMatrix::take_derivatives(Equations& equations, const double* y) {
     r.tangent *= 2 / (scalar * scalar + d.squaredNorm());
     rotations_.push_back(r);
   }
-  return with_q_.allFinite() && with_s_.allFinite();
+  turns_.resize(rotations_.size());
+  return taken;
 }
 
 bool NewtonMatrix::take_quotients(const Rate& rate, const double* y, const double* rate_at_y,
                                   const Eigen::VectorXd& scale, int size) {
-  whole_ = true;
+  solver_ = nullptr;
   perturbed_ = Eigen::Map<const Eigen::VectorXd>(y, size);
   const Eigen::Map<const Eigen::VectorXd> before(rate_at_y, size);
   rates_.resize(size);
@@ -58,42 +59,38 @@ bool NewtonMatrix::take_quotients(const Rate& rate, const double* y, const doubl
 
 bool NewtonMatrix::factor(double gamma) {
   gamma_ = gamma;
-  Eigen::MatrixXd matrix;
-  if (whole_) {
-    matrix = -gamma * jacobian_;
-  } else {
-    matrix = -gamma * with_s_;
-    for (const Scalar& x : scalars_)
-      matrix.col(x.v) -= gamma * gamma * with_q_.col(x.v);
-    for (Rotation& r : rotations_) {
-      const double turned = gamma * gamma * r.by_position.col(0).squaredNorm(); // |gamma w / 2|^2
-      r.inverse = (Eigen::Matrix4d::Identity() + gamma * r.by_position) / (1 + turned);
-      const Mat3 moved = r.tangent * r.inverse * r.by_velocity;
-      matrix.middleCols<3>(r.v) -= gamma * gamma * with_q_.middleCols<3>(r.v) * moved;
-    }
+  if (!solver_) {
+    Eigen::MatrixXd matrix = -gamma * jacobian_;
+    matrix.diagonal().array() += 1;
+    return matrix.size() == 0 || factors_.compute(matrix);
   }
-  matrix.diagonal().array() += 1;
-  if (matrix.size() == 0) return true;
-  return factors_.compute(matrix);
+  for (std::size_t i = 0; i < rotations_.size(); ++i) {
+    Rotation& r = rotations_[i];
+    const double turned = gamma * gamma * r.by_position.col(0).squaredNorm(); // |gamma w / 2|^2
+    r.inverse = (Eigen::Matrix4d::Identity() + gamma * r.by_position) / (1 + turned);
+    turns_[i] = r.tangent * r.inverse * r.by_velocity;
+  }
+  return solver_->factor_step(gamma, turns_);
 }
 
-void NewtonMatrix::solve(double* b) const {
-  if (whole_) {
+void NewtonMatrix::solve(double* b) {
+  if (!solver_) {
     Eigen::Map<Eigen::VectorXd> all(b, jacobian_.rows());
     all = factors_.solve(all);
     return;
   }
-  if (nv_ == 0) return;
-  Eigen::VectorXd tangent(nv_);
+  step_.resize(nv_);
   for (const Scalar& x : scalars_)
-    tangent[x.v] = b[x.q];
+    step_[x.v] = b[x.q];
   for (const Rotation& r : rotations_) {
     Eigen::Map<Eigen::Vector4d> d(b + r.q);
     d = (r.inverse * d).eval();
-    tangent.segment<3>(r.v) = r.tangent * d;
+    step_.segment<3>(r.v) = r.tangent * d;
   }
   Eigen::Map<Eigen::VectorXd> s(b + nq_, nv_);
-  s = factors_.solve(s + gamma_ * (with_q_ * tangent));
+  s_ = s;
+  solver_->solve_step(step_, s_);
+  s = s_;
   for (const Scalar& x : scalars_)
     b[x.q] += gamma_ * s[x.v];
   for (const Rotation& r : rotations_)

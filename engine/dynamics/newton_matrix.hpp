@@ -1,10 +1,13 @@
 // The matrix of implicit steps, I - gamma J, J the derivative of a motion's rates with y = [q; s; energies].
 //
-// Where all bodies have mass J is put together from the derivatives of the acceleration, and since q' = s but
-// for quaternions, q is eliminated: what is factored has as many rows as the motion has coordinates. With
-// massless bodies J comes from difference quotients and all of it is factored. The energies, which nothing
-// depends on, have no columns; in the first form no rows either: Newton's iteration corrects them a round
-// later.
+// Where all bodies have mass q is eliminated, since q' = s but for quaternions, and what is left is for the
+// solver of the equations of motion (motion_solver.hpp). With massless bodies J comes from difference
+// quotients and all of it is factored. The energies, which nothing depends on, have no columns; in the first
+// form no rows either: Newton's iteration corrects them a round later.
+//
+// A rotation. Its quaternion D' = w D / 2 has the derivatives P with D and V with w, and a change dD makes
+// the tangent step T dD. So dD = (I - gamma P)^-1 (b_D + gamma V dw), and its step is that of b_D and gamma N
+// dw with N = T (I - gamma P)^-1 V.
 #pragma once
 
 #include "engine/dynamics/equations.hpp"
@@ -29,28 +32,28 @@ class NewtonMatrix {
   // False where the matrix is singular.
   bool factor(double gamma);
   // b := (I - gamma J)^-1 b.
-  void solve(double* b) const;
+  void solve(double* b);
 
  private:
-  // A spherical link: its quaternion D' = w D / 2, and the matrices of its part of J and of the tangent step
-  // that a change of D makes.
   struct Rotation {
     int q = 0, v = 0;
-    Eigen::Matrix4d by_position;                           // of D' with D
-    Eigen::Matrix<double, 4, 3> by_velocity;               // of D' with w
-    Eigen::Matrix<double, 3, 4> tangent;                   // rad
-    Eigen::Matrix4d inverse = Eigen::Matrix4d::Identity(); // (I - gamma by_position)^-1
+    Eigen::Matrix4d by_position;                           // P
+    Eigen::Matrix<double, 4, 3> by_velocity;               // V
+    Eigen::Matrix<double, 3, 4> tangent;                   // T, rad
+    Eigen::Matrix4d inverse = Eigen::Matrix4d::Identity(); // (I - gamma P)^-1
   };
   struct Scalar {
     int q = 0, v = 0;
   };
 
-  bool whole_ = false; // by difference quotients
+  MotionSolver* solver_ = nullptr; // null: by difference quotients
   int nq_ = 0, nv_ = 0;
   double gamma_ = 0;
-  Eigen::MatrixXd jacobian_, with_q_, with_s_;
   std::vector<Rotation> rotations_;
   std::vector<Scalar> scalars_;
+  std::vector<Mat3> turns_; // N, by rotation
+  Eigen::VectorXd step_, s_;
+  Eigen::MatrixXd jacobian_;
   Lu factors_;
   Eigen::VectorXd perturbed_, rates_;
 };

@@ -25,6 +25,9 @@ void Recorder::use(std::shared_ptr<const MotionModel> model, Equations& equation
   jacobi_ = has_jacobi() && (run_.time.empty() || !run_.energy.jacobi.empty());
   if (!jacobi_) run_.energy.jacobi.clear();
   if (run_.coordinates.empty() && run_.drives.empty()) lay_out();
+  tree_joints_.clear();
+  for (std::size_t i = 0; reactions_ && i < model_->system.tree_joints.size(); ++i)
+    tree_joints_.emplace(model_->system.tree_joints[i].name, i);
   tracked_.clear();
   for (const BodyPoint& point : points_)
     tracked_.push_back(find_point(model_->system, model_->mechanism, model_->parameters, point));
@@ -119,14 +122,19 @@ double Recorder::go_on_from(const CoordinateTrack& track, double value, double r
   return foretold + std::remainder(value - foretold, 2 * std::numbers::pi);
 }
 
-// T_2 + U, with U = V - T_0 the amended potential.
+// T_2 + U: the kinetic energy of the same motion with the drives at rest, and U = V - T_0 the amended
+// potential.
 double Recorder::jacobi(double t) {
   const System& system = model_->system;
-  const Eigen::VectorXd q = equations_->configuration().head(system.nq);
-  const Eigen::VectorXd u = equations_->velocity().head(system.nv);
+  const Eigen::VectorXd& all_q = equations_->configuration();
+  const Eigen::VectorXd q = all_q.head(system.nq);
+  Eigen::VectorXd u = equations_->velocity();
+  u.tail(u.size() - system.nv).setZero();
+  std::vector<LinkRates> none;
+  move(model_->released, model_->parameters, {all_q, u}, standing_, none);
+  const double kinetic = kinetic_energy(model_->released, model_->parameters, standing_);
   forward<double>(system, model_->parameters, q, t, standing_);
-  return u.dot(equations_->mass().topLeftCorner(system.nv, system.nv) * u) / 2 +
-         amended_potential(system, model_->parameters, q, standing_).value;
+  return kinetic + amended_potential(system, model_->parameters, q, standing_).value;
 }
 
 // Whether the Lagrangian is the same at every phase of the drives: by the shape of the mechanism, or as far
@@ -202,9 +210,8 @@ void Recorder::record_reactions() {
       track.force.push_back(w.force);
       track.torque.push_back(w.torque);
     };
-    const auto tree = std::ranges::find(system.tree_joints, track.joint, &TreeJoint::name);
-    if (tree != system.tree_joints.end()) {
-      push(forces.tree[static_cast<std::size_t>(tree - system.tree_joints.begin())]);
+    if (const auto tree = tree_joints_.find(track.joint); tree != tree_joints_.end()) {
+      push(forces.tree[tree->second]);
       continue;
     }
     for (std::size_t c = 0; c < system.cuts.size(); ++c)

@@ -4,6 +4,8 @@
 #include "engine/dynamics/equations.hpp"
 #include "engine/system/point_motion.hpp"
 
+#include <unordered_map>
+
 namespace flyball {
 
 class Recorder {
@@ -43,6 +45,7 @@ class Recorder {
   bool reactions_;
   std::vector<BodyPoint> points_;
   std::vector<TrackedPoint> tracked_;
+  std::unordered_map<std::string, std::size_t> tree_joints_; // for reactions, by name
   std::shared_ptr<const MotionModel> model_;
   Equations* equations_ = nullptr;
   double base_ = 0; // J, stored energy that counts as none

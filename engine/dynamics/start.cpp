@@ -1,5 +1,6 @@
 #include "engine/dynamics/start.hpp"
 
+#include "engine/dynamics/articulated_bodies.hpp"
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
@@ -79,9 +80,36 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
   u += step.cwiseProduct(column);
 }
 
+// The same from rest for what goes along a tree: the momentum of everything, the drives' motion included,
+// vanishes along every free coordinate. False where not all of them move mass.
+bool bring_to_rest(const MotionModel& model, double t, const Eigen::VectorXd& q, Eigen::VectorXd& u) {
+  Eigen::VectorXd all_q(model.released.nq), all_u(model.released.nv);
+  all_q.head(model.system.nq) = q;
+  all_u.head(model.system.nv) = u;
+  set_drives(model.system, model.parameters, t, all_q, all_u);
+  Kinematics<double> k;
+  std::vector<LinkRates> none;
+  move(model.released, model.parameters, {all_q, all_u}, k, none);
+  ArticulatedBodies bodies(model.released, model.system.nv);
+  if (!bodies.factor(model.parameters, k) || !bodies.carry_all()) return false;
+  std::vector<Vec6> momenta(k.links.size());
+  for (std::size_t l = 0; l < momenta.size(); ++l) {
+    BodyInertia body;
+    set_body_inertia(model.parameters, l, k, body);
+    body.turning = 0;
+    Vec6 velocity;
+    velocity << k.links[l].w, k.links[l].v;
+    momenta[l] = times_inertia(body, velocity);
+  }
+  Eigen::VectorXd change(model.system.nv);
+  bodies.solve(momenta, Eigen::VectorXd::Zero(model.released.nv), change);
+  u += change;
+  return true;
+}
+
 // The steady state that `solve` answers with.
 void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q) {
-  const Problem problem{model.system, model.parameters, model.scaling, options.cancel};
+  const Problem problem{model.system, model.parameters, model.scaling, options.cancel, true};
   Workspace w;
   SteadyState steady;
   find_steady_state(problem, q, q, {.seconds = SolveOptions{}.search}, w, steady);
@@ -206,16 +234,19 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
       throw SceneError("joints." + name, "cannot be closed from the start");
     }
   }
+  const auto move_on = [&](const std::vector<int>& held, bool from_rest, Eigen::VectorXd& velocity) {
+    if (model.along_tree && from_rest && held.empty() && bring_to_rest(model, t, q, velocity)) return;
+    close_velocity(model, t, q, held, from_rest, velocity);
+  };
   const bool from_rest = options.start == Start::drawn;
   const std::vector<int> held = apply_kick(options, model, q, u);
   if (from_rest && !held.empty()) {
     // At rest first, then the kick on top.
     Eigen::VectorXd still = Eigen::VectorXd::Zero(model.system.nv);
-    close_velocity(model, t, q, {}, true, still);
+    move_on({}, true, still);
     u += still;
   }
-  if (model.system.rows > 0 || (from_rest && held.empty()))
-    close_velocity(model, t, q, held, from_rest && held.empty(), u);
+  if (model.system.rows > 0 || (from_rest && held.empty())) move_on(held, from_rest && held.empty(), u);
 }
 
 } // namespace flyball

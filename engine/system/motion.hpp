@@ -53,7 +53,10 @@ void evaluate_mass(const System& system, const Parameters& parameters, const Kin
 void add_coordinate_damping(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                             const Eigen::VectorXd& u, Eigen::VectorXd& f);
 
-// Adds its derivative with q: rotation vectors turn the directions in which their dampers act.
+// The derivative with q (N m per rad) of a spherical link's damping torque at `rate` (rad/s): its rotation
+// vector turns the directions in which its dampers act. The same added for all links.
+Mat3 rotation_damping_stiffness(const Link& link, const LinkParameters& parameters, const Eigen::VectorXd& q,
+                                const Vec3& rate);
 void add_coordinate_damping_stiffness(const System& system, const Parameters& parameters,
                                       const Eigen::VectorXd& q, const Eigen::VectorXd& u,
                                       Eigen::MatrixXd& stiffness);

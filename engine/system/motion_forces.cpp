@@ -30,21 +30,28 @@ void add_coordinate_damping(const System& system, const Parameters& p, const Eig
   }
 }
 
+Mat3 rotation_damping_stiffness(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q,
+                                const Vec3& rate) {
+  const Vec3 r = rotation_vector(link, p, q);
+  const Mat3 drawn = p.drawn_rotation.toRotationMatrix();
+  const Mat3 j = rotation_vector_rate(link, p, q);
+  Mat3 out;
+  for (int k = 0; k < 3; ++k) {
+    const Mat3 turned = inverse_left_jacobian_derivative<double>(r, j.col(k));
+    const Mat3 dj = link.reversed ? Mat3(-turned.transpose() * drawn.transpose()) : turned;
+    out.col(k) = dj.transpose() * dampings(p).cwiseProduct(j * rate) +
+                 j.transpose() * dampings(p).cwiseProduct(dj * rate);
+  }
+  return out;
+}
+
 void add_coordinate_damping_stiffness(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                                       const Eigen::VectorXd& u, Eigen::MatrixXd& stiffness) {
   for (std::size_t i = 0; i < system.links.size(); ++i) {
     const Link& link = system.links[i];
     if (link.v < 0 || link.type != LinkType::spherical || !damped(p.links[i])) continue;
-    const Vec3 r = rotation_vector(link, p.links[i], q), rate = u.segment<3>(link.v);
-    const Mat3 drawn = p.links[i].drawn_rotation.toRotationMatrix();
-    const Mat3 j = rotation_vector_rate(link, p.links[i], q);
-    for (int k = 0; k < 3; ++k) {
-      const Mat3 turned = inverse_left_jacobian_derivative<double>(r, j.col(k));
-      const Mat3 dj = link.reversed ? Mat3(-turned.transpose() * drawn.transpose()) : turned;
-      stiffness.block<3, 1>(link.v, link.v + k) +=
-          dj.transpose() * dampings(p.links[i]).cwiseProduct(j * rate) +
-          j.transpose() * dampings(p.links[i]).cwiseProduct(dj * rate);
-    }
+    stiffness.block<3, 3>(link.v, link.v) +=
+        rotation_damping_stiffness(link, p.links[i], q, u.segment<3>(link.v));
   }
 }
 
