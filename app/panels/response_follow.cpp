@@ -66,6 +66,7 @@ class Gathering {
     out_.message = std::to_string(out_.branches.size()) +
                    (out_.branches.size() == 1 ? " branch" : " branches") + " through the present state" +
                    (follower_.cancelled() ? "; cancelled." : ".");
+    if (const std::string limits = follower_.limits(); !limits.empty()) out_.message += " " + limits;
     return std::move(out_);
   }
 

@@ -63,13 +63,17 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
 BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
                                const BranchOptions& options)
     : options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from), notes_)),
-      family_(system_, with_parameter(mechanism, address, from), address, std::abs(to - from)),
+      family_(system_, with_parameter(mechanism, address, from), address, std::abs(to - from),
+              system_.nv > options.dense_up_to && system_.conservative && system_.single_drives
+                  ? system_.kkt_form
+                  : KktForm::dense),
       continuation_(family_), from_(from), to_(to) {}
 
 Problem BranchFollower::problem_at(double parameter) {
   family_.set(parameter);
-  const Problem p = family_.problem();
-  return {p.system, p.parameters, p.scaling, options_.cancel};
+  Problem p = family_.problem();
+  p.cancel = options_.cancel;
+  return p;
 }
 
 std::optional<BranchState> BranchFollower::begin(Unknowns z, double parameter, bool forth) {
@@ -87,6 +91,13 @@ BranchFollower::Described BranchFollower::describe(const BranchState& state) {
   // Exponents have their frequencies but for whole turns a period: multipliers tell what crosses.
   if (!turns_with_drives(d.point)) d.right = right_of_axis(d.point.eigenvalues, families_);
   return d;
+}
+
+std::string BranchFollower::limits() const {
+  if (family_.problem().form == KktForm::dense || !options_.eigenvalues) return "";
+  return "Of " + std::to_string(system_.nv) +
+         " coordinates the signs of pivots tell the stability, not eigenvalues: whether pairs of these cross "
+         "the imaginary axis (Hopf, flutter) was not looked for.";
 }
 
 ResponsePoint BranchFollower::point(const BranchState& state) {

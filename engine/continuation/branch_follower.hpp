@@ -63,6 +63,9 @@ class BranchFollower {
 
   ResponsePoint point(const BranchState& state);
 
+  // A sentence on what is not looked for in a mechanism this large; empty where all is.
+  std::string limits() const;
+
   // Whether a state is a point of a branch that was followed.
   bool lies_on(const BranchState& state, const FollowedBranch& branch);
   bool same(const BranchState& a, const BranchState& b) const;

@@ -41,7 +41,7 @@ class Diagram {
       if (out_.branches.empty()) out_.message = "Cancelled.";
     }
     if (out_.status == Status::converged && out_.message.empty()) out_.message = summary();
-    for (const std::string& note : {begun_, bands()})
+    for (const std::string& note : {begun_, bands(), follower_.limits()})
       if (out_.status == Status::converged && !note.empty()) out_.message += " " + note;
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(out_);
@@ -179,7 +179,8 @@ class Diagram {
     const Problem problem = follower_.problem_at(value);
     Eigen::VectorXd drawn;
     drawn_configuration(problem.system, problem.parameters, drawn);
-    const EquilibriumList list = find_all_equilibria(problem, drawn, {}, w);
+    const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel}; // by matrices
+    const EquilibriumList list = find_all_equilibria(whole, drawn, {}, w);
     out_.searched.push_back(value);
     out_.starts += list.report.starts;
     const std::vector<double> phases = sample_phases(problem.system, problem.parameters);

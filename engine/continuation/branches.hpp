@@ -60,7 +60,12 @@ struct BranchOptions {
   int max_points = 2000;      // a branch
   int max_branches = 32;
   bool switch_branches = true;
+  // Of points up to `dense_up_to` coordinates, and of mechanisms without a potential.
   bool eigenvalues = true;
+  // Coordinates beyond which, where there is a potential, the KKT matrix is in the system's own form rather
+  // than by dense matrices: then stability is what the signs of pivots tell of it, and Hopf points and
+  // flutter are not looked for.
+  int dense_up_to = 200;
   bool reactions = false; // of every point: costs about as much as the point itself
   // Also the branches that nothing connects with the drawn pose's: from each equilibrium that
   // find_all_equilibria finds at the values `all_at`, both ways, where it lies on no branch yet.

@@ -1,33 +1,13 @@
 // A branch of equilibria followed through folds as one parameter of the mechanism moves: pseudo-arclength
 // continuation (Keller 1977; Allgower and Georg, Introduction to Numerical Continuation Methods, chapters 6
-// and 7) on the null space of the constraints, so that redundant loops do no harm.
+// and 7) by the bordered balance.
 #pragma once
 
-#include "engine/solve/newton.hpp"
+#include "engine/continuation/bordered_balance.hpp"
 
-#include <string>
+#include <memory>
 
 namespace flyball {
-
-// The mechanism with one number free.
-class Family {
- public:
-  Family(const System& system, const Mechanism& mechanism, std::string address, double scale);
-
-  void set(double value);
-  double value() const { return value_; }
-  double scale() const { return scale_; } // the range of interest, in the parameter's unit
-  const Mechanism& mechanism() const { return mechanism_; }
-  Problem problem() const { return {system_, parameters_, scaling_}; }
-
- private:
-  const System& system_;
-  Mechanism mechanism_;
-  std::string address_;
-  double scale_, value_ = 0;
-  Parameters parameters_;
-  Scaling scaling_;
-};
 
 // A point on a branch and the direction it goes on in.
 struct BranchState {
@@ -40,7 +20,7 @@ struct BranchState {
 
 class Continuation {
  public:
-  explicit Continuation(Family& family) : family_(family) {}
+  explicit Continuation(Family& family);
 
   // Completes a state whose z solves the balance at its parameter: tangent with the parameter growing, or
   // falling for direction < 0. False at a singular state that has no single tangent.
@@ -58,14 +38,13 @@ class Continuation {
   bool switch_branch(const BranchState& at, double length, BranchState& to);
 
  private:
-  struct Bordered;
-  void assemble(const Unknowns& z, double parameter, Bordered& out);
   bool correct(const Unknowns& from, double parameter, const Eigen::VectorXd& tangent, double length,
                BranchState& to, int& iterations);
   bool find_tangent(BranchState& state, const Eigen::VectorXd& previous);
 
   Family& family_;
   Workspace w_;
+  std::unique_ptr<BorderedBalance> balance_;
 };
 
 } // namespace flyball

@@ -109,7 +109,7 @@ bool bring_to_rest(const MotionModel& model, double t, const Eigen::VectorXd& q,
 
 // The steady state that `solve` answers with.
 void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q) {
-  const Problem problem{model.system, model.parameters, model.scaling, options.cancel, true};
+  const Problem problem{model.system, model.parameters, model.scaling, options.cancel, model.system.kkt_form};
   Workspace w;
   SteadyState steady;
   find_steady_state(problem, q, q, {.seconds = SolveOptions{}.search}, w, steady);

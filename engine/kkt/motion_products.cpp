@@ -29,6 +29,7 @@ Eigen::VectorXd any_motion(int size) {
 void MotionProducts::linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                                const Residual<double>& residual) {
   coordinates_ = problem.system.nv;
+  rows_ = problem.system.rows;
   has_dampers_ = false;
   add_links(problem, z.q, k, residual);
   add_body_forces(problem, k);
@@ -350,6 +351,12 @@ double MotionProducts::stiffness_terms(const Eigen::VectorXd& x) {
     }
   }
   return std::sqrt(square);
+}
+
+void MotionProducts::constraint(const Eigen::VectorXd& x, Eigen::VectorXd& out) const {
+  out.setZero(rows_);
+  for (const Gradient& g : gradients_)
+    out[g.row] += g.value * x[g.v];
 }
 
 void MotionProducts::constraint_transposed(const Eigen::VectorXd& lambda, Eigen::VectorXd& out) const {

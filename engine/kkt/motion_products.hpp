@@ -1,4 +1,4 @@
-// M x, (C + G) x and K x of the linearised motion M q'' + (C + G) q' + K q = 0, and Phi_q^T lambda, without
+// M x, (C + G) x and K x of the linearised motion M q'' + (C + G) q' + K q = 0, J x and J^T lambda, without
 // any of these matrices: one pass from the root outwards for the bodies' motions and one back for the
 // wrenches, at a cost that grows with the bodies.
 //
@@ -36,6 +36,7 @@ class MotionProducts {
   // 2-norm of what K x is made of, in the motions of the bodies: by each coordinate's own stiffness, the
   // load that it bears, and what acts between two bodies.
   double stiffness_terms(const Eigen::VectorXd& x);
+  void constraint(const Eigen::VectorXd& x, Eigen::VectorXd& out) const; // J x
   void constraint_transposed(const Eigen::VectorXd& lambda, Eigen::VectorXd& out) const;
 
   // C + G is more than rounding: there are dampers or drag, or Coriolis forces along the coordinates.
@@ -96,7 +97,7 @@ class MotionProducts {
   template <class Own>
   void inwards(Eigen::VectorXd& out, Own own);
 
-  int coordinates_ = 0, momentum_count_ = 0;
+  int coordinates_ = 0, rows_ = 0, momentum_count_ = 0;
   bool velocity_matters_ = false, has_dampers_ = false;
   std::vector<Node> nodes_; // of mobile links, parents before children
   std::vector<int> node_of_link_;

@@ -35,6 +35,8 @@ class SparseKkt final : public KktSystem {
 
   // Constraint rows that others imply, of the last factor().
   int redundant() const { return redundant_; }
+  // At least those that factor_constraints() found; else pivots of these rows count as directions.
+  bool sees_redundant_rows() const { return redundant_ >= std::min(constraints_.redundant(), rows_); }
 
  private:
   void solve_to(double enough, const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,

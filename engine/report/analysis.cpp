@@ -57,12 +57,6 @@ bool pivots_decide(const Problem& problem) {
   return problem.system.nv > largest_for_eigenvalues && problem.form != KktForm::dense;
 }
 
-// Whether the linearised motion of a large mechanism turns with the drives, as far as can be told.
-bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w) {
-  if (phases.empty()) return false;
-  return !can_compare_phases(problem.system) || motion_varies(problem, z.q, phases, w);
-}
-
 Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eigenvalues, int modes,
                        Workspace& w) {
   if (pivots_decide(problem)) {

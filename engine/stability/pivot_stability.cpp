@@ -1,5 +1,6 @@
 #include "engine/stability/pivot_stability.hpp"
 
+#include "engine/kkt/motion_products.hpp"
 #include "engine/linear/largest.hpp"
 
 #include <random>
@@ -39,6 +40,23 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
   return false;
 }
 
+// Whether where the potential falls some way motions follow it, be it along one direction or several: without
+// forces in the velocity, and where every coordinate is damped, whatever gyroscopic forces do (Kelvin, Tait
+// and Chetayev). The balance must be evaluated at z.
+bool nothing_holds(const Problem& problem, const Unknowns& z, Workspace& w) {
+  bool all_damped = true;
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const Link& link = problem.system.links[l];
+    const std::size_t count = link.v < 0 ? 0 : link.type == LinkType::spherical ? 3 : 1;
+    for (std::size_t i = 0; i < count; ++i)
+      all_damped = all_damped && problem.parameters.links[l].force[i].damping > 0;
+  }
+  if (all_damped) return true;
+  MotionProducts products;
+  products.linearize(problem, z, w.kinematics, w.residual);
+  return !products.velocity_matters();
+}
+
 // Where many directions are neutral but for rounding: inverse iteration with the factors that hold them.
 Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspace& w) {
   constexpr int samples = 4, iterations = 4;
@@ -74,15 +92,21 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
 
 } // namespace
 
+bool inertia_is_known(const Problem& problem, Workspace& w) {
+  if (problem.system.rows == 0) return true;
+  factor_constraints(problem, w);
+  return w.sparse.sees_redundant_rows();
+}
+
 Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w) {
   Stability out;
-  if (!problem.symmetric()) return out;
+  if (!problem.symmetric() || !inertia_is_known(problem, w)) return out;
   if (w.kkt(problem).shift() > 0) return of_held_directions(problem, z, w);
   const int negative = w.kkt(problem).negative_count();
   if (w.kkt(problem).positive_definite()) {
     out.stable = true;
     out.reason = StabilityReason::minimum;
-  } else if (negative % 2 == 1) {
+  } else if (negative % 2 == 1 || (negative > 0 && nothing_holds(problem, z, w))) {
     out.stable = false;
     out.reason = StabilityReason::unstable;
   }

@@ -8,6 +8,7 @@
 #include "engine/solve/existence.hpp"
 #include "engine/stability/gyroscopic_stability.hpp"
 #include "engine/stability/linear_motion.hpp"
+#include "engine/stability/pivot_stability.hpp"
 
 #include <algorithm>
 
@@ -122,8 +123,10 @@ std::optional<bool> massless_directions_tip(const Eigen::MatrixXd& mass, const E
 
 } // namespace
 
-bool can_compare_phases(const System& system) {
-  return system.nv <= (system.rows > 0 ? 600 : 2000);
+bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w) {
+  const System& system = problem.system;
+  const bool can_compare = system.nv <= (system.rows > 0 ? 600 : 2000);
+  return !phases.empty() && (!can_compare || motion_varies(problem, z.q, phases, w));
 }
 
 bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
@@ -157,6 +160,16 @@ bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
 
 Stability find_stability(const Problem& problem, const Unknowns& z, bool with_eigenvalues, Workspace& w) {
   Stability out;
+  if (problem.form != KktForm::dense) {
+    if (may_vary(problem, z, sample_phases(problem.system, problem.parameters), w)) {
+      out.reason = StabilityReason::varying;
+      out.floquet_failure = FloquetFailure::unresolved;
+      return out;
+    }
+    evaluate(problem, z, 0, w);
+    factor(problem, z, w);
+    return find_pivot_stability(problem, z, w);
+  }
   const bool varies = motion_varies(problem, z.q, sample_phases(problem.system, problem.parameters), w);
   evaluate(problem, z, 0, w);
   factor(problem, z, w);

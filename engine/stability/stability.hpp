@@ -28,12 +28,13 @@ struct Stability {
 // Hessian on the potential's second differences, to be asked only at a steady state.
 bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w);
 
-// Whether find_stability() can compare the linearised motion over the phases: larger mechanisms would take
-// too long.
-bool can_compare_phases(const System& system);
+// Whether the linearised motion turns with the drives, as far as can be told: comparing it over the phases
+// would take too long in very large mechanisms.
+bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w);
 
-// z must be a steady state of a dense problem; it is left evaluated and factored unless multipliers judge.
-// `with_eigenvalues` asks for the full picture, else only the sign of a minimum is found.
+// z must be a steady state; it is left evaluated and factored unless multipliers judge. Of a dense problem
+// `with_eigenvalues` asks for the full picture, else only the sign of a minimum is found; of others the signs
+// of the pivots tell (pivot_stability.hpp).
 Stability find_stability(const Problem& problem, const Unknowns& z, bool with_eigenvalues, Workspace& w);
 
 } // namespace flyball

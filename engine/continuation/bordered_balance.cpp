@@ -1,0 +1,32 @@
+#include "engine/continuation/bordered_balance.hpp"
+
+#include "engine/continuation/dense_borders.hpp"
+#include "engine/continuation/kkt_borders.hpp"
+#include "engine/solve/newton.hpp"
+
+namespace flyball {
+
+std::unique_ptr<BorderedBalance> BorderedBalance::make(Family& family, Workspace& w) {
+  if (family.problem().form == KktForm::dense) return std::make_unique<DenseBorders>(family, w);
+  return std::make_unique<KktBorders>(family, w);
+}
+
+void BorderedBalance::find_rates(const Unknowns& z, double parameter) {
+  const Problem problem = family_.problem();
+  const double h = 1e-6 * family_.scale();
+  Eigen::VectorXd f[2], phi[2];
+  w_.zero_lambda.setZero(problem.system.rows);
+  for (int i : {0, 1}) {
+    family_.set(parameter + (i == 0 ? h : -h));
+    evaluate(problem, {z.q, w_.zero_lambda}, 0, w_);
+    f[i] = w_.residual.f;
+    phi[i] = w_.residual.phi;
+  }
+  family_.set(parameter);
+  const double per = family_.scale() / (2 * h);
+  loop_rate_ = ((phi[0] - phi[1]) * per).cwiseProduct(problem.scaling.row);
+  force_rate_ = ((f[0] - f[1]) * per).cwiseProduct(problem.scaling.column);
+  evaluate(problem, z, 0, w_);
+}
+
+} // namespace flyball

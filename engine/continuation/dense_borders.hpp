@@ -1,0 +1,32 @@
+// The bordered balance by dense matrices: with N spanning the null space of the constraints and x = N y + r0
+// + r1 m these are kept to first order whatever y and m are, redundant ones too, and the balance is then H y
+// + b m = -g.
+#pragma once
+
+#include "engine/continuation/bordered_balance.hpp"
+
+namespace flyball {
+
+class DenseBorders final : public BorderedBalance {
+ public:
+  DenseBorders(Family& family, Workspace& w) : BorderedBalance(family, w) {}
+
+  double linearize(const Unknowns& z, double parameter) override;
+  bool step(const Eigen::VectorXd& border, double along, Eigen::VectorXd& step,
+            Eigen::VectorXd& lambda) override;
+  bool direction(const Eigen::VectorXd& border, Eigen::VectorXd& out) override;
+  std::optional<double> determinant(const Eigen::VectorXd& border) override;
+  bool second_direction(const Eigen::VectorXd& tangent, Eigen::VectorXd& out) override;
+
+ private:
+  Eigen::MatrixXd bordered(const Eigen::VectorXd& border) const;
+  Eigen::VectorXd expand(const Eigen::VectorXd& reduced, double with_r0) const;
+
+  Eigen::MatrixXd basis_;   // N
+  Eigen::VectorXd r0_, r1_; // range parts: closing the loops, following the parameter
+  Eigen::MatrixXd h_;       // [H b]: (k, k + 1)
+  Eigen::VectorXd g_;
+  Eigen::VectorXd force_; // scaled, without multipliers
+};
+
+} // namespace flyball

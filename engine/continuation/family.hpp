@@ -1,0 +1,33 @@
+// A mechanism with one number of it free: what branches are followed in.
+#pragma once
+
+#include "engine/kkt/problem.hpp"
+#include "engine/mechanism/mechanism.hpp"
+
+#include <string>
+
+namespace flyball {
+
+class Family {
+ public:
+  // `scale`: the range of interest, in the parameter's unit.
+  Family(const System& system, const Mechanism& mechanism, std::string address, double scale,
+         KktForm form = KktForm::dense);
+
+  void set(double value);
+  double value() const { return value_; }
+  double scale() const { return scale_; }
+  const Mechanism& mechanism() const { return mechanism_; }
+  Problem problem() const { return {system_, parameters_, scaling_, nullptr, form_}; }
+
+ private:
+  const System& system_;
+  Mechanism mechanism_;
+  std::string address_;
+  double scale_, value_ = 0;
+  KktForm form_;
+  Parameters parameters_;
+  Scaling scaling_;
+};
+
+} // namespace flyball
