@@ -143,7 +143,7 @@ bool KktBorders::iterate_inversely(const Eigen::VectorXd& border, int iterations
 std::optional<double> KktBorders::determinant(const Eigen::VectorXd& border) {
   Bordered v;
   double rate = 0;
-  if (!inertia_is_known(family_.problem(), w_)) return {};
+  if (!factors().inertia_is_certain(family_.problem(), w_)) return {};
   if (!iterate_inversely(border, 3, v, rate)) return 0;
   const bool negative = (factors().negative_count() % 2 == 1) != (delta(border) < 0);
   return negative ? -rate : rate;

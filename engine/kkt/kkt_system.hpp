@@ -75,6 +75,9 @@ class KktSystem {
   // By eigenvalues. Else by the signs of pivots, and rounding makes some of many null directions a little
   // stiff.
   virtual bool exact_inertia() const { return false; }
+  // Whether it is right at this evaluated state: a redundant row that passes for an independent one counts as
+  // stiffness. Factors the constraints to tell.
+  virtual bool inertia_is_certain(const Problem&, const Evaluation&) { return true; }
   bool known() const { return known_; } // else it could not be factored, and counts as zero
   double shift() const { return shift_; }
   double mass() const { return mass_; } // kg, of what moves

@@ -147,6 +147,12 @@ void SparseKkt::factor_constraints(const Problem& problem, const Evaluation& at)
   constraints_.factor(problem, at.kinematics, std::max(tolerance * tolerance, 1e-10));
 }
 
+bool SparseKkt::inertia_is_certain(const Problem& problem, const Evaluation& at) {
+  if (problem.system.rows == 0) return true;
+  factor_constraints(problem, at);
+  return redundant_ >= problem.system.rows - independent_rows(problem, at);
+}
+
 int SparseKkt::independent_rows(const Problem& problem, const Evaluation& at) {
   const int rows = problem.system.rows;
   if (rows == 0 || constraints_.redundant() <= rows) return rows - (rows > 0 ? constraints_.redundant() : 0);

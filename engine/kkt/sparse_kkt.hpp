@@ -22,6 +22,7 @@ class SparseKkt final : public KktSystem {
   double metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) override;
   const std::vector<NullDirection>& null_directions() override { return directions_; }
   void direction_of(const NullDirection& direction, Eigen::VectorXd& x) override;
+  bool inertia_is_certain(const Problem& problem, const Evaluation& evaluation) override;
   bool factors_cost_more() const override { return true; }
 
   void factor_constraints(const Problem& problem, const Evaluation& evaluation) override;
@@ -35,8 +36,6 @@ class SparseKkt final : public KktSystem {
 
   // Constraint rows that others imply, of the last factor().
   int redundant() const { return redundant_; }
-  // At least those that factor_constraints() found; else pivots of these rows count as directions.
-  bool sees_redundant_rows() const { return redundant_ >= std::min(constraints_.redundant(), rows_); }
 
  private:
   void solve_to(double enough, const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,

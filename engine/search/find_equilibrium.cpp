@@ -151,7 +151,8 @@ class Search {
     if (!factored) factor(p_, found_.z, w_);
     if (p_.symmetric()) {
       potential_ = true;
-      found_.minimum = w_.kkt(p_).positive_definite();
+      KktSystem& kkt = w_.kkt(p_);
+      found_.minimum = kkt.positive_definite() && kkt.inertia_is_certain(p_, w_);
       unstable_ = !found_.minimum && !only_flat();
       return;
     }

@@ -92,15 +92,9 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
 
 } // namespace
 
-bool inertia_is_known(const Problem& problem, Workspace& w) {
-  if (problem.system.rows == 0) return true;
-  factor_constraints(problem, w);
-  return w.sparse.sees_redundant_rows();
-}
-
 Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w) {
   Stability out;
-  if (!problem.symmetric() || !inertia_is_known(problem, w)) return out;
+  if (!problem.symmetric() || !w.kkt(problem).inertia_is_certain(problem, w)) return out;
   if (w.kkt(problem).shift() > 0) return of_held_directions(problem, z, w);
   const int negative = w.kkt(problem).negative_count();
   if (w.kkt(problem).positive_definite()) {

@@ -5,10 +5,6 @@
 
 namespace flyball {
 
-// Whether the negative pivots of a factored balance can be counted: not where its factors take one of the
-// redundant constraints, of which the metric alone tells how many there are, for a stiffness of rounding.
-bool inertia_is_known(const Problem& problem, Workspace& w);
-
 // z must be a steady state of a problem that is not dense, factored in the workspace. The signs of the pivots
 // decide where there is a potential: a minimum is stable; an odd number of negative ones is unstable whatever
 // gyroscopic forces do (Thomson and Tait; Chetayev), and so is any where there are none or every coordinate
