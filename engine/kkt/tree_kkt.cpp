@@ -31,7 +31,7 @@ void shift_origin(const Vec3& arm, bool, SubtreeSizes& s) {
   s.heavy_mf += r * s.heavy_f;
 }
 
-KktSystem::NullDirection way(int v, const Vec3& direction) {
+KktSystem::NullDirection null_direction(int v, const Vec3& direction) {
   return {{v, direction[0]}, {v + 1, direction[1]}, {v + 2, direction[2]}};
 }
 
@@ -246,19 +246,19 @@ void TreeKkt::eliminate_three(Node& n, double shift, Mat6& h) {
                                     .value_or(PrincipalAxes{Vec3::Zero(), Mat3::Identity()});
     for (int c = 0; c < 3; ++c) {
       const double value = eigen.values[c];
-      const bool flat = !(std::abs(value) > noise);
-      inverse[c] = flat ? 0 : 1 / value;
-      if (flat) directions_.push_back(way(n.v, eigen.vectors.col(c)));
-      if (!flat && value < 0) ++negative_;
+      const bool singular = !(std::abs(value) > noise);
+      inverse[c] = singular ? 0 : 1 / value;
+      if (singular) directions_.push_back(null_direction(n.v, eigen.vectors.col(c)));
+      if (!singular && value < 0) ++negative_;
     }
     b.inverse = eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
   } else {
     const SingularVectors3 svd = singular_vectors_3(pivot).value_or(
         SingularVectors3{Vec3::Zero(), Mat3::Identity(), Mat3::Identity()});
     for (int c = 0; c < 3; ++c) {
-      const bool flat = !(svd.values[c] > noise);
-      inverse[c] = flat ? 0 : 1 / svd.values[c];
-      if (flat) directions_.push_back(way(n.v, svd.right.col(c)));
+      const bool singular = !(svd.values[c] > noise);
+      inverse[c] = singular ? 0 : 1 / svd.values[c];
+      if (singular) directions_.push_back(null_direction(n.v, svd.right.col(c)));
     }
     b.inverse = svd.right * inverse.asDiagonal() * svd.left.transpose();
   }

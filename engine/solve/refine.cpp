@@ -93,15 +93,15 @@ class SoftDirection {
   }
 
   // Whether double precision can tell that there the state is no longer in balance.
-  bool decides(double way) {
-    move(way);
+  bool decides(double distance) {
+    move(distance);
     if (!tells(2)) return false;
     // A straight way leaves a bent valley and climbs its walls: with what is stiff back in balance, too? That
     // leaves some rounding of its own.
     for (int i = 0; i < 10 && tells(8); ++i) {
       const double before = force_;
       if (!std::isfinite(before)) return true;
-      find_way_back();
+      find_step_back();
       if (w_.scaled_step.lpNorm<Eigen::Infinity>() < 1) take(1);
       if (!(force_ < 0.5 * before)) return true;
     }
@@ -111,17 +111,17 @@ class SoftDirection {
  private:
   bool tells(double times) const { return !(force_ <= times * (here_ + noise_)); }
 
-  void move(double way) {
+  void move(double distance) {
     moved_ = z_;
     w_.scaled_step = direction_;
-    take(way);
+    take(distance);
   }
 
-  void take(double way) {
-    w_.step = way * w_.scaled_step.cwiseProduct(p_.scaling.column);
+  void take(double distance) {
+    w_.step = distance * w_.scaled_step.cwiseProduct(p_.scaling.column);
     retract<double>(p_.system, w_.step, moved_.q);
     force_ = std::numeric_limits<double>::infinity();
-    if (way != 0 && !assemble(p_, moved_.q, 0, w_)) return;
+    if (distance != 0 && !assemble(p_, moved_.q, 0, w_)) return;
     evaluate_with_multipliers(p_, moved_, w_);
     const Eigen::VectorXd terms = w_.magnitudes.force.cwiseProduct(p_.scaling.column);
     noise_ = std::numeric_limits<double>::epsilon() * direction_.cwiseAbs().dot(terms);
@@ -129,7 +129,7 @@ class SoftDirection {
   }
 
   // The Newton step with a stiffness along the direction like those of the others.
-  void find_way_back() {
+  void find_step_back() {
     factor(p_, moved_, w_);
     const Eigen::MatrixXd& basis = w_.dense.constraints().basis();
     // Where the scale is none nothing is felt at all.
@@ -163,11 +163,11 @@ double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorX
   double farthest = 0;
   bool decided = false;
   for (const double side : {1., -1.}) {
-    double way = 1e-10;
-    while (way < 0.1 && !soft.decides(side * way))
-      way *= 2;
-    if (!(way < 0.1)) continue;
-    farthest = std::max(farthest, way);
+    double distance = 1e-10;
+    while (distance < 0.1 && !soft.decides(side * distance))
+      distance *= 2;
+    if (!(distance < 0.1)) continue;
+    farthest = std::max(farthest, distance);
     decided = true;
   }
   return decided ? farthest : std::numeric_limits<double>::infinity();
@@ -206,23 +206,25 @@ double asked_for(const Problem& problem, const Eigen::VectorXd& direction, const
 }
 
 void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, Eigen::VectorXd& error) {
-  Eigen::MatrixXd flat = w.dense.constraints().basis() * w.dense.hessian().null_basis();
-  Eigen::VectorXd asked = Eigen::VectorXd::Zero(flat.cols());
+  Eigen::MatrixXd null_space = w.dense.constraints().basis() * w.dense.hessian().null_basis();
+  Eigen::VectorXd asked = Eigen::VectorXd::Zero(null_space.cols());
   evaluate_extended(problem, z, w);
-  for (Eigen::Index c = 0; c < flat.cols(); ++c) {
-    const double size = flat.col(c).lpNorm<Eigen::Infinity>();
+  for (Eigen::Index c = 0; c < null_space.cols(); ++c) {
+    const double size = null_space.col(c).lpNorm<Eigen::Infinity>();
     if (!(size > 0)) continue;
-    flat.col(c) /= size;
-    asked[c] = asked_for(problem, flat.col(c), w);
+    null_space.col(c) /= size;
+    asked[c] = asked_for(problem, null_space.col(c), w);
   }
   // What is never decided along a mixture of many is not along any of them.
-  const bool none = flat.cols() > few_flat && !std::isfinite(undecided(problem, z, mixture_of(flat), w));
-  for (Eigen::Index c = 0; c < flat.cols(); ++c) {
-    if (flat.col(c).isZero(0)) continue;
-    const double way = none ? std::numeric_limits<double>::infinity() : undecided(problem, z, flat.col(c), w);
-    const Eigen::VectorXd moved = flat.col(c).cwiseProduct(problem.scaling.column).cwiseAbs();
-    if (std::isfinite(way))
-      error = error.cwiseMax(std::max(way, 4 * asked[c]) * moved);
+  const bool none =
+      null_space.cols() > few_flat && !std::isfinite(undecided(problem, z, mixture_of(null_space), w));
+  for (Eigen::Index c = 0; c < null_space.cols(); ++c) {
+    if (null_space.col(c).isZero(0)) continue;
+    const double distance =
+        none ? std::numeric_limits<double>::infinity() : undecided(problem, z, null_space.col(c), w);
+    const Eigen::VectorXd moved = null_space.col(c).cwiseProduct(problem.scaling.column).cwiseAbs();
+    if (std::isfinite(distance))
+      error = error.cwiseMax(std::max(distance, 4 * asked[c]) * moved);
     else // neutral, or lost in rounding: stability tells which
       w.unheld = w.unheld.cwiseMax(moved);
   }
@@ -231,7 +233,7 @@ void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, 
 }
 
 // A metric that held what seemed to feel nothing shortens the steps along what feels a little: without it,
-// unless something is flat indeed.
+// unless there is a null direction indeed.
 void let_go(const Problem& problem, Workspace& w) {
   KktSystem& kkt = w.kkt(problem);
   const double shift = kkt.shift();

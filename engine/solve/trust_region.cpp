@@ -222,7 +222,7 @@ class TrustRegion {
     return std::isfinite(length_);
   }
 
-  // The same way, `t` as far.
+  // The same direction, `t` as far.
   void shorten_step(double t) {
     const double slope = gradient_.dot(step_), curvature = -2 * (slope + predicted_);
     step_ *= t;
@@ -277,23 +277,23 @@ class TrustRegion {
       } else {
         break;
       }
-      // Close above the lowest curvature a longer step would go along it, and that is the way of some corner
+      // Close above the lowest curvature a longer step would go along it, and that is a motion of some corner
       // of the mechanism rather than of the forces, or of none at all.
       if (high > 0 && !low_definite && high < 4 * low && shift_ == high) {
         if (length_ > 0.01 * radius_ && !small_forces()) break;
         // To look here spares nets some factors.
         if (p_.system.rows > 0 && !sought) {
           sought = true;
-          find_lowest_way();
+          find_lowest_direction();
           shy_ = falls_by_coordinates();
           if (shy_) break;
         }
       }
-      // Without forces to speak of it is the way, if there is one.
+      // Without forces to speak of it is the direction to take, if there is one.
       if (high > 0 && !low_definite && high < 1.2 * low) {
         if (shift_ != high || shift != high) solve_with(high);
         last_shift_ = high;
-        find_lowest_way();
+        find_lowest_direction();
         shy_ = falls_by_coordinates();
         if (!shy_) add_negative_curvature();
         return;
@@ -318,47 +318,47 @@ class TrustRegion {
     return decline > 0 ? length_ * length_ / decline * (length_ - radius_) / radius_ : 0;
   }
 
-  // The way of lowest curvature, of metric length 1, by inverse iteration with the factor at hand, which is
-  // nearly singular.
-  void find_lowest_way() {
+  // The direction of lowest curvature, of metric length 1, by inverse iteration with the factor at hand,
+  // which is nearly singular.
+  void find_lowest_direction() {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> any(-1, 1);
-    way_.resize(step_.size());
-    for (double& x : way_)
+    lowest_.resize(step_.size());
+    for (double& x : lowest_)
       x = any(random);
-    double size = std::sqrt(kkt_.metric(way_, other_));
+    double size = std::sqrt(kkt_.metric(lowest_, other_));
     for (int i = 0; i < 6; ++i) {
-      way_image_ = other_ / size;
-      kkt_.solve(way_image_, way_);
-      size = std::sqrt(kkt_.metric_of_solution(way_, other_));
+      lowest_image_ = other_ / size;
+      kkt_.solve(lowest_image_, lowest_);
+      size = std::sqrt(kkt_.metric_of_solution(lowest_, other_));
     }
-    way_ /= size;
-    way_image_ /= size;
+    lowest_ /= size;
+    lowest_image_ /= size;
   }
 
   // Away from balance curvatures of the size of the forces come and go with the choice of coordinates, as
   // along turns that nothing resists: bent coordinates q = r + C(r, r) / 2 add C of the gradient to them.
   bool falls_by_coordinates() const {
-    const double fall = kkt_.shift() - way_image_.dot(way_);
-    return fall < 2 * gradient_.norm() * way_.squaredNorm();
+    const double fall = kkt_.shift() - lowest_image_.dot(lowest_);
+    return fall < 2 * gradient_.norm() * lowest_.squaredNorm();
   }
 
-  // To the edge of the region along the lowest way.
+  // To the edge of the region along the direction of lowest curvature.
   void add_negative_curvature() {
-    const Eigen::VectorXd &v = way_, &image = way_image_;
+    const Eigen::VectorXd &v = lowest_, &image = lowest_image_;
     const double along = v.dot(metric_step_);
     const double room = std::sqrt(along * along + std::max(0., radius_ * radius_ - length_ * length_));
-    // The two ways to the edge of the region: the lower one, or where they are alike the one that takes the
+    // The two steps to the edge of the region: the lower one, or where they are alike the one that takes the
     // coordinate that moves most up.
-    double ways[2] = {-along + room, -along - room};
+    double steps[2] = {-along + room, -along - room};
     Eigen::Index most = 0;
     v.cwiseAbs().maxCoeff(&most);
-    if (v[most] < 0) std::swap(ways[0], ways[1]);
+    if (v[most] < 0) std::swap(steps[0], steps[1]);
     const double slope = gradient_.dot(v);
     double best = 0, most_gained = -std::numeric_limits<double>::infinity();
     const double stiffness = image.dot(v); // of v in K + shift W
     const double image_step = image.dot(step_);
-    for (double t : ways) {
+    for (double t : steps) {
       const double quadratic =
           -gradient_.dot(step_) + 2 * t * image_step + t * t * stiffness - shift_ * radius_ * radius_;
       const double gained = -(gradient_.dot(step_) + t * slope) - quadratic / 2;
@@ -378,8 +378,8 @@ class TrustRegion {
   KktSystem& kkt_;
   std::vector<double>* history_;
   Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
-  Eigen::VectorXd multipliers_;     // their change by the step, scaled
-  Eigen::VectorXd way_, way_image_; // of lowest curvature, and what was factored times it
+  Eigen::VectorXd multipliers_;           // their change by the step, scaled
+  Eigen::VectorXd lowest_, lowest_image_; // of lowest curvature, and what was factored times it
   Potential potential_;
   double open_ = 0; // the loops, at z_, scaled
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;

@@ -8,12 +8,12 @@
 namespace flyball {
 namespace {
 
-// Whether a way (scaled) along directions without stiffness leads to another balanced state, the rest giving
-// way as it must, to `rounding` of the forces.
-bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& way, double rounding,
+// Whether a step (scaled) along null directions leads to another balanced state, the rest giving way as it
+// must, to `rounding` of the forces.
+bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& first, double rounding,
                     Workspace& w) {
   Unknowns moved = z;
-  Eigen::VectorXd step = way, multipliers;
+  Eigen::VectorXd step = first, multipliers;
   const double shift = w.kkt(problem).shift();
   const auto balanced = [&] {
     const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
@@ -35,7 +35,7 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
     factor(problem, moved, w);
     if (shift > 0) w.kkt(problem).factor(shift);
     newton_step(problem, w.residual.f, w.residual.phi, w, step, multipliers);
-    if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
+    if (!(step.lpNorm<Eigen::Infinity>() <= first.lpNorm<Eigen::Infinity>())) return false;
   }
   return false;
 }
@@ -60,12 +60,12 @@ bool nothing_holds(const Problem& problem, const Unknowns& z, Workspace& w) {
 // Where many directions are neutral but for rounding: inverse iteration with the factors that hold them.
 Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspace& w) {
   constexpr int samples = 4, iterations = 4;
-  constexpr double rounding = 1e-11; // the way is short, since what is held comes back far along it
+  constexpr double rounding = 1e-11; // the step is short, since what is held comes back far along it
   Stability out;
   KktSystem& e = w.kkt(problem);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any(-1, 1);
-  Eigen::VectorXd way, one(problem.system.nv), image;
+  Eigen::VectorXd direction, one(problem.system.nv), image;
   std::vector<bool> takes_part(static_cast<std::size_t>(problem.system.nv));
   for (int i = 0; i < samples; ++i) {
     for (double& x : one)
@@ -77,13 +77,13 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
     }
     for (int v = 0; v < problem.system.nv; ++v)
       if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
-    if (i == 0) way = one;
+    if (i == 0) direction = one;
   }
   for (const KktSystem::NullDirection& f : e.null_directions()) // and what feels nothing at all
     for (const auto& [v, share] : f)
       if (std::abs(share) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
-  const bool balanced = stays_balanced(problem, z, 0.002 * way, rounding, w) &&
-                        stays_balanced(problem, z, -0.003 * way, rounding, w);
+  const bool balanced = stays_balanced(problem, z, 0.002 * direction, rounding, w) &&
+                        stays_balanced(problem, z, -0.003 * direction, rounding, w);
   out.reason = balanced ? StabilityReason::neutral : StabilityReason::marginal;
   for (int v = 0; balanced && v < problem.system.nv; ++v)
     if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);
@@ -107,11 +107,11 @@ Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Worksp
   if (!w.kkt(problem).singular()) return out;
 
   // All at once: either nothing resists any of them, or the state is singular.
-  const std::vector<KktSystem::NullDirection> flat = w.kkt(problem).null_directions();
+  const std::vector<KktSystem::NullDirection> directions = w.kkt(problem).null_directions();
   Eigen::VectorXd all = Eigen::VectorXd::Zero(problem.system.nv), one;
   std::vector<bool> takes_part(static_cast<std::size_t>(problem.system.nv));
-  if (flat.size() <= 100) {
-    for (const KktSystem::NullDirection& f : flat) {
+  if (directions.size() <= 100) {
+    for (const KktSystem::NullDirection& f : directions) {
       w.kkt(problem).direction_of(f, one);
       one /= one.lpNorm<Eigen::Infinity>();
       for (int v = 0; v < problem.system.nv; ++v)
@@ -119,7 +119,7 @@ Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Worksp
       all += one;
     }
   } else { // each by itself would cost too much: without what follows beyond
-    for (const KktSystem::NullDirection& f : flat)
+    for (const KktSystem::NullDirection& f : directions)
       for (const auto& [v, share] : f)
         if (std::abs(share) > 1e-6) {
           takes_part[static_cast<std::size_t>(v)] = true;

@@ -20,18 +20,18 @@ bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::Vector
   if (!hessian.decompose()) return true;
   Eigen::Index softest = 0;
   hessian.eigenvalues().cwiseAbs().minCoeff(&softest);
-  Eigen::VectorXd way = hessian.eigenvectors().col(softest).cwiseProduct(hessian.scale());
+  Eigen::VectorXd direction = hessian.eigenvectors().col(softest).cwiseProduct(hessian.scale());
   if (problem.system.rows > 0 && dense->constraints().rank() > 0)
-    way = (dense->constraints().basis() * way).eval();
-  way /= way.lpNorm<Eigen::Infinity>();
-  const auto stiffness = [&] { return way.dot(dense->stiffness() * way); };
+    direction = (dense->constraints().basis() * direction).eval();
+  direction /= direction.lpNorm<Eigen::Infinity>();
+  const auto stiffness = [&] { return direction.dot(dense->stiffness() * direction); };
   const double noise = 4 * std::numeric_limits<double>::epsilon() *
-                       way.cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+                       direction.cwiseAbs().dot(w.magnitudes.force.cwiseProduct(problem.scaling.column));
   const double least = stiffness();
   double change = noise;
   for (const double side : {4., -4.}) {
     here.q = z.q;
-    const Eigen::VectorXd step = side * away * way.cwiseProduct(problem.scaling.column);
+    const Eigen::VectorXd step = side * away * direction.cwiseProduct(problem.scaling.column);
     retract<double>(problem.system, step, here.q);
     if (!assemble(problem, here.q, 0, w)) continue;
     factor_with_multipliers(problem, here, w);
