@@ -173,7 +173,9 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
       break;
     }
     w.trial.q = z.q;
-    find_step(problem, !contracts, z, w);
+    // Multipliers of redundant rows should be those of the state alone where few coordinates allow it: at a
+    // singular pose of the loops the verdict on stability rests on them.
+    find_step(problem, !contracts || problem.form == KktForm::dense, z, w);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
     if (!std::isfinite(size) || size > farthest) break;
     if (settings.to_minimum && size > there && kkt.negative_count() > 0) break;

@@ -80,11 +80,28 @@ TEST_CASE("every place of the map is what a solve of its own gives") {
 }
 
 TEST_CASE("unstable places are hatched, which is neither read off nor written to a file") {
-  MapRobot robot;
-  const FoundCells& found = *robot.map().cells;
+  Robot plain(wide);
+  open_scene(plain.app, FLYBALL_ASSETS "/scenes/watt_governor.json");
+  // A torque that turns along has no potential: then the answer is the state nearest to the drawn pose, and
+  // that is unstable at high speeds.
+  edit(plain.app, "Twist", [](Mechanism& m, Selection&) {
+    Force twist;
+    twist.name = "twist";
+    twist.type = ForceType::torque;
+    twist.body = m.bodies.back().name;
+    twist.vector = {0, 0, 1e-9};
+    twist.frame = ForceFrame::body;
+    m.forces.push_back(twist);
+  });
+  plain.frames(3);
+  plain.key('P');
+  plain.frames(3);
+  const MapState& map = plain.app.study.map;
+  REQUIRE(map.cells);
+  const FoundCells& found = *map.cells;
   const auto unstable = std::ranges::count(found.cells, std::optional(false), &MapCell::stable);
   REQUIRE(unstable > 0);
-  const Plot& plot = robot.map().plot;
+  const Plot& plot = map.plot;
   const auto hatch = std::ranges::find(plot.curves, std::string("unstable"), &PlotCurve::name);
   REQUIRE(hatch != plot.curves.end());
   CHECK(static_cast<std::ptrdiff_t>(hatch->points.size()) == 3 * unstable);
