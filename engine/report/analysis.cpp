@@ -59,19 +59,7 @@ bool pivots_decide(const Problem& problem) {
 
 Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eigenvalues, int modes,
                        Workspace& w) {
-  if (pivots_decide(problem)) {
-    if (const auto phases = sample_phases(problem.system, problem.parameters); !phases.empty()) {
-      if (may_vary(problem, z, phases, w)) {
-        Stability out;
-        out.reason = StabilityReason::varying;
-        out.floquet_failure = FloquetFailure::unresolved;
-        return out;
-      }
-      evaluate(problem, z, 0, w);
-      factor(problem, z, w);
-    }
-    return find_pivot_stability(problem, z, w);
-  }
+  if (pivots_decide(problem)) return find_pivot_stability(problem, z, w);
   const bool many = problem.system.nv > largest_for_eigenvalues && modes == 0;
   const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
   Stability out = find_stability(whole, z, with_eigenvalues && !many, w);

@@ -2,6 +2,7 @@
 
 #include "engine/kkt/motion_products.hpp"
 #include "engine/linear/largest.hpp"
+#include "engine/solve/existence.hpp"
 
 #include <random>
 
@@ -94,6 +95,15 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
 
 Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w) {
   Stability out;
+  if (const auto phases = sample_phases(problem.system, problem.parameters); !phases.empty()) {
+    if (may_vary(problem, z, phases, w)) {
+      out.reason = StabilityReason::varying;
+      out.floquet_failure = FloquetFailure::unresolved;
+      return out;
+    }
+    evaluate(problem, z, 0, w);
+    factor(problem, z, w);
+  }
   if (!problem.symmetric() || !w.kkt(problem).inertia_is_certain(problem, w)) return out;
   if (w.kkt(problem).shift() > 0) return of_held_directions(problem, z, w);
   const int negative = w.kkt(problem).negative_count();

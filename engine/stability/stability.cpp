@@ -161,11 +161,6 @@ bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
 Stability find_stability(const Problem& problem, const Unknowns& z, bool with_eigenvalues, Workspace& w) {
   Stability out;
   if (problem.form != KktForm::dense) {
-    if (may_vary(problem, z, sample_phases(problem.system, problem.parameters), w)) {
-      out.reason = StabilityReason::varying;
-      out.floquet_failure = FloquetFailure::unresolved;
-      return out;
-    }
     evaluate(problem, z, 0, w);
     factor(problem, z, w);
     return find_pivot_stability(problem, z, w);
