@@ -73,7 +73,7 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["history"] = Json::array();
   for (double h : s.history)
     out["history"].push_back(number(h));
-  out["net"] = s.net ? Json(word(*s.net)) : Json(nullptr);
+  out["net"] = s.fallback ? Json(word(*s.fallback)) : Json(nullptr);
   out["run_time_s"] = s.run_time_s;
   out["stable"] = s.stable ? Json(*s.stable) : Json(nullptr);
   out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);

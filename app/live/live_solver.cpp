@@ -202,7 +202,7 @@ Solution LiveSolver::State::solve_nearest(const LiveRequest& request, bool& left
   if (request.nearest && request.warm && request.start.empty()) options.start = last;
   Solution found = analysis->solve(options);
   left_branch = request.nearest && !options.start.empty() && !cancel &&
-                (found.status != Status::converged || found.net || moved_far(options.start, found));
+                (found.status != Status::converged || found.fallback || moved_far(options.start, found));
   if (!left_branch) return found;
   options.nearest = options.warm = false;
   options.start.clear();

@@ -6,12 +6,12 @@ namespace flyball {
 
 namespace {
 
-const char* net_text(Net net) {
-  switch (net) {
-  case Net::damped: return "damped steps";
-  case Net::homotopy: return "speeding up from rest";
-  case Net::descent: return "descent of the potential";
-  case Net::search: return "search all over the ranges";
+const char* fallback_text(Fallback fallback) {
+  switch (fallback) {
+  case Fallback::damped: return "damped steps";
+  case Fallback::homotopy: return "speeding up from rest";
+  case Fallback::descent: return "descent of the potential";
+  case Fallback::search: return "search all over the ranges";
   }
   return "";
 }
@@ -34,9 +34,9 @@ void solver_results(App& app) {
   if (solution.condition)
     row(app, "Condition", short_text(*solution.condition, 2), "scaled",
         "Condition number (2-norm) of the scaled equations.");
-  if (solution.net)
-    row(app, "Caught by", net_text(*solution.net), "",
-        "The safety net that led to the answer where plain Newton-Raphson steps did not.");
+  if (solution.fallback)
+    row(app, "Found by", fallback_text(*solution.fallback), "",
+        "The method that led to the answer where plain Newton-Raphson steps did not.");
   if (solution.history.size() > 1) history_plot(app, ImGui::GetContentRegionAvail().x, 84 * app.scale);
 }
 

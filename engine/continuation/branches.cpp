@@ -5,7 +5,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
-#include "engine/report/report.hpp"
+#include "engine/report/messages.hpp"
 #include "engine/search/all_equilibria.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/search/steady_state.hpp"
@@ -63,11 +63,11 @@ class Diagram {
     Existence existence;
     if (found.status == Status::converged)
       existence = check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters), w);
-    std::string tried;
+    std::optional<OtherStates> others;
     if ((found.status != Status::converged || !existence.holds) && !problem.cancelled()) {
       SteadyState other;
       find_steady_state(problem, start, start, {.seconds = SolveOptions{}.search}, w, other);
-      tried = std::move(other.tried);
+      others = other.others;
       if (other.holds) {
         begun_ = "It begins at a steady state that a search found: the drawn pose leads to none.";
         found = std::move(other.found);
@@ -82,7 +82,7 @@ class Diagram {
       const std::string unit = parameter_unit(mechanism_, address_);
       out_.message = "At " + address_ + " = " + rounded_text(from_, 6) + (unit.empty() ? "" : " " + unit) +
                      ": " + failure_message({follower_.mechanism(), problem, found, existence, none}, w) +
-                     (tried.empty() ? "" : " " + tried);
+                     (others ? " " + message(*others, found.status) : "");
       return;
     }
     out_.status = Status::converged;

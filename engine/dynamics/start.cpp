@@ -5,7 +5,7 @@
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/report/analysis.hpp"
-#include "engine/report/report.hpp"
+#include "engine/report/messages.hpp"
 #include "engine/search/steady_state.hpp"
 #include "engine/system/motion.hpp"
 
@@ -220,7 +220,7 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
   Workspace w;
   const Problem problem = model.problem();
   if (model.system.rows > 0) {
-    if (!assemble(problem, q, t, w) || !closed_the_right_way(problem, w.kinematics)) {
+    if (!assemble(problem, q, t, w) || !same_assembly_mode(problem, w.kinematics)) {
       double worst = 0;
       std::string name;
       for (std::size_t c = 0; c < model.system.cuts.size(); ++c)

@@ -3,14 +3,15 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
+#include "engine/report/turning_part.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/search/steady_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/existence.hpp"
 #include "engine/solve/refine.hpp"
 #include "engine/solve/sensitivity.hpp"
-#include "engine/solve/unbounded.hpp"
 #include "engine/stability/linear_motion.hpp"
 #include "engine/stability/lowest_modes.hpp"
 #include "engine/stability/pivot_stability.hpp"
@@ -103,27 +104,6 @@ void add_condition(const Problem& problem, const Unknowns& z, bool factored, Wor
     factor(whole, z, w);
   }
   out.condition = w.dense.hessian().condition();
-}
-
-std::string search_message(const AllSolutions& all) {
-  std::string text = all.equilibria.empty() ? "No steady state was found in the range searched."
-                                            : "Found by a bounded search; there may be more.";
-  if (all.passing > 0)
-    text += " " + std::to_string(all.passing) +
-            (all.passing == 1 ? " equilibrium of the drawn phase is not listed: it does"
-                              : " equilibria of the drawn phase are not listed: they do") +
-            " not hold as the drives turn.";
-  switch (all.end) {
-  case SearchEnd::settled: break;
-  case SearchEnd::starts: text += " The search ended after the starts asked for."; break;
-  case SearchEnd::budget: text += " The search spent its budget; a larger one may find more."; break;
-  case SearchEnd::time: text += " The search took too long and was ended; the next may end elsewhere."; break;
-  case SearchEnd::cancelled: text += " The search was cancelled."; break;
-  }
-  if (all.end != SearchEnd::settled && std::isfinite(all.unseen) && all.unseen >= 0.5)
-    text += " By how often the same were found again, " + std::to_string(std::lround(all.unseen)) +
-            (std::lround(all.unseen) == 1 ? " is" : " are") + " expected to be missing.";
-  return text;
 }
 
 } // namespace
@@ -232,14 +212,14 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   out.run_time_s = std::chrono::duration<double>(end - begin).count();
   out.iterations = steady.found.iterations;
   out.history = steady.history;
-  out.net = steady.found.net;
+  out.fallback = steady.found.fallback;
   out.status = steady.holds                               ? Status::converged
                : steady.found.status == Status::converged ? Status::no_steady_state
                                                           : steady.found.status;
   if (!steady.holds) {
     const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability};
     out.message = failure_message(input, s.workspace);
-    if (!steady.tried.empty()) out.message += " " + steady.tried;
+    if (steady.others) out.message += " " + message(*steady.others, steady.found.status);
     out.residual = steady.history.empty() ? 0 : steady.history.back();
     explain_unbounded(problem, steady.start, s.workspace, out);
     out.weight_turns = out.status == Status::no_steady_state && !steady.existence.loops_open &&
@@ -381,7 +361,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.potential.value; });
   for (Entry& e : entries)
     out.equilibria.push_back(std::move(e.solution));
-  out.message = search_message(out);
+  out.message = message(out);
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/messages.hpp"
 #include "engine/report/report_forces.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/point_motion.hpp"
@@ -13,12 +14,6 @@
 
 namespace flyball {
 namespace {
-
-std::string cut_name(const ReportInput& in, int cut) {
-  return in.mechanism
-      .joints[static_cast<std::size_t>(in.problem.system.cuts[static_cast<std::size_t>(cut)].joint)]
-      .name;
-}
 
 double error_of(const System& system, const Parameters& p, const CoordinateInfo& c, const Eigen::VectorXd& q,
                 const Eigen::VectorXd& error) {
@@ -89,34 +84,6 @@ Measured measure(const System& system, const Parameters& p, int c, const Kinemat
   return out;
 }
 
-std::string floquet_message(const Floquet& f, std::optional<bool> stable) {
-  std::string out = " The linearised motion turns with the drives: in a period of " +
-                    rounded_text(f.period, 4) + " s its largest multiplier is " +
-                    rounded_text(std::abs(f.multipliers.front()), 7) + " in size.";
-  if (stable == true && f.growth.front() > -1e-9 / f.period)
-    out += " Motions beside the state neither grow nor die out.";
-  else if (!stable)
-    out += " That is too close to 1 to tell.";
-  return out;
-}
-
-std::string floquet_message(FloquetFailure failure) {
-  const std::string begin =
-      " Whether it is stable is not known: the linearised motion turns with the drives, ";
-  switch (failure) {
-  case FloquetFailure::no_period:
-    return begin + "and their speeds have no common period, or one of more than a thousand turns.";
-  case FloquetFailure::singular:
-    return begin +
-           "and a direction in which it moves has neither mass nor damping nor stiffness at some phase.";
-  case FloquetFailure::unresolved:
-    return begin + "and is too large, too stiff or too slow in its period beside its own oscillations to "
-                   "follow, or its loops turn too far.";
-  case FloquetFailure::cancelled: return begin + "and looking for its multipliers was cancelled.";
-  }
-  return "";
-}
-
 } // namespace
 
 std::vector<CoordinateSolution> coordinate_solutions(const System& system, const Parameters& p,
@@ -160,23 +127,6 @@ std::vector<std::pair<std::string, double>> start_values(const std::vector<Coord
   for (const CoordinateSolution& c : coordinates)
     if (!c.driven && !c.dependent) values.emplace_back(coordinate_label(c), c.value);
   return values;
-}
-
-std::string failure_message(const ReportInput& in, Workspace& w) {
-  if (in.found.status == Status::infeasible)
-    return "The loops cannot be closed: \"" + cut_name(in, in.found.open_cut) +
-           "\" stays open however the other coordinates are chosen.";
-  if (in.found.status == Status::not_converged) return in.found.message;
-  if (in.existence.loops_open)
-    return "No steady state: as the drives turn, \"" + cut_name(in, in.existence.worst_cut) +
-           "\" cannot be held with all other coordinates constant, whichever joint of its loop is cut" +
-           (std::ranges::any_of(
-                in.mechanism.joints,
-                [](const Joint& j) { return j.cut.has_value() && coordinate_count(j.type) > 0; })
-                ? "; the joints marked with \"cut\" were left as marked."
-                : ".");
-  return "No steady state: " + blame(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
-         " turns with the drives, so the balance holds at one moment only.";
 }
 
 bool is_finite(const Solution& s) {
@@ -239,34 +189,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
     out.gears = std::move(forces.gears);
     out.reactions_nonunique = forces.nonunique;
   }
-  out.message = in.found.message;
-  if (out.message.empty()) out.message = "Converged.";
-  if (rank < system.rows)
-    out.message += " The loops are redundant: " + std::to_string(rank) + " of " +
-                   std::to_string(system.rows) + " constraint equations are independent.";
-  if (!out.neutral.empty()) {
-    constexpr std::size_t named = 20;
-    out.message += " Nothing resists";
-    for (std::size_t i = 0; i < std::min(named, out.neutral.size()); ++i)
-      out.message += (i ? ", " : " ") + out.neutral[i];
-    if (out.neutral.size() > named)
-      out.message += " and " + std::to_string(out.neutral.size() - named) + " more";
-    out.message += out.neutral.size() == 1 ? "; its value is arbitrary." : "; their values are arbitrary.";
-  }
-  if (!out.stability_reason && !out.eigenvalues && system.nv <= largest_for_eigenvalues)
-    out.message +=
-        " Whether it is stable is not known: the eigenvalues were not found, the iteration for them does "
-        "not converge.";
-  else if (!out.stability_reason)
-    out.message += " Whether it is stable was left out: that takes eigenvalues, and there are more than " +
-                   std::to_string(largest_for_eigenvalues) + " coordinates.";
-  if (out.floquet) out.message += floquet_message(*out.floquet, out.stable);
-  if (in.stability.floquet_failure) out.message += floquet_message(*in.stability.floquet_failure);
-  if (out.stability_reason == StabilityReason::gyroscopic_only)
-    out.message +=
-        " Rotation alone keeps this state, which is no minimum of the amended potential: any damping in "
-        "what moves would make it unstable.";
-  if (out.stable == false && in.found.message.empty()) out.message += " This state is unstable.";
+  out.message = solution_message(in, rank, out);
 }
 
 Sensitivity name_rates(const System& system, const std::string& address, const Eigen::VectorXd& rate) {

@@ -17,9 +17,6 @@ struct ReportInput {
   std::span<const BodyPoint> points{};
 };
 
-// Why there is no answer, naming the part that is to blame.
-std::string failure_message(const ReportInput& input, Workspace& w);
-
 // Whether every number in it is one: forces can overflow where coordinates do not.
 bool is_finite(const Solution& solution);
 

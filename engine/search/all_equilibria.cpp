@@ -11,8 +11,6 @@
 namespace flyball {
 namespace {
 
-constexpr double alike = 1e-6; // scaled: nearer states are one
-
 // Seconds that an iteration takes on one core of 2020 or so: evaluating and linearising the balance, and its
 // dense factors.
 double iteration_cost(const System& system) {
@@ -110,13 +108,13 @@ class Searcher {
 
   // The equilibrium that a run arrived at, evaluated last, if it is one that is looked for: known or new.
   bool keep(Unknowns z, NewtonOutcome outcome) {
-    if (!closed_the_right_way(p_, w_.kinematics)) return false;
+    if (!same_assembly_mode(p_, w_.kinematics)) return false;
     const Placement placement = bring_within(p_, report_.ranges, z.q);
     if (placement == Placement::outside) return false;
     if (placement == Placement::turned) {
       outcome = newton(p_, z, w_, {}, nullptr);
       spend(outcome.iterations);
-      if (!outcome.converged || !closed_the_right_way(p_, w_.kinematics) ||
+      if (!outcome.converged || !same_assembly_mode(p_, w_.kinematics) ||
           bring_within(p_, report_.ranges, z.q) != Placement::within)
         return false;
     }
@@ -130,7 +128,7 @@ class Searcher {
       if (!family.known) family = family_of(z, outcome);
       if (family.neutral == families_[i].neutral &&
           same_potential(family.potential, families_[i].potential) &&
-          same_pose(p_, other.q, z.q, alike, family.neutral))
+          same_pose(p_, other.q, z.q, tolerance::same_state, family.neutral))
         return true;
     }
     if (!family.known) family = family_of(z, outcome);
@@ -148,14 +146,14 @@ class Searcher {
     constexpr double half = 1e-4, singular_pose = 1e-3;
     const double pivot = w_.dense.constraints().least_pivot();
     if (pivot < singular_pose) return std::max(half, 10 * pivot);
-    return outcome.linear ? half : alike;
+    return outcome.linear ? half : tolerance::same_state;
   }
 
   // The coordinates that take part in directions without stiffness, and the amended potential: along a family
   // it stays the same.
   struct Family {
     bool known = true;
-    double near = alike; // scaled: how far away another state is still this one
+    double near = tolerance::same_state; // scaled: how far away another state is still this one
     std::vector<int> neutral;
     Potential potential;
   };

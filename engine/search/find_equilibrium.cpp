@@ -1,7 +1,6 @@
 #include "engine/search/find_equilibrium.hpp"
 
 #include "engine/linear/interruption.hpp"
-#include "engine/mechanism/text.hpp"
 #include "engine/solve/eigenvector_descent.hpp"
 #include "engine/solve/homotopy.hpp"
 #include "engine/solve/trust_region.hpp"
@@ -13,86 +12,103 @@
 namespace flyball {
 namespace {
 
-constexpr double still = 1e-3; // of curvature(): holds what nothing resists, and little else
-
-class Search {
+class EquilibriumSearch {
  public:
-  Search(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm, Workspace& w,
-         std::vector<double>& history, Found& found)
+  EquilibriumSearch(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
+                    Workspace& w, std::vector<double>& history, Found& found)
       : p_(problem), start_(start), nearest_(nearest), warm_(warm), large_(problem.form != KktForm::dense),
-        descends_(!nearest && has_descent(problem)), w_(w), history_(history), found_(found) {}
-
-  void run() {
+        descends_(!nearest && has_descent(problem)), w_(w), history_(history), found_(found) {
     found_.status = Status::not_converged;
-    found_.message.clear();
-    found_.net.reset();
+    found_.remark = Remark::none;
+    found_.fallback.reset();
     found_.iterations = 0;
     found_.open_cut = -1;
-    found_.minimum = found_.fell = false;
+    found_.minimum = found_.unbounded = false;
+    found_.descended = descends_;
     history_.clear();
-    if (p_.system.conservative && !nearest_ && !warm_) { // first, since closing loops takes the factors
-      w_.assembled = start_;
-      if (assemble(p_, w_.assembled, 0, w_)) begin_ = energy_at(w_.assembled);
-    }
-    NewtonSettings plain;
-    plain.impatient = large_;
-    plain.trusting = warm_;
-    // Where the way downhill comes next it leads to a minimum with fewer steps.
-    plain.to_minimum = descends_ && large_ && !warm_;
-    if (attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, plain, &history_); }))
-      return;
-    if (p_.cancelled()) return cancelled();
-    if (!close_loops()) {
-      if (!arrived_) {
-        found_.status = Status::infeasible;
-        return;
-      }
-      w_.assembled = candidate_.q; // Newton-Raphson found a way that Gauss-Newton did not
-    }
-    // In large mechanisms, where it takes few iterations, the way that leads to a stable state comes first.
-    const bool downhill_first = descends_ && large_;
-    if (downhill_first && go_downhill()) return;
-    if (p_.cancelled()) return cancelled();
-    if (!arrived_) {
-      if (attempt(w_.assembled, Net::damped, [&](Unknowns& z) {
-            return newton(p_, z, w_, {200, true}, &history_);
-          }))
-        return;
-      if (p_.cancelled()) return cancelled();
-    }
-    if (!arrived_ && p_.parameters.moving) {
-      if (attempt(w_.assembled, Net::homotopy, [&](Unknowns& z) { return homotopy(p_, z, w_, &history_); }))
-        return;
-      if (p_.cancelled()) return cancelled();
-    }
-    if (descends_ && !downhill_first && go_downhill()) return;
-    if (p_.cancelled()) return cancelled();
-    settle_for_unstable();
   }
 
-  void cancelled() {
-    found_.status = Status::not_converged;
-    found_.message = "The solve was cancelled.";
+  // True where an answer was found; else the status is infeasible or not_converged.
+  bool run() {
+    assemble_start(); // first, since closing loops takes the factors
+    if (newton_raphson()) return true;
+    if (!close_loops()) return false;
+    if (large_ && downhill()) return true;
+    if (damped_newton() || from_rest()) return true;
+    if (!large_ && downhill()) return true;
+    return settle_for_unstable();
   }
 
  private:
-  // Runs a solver from q; true when its answer stands.
+  // The energy that no answer may exceed.
+  void assemble_start() {
+    if (!p_.system.conservative || nearest_ || warm_) return;
+    w_.assembled = start_;
+    if (assemble(p_, w_.assembled, 0, w_)) start_energy_ = energy_at(w_.assembled);
+  }
+
+  bool newton_raphson() {
+    NewtonSettings plain;
+    plain.impatient = large_;
+    plain.trusting = warm_;
+    // Where the descent comes next it leads to a minimum with fewer steps.
+    plain.to_minimum = descends_ && large_ && !warm_;
+    return attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, plain, &history_); });
+  }
+
+  bool damped_newton() {
+    return !arrived_ && attempt(w_.assembled, Fallback::damped, [&](Unknowns& z) {
+      return newton(p_, z, w_, {200, true}, &history_);
+    });
+  }
+
+  // By homotopy in the squared speeds.
+  bool from_rest() {
+    return !arrived_ && p_.parameters.moving && attempt(w_.assembled, Fallback::homotopy, [&](Unknowns& z) {
+      return homotopy(p_, z, w_, &history_);
+    });
+  }
+
+  bool downhill() {
+    if (!descends_) return false;
+    const auto by_trust_region = [&](bool all_the_way) {
+      const bool indefinite = starts_indefinite_ && !all_the_way && w_.assembled == start_;
+      return descend(p_, found_.z, w_, &history_, all_the_way, indefinite);
+    };
+    const auto by_eigenvectors = [&](bool) { return descend_by_eigenvectors(p_, found_.z, w_, &history_); };
+    if (downhill(by_trust_region)) return true;
+    throw_if_cancelled();
+    if (!large_ && downhill(by_eigenvectors)) return true;
+    throw_if_cancelled();
+    return false;
+  }
+
+  // Solvers end early where they are cancelled, and what they leave is no result.
+  void throw_if_cancelled() const {
+    if (p_.cancelled()) throw Interrupted();
+  }
+
+  // Runs a solver from q; true when its answer is admissible.
   template <class Solver>
-  bool attempt(const Eigen::VectorXd& q, std::optional<Net> net, Solver solver) {
+  bool attempt(const Eigen::VectorXd& q, std::optional<Fallback> fallback, Solver solver) {
     found_.z.q = q;
     found_.z.lambda.setZero(p_.system.rows);
     const NewtonOutcome outcome = solver(found_.z);
     found_.iterations += outcome.iterations;
-    falls_at_start_ = outcome.falls && outcome.iterations == 0;
-    if (!outcome.converged || !closed_the_right_way(p_, w_.kinematics)) return false;
+    starts_indefinite_ = outcome.falls && outcome.iterations == 0;
+    if (!outcome.converged || !same_assembly_mode(p_, w_.kinematics)) {
+      throw_if_cancelled();
+      return false;
+    }
     arrived_ = true;
     found_.newton = outcome;
-    found_.net = net;
-    if (!acceptable(outcome)) {
+    found_.fallback = fallback;
+    if (!is_admissible(outcome)) {
+      throw_if_cancelled();
       if (candidate_.q.size() == 0) {
         candidate_ = found_.z;
         candidate_outcome_ = outcome;
-        candidate_net_ = net;
+        candidate_fallback_ = fallback;
       }
       return false;
     }
@@ -109,10 +125,10 @@ class Search {
   // Whether the evaluated state found has no more energy than another, within rounding.
   bool below(const Potential& begin) const {
     const Potential end = amended_potential(p_.system, p_.parameters, found_.z.q, w_.kinematics);
-    return end.value <= begin.value + 1e-12 * (begin.magnitude + end.magnitude);
+    return end.value <= begin.value + tolerance::energy_rounding * (begin.magnitude + end.magnitude);
   }
 
-  bool fell_below_assembled() {
+  bool below_assembled() {
     const Potential begin = energy_at(w_.assembled);
     evaluate(p_, found_.z, 0, w_);
     return below(begin);
@@ -120,18 +136,18 @@ class Search {
 
   // A minimum not above the assembled start, reached without a leap that may have crossed a ridge. Systems
   // without a potential have no such order; their eigenvalues judge.
-  bool acceptable(const NewtonOutcome& outcome) {
-    judge(!found_.net && still_factored(outcome));
+  bool is_admissible(const NewtonOutcome& outcome) {
+    classify(!found_.fallback && still_factored(outcome));
     if (nearest_ || !potential_) return true;
-    if (unstable_) return drawn_and_held_by_rotation();
+    if (unstable_) return drawn_at_gyroscopic_state();
     if (outcome.largest_step > 1) return false;
-    return !begin_ || below(*begin_);
+    return !start_energy_ || below(*start_energy_);
   }
 
   // A mechanism drawn at a state from which the potential falls, but that gyroscopic forces keep, stays
   // there.
-  bool drawn_and_held_by_rotation() {
-    if (found_.net || !begin_ || !same(found_.z.q, w_.assembled)) return false;
+  bool drawn_at_gyroscopic_state() {
+    if (found_.fallback || !start_energy_ || !same(found_.z.q, w_.assembled)) return false;
     const bool held = is_gyroscopically_stable(p_, found_.z, w_);
     evaluate(p_, found_.z, 0, w_);
     factor(p_, found_.z, w_);
@@ -141,19 +157,19 @@ class Search {
   // Whether Newton-Raphson's last step was rounding, and taken from a balance with these multipliers: then
   // the factors that it used are those of the state found.
   bool still_factored(const NewtonOutcome& outcome) const {
-    const double rounding = large_ ? 1e-12 : 1e-14; // more bodies, more of it
+    const double rounding = large_ ? tolerance::still_factored_large : tolerance::still_factored;
     return !outcome.linear && outcome.last_step < rounding && history_.size() >= 2 &&
            history_[history_.size() - 2] < rounding;
   }
 
   // Whether the state found is a minimum, from the balance factored at it.
-  void judge(bool factored = false) {
+  void classify(bool factored = false) {
     if (!factored) factor(p_, found_.z, w_);
     if (p_.symmetric()) {
       potential_ = true;
       KktSystem& kkt = w_.kkt(p_);
       found_.minimum = kkt.positive_definite() && kkt.inertia_is_certain(p_, w_);
-      unstable_ = !found_.minimum && !only_flat();
+      unstable_ = !found_.minimum && !only_null_directions();
       return;
     }
     if (large_) return;
@@ -163,10 +179,10 @@ class Search {
     ReducedHessian energy;
     energy.factor(w_.dense.reduced(), w_.dense.noise(), true);
     found_.minimum = energy.positive_definite();
-    unstable_ = !found_.minimum && !only_flat(energy);
+    unstable_ = !found_.minimum && !only_null_directions(energy);
   }
 
-  static bool only_flat(const ReducedHessian& hessian) {
+  static bool only_null_directions(const ReducedHessian& hessian) {
     return hessian.singular() && hessian.eigenvalues()[0] > -ReducedHessian::zero;
   }
 
@@ -179,21 +195,20 @@ class Search {
 
   // Rounding makes some of many directions that nothing resists a little stiff, either way, and along loops
   // they bend. Then this leaves the balance factored with what keeps them still.
-  bool only_flat() {
+  bool only_null_directions() {
     KktSystem& kkt = w_.kkt(p_);
     const int negative = kkt.negative_count(), null = kkt.null_count();
     if (kkt.exact_inertia()) return negative == 0;
     if (negative == 0 && (p_.system.rows == 0 || null == kkt.force_free_count())) return true;
-    constexpr double rounding = 1e-5;
-    kkt.factor(rounding * curvature());
+    kkt.factor(tolerance::inertia_shift * curvature());
     const bool none_falls = kkt.negative_count() == 0;
     const bool to_be_held = negative > 0 || kkt.null_count() < null; // the rest feels nothing at all
-    kkt.factor(none_falls && to_be_held ? still * curvature() : 0);
+    kkt.factor(none_falls && to_be_held ? tolerance::proximal_shift * curvature() : 0);
     return none_falls;
   }
 
   // Newton-Raphson from near a minimum. False, and back there, where it goes off.
-  bool arrive(NewtonOutcome& outcome) {
+  bool polish(NewtonOutcome& outcome) {
     const Eigen::VectorXd near = found_.z.q;
     NewtonSettings few;
     few.impatient = large_;
@@ -206,28 +221,40 @@ class Search {
   }
 
   // Newton-Raphson from where the descent ended, at last with neutral directions held still.
-  NewtonOutcome finish(bool factored) {
+  NewtonOutcome solve_from_bottom(bool factored) {
     const Eigen::VectorXd bottom = found_.z.q;
     NewtonSettings free;
     free.impatient = large_;
     free.factored = factored;
     const NewtonOutcome plain = newton(p_, found_.z, w_, free, &history_);
     found_.iterations += plain.iterations;
-    if (!large_ || fell_ || p_.cancelled() || (plain.converged && plain.largest_step <= 0.2)) return plain;
+    if (!large_ || unbounded_ || p_.cancelled() || (plain.converged && plain.largest_step <= 0.2))
+      return plain;
     found_.z.q = bottom;
     found_.z.lambda.setZero(p_.system.rows);
     evaluate(p_, found_.z, 0, w_);
     NewtonSettings settings;
     settings.impatient = large_;
-    settings.proximal = still * curvature();
+    settings.proximal = tolerance::proximal_shift * curvature();
     const NewtonOutcome held = newton(p_, found_.z, w_, settings, &history_);
     found_.iterations += held.iterations;
     return held;
   }
 
-  // Fills w_.assembled or finds that it cannot be done.
+  // Fills w_.assembled, or finds that it cannot be done and which cut joint stays open.
   bool close_loops() {
-    if (!begin_) w_.assembled = start_;
+    if (close_loops_near_start()) return true;
+    throw_if_cancelled();
+    if (!arrived_) {
+      found_.status = Status::infeasible;
+      return false;
+    }
+    w_.assembled = candidate_.q; // Newton-Raphson found a way that Gauss-Newton did not
+    return true;
+  }
+
+  bool close_loops_near_start() {
+    if (!start_energy_) w_.assembled = start_;
     if (assembled()) return true;
     // Gauss-Newton can stall: try from a few places around the start before calling it infeasible.
     record_opening();
@@ -244,7 +271,7 @@ class Search {
     return false;
   }
 
-  bool assembled() { return assemble(p_, w_.assembled, 0, w_) && closed_the_right_way(p_, w_.kinematics); }
+  bool assembled() { return assemble(p_, w_.assembled, 0, w_) && same_assembly_mode(p_, w_.kinematics); }
 
   void record_opening() {
     for (std::size_t c = 0; c < p_.system.cuts.size(); ++c) {
@@ -259,53 +286,40 @@ class Search {
     }
   }
 
-  bool go_downhill() {
-    const auto by_trust_region = [&](bool all_the_way) {
-      const bool falls = falls_at_start_ && !all_the_way && w_.assembled == start_;
-      return descend(p_, found_.z, w_, &history_, all_the_way, falls);
-    };
-    if (go_downhill(by_trust_region)) return true;
-    return !large_ && !p_.cancelled() &&
-           go_downhill([&](bool) { return descend_by_eigenvectors(p_, found_.z, w_, &history_); });
-  }
-
   template <class Descent>
-  bool go_downhill(Descent descend_from_here) {
-    found_.net = Net::descent;
+  bool downhill(Descent descend_from_here) {
+    found_.fallback = Fallback::descent;
     found_.z.q = w_.assembled;
     DescentOutcome descent = descend_from_here(false);
     found_.iterations += descent.iterations;
     NewtonOutcome outcome;
-    if (descent.end == DescentEnd::near && !arrive(outcome)) {
+    if (descent.end == DescentEnd::near && !polish(outcome)) {
       descent = descend_from_here(true);
       found_.iterations += descent.iterations;
     }
     // A soft spring may hold a long way down: Newton's method takes that in a stride.
-    fell_ = descent.end == DescentEnd::unbounded;
-    if (descent.end == DescentEnd::minimum || fell_)
-      outcome = finish(descent.factored);
+    unbounded_ = descent.end == DescentEnd::unbounded;
+    if (descent.end == DescentEnd::minimum || unbounded_)
+      outcome = solve_from_bottom(descent.factored);
     else if (descent.end != DescentEnd::near)
       return false;
-    if (!outcome.converged || (outcome.largest_step > 0.2 && !fell_) ||
-        !closed_the_right_way(p_, w_.kinematics) || (fell_ && !fell_below_assembled()))
+    if (!outcome.converged || (outcome.largest_step > 0.2 && !unbounded_) ||
+        !same_assembly_mode(p_, w_.kinematics) || (unbounded_ && !below_assembled()))
       return false;
-    found_.fell = fell_;
-    fell_ = false;
+    found_.unbounded = unbounded_;
+    unbounded_ = false;
     found_.newton = outcome;
     const bool left_unstable = arrived_ && unstable_;
-    judge(w_.kkt(p_).shift() == 0 && still_factored(outcome));
+    classify(w_.kkt(p_).shift() == 0 && still_factored(outcome));
     if (potential_ && unstable_) return false;
     // Newton may have been right all along, by a way that had to be checked.
     if (arrived_ && !left_unstable && candidate_.q.size() > 0 && same(candidate_.q, found_.z.q)) {
-      found_.net = candidate_net_;
+      found_.fallback = candidate_fallback_;
       found_.newton = candidate_outcome_;
     }
     if (left_unstable)
-      found_.message =
-          same(candidate_.q, w_.assembled)
-              ? "The start is an unstable equilibrium; stepped off it and went downhill to a stable one."
-              : "Newton-Raphson arrived at an unstable equilibrium; went downhill from the start to a "
-                "stable one.";
+      found_.remark =
+          same(candidate_.q, w_.assembled) ? Remark::left_unstable_start : Remark::left_unstable_equilibrium;
     found_.status = Status::converged;
     return true;
   }
@@ -314,8 +328,9 @@ class Search {
     for (const Link& link : p_.system.links) {
       if (link.v < 0) continue;
       if (link.type == LinkType::spherical) {
-        if (std::abs(a.segment<4>(link.q).dot(b.segment<4>(link.q))) < 1 - 1e-12) return false;
-      } else if (std::abs(a[link.q] - b[link.q]) > 1e-6 * p_.scaling.column[link.v]) {
+        if (std::abs(a.segment<4>(link.q).dot(b.segment<4>(link.q))) < 1 - tolerance::same_quaternion)
+          return false;
+      } else if (std::abs(a[link.q] - b[link.q]) > tolerance::same_state * p_.scaling.column[link.v]) {
         return false;
       }
     }
@@ -323,33 +338,24 @@ class Search {
   }
 
   // Nothing better was found: an unstable answer is an answer, said to be one.
-  void settle_for_unstable() {
-    if (candidate_.q.size() > 0) {
-      found_.z = candidate_;
-      evaluate(p_, found_.z, 0, w_);
-      judge();
-      found_.newton = candidate_outcome_;
-      found_.net = candidate_net_;
-      found_.status = Status::converged;
-      found_.fell = fell_;
-      found_.message =
-          unstable_ ? fell_
-                          ? "The potential falls on, hundreds of times the mechanism's reach away; no stable "
-                            "state was found."
-                          : "No stable state was found downhill from here."
-                    : "A stable state, but the start may lie in the basin of another.";
-      return;
+  bool settle_for_unstable() {
+    if (candidate_.q.size() == 0) {
+      found_.status = Status::not_converged;
+      found_.fallback.reset();
+      found_.remark = unbounded_ ? Remark::exhausted_and_unbounded : Remark::exhausted;
+      return false;
     }
-    found_.status = Status::not_converged;
-    found_.net.reset();
-    std::vector<std::string_view> tried{"Newton-Raphson", "its damped form"};
-    if (p_.parameters.moving) tried.emplace_back("homotopy from rest");
-    if (descends_) tried.emplace_back("descent of the potential");
-    found_.message =
-        word_list(tried, "and") +
-        (fell_
-             ? " found no equilibrium: the potential falls on, hundreds of times the mechanism's reach away."
-             : " found no equilibrium from this start.");
+    found_.z = candidate_;
+    evaluate(p_, found_.z, 0, w_);
+    classify();
+    found_.newton = candidate_outcome_;
+    found_.fallback = candidate_fallback_;
+    found_.status = Status::converged;
+    found_.unbounded = unbounded_;
+    found_.remark = !unstable_   ? Remark::basin_uncertain
+                    : unbounded_ ? Remark::unstable_and_unbounded
+                                 : Remark::unstable;
+    return true;
   }
 
   const Problem& p_;
@@ -360,17 +366,21 @@ class Search {
   Workspace& w_;
   std::vector<double>& history_;
   Found& found_;
-  std::optional<Potential> begin_; // of the start with its loops closed, w_.assembled, where it matters
+  std::optional<Potential>
+      start_energy_; // of the start with its loops closed, w_.assembled, where it matters
   Unknowns candidate_;
   NewtonOutcome candidate_outcome_;
-  std::optional<Net> candidate_net_;
-  bool arrived_ = false, potential_ = false, unstable_ = false, fell_ = false;
-  bool falls_at_start_ = false; // says Newton-Raphson, which leaves the balance linearised there
+  std::optional<Fallback> candidate_fallback_;
+  bool arrived_ = false;           // some solver converged, at an admissible state or not
+  bool potential_ = false;         // what was found last has one
+  bool unstable_ = false;          // and is no minimum of it
+  bool unbounded_ = false;         // the last descent found no bottom
+  bool starts_indefinite_ = false; // says Newton-Raphson, which leaves the balance linearised there
 };
 
 } // namespace
 
-bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
+bool same_assembly_mode(const Problem& problem, const Kinematics<double>& k) {
   for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
     const CutJoint& cut = problem.system.cuts[c];
     for (const ConstraintRow& row : cut.rows) {
@@ -392,11 +402,11 @@ bool closed_the_right_way(const Problem& problem, const Kinematics<double>& k) {
 void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
                       Workspace& w, std::vector<double>& history, Found& found) {
   const Interruptible scope(problem.cancel);
-  Search search(problem, start, nearest, warm, w, history, found);
   try {
-    search.run();
+    EquilibriumSearch(problem, start, nearest, warm, w, history, found).run();
   } catch (const Interrupted&) {
-    search.cancelled();
+    found.status = Status::not_converged;
+    found.remark = Remark::cancelled;
   }
 }
 

@@ -14,19 +14,14 @@ namespace flyball {
 // Coordinates; with more of them a refusal would take longer than a second or two.
 constexpr int largest_for_answer_search = 120;
 
-struct AnswerSearch {
-  std::optional<Found> answer; // holds at every phase
-  Existence existence;         // of the answer
-  int equilibria = 0;          // found at the drawn phase
-  int steady = 0;              // of these, at every phase
-  SearchReport report;
+// The search for another steady state where the one found does not hold at every phase, or none was found.
+struct OtherStates {
+  bool searched = false; // else there are too many coordinates, or no time was given
+  int starts = 0;        // Newton-Raphson runs
+  int equilibria = 0;    // found at the drawn phase
+  int steady = 0;        // of these, at every phase
+  SearchEnd end = SearchEnd::settled;
 };
-
-// Of the equilibria that a bounded search of `seconds` (see SearchOptions) finds, the one that holds at all
-// `phases`, is stable if any is, and lies nearest to `start`. An answer is left evaluated and factored in the
-// workspace. `problem` must be dense.
-AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
-                           const std::vector<double>& phases, double seconds, Workspace& w);
 
 struct SteadyStateOptions {
   bool nearest = false; // the plain Newton-Raphson answer, stable or not, and no other
@@ -38,9 +33,9 @@ struct SteadyStateOptions {
 struct SteadyState {
   Found found;
   Existence existence;
-  bool holds = false;         // found, and at every phase
-  std::string tried;          // where it does not hold: what the search did, in a sentence
-  std::vector<double> phases; // s, at which it was looked at; none where nothing turns
+  bool holds = false;                // found, and at every phase
+  std::optional<OtherStates> others; // looked for where it did not hold
+  std::vector<double> phases;        // s, at which it was looked at; none where nothing turns
   std::vector<double> history;
   Eigen::VectorXd start; // where the run that found it began
   Eigen::VectorXd error; // (nv), rad or m: of refine(), and what other phases ask it to move
@@ -48,7 +43,8 @@ struct SteadyState {
 
 // The steady state that solving answers with: find_equilibrium() from `start`, or where a neighbour's answer
 // leads elsewhere from `drawn`; its last digits and their error; whether it holds at every phase; and where
-// it does not, or nothing was found, search_answer(). `out` is used again: nothing is allocated in it for a
+// it does not, or nothing was found, whether another does that a bounded search finds: the stable one
+// nearest to the start. `out` is used again: nothing is allocated in it for a
 // system of the same size.
 void find_steady_state(const Problem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& drawn,
                        const SteadyStateOptions& options, Workspace& w, SteadyState& out);
@@ -56,8 +52,5 @@ void find_steady_state(const Problem& problem, const Eigen::VectorXd& start, con
 // Whether a refined state holds at every phase. Adds to its error what it leaves there.
 Existence check_refined(const Problem& problem, const Unknowns& z, const std::vector<double>& phases,
                         Workspace& w, Eigen::VectorXd& error);
-
-// What was tried, as a sentence to follow a refusal: "None of 3 equilibria found by 120 starts holds ...".
-std::string describe(const AnswerSearch& search);
 
 } // namespace flyball

@@ -39,7 +39,7 @@ DescentOutcome descend_by_eigenvectors(const Problem& problem, Unknowns& z, Work
     double slope = 0, lowest = 0;
     Eigen::Index lowest_index = 0;
     bool down = false;
-    const double rounding = 1e-14 * magnitude;
+    const double rounding = tolerance::potential_rounding * magnitude;
     for (Eigen::Index k = 0; k < g.size(); ++k) {
       const double mu = hessian.eigenvalues()[k];
       const double along = hessian.eigenvectors().col(k).dot(g);
@@ -54,9 +54,9 @@ DescentOutcome descend_by_eigenvectors(const Problem& problem, Unknowns& z, Work
       double distance = std::abs(along / mu) * length;
       if (std::abs(mu) <= ReducedHessian::zero) {
         // Nothing resists here. A force that pushes this way has a long way to go.
-        if (!(std::abs(along) > 1e-9 * force * length)) continue;
+        if (!(std::abs(along) > tolerance::neutral_force * force * length)) continue;
         distance = radius;
-      } else if (distance > 1e-4 && along * along < rounding * std::abs(mu)) {
+      } else if (distance > tolerance::short_step && along * along < rounding * std::abs(mu)) {
         // Nothing resists here either, but what is left of the gradient looks like curvature. A long step
         // without a gain that can be measured would only wander.
         continue;
@@ -67,7 +67,7 @@ DescentOutcome descend_by_eigenvectors(const Problem& problem, Unknowns& z, Work
     }
     Eigen::VectorXd step = basis * y.cwiseProduct(hessian.scale());
     double size = step.lpNorm<Eigen::Infinity>();
-    bool saddle = lowest < -ReducedHessian::zero && size < 1e-6;
+    bool saddle = lowest < -ReducedHessian::zero && size < tolerance::saddle_step;
     Eigen::VectorXd off;
     if (saddle) {
       off = basis * hessian.eigenvectors().col(lowest_index).cwiseProduct(hessian.scale());
@@ -86,7 +86,7 @@ DescentOutcome descend_by_eigenvectors(const Problem& problem, Unknowns& z, Work
       size = 0.1;
       slope = 0;
       down = true;
-    } else if (size < 1e-8) {
+    } else if (size < tolerance::converged_step) {
       return {DescentEnd::minimum, i};
     }
     double fraction = std::min(1., radius / size);
@@ -98,15 +98,16 @@ DescentOutcome descend_by_eigenvectors(const Problem& problem, Unknowns& z, Work
       if (!assemble(problem, moved, 0, w)) continue;
       double new_magnitude = 0;
       const double next = potential_at(problem, moved, w, new_magnitude);
-      const double wanted = down ? 0. : 1e-4 * fraction * slope;
-      if (std::isfinite(next) && (next <= u + wanted || (next <= u + rounding && fraction * size < 1e-4))) {
+      const double wanted = down ? 0. : tolerance::sufficient_decrease * fraction * slope;
+      if (std::isfinite(next) &&
+          (next <= u + wanted || (next <= u + rounding && fraction * size < tolerance::short_step))) {
         u = std::min(u, next);
         magnitude = new_magnitude;
         accepted = true;
         break;
       }
     }
-    if (!accepted) return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
+    if (!accepted) return {size < tolerance::stalled_step ? DescentEnd::minimum : DescentEnd::stalled, i};
     travelled += fraction * size;
     radius = fraction * size >= 0.99 * radius ? std::min(0.5, 2 * radius)
                                               : std::max(1e-3, std::min(radius, 2 * fraction * size));

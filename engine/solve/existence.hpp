@@ -3,8 +3,6 @@
 
 #include "engine/solve/newton.hpp"
 
-#include <string>
-
 namespace flyball {
 
 struct Existence {
@@ -28,9 +26,5 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
 // tolerance to move: twice the largest Newton step there. Leaves the balance at z evaluated and factored.
 Eigen::VectorXd phase_variation(const Problem& problem, const Unknowns& z, const std::vector<double>& phases,
                                 Workspace& w);
-
-// What turns with the drives, as a phrase: "the weight of bob", "the force push", "the inertia of rotor".
-std::string blame(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q, double phase,
-                  Workspace& w);
 
 } // namespace flyball

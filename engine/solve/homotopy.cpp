@@ -24,7 +24,7 @@ NewtonOutcome homotopy(const Problem& problem, Unknowns& z, Workspace& w, std::v
       reached = target;
       last = o;
       step *= 1.5;
-    } else if ((step /= 2) < 1e-4) {
+    } else if ((step /= 2) < tolerance::least_homotopy_step) {
       last.converged = false;
     }
   }

@@ -13,8 +13,6 @@ void apply_step(const Problem& problem, const Eigen::VectorXd& scaled_step, doub
   retract<double>(problem.system, w.step, q);
 }
 
-constexpr double far = 1e8, farthest = 1e14; // scaled
-
 // The largest rounding of a coordinate, scaled.
 double resolution(const Problem& problem, const Eigen::VectorXd& q) {
   double largest = 0;
@@ -167,8 +165,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     if (settings.proximal > 0) kkt.factor(settings.proximal);
     if (!kkt.known()) break;
     // At an unstable equilibrium it stays, to say so.
-    constexpr double there = 1e-6;
-    if (settings.to_minimum && residual > there && kkt.negative_count() > 0) {
+    if (settings.to_minimum && residual > tolerance::near_balance && kkt.negative_count() > 0) {
       outcome.falls = true;
       break;
     }
@@ -177,8 +174,8 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     // singular pose of the loops the verdict on stability rests on them.
     find_step(problem, !contracts || problem.form == KktForm::dense, z, w);
     const double size = w.scaled_step.size() > 0 ? w.scaled_step.lpNorm<Eigen::Infinity>() : 0;
-    if (!std::isfinite(size) || size > farthest) break;
-    if (settings.to_minimum && size > there && kkt.negative_count() > 0) break;
+    if (!std::isfinite(size) || size > tolerance::farthest) break;
+    if (settings.to_minimum && size > tolerance::near_balance && kkt.negative_count() > 0) break;
     if (settings.impatient && i >= 3 && size > 1 && size > 0.5 * previous_step) break;
     double fraction = 1;
     if (settings.damped) {
@@ -191,9 +188,11 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
         evaluate(problem, probe, 0, w);
         factor_constraints(problem, w);
         const double now = merit(problem, w);
-        if (now <= (1 - 1e-4 * fraction) * start || now < 1e-13 || fraction < 1e-6) break;
+        if (now <= (1 - tolerance::sufficient_decrease * fraction) * start ||
+            now < tolerance::merit_rounding || fraction < tolerance::least_fraction)
+          break;
       }
-      if (fraction < 1e-6 && size > settings.step_tolerance) break;
+      if (fraction < tolerance::least_fraction && size > settings.step_tolerance) break;
     } else {
       apply_step(problem, w.scaled_step, 1, z.q, w);
     }
@@ -201,31 +200,34 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     outcome.last_step = size;
     evaluate(problem, z, 0, w);
     // From below that the next step is the last, and at rounding.
-    constexpr double almost_there = 1e-8;
-    const bool short_step = size < 1e-4 && size > almost_there;
+    const bool short_step = size < tolerance::short_step && size > tolerance::last_step;
     if (short_step && kkt.factors_cost_more() && !settings.damped && settings.proximal == 0)
       step_again(problem, size, z, w);
     // So far away only a balance that is as good as linear leads.
-    if (size > far && !(scaled_residual(problem, w) < 1e-6)) break;
-    const double tolerance =
-        settings.step_tolerance + (size > far || outcome.largest_step > far ? resolution(problem, z.q) : 0);
+    if (size > tolerance::far && !(scaled_residual(problem, w) < tolerance::near_balance)) break;
+    const double enough =
+        settings.step_tolerance +
+        (size > tolerance::far || outcome.largest_step > tolerance::far ? resolution(problem, z.q) : 0);
     const double contraction = previous_step > 0 ? size / (previous_step * previous_step) : 0;
-    const bool next_is_none = settings.trusting && previous_step > 0 && size < 1e-4 &&
+    const bool next_is_none = settings.trusting && previous_step > 0 && size < tolerance::short_step &&
                               size < 0.1 * previous_step &&
-                              std::max(1., contraction) * size * size <= 1e-2 * tolerance;
+                              std::max(1., contraction) * size * size <= tolerance::trusted_error * enough;
     // Along what nothing resists steps stay as long as rounding makes them.
-    const bool at_rounding = settings.proximal > 0 && size < 1e-5 && scaled_residual(problem, w) < 1e-12;
-    if ((size <= tolerance || next_is_none || at_rounding) && fraction == 1.) {
+    const bool at_rounding = settings.proximal > 0 && size < tolerance::neutral_step &&
+                             scaled_residual(problem, w) < tolerance::proximal_residual;
+    if ((size <= enough || next_is_none || at_rounding) && fraction == 1.) {
       // No step is left; but a force that no coordinate resists, or a loop that cannot close, asks for none
       // either.
       const double left = scaled_residual(problem, w);
-      if (left > 1e-8) break;
+      if (left > tolerance::balance) break;
       // Where a direction has no stiffness, short steps tell nothing of the force along it.
-      outcome.converged = !kkt.singular() || (left <= 1e-13 && outcome.largest_step <= far);
-    } else if (i > 3 && size < 1e-6 && size > 0.3 * previous_step && scaled_residual(problem, w) < 1e-15) {
+      outcome.converged =
+          !kkt.singular() || (left <= tolerance::singular_residual && outcome.largest_step <= tolerance::far);
+    } else if (i > 3 && size < tolerance::linear_step && size > 0.3 * previous_step &&
+               scaled_residual(problem, w) < tolerance::linear_residual) {
       outcome.converged = outcome.linear = true;
     }
-    contracts = size < 1e-4 && size < 0.1 * previous_step;
+    contracts = size < tolerance::short_step && size < 0.1 * previous_step;
     previous_step = size;
   }
   return outcome;
@@ -245,18 +247,18 @@ bool assemble(const Problem& problem, Eigen::VectorXd& q, double t, Workspace& w
   double open = opening(q);
   for (int i = 0; i < 60; ++i) {
     if (!std::isfinite(open)) return false;
-    if (open < 1e-14) break;
+    if (open < tolerance::closed_to_rounding) break;
     factor_constraints(problem, w);
     close(problem, w, w.scaled_step);
     const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
-    if (size < 1e-15) break;
+    if (size < tolerance::least_closing_step) break;
     double fraction = std::min(1., 0.5 / size), next = open;
     Eigen::VectorXd& moved = w.moved;
     for (;; fraction /= 2) {
       moved = q;
       apply_step(problem, w.scaled_step, fraction, moved, w);
       next = opening(moved);
-      if (next < open || fraction < 1e-8) break;
+      if (next < open || fraction < tolerance::least_closing_fraction) break;
     }
     if (!(next < open)) {
       open = opening(q);
@@ -265,7 +267,7 @@ bool assemble(const Problem& problem, Eigen::VectorXd& q, double t, Workspace& w
     q = moved;
     open = next;
   }
-  return open < 1e-10;
+  return open < tolerance::closed;
 }
 
 } // namespace flyball

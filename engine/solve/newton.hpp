@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/kkt/workspace.hpp"
+#include "engine/solve/tolerances.hpp"
 
 #include <vector>
 
@@ -40,8 +41,8 @@ void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::
 
 struct NewtonSettings {
   int max_iterations = 30;
-  bool damped = false;          // halve steps until the scaled residual falls
-  double step_tolerance = 1e-9; // scaled; quadratic convergence puts the error at its square
+  bool damped = false;                     // halve steps until the scaled residual falls
+  double step_tolerance = tolerance::step; // scaled
   // 1/s^2, of the metric added to the stiffness: it keeps still what nothing resists, where rounding and what
   // is left of the forces look like a little stiffness of either sign (regularised Newton method; Li,
   // Fukushima, Qi, Yamashita, Regularized Newton methods for convex minimization problems with singular

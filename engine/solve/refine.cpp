@@ -276,7 +276,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
     retract<double>(system, w.step, z.q);
     z.lambda += w.trial.lambda;
     previous = size;
-    if (size < 1e-15) break;
+    if (size < tolerance::least_closing_step) break;
     if (round == last_round)
       error *= 4; // converging slowly: what is left may be more than the last correction
   }

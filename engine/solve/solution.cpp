@@ -12,12 +12,12 @@ std::string_view word(Status status) {
   return "";
 }
 
-std::string_view word(Net net) {
-  switch (net) {
-  case Net::damped: return "damped";
-  case Net::homotopy: return "homotopy";
-  case Net::descent: return "descent";
-  case Net::search: return "search";
+std::string_view word(Fallback fallback) {
+  switch (fallback) {
+  case Fallback::damped: return "damped";
+  case Fallback::homotopy: return "homotopy";
+  case Fallback::descent: return "descent";
+  case Fallback::search: return "search";
   }
   return "";
 }

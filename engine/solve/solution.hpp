@@ -21,8 +21,8 @@ enum class Status {
   infeasible,      // the loops cannot be closed
 };
 
-// The safety net that caught a Newton-Raphson run which did not arrive by itself.
-enum class Net {
+// What found the answer where plain Newton-Raphson did not.
+enum class Fallback {
   damped,
   homotopy,
   descent,
@@ -59,7 +59,7 @@ enum class SearchEnd {
 };
 
 std::string_view word(Status status);
-std::string_view word(Net net);
+std::string_view word(Fallback fallback);
 std::string_view word(StabilityReason reason);
 std::string_view word(SearchEnd end);
 
@@ -150,7 +150,7 @@ struct Solution {
   double residual = 0; // largest scaled equation of eq. 23
   int iterations = 0;
   std::vector<double> history; // scaled residual at the start and after each iteration
-  std::optional<Net> net;
+  std::optional<Fallback> fallback;
   double run_time_s = 0; // from the start to the accepted answer
   std::optional<bool> stable;
   std::optional<StabilityReason> stability_reason;

@@ -1,6 +1,7 @@
 #include "engine/solve/trust_region.hpp"
 
 #include "engine/linear/largest.hpp"
+#include "engine/solve/tolerances.hpp"
 
 #include <random>
 
@@ -36,13 +37,14 @@ class TrustRegion {
       else
         shorten_step(0.25);
       const double size = step_.lpNorm<Eigen::Infinity>();
-      if (shortened == 0 && (shift_ == 0 || shy_) && size < 1e-8)
+      if (shortened == 0 && (shift_ == 0 || shy_) && size < tolerance::converged_step)
         return {DescentEnd::minimum, i, kkt_.shift() == 0 && !convex_};
       if (!(predicted_ > 0) || !std::isfinite(size))
-        return {size < 1e-5 ? DescentEnd::minimum : DescentEnd::stalled, i};
+        return {size < tolerance::stalled_step ? DescentEnd::minimum : DescentEnd::stalled, i};
       Trial trial = move(1);
       // A long step for nothing: along what nothing resists, where rounding looks like curvature.
-      if (!measurable(trial) && size > 1e-4 && small_forces()) return {DescentEnd::minimum, i};
+      if (!measurable(trial) && size > tolerance::short_step && small_forces())
+        return {DescentEnd::minimum, i};
       if (p_.system.rows == 0) look_back(trial);
       const double rounding = trial.rounding, gain = potential_.value - trial.potential.value;
       // Where the potential cannot judge the model is as good as exact.
@@ -59,12 +61,13 @@ class TrustRegion {
         if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
         compression_tells_ = convex_ && !(ratio > 0.8 && ratio < 1.25);
         const bool model_serves = shift_ == 0 && !convex_ && std::abs(ratio - 1) < 0.1;
-        if (!all_the_way && p_.system.rows > 0 && model_serves && size < 1e-3 && newton_leads())
+        if (!all_the_way && p_.system.rows > 0 && model_serves && size < tolerance::newton_leads_step &&
+            newton_leads())
           return {DescentEnd::near, i + 1};
         arrive(trial.potential);
         shortened = 0;
       } else {
-        if (radius_ < 1e-12 * unit_) return {DescentEnd::stalled, i};
+        if (radius_ < tolerance::least_radius * unit_) return {DescentEnd::stalled, i};
         // What is wrong with a step is mostly its length; in the end the direction has to turn, too.
         shortened = (shortened + 1) % 3;
         if (shortened == 0) evaluate(p_, z_, 0, w_);
@@ -89,7 +92,7 @@ class TrustRegion {
     forward<double>(p_.system, p_.parameters, moved_, 0, w_.kinematics);
     trial.closed = close_loops();
     trial.potential = lagrangian(moved_);
-    trial.rounding = 1e-14 * (potential_.magnitude + trial.potential.magnitude);
+    trial.rounding = tolerance::potential_rounding * (potential_.magnitude + trial.potential.magnitude);
     return trial;
   }
 
@@ -97,7 +100,7 @@ class TrustRegion {
   bool measurable(const Trial& trial) const { return predicted_ > 10 * trial.rounding; }
 
   // Those of a saddle, or of what nothing resists.
-  bool small_forces() const { return gradient_.lpNorm<Eigen::Infinity>() < 1e-6 * force_; }
+  bool small_forces() const { return gradient_.lpNorm<Eigen::Infinity>() < tolerance::small_force * force_; }
 
   // A step that gains clearly less than foreseen went too far: the parabola through the potential's value and
   // slope here and its value there tells how far, and where that is lower it is the step.
@@ -133,10 +136,13 @@ class TrustRegion {
     for (int i = 0; i < 30; ++i) {
       evaluate_constraints<double>(p_.system, p_.parameters, moved_, w_.kinematics, w_.residual.phi);
       const double open = w_.residual.phi.cwiseProduct(p_.scaling.row).lpNorm<Eigen::Infinity>();
-      if (open < 1e-13) return true;
-      if (open < 1e-6 && w_.residual.phi.cwiseAbs().dot(z_.lambda.cwiseAbs()) < enough) return true;
+      if (open < tolerance::closed_on_descent) return true;
+      if (open < tolerance::almost_closed_on_descent &&
+          w_.residual.phi.cwiseAbs().dot(z_.lambda.cwiseAbs()) < enough)
+        return true;
       if (!(open < 2 * before) || (!(open < 0.5 * before) && ++slow > 3))
-        return open < std::max(1e-11, std::min(2 * open_, 1e-9));
+        return open <
+               std::max(tolerance::slowly_closed, std::min(2 * open_, tolerance::slowly_closed_at_most));
       if (!(open < 0.1 * before) && i > 0) {
         factor_constraints(p_, w_);
         almost_there_ = true;
@@ -209,7 +215,7 @@ class TrustRegion {
       double push = 0;
       for (const auto& [v, share] : direction)
         push += share * gradient_[v];
-      if (std::abs(push) > 1e-9 * force_) return false;
+      if (std::abs(push) > tolerance::neutral_force * force_) return false;
     }
     shift_ = shift;
     rhs_ = -gradient_;
@@ -249,7 +255,7 @@ class TrustRegion {
       convex_ = true;
       least_shift_ = low = 0;
       low_definite = solve_with(0);
-      if (low_definite && step_.lpNorm<Eigen::Infinity>() < 1e-6) {
+      if (low_definite && step_.lpNorm<Eigen::Infinity>() < tolerance::saddle_step) {
         kkt_.linearize(p_, z_, w_);
         low_definite = false;
       } else if (low_definite && length_ <= 1.25 * radius_) {

@@ -16,7 +16,6 @@ constexpr double pi = std::numbers::pi;
 constexpr int largest_searched = 2000;  // coordinates, each looked at by itself
 constexpr int largest_with_loops = 200; // the constraints are then written as a dense matrix
 constexpr double far = 1000;            // reaches, or radians
-constexpr double rounding = 1e-9;       // of the terms that a force is the sum of
 
 class Search {
  public:
@@ -59,14 +58,16 @@ class Search {
     };
     if (link.type == LinkType::prismatic) {
       const double reach = p_.scaling.column[link.v];
-      return std::ranges::all_of(std::array{far, 1.0, 30.0},
-                                 [&](double s) { return pushes(way * s * reach, 1 - 1e-6); });
+      return std::ranges::all_of(std::array{far, 1.0, 30.0}, [&](double s) {
+        return pushes(way * s * reach, 1 - tolerance::constant_push);
+      });
     }
     // A weight pulls back half a turn on; what pushes all round, and after many turns, pushes on.
     constexpr int parts = 24;
-    if (!pushes(pi, 1e-3) || !pushes(way * far * 2 * pi, 1 - 1e-6)) return false;
+    if (!pushes(pi, tolerance::remaining_push) || !pushes(way * far * 2 * pi, 1 - tolerance::constant_push))
+      return false;
     for (int i = 1; i < parts; ++i)
-      if (!pushes(2 * pi * i / parts, 1e-3)) return false;
+      if (!pushes(2 * pi * i / parts, tolerance::remaining_push)) return false;
     return true;
   }
 
@@ -85,7 +86,7 @@ class Search {
       const bool scalar = link.type == LinkType::revolute || link.type == LinkType::prismatic;
       if (link.v < 0 || !scalar) continue;
       const double first = slopes[link.v];
-      if (!(std::abs(first) > rounding * sizes[link.v])) continue;
+      if (!(std::abs(first) > tolerance::push_rounding * sizes[link.v])) continue;
       if (loops.size() > 0 && loops.col(link.v).cwiseAbs().maxCoeff() > 0) continue; // part of a loop
       if (goes_on(link, first)) pushed_.push_back({link.v, -first});
     }
@@ -138,7 +139,7 @@ class Search {
       Parameters parameters = p_.parameters;
       change(parameters);
       const double rest = push({p_.system, parameters, p_.scaling, p_.cancel, p_.form});
-      return rest >= 1e-6 * whole; // `whole` is negative
+      return rest >= tolerance::constant_push * whole; // `whole` is negative
     };
     out.by_weight = p_.parameters.gravity.norm() > 0 && without([](Parameters& p) { p.gravity.setZero(); });
     out.by_inertia = p_.parameters.moving && without([](Parameters& p) { p.moving = false; });
@@ -163,61 +164,10 @@ class Search {
   bool fell_ = false;                       // from start_ to end_ in a descent
 };
 
-std::string names_of(const Unbounded& found) {
-  constexpr std::size_t most = 5;
-  std::vector<std::string> names;
-  for (const UnheldCoordinate& c : found.coordinates)
-    if (std::ranges::find(names, c.joint) == names.end()) names.push_back(c.joint);
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
-}
-
 } // namespace
 
 Unbounded find_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w) {
   return Search(problem, start, w).run();
-}
-
-void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w, Solution& out) {
-  const bool unstable = out.status == Status::converged && out.stable == false;
-  if ((out.status != Status::not_converged && !unstable) || problem.cancelled()) return;
-  const Unbounded found = find_unbounded(problem, start, w);
-  if (found.coordinates.empty() || problem.cancelled()) return;
-  out.unheld = found.coordinates;
-  out.unheld_by_weight = found.by_weight;
-  const bool one = found.coordinates.size() == 1;
-  const std::string words =
-      "Nothing holds " + names_of(found) + " against " +
-      (found.by_weight    ? "the weight"
-       : found.by_inertia ? "the centrifugal force"
-                          : "the forces on it") +
-      ": " + (one ? "it goes" : "they go") + " on without end" +
-      (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +
-      (one ? "It needs a spring or a stop" : "They need springs or stops") +
-      (found.by_weight ? ", or no gravity." : ".");
-  out.message = unstable ? out.message + " " + words : words;
-}
-
-bool weight_turns(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w) {
-  if (!(problem.parameters.gravity.norm() > 0)) return false;
-  Parameters weightless = problem.parameters;
-  weightless.gravity.setZero();
-  // How much the balance on the closed loops changes from the drawn phase.
-  const auto change = [&](const Parameters& parameters) {
-    const Problem part{problem.system, parameters, problem.scaling, problem.cancel, problem.form};
-    Eigen::VectorXd f[2];
-    for (const int i : {0, 1}) {
-      evaluate(part, {q, Eigen::VectorXd::Zero(problem.system.rows)}, i == 0 ? 0 : t, w);
-      factor_constraints(part, w);
-      w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
-      w.kkt(part).project(w.scaled_force, f[i]);
-    }
-    return (f[1] - f[0]).norm();
-  };
-  const double whole = change(problem.parameters);
-  return std::isfinite(whole) && change(weightless) <= 1e-6 * whole;
 }
 
 } // namespace flyball

@@ -22,13 +22,4 @@ struct Unbounded {
 // closed and where the problem is cancelled.
 Unbounded find_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w);
 
-// The two in one place: names them in `out.unheld`, and in `out.message` what holds nothing and what would
-// mend it; of an unstable answer beside what the message says already. Leaves `out` alone where nothing runs
-// away.
-void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w, Solution& out);
-
-// Of a state that balances at one phase of the drives and not at the phase `t` (s): whether that is gravity's
-// doing alone, so that turning it along the axis, or off, would mend it.
-bool weight_turns(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w);
-
 } // namespace flyball

@@ -5,6 +5,7 @@
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "engine/report/messages.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/refine.hpp"
 
@@ -93,7 +94,7 @@ void add(const std::string& name, const std::shared_ptr<Case>& c, const std::str
 void add_parts(const std::string& name, Mechanism mechanism) {
   const auto c = std::make_shared<Case>(std::move(mechanism));
   if (c->found.status != Status::converged)
-    std::fprintf(stderr, "%s does not converge: %s\n", name.c_str(), c->found.message.c_str());
+    std::fprintf(stderr, "%s does not converge: %s\n", name.c_str(), message(c->found, c->problem()).c_str());
   add(name, c, "residual", [](Case& x) {
     forward<double>(x.system, x.parameters, x.answer.q, 0, x.workspace.kinematics);
     evaluate_residual<double>(x.system, x.parameters, x.answer.q, x.answer.lambda, x.workspace.kinematics,

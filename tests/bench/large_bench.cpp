@@ -88,7 +88,7 @@ void print(const std::string& family, const Cost& cost, const Cost& before) {
               cost.solving,
               power(cost.compiling + cost.solving, before.compiling + before.solving, ratio).c_str(),
               cost.memory, power(cost.memory, before.memory, ratio).c_str(), s.iterations,
-              s.net ? (" " + std::string(word(*s.net))).c_str() : "",
+              s.fallback ? (" " + std::string(word(*s.fallback))).c_str() : "",
               s.stability_reason ? std::string(word(*s.stability_reason)).c_str()
                                  : std::string(word(s.status)).c_str(),
               s.residual);

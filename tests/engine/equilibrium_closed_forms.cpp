@@ -83,7 +83,7 @@ TEST_CASE("a conical pendulum hangs below its critical speed and stands out abov
       if (drawn != 0) check_value(s, "swing", drawn > 0 ? angle : -angle);
       // Drawn hanging, that state is an equilibrium too: the plain answer, and unstable.
       if (drawn != 0) continue;
-      CHECK(s.net == Net::descent);
+      CHECK(s.fallback == Fallback::descent);
       CHECK_THAT(s.message, ContainsSubstring("unstable"));
       const Solution plain = solve(conical(length, 0, speed), nearest());
       CHECK(plain.status == Status::converged);

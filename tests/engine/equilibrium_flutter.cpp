@@ -261,7 +261,7 @@ TEST_CASE("a sleeping top stays where it is drawn", "[gyroscopic]") {
       CHECK_FALSE(s.stable.has_value());
       REQUIRE(s.stability_reason.has_value());
       CHECK(*s.stability_reason == StabilityReason::gyroscopic_only);
-      CHECK_FALSE(s.net.has_value());
+      CHECK_FALSE(s.fallback.has_value());
       CHECK(s.message.find("any damping") != std::string::npos);
       CHECK(s.message.find("downhill") == std::string::npos);
       check_value(s, "tip", 0, 1e-12, 0);
@@ -274,7 +274,7 @@ TEST_CASE("a sleeping top of unequal moments stays, too: its multipliers judge",
   REQUIRE(s.status == Status::converged);
   CHECK(s.stability_reason == StabilityReason::floquet);
   CHECK(s.stable == true);
-  CHECK_FALSE(s.net.has_value());
+  CHECK_FALSE(s.fallback.has_value());
   Mechanism slow = load_scene(FLYBALL_ASSETS "/../tests/cases/asymmetric_sleeping_top.json");
   set_parameter(slow, "joints.s.drive.speed", 20);
   const Solution fallen = solve(slow);

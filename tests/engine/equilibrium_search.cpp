@@ -68,7 +68,7 @@ TEST_CASE("a steady state that the way from the start misses is found before sol
   const Solution shipped_case = solve(test_case("steady_at_another_root"));
   INFO(shipped_case.message);
   REQUIRE(shipped_case.status == Status::converged);
-  CHECK(shipped_case.net == Net::search);
+  CHECK(shipped_case.fallback == Fallback::search);
   CHECK_THAT(shipped_case.message, ContainsSubstring("search"));
   check_value(shipped_case, "h", pi / 2);
 
@@ -109,11 +109,11 @@ TEST_CASE("a refusal says what was tried", "[search]") {
   CHECK_THAT(brief.message, ContainsSubstring("--all"));
 }
 
-TEST_CASE("where Newton-Raphson and its nets lead nowhere a search may", "[search]") {
+TEST_CASE("where Newton-Raphson and its fallbacks lead nowhere a search may", "[search]") {
   const Solution s = solve(test_case("five_bodies_from_afar"));
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
-  CHECK(s.net == Net::search);
+  CHECK(s.fallback == Fallback::search);
   CHECK(s.residual < 1e-10);
 
   std::atomic<bool> cancel = true;

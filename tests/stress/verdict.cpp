@@ -70,7 +70,7 @@ Verdict judge(const Mechanism& mechanism, const SolveOptions& options, const Exp
   cancellable.cancel = &cancel;
   const Solution s = Analysis(mechanism).solve(cancellable);
   out.iterations = s.iterations;
-  out.net = s.net ? std::string(word(*s.net)) : "";
+  out.net = s.fallback ? std::string(word(*s.fallback)) : "";
   out.time_s = s.run_time_s;
   if (!all_finite(s)) {
     fail(out, "not everything is finite");

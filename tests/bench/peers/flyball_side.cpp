@@ -1,6 +1,7 @@
 #include "tests/bench/peers/flyball_side.hpp"
 
 #include "engine/report/analysis.hpp"
+#include "engine/report/messages.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/refine.hpp"
 
@@ -92,7 +93,8 @@ FlyballResult measure_flyball(const Mechanism& mechanism, bool cold_too) {
   FlyballResult result;
   Solve solve(mechanism);
   solve.cold();
-  if (solve.found.status != Status::converged) throw std::invalid_argument(solve.found.message);
+  if (solve.found.status != Status::converged)
+    throw std::invalid_argument(message(solve.found, solve.problem()));
   result.iterations = solve.found.iterations;
   result.error = solve.error.size() > 0 ? solve.error.maxCoeff() : 0;
   const Unknowns answer = solve.found.z;

@@ -1,0 +1,199 @@
+#include "engine/report/messages.hpp"
+
+#include "engine/mechanism/text.hpp"
+#include "engine/report/turning_part.hpp"
+#include "engine/solve/unbounded.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+namespace {
+
+std::string cut_name(const ReportInput& in, int cut) {
+  return in.mechanism
+      .joints[static_cast<std::size_t>(in.problem.system.cuts[static_cast<std::size_t>(cut)].joint)]
+      .name;
+}
+
+std::string floquet_message(const Floquet& f, std::optional<bool> stable) {
+  std::string out = " The linearised motion turns with the drives: in a period of " +
+                    rounded_text(f.period, 4) + " s its largest multiplier is " +
+                    rounded_text(std::abs(f.multipliers.front()), 7) + " in size.";
+  if (stable == true && f.growth.front() > -1e-9 / f.period)
+    out += " Motions beside the state neither grow nor die out.";
+  else if (!stable)
+    out += " That is too close to 1 to tell.";
+  return out;
+}
+
+std::string floquet_message(FloquetFailure failure) {
+  const std::string begin =
+      " Whether it is stable is not known: the linearised motion turns with the drives, ";
+  switch (failure) {
+  case FloquetFailure::no_period:
+    return begin + "and their speeds have no common period, or one of more than a thousand turns.";
+  case FloquetFailure::singular:
+    return begin +
+           "and a direction in which it moves has neither mass nor damping nor stiffness at some phase.";
+  case FloquetFailure::unresolved:
+    return begin + "and is too large, too stiff or too slow in its period beside its own oscillations to "
+                   "follow, or its loops turn too far.";
+  case FloquetFailure::cancelled: return begin + "and looking for its multipliers was cancelled.";
+  }
+  return "";
+}
+
+std::string names_of(const Unbounded& found) {
+  constexpr std::size_t most = 5;
+  std::vector<std::string> names;
+  for (const UnheldCoordinate& c : found.coordinates)
+    if (std::ranges::find(names, c.joint) == names.end()) names.push_back(c.joint);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
+}
+
+} // namespace
+
+std::string message(const Found& found, const Problem& problem) {
+  const std::string falls = "the potential falls on, hundreds of times the mechanism's reach away";
+  const auto methods = [&] {
+    std::vector<std::string_view> tried{"Newton-Raphson", "its damped form"};
+    if (problem.parameters.moving) tried.emplace_back("homotopy from rest");
+    if (found.descended) tried.emplace_back("descent of the potential");
+    return word_list(tried, "and");
+  };
+  const auto searched = [&](const std::string& first) {
+    return first + "; a search all over the coordinates' ranges found this steady state" +
+           (found.candidates > 1 ? ", the nearest of " + std::to_string(found.candidates) + "." : ".");
+  };
+  switch (found.remark) {
+  case Remark::none: return "";
+  case Remark::cancelled: return "The solve was cancelled.";
+  case Remark::left_unstable_start:
+    return "The start is an unstable equilibrium; stepped off it and went downhill to a stable one.";
+  case Remark::left_unstable_equilibrium:
+    return "Newton-Raphson arrived at an unstable equilibrium; went downhill from the start to a stable one.";
+  case Remark::unstable: return "No stable state was found downhill from here.";
+  case Remark::unstable_and_unbounded:
+    return "The potential falls on, hundreds of times the mechanism's reach away; no stable state was found.";
+  case Remark::basin_uncertain: return "A stable state, but the start may lie in the basin of another.";
+  case Remark::first_does_not_hold:
+    return searched("The equilibrium found first holds at one phase of the drives only");
+  case Remark::first_not_found:
+    return searched("Newton-Raphson and its fallbacks led nowhere from the start");
+  case Remark::unbounded: return "The potential falls on, hundreds of times the mechanism's reach away.";
+  case Remark::exhausted: return methods() + " found no equilibrium from this start.";
+  case Remark::exhausted_and_unbounded: return methods() + " found no equilibrium: " + falls + ".";
+  }
+  return "";
+}
+
+std::string message(const OtherStates& others, Status first) {
+  if (!others.searched)
+    return std::string(first == Status::converged
+                           ? "That is said of the equilibrium found from this start alone; "
+                           : "No other start was tried; ") +
+           "solve --all looks for others.";
+  if (others.end == SearchEnd::cancelled) return "The search for others was cancelled.";
+  const std::string runs = std::to_string(others.starts) + " starts all over the coordinates' ranges";
+  const std::string more =
+      others.end == SearchEnd::settled ? "" : " The search was short; solve --all looks for longer.";
+  if (others.equilibria == 0) return "A search from " + runs + " found none either." + more;
+  return (others.equilibria == 1
+              ? "It is the only equilibrium of the drawn phase"
+              : "None of the " + std::to_string(others.equilibria) + " equilibria of the drawn phase") +
+         " found from " + runs + (others.equilibria == 1 ? "." : " holds at every phase.") + more;
+}
+
+std::string message(const AllSolutions& all) {
+  std::string text = all.equilibria.empty() ? "No steady state was found in the range searched."
+                                            : "Found by a bounded search; there may be more.";
+  if (all.passing > 0)
+    text += " " + std::to_string(all.passing) +
+            (all.passing == 1 ? " equilibrium of the drawn phase is not listed: it does"
+                              : " equilibria of the drawn phase are not listed: they do") +
+            " not hold as the drives turn.";
+  switch (all.end) {
+  case SearchEnd::settled: break;
+  case SearchEnd::starts: text += " The search ended after the starts asked for."; break;
+  case SearchEnd::budget: text += " The search spent its budget; a larger one may find more."; break;
+  case SearchEnd::time: text += " The search took too long and was ended; the next may end elsewhere."; break;
+  case SearchEnd::cancelled: text += " The search was cancelled."; break;
+  }
+  if (all.end != SearchEnd::settled && std::isfinite(all.unseen) && all.unseen >= 0.5)
+    text += " By how often the same were found again, " + std::to_string(std::lround(all.unseen)) +
+            (std::lround(all.unseen) == 1 ? " is" : " are") + " expected to be missing.";
+  return text;
+}
+
+std::string failure_message(const ReportInput& in, Workspace& w) {
+  if (in.found.status == Status::infeasible)
+    return "The loops cannot be closed: \"" + cut_name(in, in.found.open_cut) +
+           "\" stays open however the other coordinates are chosen.";
+  if (in.found.status == Status::not_converged) return message(in.found, in.problem);
+  if (in.existence.loops_open)
+    return "No steady state: as the drives turn, \"" + cut_name(in, in.existence.worst_cut) +
+           "\" cannot be held with all other coordinates constant, whichever joint of its loop is cut" +
+           (std::ranges::any_of(
+                in.mechanism.joints,
+                [](const Joint& j) { return j.cut.has_value() && coordinate_count(j.type) > 0; })
+                ? "; the joints marked with \"cut\" were left as marked."
+                : ".");
+  return "No steady state: " + turning_part(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
+         " turns with the drives, so the balance holds at one moment only.";
+}
+
+std::string solution_message(const ReportInput& in, int rank, const Solution& out) {
+  const System& system = in.problem.system;
+  std::string text = message(in.found, in.problem);
+  if (text.empty()) text = "Converged.";
+  if (rank < system.rows)
+    text += " The loops are redundant: " + std::to_string(rank) + " of " + std::to_string(system.rows) +
+            " constraint equations are independent.";
+  if (!out.neutral.empty()) {
+    constexpr std::size_t named = 20;
+    text += " Nothing resists";
+    for (std::size_t i = 0; i < std::min(named, out.neutral.size()); ++i)
+      text += (i ? ", " : " ") + out.neutral[i];
+    if (out.neutral.size() > named) text += " and " + std::to_string(out.neutral.size() - named) + " more";
+    text += out.neutral.size() == 1 ? "; its value is arbitrary." : "; their values are arbitrary.";
+  }
+  if (!out.stability_reason && !out.eigenvalues && system.nv <= largest_for_eigenvalues)
+    text += " Whether it is stable is not known: the eigenvalues were not found, the iteration for them does "
+            "not converge.";
+  else if (!out.stability_reason)
+    text += " Whether it is stable was left out: that takes eigenvalues, and there are more than " +
+            std::to_string(largest_for_eigenvalues) + " coordinates.";
+  if (out.floquet) text += floquet_message(*out.floquet, out.stable);
+  if (in.stability.floquet_failure) text += floquet_message(*in.stability.floquet_failure);
+  if (out.stability_reason == StabilityReason::gyroscopic_only)
+    text += " Rotation alone keeps this state, which is no minimum of the amended potential: any damping in "
+            "what moves would make it unstable.";
+  if (out.stable == false && in.found.remark == Remark::none) text += " This state is unstable.";
+  return text;
+}
+
+void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w, Solution& out) {
+  const bool unstable = out.status == Status::converged && out.stable == false;
+  if ((out.status != Status::not_converged && !unstable) || problem.cancelled()) return;
+  const Unbounded found = find_unbounded(problem, start, w);
+  if (found.coordinates.empty() || problem.cancelled()) return;
+  out.unheld = found.coordinates;
+  out.unheld_by_weight = found.by_weight;
+  const bool one = found.coordinates.size() == 1;
+  const std::string words =
+      "Nothing holds " + names_of(found) + " against " +
+      (found.by_weight    ? "the weight"
+       : found.by_inertia ? "the centrifugal force"
+                          : "the forces on it") +
+      ": " + (one ? "it goes" : "they go") + " on without end" +
+      (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +
+      (one ? "It needs a spring or a stop" : "They need springs or stops") +
+      (found.by_weight ? ", or no gravity." : ".");
+  out.message = unstable ? out.message + " " + words : words;
+}
+
+} // namespace flyball

@@ -1,0 +1,30 @@
+// What the solvers found, in sentences for a person. The solvers below say what happened in values; the words
+// are made here.
+#pragma once
+
+#include "engine/report/report.hpp"
+#include "engine/search/steady_state.hpp"
+
+namespace flyball {
+
+// What happened on the way to one equilibrium, or why there is none; empty for a plain run that arrived.
+std::string message(const Found& found, const Problem& problem);
+
+// What was done to find another steady state after the first run had ended in `first`: to follow a refusal.
+std::string message(const OtherStates& others, Status first);
+
+// What a search for all equilibria found and left.
+std::string message(const AllSolutions& all);
+
+// Why there is no answer, naming the part that is to blame.
+std::string failure_message(const ReportInput& input, Workspace& w);
+
+// Of a converged solution whose other parts are filled; `rank`: of the constraint equations.
+std::string solution_message(const ReportInput& input, int rank, const Solution& solution);
+
+// Looks for what runs away (find_unbounded) where `out` has no answer or an unstable one; names it in
+// `out.unheld`, and in `out.message` what holds nothing and what would mend it: of an unstable answer beside
+// what the message says already. Leaves `out` alone where nothing runs away.
+void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w, Solution& out);
+
+} // namespace flyball

@@ -1,0 +1,135 @@
+#include "engine/report/turning_part.hpp"
+
+#include "engine/solve/newton.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace flyball {
+
+std::string turning_part(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q,
+                         double phase, Workspace& w) {
+  const System& system = problem.system;
+  Parameters only = problem.parameters;
+  for (LinkParameters& l : only.links) {
+    l.mass = 0;
+    l.has_inertia = false;
+    l.elastic = false;
+  }
+  for (PointSpringParameters& s : only.springs)
+    s.stiffness = s.damping = 0;
+  for (BodyForceParameters& f : only.body_forces) {
+    f.vector.setZero();
+    f.linear = f.quadratic = 0;
+  }
+  for (CutDamperParameters& d : only.cut_dampers)
+    d.damping = 0;
+  const Problem part{system, only, problem.scaling, problem.cancel, problem.form};
+  // How much the projected force of what is left in `only` changes from the drawn phase to the bad one.
+  const auto change = [&] {
+    Eigen::VectorXd f[2];
+    for (int i : {0, 1}) {
+      evaluate(part, {q, Eigen::VectorXd::Zero(system.rows)}, i == 0 ? 0. : phase, w);
+      factor_constraints(part, w);
+      w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
+      w.kkt(part).project(w.scaled_force, f[i]);
+    }
+    return (f[1] - f[0]).norm();
+  };
+  double worst = 0;
+  std::string phrase = "the balance";
+  // The part whose force changes most: by trying each, or where there are many the half that changes more,
+  // again and again.
+  const auto search = [&](const std::vector<std::size_t>& parts, const auto& set, const auto& name) {
+    const auto change_of = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        set(parts[i], true);
+      const double c = change();
+      for (std::size_t i = begin; i < end; ++i)
+        set(parts[i], false);
+      return c;
+    };
+    const auto consider = [&](std::size_t i) {
+      if (const double c = change_of(i, i + 1); c > worst) {
+        worst = c;
+        phrase = name(parts[i]);
+      }
+    };
+    std::size_t begin = 0, end = parts.size();
+    while (end - begin > 100) {
+      const std::size_t middle = (begin + end) / 2;
+      (change_of(begin, middle) >= change_of(middle, end) ? end : begin) = middle;
+    }
+    for (std::size_t i = begin; i < end; ++i)
+      consider(i);
+  };
+  std::vector<std::size_t> bodies, springs(only.springs.size()), forces(only.body_forces.size());
+  for (std::size_t l = 0; l < only.links.size(); ++l) {
+    const LinkParameters& real = problem.parameters.links[l];
+    if (system.links[l].body >= 0 && (real.mass != 0 || real.has_inertia)) bodies.push_back(l);
+  }
+  std::iota(springs.begin(), springs.end(), std::size_t{0});
+  std::iota(forces.begin(), forces.end(), std::size_t{0});
+  const auto body_name = [&](std::size_t l) {
+    return mechanism.bodies[static_cast<std::size_t>(system.links[l].body)].name;
+  };
+  only.moving = false;
+  search(
+      bodies, [&](std::size_t l, bool on) { only.links[l].mass = on ? problem.parameters.links[l].mass : 0; },
+      [&](std::size_t l) { return "the weight of " + body_name(l); });
+  only.moving = problem.parameters.moving;
+  const Vec3 gravity = only.gravity;
+  only.gravity.setZero();
+  search(
+      bodies,
+      [&](std::size_t l, bool on) {
+        only.links[l].mass = on ? problem.parameters.links[l].mass : 0;
+        only.links[l].has_inertia = on && problem.parameters.links[l].has_inertia;
+      },
+      [&](std::size_t l) { return "the inertia of " + body_name(l); });
+  only.gravity = gravity;
+  search(
+      springs,
+      [&](std::size_t i, bool on) {
+        only.springs[i] = problem.parameters.springs[i];
+        if (!on) only.springs[i].stiffness = only.springs[i].damping = 0;
+      },
+      [&](std::size_t i) {
+        return "the spring " + mechanism.forces[static_cast<std::size_t>(system.springs[i].force)].name;
+      });
+  search(
+      forces,
+      [&](std::size_t i, bool on) {
+        only.body_forces[i] = problem.parameters.body_forces[i];
+        if (on) return;
+        only.body_forces[i].vector.setZero();
+        only.body_forces[i].linear = only.body_forces[i].quadratic = 0;
+      },
+      [&](std::size_t i) {
+        const Force& f = mechanism.forces[static_cast<std::size_t>(system.body_forces[i].force)];
+        return "the " + std::string(type_name(f.type)) + " " + f.name;
+      });
+  return phrase;
+}
+
+bool weight_turns(const Problem& problem, const Eigen::VectorXd& q, double phase, Workspace& w) {
+  if (!(problem.parameters.gravity.norm() > 0)) return false;
+  Parameters weightless = problem.parameters;
+  weightless.gravity.setZero();
+  // How much the balance on the closed loops changes from the drawn phase.
+  const auto change = [&](const Parameters& parameters) {
+    const Problem part{problem.system, parameters, problem.scaling, problem.cancel, problem.form};
+    Eigen::VectorXd f[2];
+    for (const int i : {0, 1}) {
+      evaluate(part, {q, Eigen::VectorXd::Zero(problem.system.rows)}, i == 0 ? 0. : phase, w);
+      factor_constraints(part, w);
+      w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
+      w.kkt(part).project(w.scaled_force, f[i]);
+    }
+    return (f[1] - f[0]).norm();
+  };
+  const double whole = change(problem.parameters);
+  return std::isfinite(whole) && change(weightless) <= tolerance::constant_push * whole;
+}
+
+} // namespace flyball

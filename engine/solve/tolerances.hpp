@@ -1,0 +1,77 @@
+// What the solvers call short, closed, balanced or the same: each with its unit and reason.
+//
+// "Scaled" is a step in radians or in reaches of the mechanism (Scaling::column), an opening of a loop in
+// radians or reaches (Scaling::row), and a force as a part of the sizes of the terms it is the sum of. eps is
+// 2.2e-16. Which pivots are zero is said where they are made (kkt/kkt_system, kkt/reduced_hessian), how much
+// rounding an answer has is not assumed but estimated (refine).
+#pragma once
+
+#include <limits>
+
+namespace flyball::tolerance {
+
+// Newton-Raphson.
+constexpr double step = 1e-9;             // scaled; quadratic convergence puts the error at its square
+constexpr double short_step = 1e-4;       // scaled; where it falls tenfold, too, convergence is quadratic
+constexpr double last_step = 1e-8;        // scaled; the next is its square, rounding
+constexpr double trusted_error = 1e-2;    // of the step's tolerance: foreseen by the last two, so not taken
+constexpr double neutral_step = 1e-5;     // scaled; along null directions rounding makes steps as long
+constexpr double linear_step = 1e-6;      // scaled; while shrinking slowly: linear convergence, a double root
+constexpr double linear_residual = 1e-15; // scaled, where that is told: nothing is left but rounding
+constexpr double proximal_residual =
+    1e-12; // scaled, where null directions are kept still: as above, many bodies
+constexpr double singular_residual = 1e-13; // scaled: without stiffness only the balance itself tells
+// Scaled: short steps with more left are no state. No coordinate resists that force, or no step closes the
+// loop.
+constexpr double balance = 1e-8;
+constexpr double near_balance = 1e-6; // scaled; nearer than this Newton's method stays, unstable or not
+constexpr double far = 1e8;           // scaled step; only a balance as good as linear leads so far
+constexpr double farthest = 1e14;     // scaled step; beyond it eps is a hundredth of a reach
+
+// Damping, of Newton-Raphson and the descents.
+constexpr double sufficient_decrease = 1e-4; // of what the slope promises (Armijo; Nocedal and Wright, 3.1)
+constexpr double least_fraction = 1e-6;      // of a Newton step: shorter ones lead nowhere
+constexpr double merit_rounding = 1e-13;     // scaled: a merit as low falls no further
+constexpr double least_homotopy_step = 1e-4; // of the squared speed
+
+// Loops, scaled.
+constexpr double closed = 1e-10;                  // closing them has worked
+constexpr double closed_to_rounding = 1e-14;      // and need not go on
+constexpr double least_closing_step = 1e-15;      // shorter steps change nothing
+constexpr double least_closing_fraction = 1e-8;   // of a step that opens them more
+constexpr double closed_on_descent = 1e-13;       // a step of a descent need not have them closer
+constexpr double almost_closed_on_descent = 1e-6; // where what is open costs little of what the step gains
+constexpr double slowly_closed = 1e-11;        // where the last iterations gained nothing: rounding, surely
+constexpr double slowly_closed_at_most = 1e-9; // the same, where they were open as much before
+
+// Descents of the amended potential.
+constexpr double potential_rounding = 1e-14; // of its terms: less it cannot be told to differ by
+constexpr double energy_rounding = 1e-12;    // the same between two poses far apart
+constexpr double saddle_step = 1e-6;         // scaled; steps so short, and a fall: step off a saddle
+constexpr double small_force = 1e-6;         // scaled; so small at a saddle, or along null directions
+constexpr double neutral_force = 1e-9;       // scaled; less does not push along a null direction
+constexpr double converged_step = 1e-8;      // scaled; a minimum
+constexpr double stalled_step = 1e-5;        // scaled; a minimum where rounding allows no step, else stalled
+constexpr double newton_leads_step = 1e-3;   // scaled; Newton-Raphson may take over
+constexpr double least_radius = 1e-12;       // of the mechanism's size: no step is taken any more
+
+// Verdicts on states.
+constexpr double same_state = 1e-6;       // scaled distance; states nearer are one
+constexpr double same_quaternion = 1e-12; // 1 - |a.b|: the square of such a distance in an angle
+constexpr double known = 1e-6; // of the reach, or of the distance where longer: what is known worse is none
+constexpr double proximal_shift = 1e-3;  // of the potential's curvature: stills null directions, little else
+constexpr double inertia_shift = 1e-5;   // the same, where it is to outweigh rounding alone
+constexpr double still_factored = 1e-14; // scaled step and residual: factors taken there serve here
+constexpr double still_factored_large = 1e-12; // the same of many bodies, whose rounding adds up
+
+// Phases of the drives.
+constexpr double phase_balance = 1e-8; // scaled; what turns with the drives is rarely so small by chance
+constexpr double phase_rounding = 64 * std::numeric_limits<double>::epsilon(); // scaled; less is no variation
+constexpr double phase_variation = 1e-2; // scaled; what the drives move further does not stand
+
+// Forces that push on without end.
+constexpr double push_rounding = 1e-9;  // of the terms that a force is the sum of
+constexpr double constant_push = 1e-6;  // of a force: it has not become less by more
+constexpr double remaining_push = 1e-3; // of a force: all round a turn as much is left
+
+} // namespace flyball::tolerance
