@@ -140,7 +140,8 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
                             : fmt::format("  {:>13.6g} 1/s\n", e.real());
   }
   out += fmt::format("\nresidual {:.1e}, {} iterations{}, {:.1f} µs", s.residual, s.iterations,
-                     s.fallback ? fmt::format(" (fallback: {})", word(*s.fallback)) : std::string(), s.run_time_s * 1e6);
+                     s.fallback ? fmt::format(" (fallback: {})", word(*s.fallback)) : std::string(),
+                     s.run_time_s * 1e6);
   if (s.condition) out += fmt::format(", condition {:.2g}", *s.condition);
   return out + "\n";
 }

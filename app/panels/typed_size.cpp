@@ -44,7 +44,8 @@ std::string typed_text(const std::string& typed, const std::string& unit) {
   return typed + "_" + (std::ranges::any_of(typed, is_letter) ? "" : " " + unit);
 }
 
-std::optional<double> typed_length(const std::string& typed, const DisplayUnits& units, std::string* mistake) {
+std::optional<double> typed_length(const std::string& typed, const DisplayUnits& units,
+                                   std::string* mistake) {
   const Quantity length = parse_quantity(typed, "m", shown_unit("m", units).text);
   std::string why = length.mistake;
   if (why.empty() && !(length.value > 0)) why = "Expected more than zero.";

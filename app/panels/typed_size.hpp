@@ -15,8 +15,8 @@ bool take_typed_key(std::string& typed, const KeyPress& key);
 // As it is shown: "1.5_ m", or "150 mm_" once there is a unit in it.
 std::string typed_text(const std::string& typed, const std::string& unit);
 
-// What is typed as a length (m, more than zero; a number without a unit in the one shown); nothing where it is none,
-// and then why, as a sentence.
+// What is typed as a length (m, more than zero; a number without a unit in the one shown); nothing where it
+// is none, and then why, as a sentence.
 std::optional<double> typed_length(const std::string& typed, const DisplayUnits& units,
                                    std::string* mistake = nullptr);
 

@@ -58,7 +58,7 @@ std::string names_of(const Unbounded& found) {
 } // namespace
 
 std::string message(const Found& found, const Problem& problem) {
-  const std::string falls = "the potential falls on, hundreds of times the mechanism's reach away";
+  const std::string falls = " potential falls on, hundreds of times the mechanism's reach away";
   const auto methods = [&] {
     std::vector<std::string_view> tried{"Newton-Raphson", "its damped form"};
     if (problem.parameters.moving) tried.emplace_back("homotopy from rest");
@@ -77,16 +77,15 @@ std::string message(const Found& found, const Problem& problem) {
   case Remark::left_unstable_equilibrium:
     return "Newton-Raphson arrived at an unstable equilibrium; went downhill from the start to a stable one.";
   case Remark::unstable: return "No stable state was found downhill from here.";
-  case Remark::unstable_and_unbounded:
-    return "The potential falls on, hundreds of times the mechanism's reach away; no stable state was found.";
+  case Remark::unstable_and_unbounded: return "The" + falls + "; no stable state was found.";
   case Remark::basin_uncertain: return "A stable state, but the start may lie in the basin of another.";
   case Remark::first_does_not_hold:
     return searched("The equilibrium found first holds at one phase of the drives only");
   case Remark::first_not_found:
     return searched("Newton-Raphson and its fallbacks led nowhere from the start");
-  case Remark::unbounded: return "The potential falls on, hundreds of times the mechanism's reach away.";
+  case Remark::unbounded: return "The" + falls + ".";
   case Remark::exhausted: return methods() + " found no equilibrium from this start.";
-  case Remark::exhausted_and_unbounded: return methods() + " found no equilibrium: " + falls + ".";
+  case Remark::exhausted_and_unbounded: return methods() + " found no equilibrium: the" + falls + ".";
   }
   return "";
 }
@@ -102,6 +101,8 @@ std::string message(const OtherStates& others, Status first) {
   const std::string more =
       others.end == SearchEnd::settled ? "" : " The search was short; solve --all looks for longer.";
   if (others.equilibria == 0) return "A search from " + runs + " found none either." + more;
+  if (others.steady > 0)
+    return "A search from " + runs + " found others, but too few of their digits are known." + more;
   return (others.equilibria == 1
               ? "It is the only equilibrium of the drawn phase"
               : "None of the " + std::to_string(others.equilibria) + " equilibria of the drawn phase") +

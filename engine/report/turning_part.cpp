@@ -6,6 +6,22 @@
 #include <numeric>
 
 namespace flyball {
+namespace {
+
+// How much the force that no multipliers balance changes from the drawn phase to another, scaled; on loops
+// closed at each.
+double change_of_balance(const Problem& problem, const Eigen::VectorXd& q, double phase, Workspace& w) {
+  Eigen::VectorXd f[2];
+  for (const int i : {0, 1}) {
+    evaluate(problem, {q, Eigen::VectorXd::Zero(problem.system.rows)}, i == 0 ? 0. : phase, w);
+    factor_constraints(problem, w);
+    w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
+    w.kkt(problem).project(w.scaled_force, f[i]);
+  }
+  return (f[1] - f[0]).norm();
+}
+
+} // namespace
 
 std::string turning_part(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q,
                          double phase, Workspace& w) {
@@ -25,17 +41,7 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
   for (CutDamperParameters& d : only.cut_dampers)
     d.damping = 0;
   const Problem part{system, only, problem.scaling, problem.cancel, problem.form};
-  // How much the projected force of what is left in `only` changes from the drawn phase to the bad one.
-  const auto change = [&] {
-    Eigen::VectorXd f[2];
-    for (int i : {0, 1}) {
-      evaluate(part, {q, Eigen::VectorXd::Zero(system.rows)}, i == 0 ? 0. : phase, w);
-      factor_constraints(part, w);
-      w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
-      w.kkt(part).project(w.scaled_force, f[i]);
-    }
-    return (f[1] - f[0]).norm();
-  };
+  const auto change = [&] { return change_of_balance(part, q, phase, w); };
   double worst = 0;
   std::string phrase = "the balance";
   // The part whose force changes most: by trying each, or where there are many the half that changes more,
@@ -116,20 +122,9 @@ bool weight_turns(const Problem& problem, const Eigen::VectorXd& q, double phase
   if (!(problem.parameters.gravity.norm() > 0)) return false;
   Parameters weightless = problem.parameters;
   weightless.gravity.setZero();
-  // How much the balance on the closed loops changes from the drawn phase.
-  const auto change = [&](const Parameters& parameters) {
-    const Problem part{problem.system, parameters, problem.scaling, problem.cancel, problem.form};
-    Eigen::VectorXd f[2];
-    for (const int i : {0, 1}) {
-      evaluate(part, {q, Eigen::VectorXd::Zero(problem.system.rows)}, i == 0 ? 0. : phase, w);
-      factor_constraints(part, w);
-      w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
-      w.kkt(part).project(w.scaled_force, f[i]);
-    }
-    return (f[1] - f[0]).norm();
-  };
-  const double whole = change(problem.parameters);
-  return std::isfinite(whole) && change(weightless) <= tolerance::constant_push * whole;
+  const Problem without{problem.system, weightless, problem.scaling, problem.cancel, problem.form};
+  const double whole = change_of_balance(problem, q, phase, w);
+  return std::isfinite(whole) && change_of_balance(without, q, phase, w) <= tolerance::constant_push * whole;
 }
 
 } // namespace flyball

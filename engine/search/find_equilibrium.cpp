@@ -23,6 +23,7 @@ class EquilibriumSearch {
     found_.fallback.reset();
     found_.iterations = 0;
     found_.open_cut = -1;
+    found_.candidates = 0;
     found_.minimum = found_.unbounded = false;
     found_.descended = descends_;
     history_.clear();

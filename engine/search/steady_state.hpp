@@ -44,8 +44,7 @@ struct SteadyState {
 // The steady state that solving answers with: find_equilibrium() from `start`, or where a neighbour's answer
 // leads elsewhere from `drawn`; its last digits and their error; whether it holds at every phase; and where
 // it does not, or nothing was found, whether another does that a bounded search finds: the stable one
-// nearest to the start. `out` is used again: nothing is allocated in it for a
-// system of the same size.
+// nearest to the start. `out` is used again: nothing is allocated in it for a system of the same size.
 void find_steady_state(const Problem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& drawn,
                        const SteadyStateOptions& options, Workspace& w, SteadyState& out);
 

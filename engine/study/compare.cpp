@@ -205,7 +205,7 @@ void find_best(Comparison& c) {
       c.best = {curve.method, curve.duration, p.tolerance, p.error, p.run_time_s, c.answer.run_time_s};
     }
   if (!c.best) return;
-  // The first iteration that comes as near; where a net was needed, the answer.
+  // The first iteration that comes as near; where a fallback was needed, the answer.
   for (const DirectMark& mark : c.direct)
     if (mark.error <= c.best->error) {
       c.best->direct_s = mark.run_time_s;

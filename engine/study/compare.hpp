@@ -61,7 +61,7 @@ struct Comparison {
   std::vector<CoordinateSolution> reference;
   double reference_error = 0;     // the largest of these, scaled
   double reference_residual = 0;  // of q* in extended precision, scaled
-  std::vector<DirectMark> direct; // by iteration; without the iterations where a safety net was needed
+  std::vector<DirectMark> direct; // by iteration; without the iterations where a fallback was needed
   DirectMark answer;              // with refinement, existence and the sign of stability
   std::vector<MotionCurve> motion;
   std::optional<SpeedRatio> best;

@@ -26,7 +26,8 @@ inline Mechanism long_chain(int links) {
   return m;
 }
 
-// Links of 1 m / `links` hanging from a driven hub, hinges about z, a weak spring in each: stable at low speed.
+// Links of 1 m / `links` hanging from a driven hub, hinges about z, a weak spring in each: stable at low
+// speed.
 inline Mechanism hanging_chain(int links) {
   const double length = 1. / links;
   Mechanism m;

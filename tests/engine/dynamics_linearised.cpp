@@ -105,7 +105,8 @@ TEST_CASE("eigenvalues of random mechanisms, by differences of their motion") {
     SolveOptions plain;
     const Solution steady = Analysis(m).solve(plain);
     if (steady.status != Status::converged || !steady.eigenvalues || !steady.neutral.empty()) continue;
-    if (steady.floquet || steady.fallback == Fallback::search) continue; // no constant matrices; a start elsewhere
+    if (steady.floquet || steady.fallback == Fallback::search)
+      continue; // no constant matrices; a start elsewhere
     const std::vector<Complex> found = eigenvalues_by_differences(m);
     if (found.empty()) continue;
     ++compared;

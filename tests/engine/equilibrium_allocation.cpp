@@ -149,7 +149,7 @@ TEST_CASE("a repeated small solve allocates nothing") {
       CHECK(warm_solve(factor) == 0);
       CHECK(solver.found.remark == Remark::none);
     }
-    // Cold: from the drawn pose, every time, where Newton-Raphson arrives without a net.
+    // Cold: from the drawn pose, every time, where Newton-Raphson arrives without a fallback.
     arrived = solver.solve(solver.drawn, false) && arrived;
     const bool plain = !solver.found.fallback && solver.found.remark == Remark::none;
     CHECK(plain == (std::string(scene) != "conical_pendulum"));
