@@ -35,7 +35,7 @@ struct LiveSolver::State {
 
   void work(const std::stop_token& stop);
   LiveAnswer solve(const Job& job);
-  LivePoses poses_at(double time) const;
+  LivePoses poses_at(double time);
   Solution solve_nearest(const LiveRequest& request, bool& left_branch);
 
   // Used by whoever solves: the background thread, or the caller in immediate mode.
@@ -209,7 +209,7 @@ Solution LiveSolver::State::solve_nearest(const LiveRequest& request, bool& left
   return analysis->solve(options);
 }
 
-LivePoses LiveSolver::State::poses_at(double time) const {
+LivePoses LiveSolver::State::poses_at(double time) {
   return {analysed, time, analysis->poses_at(time)};
 }
 

@@ -31,7 +31,7 @@ class Gathering {
     if (!newton(problem, z, w, {}, nullptr).converged) return false;
     if (!check_existence(problem, z.q, sample_phases(problem.system, problem.parameters), w).holds)
       return false;
-    if (!find_stability(problem, z, false, w).neutral.empty()) follower_.expect_families();
+    if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) follower_.expect_families();
     const auto forth = follower_.begin(z, state.parameter, true),
                back = follower_.begin(z, state.parameter, false);
     if (!forth || !back) return false;

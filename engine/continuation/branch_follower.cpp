@@ -40,7 +40,7 @@ Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<Coord
 ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
                              const Eigen::VectorXd& error, PointDetails details, Workspace& w) {
   ResponsePoint point;
-  Stability stability = find_stability(problem, z, details.eigenvalues, w);
+  Stability stability = find_stability(factor_at(problem, z, w), details.eigenvalues);
   point.stable = stability.stable;
   point.floquet = std::move(stability.floquet);
   point.stability_reason = stability.reason;
@@ -105,7 +105,8 @@ ResponsePoint BranchFollower::point(const BranchState& state) {
 }
 
 Spectrum BranchFollower::spectrum(const BranchState& state) {
-  return find_stability(problem_at(state.parameter), state.z, true, w_).eigenvalues.value_or(Spectrum{});
+  const FactoredState at = factor_at(problem_at(state.parameter), state.z, w_);
+  return find_stability(at, true).eigenvalues.value_or(Spectrum{});
 }
 
 // Where `value` (of a state and its distance along the branch) changes its sign, by the Illinois method

@@ -19,7 +19,7 @@ struct LargestMultiplier {
 };
 
 std::optional<LargestMultiplier> largest_multiplier(const Problem& problem, const Unknowns& z, Workspace& w) {
-  const Stability stability = find_stability(problem, z, false, w);
+  const Stability stability = find_stability(factor_at(problem, z, w), false);
   if (!stability.floquet) return {};
   const std::complex<double> mu = stability.floquet->multipliers.front();
   return LargestMultiplier{std::log(std::abs(mu)), mu};

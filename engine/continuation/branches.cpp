@@ -66,14 +66,12 @@ class Diagram {
     std::optional<OtherStates> others;
     if ((found.status != Status::converged || !existence.holds) && !problem.cancelled()) {
       SteadyState other;
-      find_steady_state(problem, start, start, {.seconds = SolveOptions{}.search}, w, other);
+      other.find(problem, start, start, {.seconds = SolveOptions{}.search});
       others = other.others;
       if (other.holds) {
         begun_ = "It begins at a steady state that a search found: the drawn pose leads to none.";
         found = std::move(other.found);
         existence = other.existence;
-        evaluate(problem, found.z, 0, w);
-        factor(problem, found.z, w);
       }
     }
     if (found.status != Status::converged || !existence.holds) {
@@ -86,7 +84,7 @@ class Diagram {
       return;
     }
     out_.status = Status::converged;
-    if (!find_stability(problem, found.z, false, w).neutral.empty()) follower_.expect_families();
+    if (!find_stability(factor_at(problem, found.z, w), false).neutral.empty()) follower_.expect_families();
     if (const auto first = follower_.begin(found.z, from_, true))
       add(follower_.follow(*first, true), true);
     else
@@ -189,7 +187,7 @@ class Diagram {
       follower_.problem_at(value);
       if (!check_existence(problem, z.q, phases, w).holds) continue;
       // A family along a direction that nothing resists is no branch.
-      if (!find_stability(problem, z, false, w).neutral.empty()) continue;
+      if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) continue;
       const auto forth = follower_.begin(z, value, true), back = follower_.begin(z, value, false);
       if (!forth || !back || known(*forth)) continue;
       FollowedBranch ahead = follower_.follow(*forth, false);

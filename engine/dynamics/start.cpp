@@ -110,13 +110,13 @@ bool bring_to_rest(const MotionModel& model, double t, const Eigen::VectorXd& q,
 // The steady state that `solve` answers with.
 void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q) {
   const Problem problem{model.system, model.parameters, model.scaling, options.cancel, model.system.kkt_form};
-  Workspace w;
   SteadyState steady;
-  find_steady_state(problem, q, q, {.seconds = SolveOptions{}.search}, w, steady);
+  steady.find(problem, q, q, {.seconds = SolveOptions{}.search});
   if (!steady.holds) {
     const Stability unknown;
     const ReportInput input{model.mechanism, problem, steady.found, steady.existence, unknown};
-    throw SceneError("", "there is no steady state to start from: " + failure_message(input, w));
+    throw SceneError("",
+                     "there is no steady state to start from: " + failure_message(input, steady.elsewhere()));
   }
   q = steady.found.z.q;
 }

@@ -1,10 +1,13 @@
-// Storage that solves reuse, so that repeating one allocates nothing.
+// The balance at one state: its evaluation, its KKT matrix, and the storage that solves reuse, so that
+// repeating one allocates nothing.
 #pragma once
 
 #include "engine/kkt/dense_kkt.hpp"
 #include "engine/kkt/sparse_kkt.hpp"
 #include "engine/kkt/tree_kkt.hpp"
 #include "engine/system/extended.hpp"
+
+#include <memory>
 
 namespace flyball {
 
@@ -17,7 +20,6 @@ struct Workspace : Evaluation {
     }
     return dense;
   }
-  const KktSystem& kkt(const Problem& problem) const { return const_cast<Workspace*>(this)->kkt(problem); }
 
   // The matrices themselves; null where the problem is too large for them.
   DenseKkt* matrices(const Problem& problem) { return problem.form == KktForm::dense ? &dense : nullptr; }
@@ -31,10 +33,15 @@ struct Workspace : Evaluation {
   Configuration<Extended> q_extended, lambda_extended;
   Unknowns trial, closing;
   Eigen::VectorXd assembled, moved;
-  // By refine(): what the rounding of the scene's own numbers does (rad, m), beside the error of the
-  // solution.
-  Eigen::VectorXd data_error;
-  Eigen::VectorXd unheld; // by refine(): how far (rad, m) a state moves in which no force can be told
+
+  // Another balance, for states beside this one: made when first asked for.
+  Workspace& elsewhere() {
+    if (!elsewhere_) elsewhere_ = std::make_unique<Workspace>();
+    return *elsewhere_;
+  }
+
+ private:
+  std::unique_ptr<Workspace> elsewhere_;
 };
 
 } // namespace flyball

@@ -9,12 +9,9 @@
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/search/steady_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
-#include "engine/solve/existence.hpp"
-#include "engine/solve/refine.hpp"
 #include "engine/solve/sensitivity.hpp"
 #include "engine/stability/linear_motion.hpp"
 #include "engine/stability/lowest_modes.hpp"
-#include "engine/stability/pivot_stability.hpp"
 #include "engine/stability/sign_is_open.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/system/point_motion.hpp"
@@ -58,12 +55,15 @@ bool pivots_decide(const Problem& problem) {
   return problem.system.nv > largest_for_eigenvalues && problem.form != KktForm::dense;
 }
 
-Stability stability_of(const Problem& problem, const Unknowns& z, bool with_eigenvalues, int modes,
-                       Workspace& w) {
-  if (pivots_decide(problem)) return find_pivot_stability(problem, z, w);
+// Few coordinates by the matrices, whatever the form that solving takes.
+Problem by_matrices(const Problem& problem) {
+  return {problem.system, problem.parameters, problem.scaling, problem.cancel};
+}
+
+Stability stability_of(const Problem& problem, SteadyState& steady, bool with_eigenvalues, int modes) {
+  if (pivots_decide(problem)) return find_stability(steady.factored(problem), false);
   const bool many = problem.system.nv > largest_for_eigenvalues && modes == 0;
-  const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
-  Stability out = find_stability(whole, z, with_eigenvalues && !many, w);
+  Stability out = find_stability(steady.factored(by_matrices(problem)), with_eigenvalues && !many);
   if (many && !out.floquet) out.eigenvalues.reset();
   return out;
 }
@@ -94,16 +94,10 @@ std::string add_lowest_eigenvalues(const Problem& problem, const Unknowns& z, in
   return {};
 }
 
-// Of the balance on the null space, scaled and equilibrated, where that is not too large. `factored`: by
-// find_stability() at z; else it is here.
-void add_condition(const Problem& problem, const Unknowns& z, bool factored, Workspace& w, Solution& out) {
+// Of the balance on the null space, scaled and equilibrated, where that is not too large.
+void add_condition(const Problem& problem, SteadyState& steady, Solution& out) {
   if (problem.system.nv == 0 || problem.system.nv > largest_for_eigenvalues) return;
-  const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
-  if (!factored) {
-    evaluate(whole, z, 0, w);
-    factor(whole, z, w);
-  }
-  out.condition = w.dense.hessian().condition();
+  out.condition = steady.factored(by_matrices(problem)).w.dense.hessian().condition();
 }
 
 } // namespace
@@ -114,23 +108,18 @@ struct Analysis::State {
   Parameters parameters;
   Scaling scaling;
   std::vector<std::string> notes;
-  Workspace workspace;
   SteadyState steady; // of the last solve
   Eigen::VectorXd drawn, answer, start;
   bool answered = false;
   bool settled = false; // the last solve converged, and no number has changed since
 
-  // How the steady state moves with the sliders' numbers. `factored`: the balance is, at it.
-  void add_rates(const Problem& problem, bool factored, Solution& out) {
+  // How the steady state moves with the sliders' numbers.
+  void add_rates(const Problem& problem, Solution& out) {
     if (mechanism->sliders.empty() || system.nv == 0) return;
-    if (!factored) {
-      evaluate(problem, steady.found.z, 0, workspace);
-      factor(problem, steady.found.z, workspace);
-    }
     std::vector<std::string> addresses;
     for (const Slider& slider : mechanism->sliders)
       addresses.push_back(slider.parameter);
-    const auto rates = sensitivities(problem, *mechanism, steady.found.z, addresses, workspace);
+    const auto rates = sensitivities(steady.factored(problem), *mechanism, addresses);
     for (std::size_t i = 0; i < rates.size(); ++i)
       out.sensitivities.push_back(name_rates(system, addresses[i], rates[i]));
   }
@@ -194,18 +183,18 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   report_progress(options.progress, "solving");
   const auto begin = std::chrono::steady_clock::now();
   SteadyState& steady = s.steady;
-  find_steady_state(problem, s.start, s.drawn, {options.nearest, warm, options.search, options.progress},
-                    s.workspace, steady);
+  steady.find(problem, s.start, s.drawn, {options.nearest, warm, options.search, options.progress});
   Stability stability;
   if (steady.holds && steady.found.minimum && steady.phases.empty()) {
     stability.stable = true;
     stability.reason = StabilityReason::minimum;
   } else if (steady.holds) {
-    stability = stability_of(problem, steady.found.z, false, 0, s.workspace);
+    stability = stability_of(problem, steady, false, 0);
   }
   const bool varies = stability.floquet || stability.floquet_failure;
-  const bool open = steady.holds && !varies && stability.reason != StabilityReason::neutral &&
-                    sign_is_open(problem, steady.found.z, steady.error, steady.found.minimum, s.workspace);
+  const bool open =
+      steady.holds && !varies && stability.reason != StabilityReason::neutral &&
+      sign_is_open(problem, steady.found.z, steady.error.solution, steady.found.minimum, steady.elsewhere());
   const auto end = std::chrono::steady_clock::now();
 
   Solution out;
@@ -218,25 +207,24 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                                                           : steady.found.status;
   if (!steady.holds) {
     const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability};
-    out.message = failure_message(input, s.workspace);
+    out.message = failure_message(input, steady.elsewhere());
     if (steady.others) out.message += " " + message(*steady.others, steady.found.status);
     out.residual = steady.history.empty() ? 0 : steady.history.back();
-    explain_unbounded(problem, steady.start, s.workspace, out);
+    explain_unbounded(problem, steady.start, steady.elsewhere(), out);
     out.weight_turns = out.status == Status::no_steady_state && !steady.existence.loops_open &&
-                       weight_turns(problem, steady.found.z.q, steady.existence.phase, s.workspace);
+                       weight_turns(problem, steady.found.z.q, steady.existence.phase, steady.elsewhere());
     return out;
   }
   s.answer = steady.found.z.q;
   s.answered = s.settled = true;
   std::string without_modes;
-  bool factored = false; // the dense balance, at the steady state
   if (options.details && !varies && (options.modes > 0 || !pivots_decide(problem))) {
     report_progress(options.progress, "eigenvalues");
     if (pivots_decide(problem)) {
-      without_modes = add_lowest_eigenvalues(problem, steady.found.z, options.modes, s.workspace, stability);
+      without_modes =
+          add_lowest_eigenvalues(problem, steady.found.z, options.modes, steady.elsewhere(), stability);
     } else if (!stability.eigenvalues) { // only of a minimum the sign is found without them
-      stability = stability_of(problem, steady.found.z, true, options.modes, s.workspace);
-      factored = true;
+      stability = stability_of(problem, steady, true, options.modes);
     }
     if (options.modes > 0 && stability.eigenvalues &&
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
@@ -246,19 +234,18 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     stability.stable.reset();
     stability.reason = StabilityReason::marginal;
     // Something may hold that is too soft to be seen beside what is stiff.
-    steady.error = steady.error.cwiseMax(s.workspace.unheld);
+    steady.error.solution = steady.error.solution.cwiseMax(steady.error.undetermined);
   }
   if (options.details) {
-    add_condition(problem, steady.found.z, factored, s.workspace, out);
-    s.add_rates(problem, problem.form == KktForm::dense && (factored || out.condition), out);
+    add_condition(problem, steady, out);
+    s.add_rates(problem, out);
   }
   report_progress(options.progress, "reactions");
   const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability, options.points};
-  steady.error += s.workspace.data_error;
-  report(input, steady.error, options.details, s.workspace, out);
+  report(input, steady.error.solution + steady.error.data, options.details, steady.reuse(), out);
   if (!without_modes.empty()) out.message += " " + without_modes;
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
-    explain_unbounded(problem, steady.start, s.workspace, out);
+    explain_unbounded(problem, steady.start, steady.elsewhere(), out);
   if (!is_finite(out)) {
     s.settled = false;
     Solution refused;
@@ -291,7 +278,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   search.seconds = options.search_time;
   search.starts = options.search_starts;
   search.progress = options.progress;
-  EquilibriumList list = find_all_equilibria(problem, s.drawn, search, s.workspace);
+  EquilibriumList list = find_all_equilibria(problem, s.drawn, search, s.steady.elsewhere());
   AllSolutions out;
   out.starts = list.report.starts;
   out.unseen = list.report.unseen;
@@ -311,32 +298,28 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     std::vector<int> neutral;
   };
   std::vector<Entry> entries;
-  Eigen::VectorXd error; // rad, m
-  const std::vector<double> phases = sample_phases(s.system, s.parameters);
+  SteadyState steady;
   for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i) {
     report_progress(options.progress, "judging what was found",
                     static_cast<double>(i) / static_cast<double>(list.states.size()));
-    Found found;
+    Found& found = steady.found;
+    found = {};
     found.status = Status::converged;
     found.z = list.states[i];
     found.newton = list.outcomes[i];
     found.iterations = list.outcomes[i].iterations;
     const auto begin = std::chrono::steady_clock::now();
-    evaluate(problem, found.z, 0, s.workspace);
-    factor(problem, found.z, s.workspace);
-    refine(problem, found.z, found.newton, s.workspace, error);
-    const Existence existence = check_refined(problem, found.z, phases, s.workspace, error);
-    if (!existence.holds) {
+    steady.complete(problem);
+    if (!steady.holds) {
       ++out.passing;
       continue;
     }
     const bool many = s.system.nv > largest_for_eigenvalues && options.modes == 0;
-    const Stability stability = find_stability(problem, found.z, !many, s.workspace);
+    const Stability stability = find_stability(steady.factored(problem), !many);
     // A family along a direction that nothing resists is one entry.
     Potential potential;
     if (s.system.conservative) {
-      forward<double>(s.system, s.parameters, found.z.q, 0, s.workspace.kinematics);
-      potential = amended_potential(s.system, s.parameters, found.z.q, s.workspace.kinematics);
+      potential = amended_potential(s.system, s.parameters, found.z.q, steady.factored(problem).w.kinematics);
     }
     if (!stability.neutral.empty() && std::ranges::any_of(entries, [&](const Entry& e) {
           return e.neutral == stability.neutral && same_potential(e.potential, potential) &&
@@ -348,12 +331,9 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     entry.solution.status = Status::converged;
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
-    error += s.workspace.data_error;
-    if (options.details)
-      add_condition(problem, found.z, !stability.floquet && !stability.floquet_failure, s.workspace,
-                    entry.solution);
-    report({*s.mechanism, problem, found, existence, stability, options.points}, error, options.details,
-           s.workspace, entry.solution);
+    if (options.details) add_condition(problem, steady, entry.solution);
+    report({*s.mechanism, problem, found, steady.existence, stability, options.points},
+           steady.error.solution + steady.error.data, options.details, steady.reuse(), entry.solution);
     if (s.system.conservative) entry.solution.potential = potential.value;
     if (!is_finite(entry.solution)) continue;
     entries.push_back(std::move(entry));
@@ -371,42 +351,43 @@ SystemSummary Analysis::summary() const {
   return out;
 }
 
-std::vector<Pose> Analysis::poses_at(double t) const {
+std::vector<Pose> Analysis::poses_at(double t) {
   State& s = *state_;
   std::vector<Pose> poses;
-  forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, s.workspace.kinematics);
-  body_poses(s.system, *s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  Kinematics<double>& kinematics = s.steady.elsewhere().kinematics;
+  forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, kinematics);
+  body_poses(s.system, *s.mechanism, s.parameters, kinematics, poses);
   return poses;
 }
 
-std::vector<VibrationMode> Analysis::modes(int count) const {
+std::vector<VibrationMode> Analysis::modes(int count) {
   State& s = *state_;
   if (!s.settled) return {};
   const Problem problem{s.system, s.parameters, s.scaling, nullptr, s.system.kkt_form};
   const Unknowns& z = s.steady.found.z;
-  if (!pivots_decide(problem)) return find_modes({s.system, s.parameters, s.scaling}, z, s.workspace);
-  if (may_vary(problem, z, sample_phases(s.system, s.parameters), s.workspace)) return {};
-  return find_lowest_modes(problem, z, count, s.workspace).modes;
+  if (!pivots_decide(problem)) return find_modes(s.steady.factored(by_matrices(problem)));
+  if (may_vary(problem, z, s.steady.phases, s.steady.elsewhere())) return {};
+  return find_lowest_modes(problem, z, count, s.steady.elsewhere()).modes;
 }
 
-std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitude, double phase,
-                                       double t) const {
+std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitude, double phase, double t) {
   State& s = *state_;
   const Problem problem{s.system, s.parameters, s.scaling};
+  Workspace& w = s.steady.elsewhere();
   const Eigen::VectorXd& steady = s.answered ? s.answer : s.drawn;
   std::vector<Pose> poses;
   const Eigen::VectorXd q = mode.shape.size() == static_cast<std::size_t>(s.system.nv)
-                                ? along_mode(problem, steady, mode, amplitude, phase, t, s.workspace)
+                                ? along_mode(problem, steady, mode, amplitude, phase, t, w)
                                 : steady;
-  forward<double>(s.system, s.parameters, q, t, s.workspace.kinematics);
-  body_poses(s.system, *s.mechanism, s.parameters, s.workspace.kinematics, poses);
+  forward<double>(s.system, s.parameters, q, t, w.kinematics);
+  body_poses(s.system, *s.mechanism, s.parameters, w.kinematics, poses);
   return poses;
 }
 
-std::optional<StabilityEvidence> Analysis::stability_evidence() const {
+std::optional<StabilityEvidence> Analysis::stability_evidence() {
   State& s = *state_;
   if (!s.settled) return {};
-  return flyball::stability_evidence({s.system, s.parameters, s.scaling}, s.steady.found.z, s.workspace);
+  return flyball::stability_evidence(s.steady.factored({s.system, s.parameters, s.scaling}));
 }
 
 } // namespace flyball

@@ -84,21 +84,21 @@ class Analysis {
 
   // Poses of all bodies at time t (s) after the drawn drive phase: drives turn, the other coordinates stand
   // at their last answer (at the drawn pose before there is one).
-  std::vector<Pose> poses_at(double t) const;
+  std::vector<Pose> poses_at(double t);
 
   // Modes of the linearised motion about the last answer (modes.hpp); of more than 200 coordinates the
   // `count` whose eigenvalues are nearest to zero. Empty where the last solve has none, or numbers have
   // changed since. Of another equilibrium: solve with its coordinates as start and `nearest`.
-  std::vector<VibrationMode> modes(int count = 20) const;
+  std::vector<VibrationMode> modes(int count = 20);
 
   // Poses of all bodies in a mode of the last answer at `phase` (rad): the coordinates moved along Re(v e^(i
   // phase)), the loops closed, the drives `t` seconds on. `amplitude` is that of the largest entry, in rad or
   // parts of the mechanism's reach. For a mode that grows or decays multiply the amplitude by e^(Re s t).
-  std::vector<Pose> mode_poses(const VibrationMode& mode, double amplitude, double phase, double t = 0) const;
+  std::vector<Pose> mode_poses(const VibrationMode& mode, double amplitude, double phase, double t = 0);
 
   // What the potential and the eigenvalues say about the last answer; nothing where modes() is empty for want
   // of one.
-  std::optional<StabilityEvidence> stability_evidence() const;
+  std::optional<StabilityEvidence> stability_evidence();
 
  private:
   // The same, to the end or an interruption.

@@ -149,10 +149,7 @@ class EquilibriumSearch {
   // there.
   bool drawn_at_gyroscopic_state() {
     if (found_.fallback || !start_energy_ || !same(found_.z.q, w_.assembled)) return false;
-    const bool held = is_gyroscopically_stable(p_, found_.z, w_);
-    evaluate(p_, found_.z, 0, w_);
-    factor(p_, found_.z, w_);
-    return held;
+    return is_gyroscopically_stable(p_, found_.z, w_.elsewhere());
   }
 
   // Whether Newton-Raphson's last step was rounding, and taken from a balance with these multipliers: then
@@ -174,7 +171,7 @@ class EquilibriumSearch {
       return;
     }
     if (large_) return;
-    potential_ = !nearest_ && has_potential(p_, found_.z, w_);
+    potential_ = !nearest_ && has_potential(p_, found_.z, w_.dense.stiffness(), w_.elsewhere());
     found_.minimum = unstable_ = false;
     if (!potential_) return;
     ReducedHessian energy;

@@ -6,6 +6,8 @@
 #include "engine/search/all_equilibria.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/existence.hpp"
+#include "engine/solve/factored_state.hpp"
+#include "engine/solve/refine.hpp"
 
 #include <optional>
 
@@ -30,7 +32,10 @@ struct SteadyStateOptions {
   ReportProgress progress{};
 };
 
-struct SteadyState {
+// A steady state with what was computed at it. Solving again uses its storage again: nothing is allocated for
+// a system of the same size.
+class SteadyState {
+ public:
   Found found;
   Existence existence;
   bool holds = false;                // found, and at every phase
@@ -38,18 +43,38 @@ struct SteadyState {
   std::vector<double> phases;        // s, at which it was looked at; none where nothing turns
   std::vector<double> history;
   Eigen::VectorXd start; // where the run that found it began
-  Eigen::VectorXd error; // (nv), rad or m: of refine(), and what other phases ask it to move
+  ErrorEstimate error;   // `solution` with what other phases ask the state to move
+
+  // find_equilibrium() from `start`, or where a neighbour's answer leads elsewhere from `drawn`; its last
+  // digits and their error; whether it holds at every phase; and where it does not, or nothing was found,
+  // whether another does that a bounded search finds: the stable one nearest to the start. `drawn` is where
+  // distances are measured from.
+  void find(const Problem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& drawn,
+            const SteadyStateOptions& options);
+
+  // The same for an equilibrium that was found already, `found`: its last digits, their error, and whether it
+  // holds at every phase.
+  void complete(const Problem& problem);
+
+  // The balance at this state, of the problem that it was found for or one of another form: factored when
+  // first asked for in that form, and kept.
+  FactoredState factored(const Problem& problem);
+
+  // Storage for states beside this one; and that of this one, whose factors are then given up.
+  Workspace& elsewhere() { return balance_.elsewhere(); }
+  Workspace& reuse() {
+    factored_.reset();
+    return balance_;
+  }
+
+ private:
+  void refine_found(const Problem& problem);
+  void check_phases(const Problem& problem);
+  void search_another(const Problem& problem, const Eigen::VectorXd& drawn, double seconds);
+
+  Workspace balance_;
+  std::optional<KktForm> factored_; // the form that is, at this state
+  double shift_ = 0;                // 1/s^2: of the metric that keeps its neutral directions still
 };
-
-// The steady state that solving answers with: find_equilibrium() from `start`, or where a neighbour's answer
-// leads elsewhere from `drawn`; its last digits and their error; whether it holds at every phase; and where
-// it does not, or nothing was found, whether another does that a bounded search finds: the stable one
-// nearest to the start. `out` is used again: nothing is allocated in it for a system of the same size.
-void find_steady_state(const Problem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& drawn,
-                       const SteadyStateOptions& options, Workspace& w, SteadyState& out);
-
-// Whether a refined state holds at every phase. Adds to its error what it leaves there.
-Existence check_refined(const Problem& problem, const Unknowns& z, const std::vector<double>& phases,
-                        Workspace& w, Eigen::VectorXd& error);
 
 } // namespace flyball

@@ -81,8 +81,6 @@ Eigen::VectorXd phase_variation(const Problem& problem, const Unknowns& z, const
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
     most = most.cwiseMax(w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs());
   }
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
   return 2 * most;
 }
 

@@ -23,7 +23,7 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
                           Workspace& w);
 
 // How far (rad, m), by coordinate of q_R, the balance at other phases asks a state that holds within the
-// tolerance to move: twice the largest Newton step there. Leaves the balance at z evaluated and factored.
+// tolerance to move: twice the largest Newton step there.
 Eigen::VectorXd phase_variation(const Problem& problem, const Unknowns& z, const std::vector<double>& phases,
                                 Workspace& w);
 

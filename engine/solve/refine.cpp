@@ -159,7 +159,7 @@ class SoftDirection {
 // How far (scaled) the state can be moved along a direction without stiffness before double precision can
 // tell that it is no longer in balance; not finite where that never happens.
 double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction, Workspace& w) {
-  SoftDirection soft(problem, z, direction, w);
+  SoftDirection soft(problem, z, direction, w.elsewhere());
   double farthest = 0;
   bool decided = false;
   for (const double side : {1., -1.}) {
@@ -176,20 +176,14 @@ double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorX
 // Whether loops whose equations depend on each other here do so no longer some way along: arms straight, a
 // linkage flat. There lengths change with the square of the angles.
 bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) {
-  const int rank = w.dense.constraints().rank();
-  w.trial.q = z.q;
-  w.trial.lambda = z.lambda;
-  w.scaled_step.setZero(problem.system.nv);
-  for (Eigen::Index c = 0; c < w.dense.constraints().basis().cols(); ++c)
-    w.scaled_step += 1e-4 * w.dense.constraints().basis().col(c);
-  w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
-  retract<double>(problem.system, w.step, w.trial.q);
-  evaluate(problem, w.trial, 0, w);
-  factor_constraints(problem, w);
-  const bool more = w.dense.constraints().rank() > rank;
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
-  return more;
+  const ConstraintSpace& constraints = w.dense.constraints();
+  Workspace& beside = w.elsewhere();
+  beside.trial = z;
+  beside.step = 1e-4 * constraints.basis().rowwise().sum().cwiseProduct(problem.scaling.column);
+  retract<double>(problem.system, beside.step, beside.trial.q);
+  evaluate(problem, beside.trial, 0, beside);
+  factor_constraints(problem, beside);
+  return beside.dense.constraints().rank() > constraints.rank();
 }
 
 // How far (scaled) the force along a soft direction, which the steps left alone, asks the state to move by
@@ -205,7 +199,7 @@ double asked_for(const Problem& problem, const Eigen::VectorXd& direction, const
   return stiffness > noise ? force / stiffness : 0;
 }
 
-void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, Eigen::VectorXd& error) {
+void add_singular_directions(const Problem& problem, const Unknowns& z, Workspace& w, ErrorEstimate& error) {
   Eigen::MatrixXd null_space = w.dense.constraints().basis() * w.dense.hessian().null_basis();
   Eigen::VectorXd asked = Eigen::VectorXd::Zero(null_space.cols());
   evaluate_extended(problem, z, w);
@@ -224,12 +218,10 @@ void add_singular_directions(const Problem& problem, Unknowns& z, Workspace& w, 
         none ? std::numeric_limits<double>::infinity() : undecided(problem, z, null_space.col(c), w);
     const Eigen::VectorXd moved = null_space.col(c).cwiseProduct(problem.scaling.column).cwiseAbs();
     if (std::isfinite(distance))
-      error = error.cwiseMax(std::max(distance, 4 * asked[c]) * moved);
+      error.solution = error.solution.cwiseMax(std::max(distance, 4 * asked[c]) * moved);
     else // neutral, or lost in rounding: stability tells which
-      w.unheld = w.unheld.cwiseMax(moved);
+      error.undetermined = error.undetermined.cwiseMax(moved);
   }
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
 }
 
 // A metric that held what seemed to feel nothing shortens the steps along what feels a little: without it,
@@ -245,11 +237,12 @@ void let_go(const Problem& problem, Workspace& w) {
 } // namespace
 
 void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, Workspace& w,
-            Eigen::VectorXd& error) {
+            ErrorEstimate& estimate) {
   const System& system = problem.system;
+  Eigen::VectorXd& error = estimate.solution;
   error.setZero(system.nv);
-  w.unheld.setZero(system.nv);
-  w.data_error.setZero(system.nv);
+  estimate.undetermined.setZero(system.nv);
+  estimate.data.setZero(system.nv);
   if (system.nv == 0) return;
   let_go(problem, w);
   const DenseKkt* dense = w.matrices(problem);
@@ -283,12 +276,12 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   if (outcome.linear) // to a root of order n the steps shrink by (n - 1) / n: n - 1 of the last are left
     error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
   add_noise(problem, left, opening, w, error);
-  add_rounding_of_data(problem, w, w.data_error);
+  add_rounding_of_data(problem, w, estimate.data);
   error += extended_rounding * problem.scaling.column;
   if (dense && dense->constraints().rank() < std::min(system.rows, system.nv) &&
       at_singular_loops(problem, z, w))
     error += 4 * std::sqrt(opening + extended_rounding) * problem.scaling.column;
-  if (dense && dense->singular()) add_singular_directions(problem, z, w, error);
+  if (dense && dense->singular()) add_singular_directions(problem, z, w, estimate);
   for (const Link& link : system.links) {
     if (link.v < 0) continue;
     const int n = link.type == LinkType::spherical ? 3 : 1;

@@ -21,11 +21,10 @@ void put_back(const Mechanism& mechanism, const std::string& address, Mechanism&
 
 } // namespace
 
-std::vector<Eigen::VectorXd> sensitivities(const Problem& problem, const Mechanism& mechanism,
-                                           const Unknowns& z, std::span<const std::string> addresses,
-                                           Workspace& w) {
-  if (w.kkt(problem).singular()) return {};
-  const System& system = problem.system;
+std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
+                                           std::span<const std::string> addresses) {
+  if (at.kkt().singular()) return {};
+  const System& system = at.problem.system;
   Mechanism varied;
   varied.gravity = mechanism.gravity;
   varied.bodies = mechanism.bodies;
@@ -33,7 +32,8 @@ std::vector<Eigen::VectorXd> sensitivities(const Problem& problem, const Mechani
   varied.forces = mechanism.forces;
   varied.simulation = mechanism.simulation;
   Parameters numbers;
-  const Problem there{system, numbers, problem.scaling};
+  const Problem there{system, numbers, at.problem.scaling};
+  Workspace& varied_balance = at.w.elsewhere();
   std::vector<Eigen::VectorXd> rates;
   Eigen::VectorXd f[2], phi[2], step, multipliers;
   for (const std::string& address : addresses) {
@@ -42,13 +42,13 @@ std::vector<Eigen::VectorXd> sensitivities(const Problem& problem, const Mechani
     for (int i : {0, 1}) {
       set_parameter(varied, address, i == 0 ? value + h : value - h);
       bind(system, varied, numbers);
-      evaluate(there, z, 0, w);
-      f[i] = w.residual.f;
-      phi[i] = w.residual.phi;
+      evaluate(there, at.z, 0, varied_balance);
+      f[i] = varied_balance.residual.f;
+      phi[i] = varied_balance.residual.phi;
     }
     put_back(mechanism, address, varied);
-    newton_step(problem, (f[0] - f[1]) / (2 * h), (phi[0] - phi[1]) / (2 * h), w, step, multipliers);
-    rates.push_back(step.cwiseProduct(problem.scaling.column));
+    newton_step(at.problem, (f[0] - f[1]) / (2 * h), (phi[0] - phi[1]) / (2 * h), at.w, step, multipliers);
+    rates.push_back(step.cwiseProduct(at.problem.scaling.column));
   }
   return rates;
 }

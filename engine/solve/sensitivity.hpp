@@ -2,7 +2,8 @@
 // -df/dp.
 #pragma once
 
-#include "engine/solve/newton.hpp"
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/solve/factored_state.hpp"
 
 #include <span>
 #include <string>
@@ -10,11 +11,9 @@
 namespace flyball {
 
 // By parameter: the rate of each coordinate of q_R (rad or m, as a step) per unit of the number at that
-// address, at a steady state z of `mechanism` whose balance is factored in the workspace; all use these
-// factors, which stay. df/dp by central differences (relative error about 1e-9). Empty at a singular state,
-// where the answer has no rate. Throws SceneError for an address that does not exist.
-std::vector<Eigen::VectorXd> sensitivities(const Problem& problem, const Mechanism& mechanism,
-                                           const Unknowns& z, std::span<const std::string> addresses,
-                                           Workspace& w);
+// address, at a steady state of `mechanism`. df/dp by central differences (relative error about 1e-9). Empty
+// at a singular state, where the answer has no rate. Throws SceneError for an address that does not exist.
+std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
+                                           std::span<const std::string> addresses);
 
 } // namespace flyball

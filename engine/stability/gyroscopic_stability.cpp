@@ -1,7 +1,6 @@
 #include "engine/stability/gyroscopic_stability.hpp"
 
 #include "engine/linear/pencil.hpp"
-#include "engine/solve/newton.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
@@ -12,15 +11,14 @@ bool is_gyroscopically_stable(const Problem& problem, const Unknowns& z, Workspa
   if (!problem.parameters.moving || problem.system.nv < 2 || problem.system.nv > largest_for_eigenvalues)
     return false;
   const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel};
-  evaluate(whole, z, 0, w);
-  factor(whole, z, w);
+  const FactoredState at = factor_at(whole, z, w);
   // Without gyroscopic forces what falls goes on falling: no eigenvalues are needed to know.
   linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
   const Eigen::MatrixXd basis = problem.scaling.column.asDiagonal() * w.dense.constraints().basis();
   const Eigen::MatrixXd velocity = basis.transpose() * w.dense.linearization.velocity * basis;
   const double rounding = 1e-14 * basis.squaredNorm() * w.dense.linearization.velocity.norm();
   if ((velocity - velocity.transpose()).norm() <= rounding) return false;
-  const Stability stability = find_stability(whole, z, false, w);
+  const Stability stability = find_stability(at, false);
   return stability.reason == StabilityReason::gyroscopic_only ||
          (stability.reason == StabilityReason::floquet && stability.stable == true);
 }

@@ -10,7 +10,7 @@ namespace flyball {
 // Whether a steady state is gyroscopically stable: the amended potential falls from it, no damping acts in
 // what falls, and all eigenvalues of the linearised motion lie on the imaginary axis; where that motion turns
 // with the drives, all multipliers on the unit circle or within it. False for mechanisms of
-// more than largest_for_eigenvalues coordinates. Leaves the workspace as if nothing were evaluated.
+// more than largest_for_eigenvalues coordinates. The workspace is used for it.
 bool is_gyroscopically_stable(const Problem& problem, const Unknowns& z, Workspace& w);
 
 // Whether the dampers make M x'' + V x' + K x = 0 unstable although its eigenvalues are too close to the axis

@@ -3,7 +3,6 @@
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
-#include "engine/solve/newton.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
@@ -21,10 +20,10 @@ struct ReducedMotion {
   double rate = 1; // 1/s per unit of s
 };
 
-ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspace& w) {
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
-  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
+ReducedMotion reduced_motion(const FactoredState& at) {
+  const Problem& problem = at.problem;
+  Workspace& w = at.w;
+  linearize_motion(problem.system, problem.parameters, at.z.q, w.kinematics, w.dense.linearization);
   const Eigen::MatrixXd& basis = w.dense.constraints().basis();
   const auto& s = problem.scaling.column;
   ReducedMotion out;
@@ -142,9 +141,9 @@ void sort_modes(std::vector<VibrationMode>& modes) {
   });
 }
 
-std::vector<VibrationMode> find_modes(const Problem& problem, const Unknowns& z, Workspace& w) {
-  const Stability stability = find_stability(problem, z, true, w);
-  const ReducedMotion motion = reduced_motion(problem, z, w);
+std::vector<VibrationMode> find_modes(const FactoredState& at) {
+  const Stability stability = find_stability(at, true);
+  const ReducedMotion motion = reduced_motion(at);
   if (!stability.eigenvalues || stability.floquet)
     return {};                                        // a motion that turns with the drives has no shapes
   std::vector<Complex> left = *stability.eigenvalues; // by size of the imaginary part
@@ -171,7 +170,8 @@ std::vector<VibrationMode> find_modes(const Problem& problem, const Unknowns& z,
     for (Eigen::Index j = 0; j < shapes.vectors.cols(); ++j) {
       const double residual = shapes.residuals[static_cast<std::size_t>(j)];
       if (j > 0 && !(residual <= 1e-10)) break;
-      modes.push_back(describe_mode(problem, z.q, w.dense.constraints().basis() * shapes.vectors.col(j),
+      modes.push_back(describe_mode(at.problem, at.z.q,
+                                    at.w.dense.constraints().basis() * shapes.vectors.col(j),
                                     cluster[static_cast<std::size_t>(j)], residual));
     }
   }
@@ -194,15 +194,13 @@ Eigen::VectorXd along_mode(const Problem& problem, const Eigen::VectorXd& q, con
   return q;
 }
 
-StabilityEvidence stability_evidence(const Problem& problem, const Unknowns& z, Workspace& w) {
+StabilityEvidence stability_evidence(const FactoredState& at) {
   StabilityEvidence out;
-  const Stability verdict = find_stability(problem, z, true, w);
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
-  out.potential = has_potential(problem, z, w);
+  const Stability verdict = find_stability(at, true);
+  out.potential = has_potential(at.problem, at.z, at.w.dense.stiffness(), at.w.elsewhere());
   ReducedHessian energy;
-  energy.factor(w.dense.reduced(), w.dense.noise(), out.potential);
-  out.flat = energy.null_count();
+  energy.factor(at.w.dense.reduced(), at.w.dense.noise(), out.potential);
+  out.null = energy.null_count();
   if (out.potential && !energy.positive_definite() && energy.size() > 0) {
     if (energy.decompose())
       out.downhill = static_cast<int>((energy.eigenvalues().array() < -ReducedHessian::zero).count());
@@ -223,13 +221,13 @@ StabilityEvidence stability_evidence(const Problem& problem, const Unknowns& z, 
   double largest = 0;
   for (const Complex s : eigenvalues)
     largest = std::max(largest, std::abs(s));
-  // The smallest belong to flat directions and are zero but for rounding.
+  // The smallest belong to null directions and are zero but for rounding.
   std::ranges::sort(eigenvalues, {}, [](Complex s) { return std::abs(s); });
   for (std::size_t i = 0; i < eigenvalues.size(); ++i) {
     const Complex s = eigenvalues[i];
-    const bool of_flat = i < 2 * static_cast<std::size_t>(out.flat) && std::abs(s) < 1e-5 * largest;
+    const bool of_null = i < 2 * static_cast<std::size_t>(out.null) && std::abs(s) < 1e-5 * largest;
     const double tolerance = 1e-8 * std::abs(s) + 1e-12 * largest;
-    if (of_flat || std::abs(s.real()) <= tolerance)
+    if (of_null || std::abs(s.real()) <= tolerance)
       ++out.standing;
     else
       ++(s.real() > 0 ? out.growing : out.decaying);
@@ -258,8 +256,8 @@ StabilityEvidence stability_evidence(const Problem& problem, const Unknowns& z, 
     out.agree = false;
     out.reason = "An eigenvalue grows although the amended potential does not fall to second order: the "
                  "state is too close to singular to tell.";
-  } else if (out.flat > 0) {
-    out.reason = "The amended potential is flat in " + directions(out.flat) +
+  } else if (out.null > 0) {
+    out.reason = "The amended potential is flat in " + directions(out.null) +
                  " to second order; no eigenvalue grows. Neither criterion decides.";
   } else {
     out.reason = "Both say stable: a strict minimum of the amended potential, and no eigenvalue grows.";

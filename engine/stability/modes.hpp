@@ -9,6 +9,7 @@
 
 namespace flyball {
 
+class FactoredState;
 struct Problem;
 struct Unknowns;
 struct Workspace;
@@ -51,10 +52,10 @@ VibrationMode describe_mode(const Problem& problem, const Eigen::VectorXd& q, co
 // By frequency, and of one frequency the fastest growing first.
 void sort_modes(std::vector<VibrationMode>& modes);
 
-// Of one steady state z: one mode a conjugate pair and one a real eigenvalue, by frequency. A repeated
-// eigenvalue counts as often as it has shapes of its own. Infinite eigenvalues (massless coordinates) have
-// no mode; massless coordinates follow the others.
-std::vector<VibrationMode> find_modes(const Problem& problem, const Unknowns& z, Workspace& w);
+// Of one steady state of a dense problem: one mode a conjugate pair and one a real eigenvalue, by frequency.
+// A repeated eigenvalue counts as often as it has shapes of its own. Infinite eigenvalues (massless
+// coordinates) have no mode; massless coordinates follow the others.
+std::vector<VibrationMode> find_modes(const FactoredState& at);
 
 // q moved by amplitude Re(v e^(i phase)) along a mode, its loops closed at `t` seconds of driving. A large
 // amplitude that the loops do not allow is halved until they do. `amplitude` is that of the largest entry,
@@ -66,11 +67,11 @@ Eigen::VectorXd along_mode(const Problem& problem, const Eigen::VectorXd& q, con
 struct StabilityEvidence {
   bool potential = false; // the amended potential exists, so that its Hessian may be asked
   int downhill = 0;       // directions on the constraints in which it falls
-  int flat = 0;           // in which it stays the same to second order
+  int null = 0;           // in which it stays the same to second order
   int growing = 0, standing = 0, decaying = 0; // eigenvalues right of, on and left of the imaginary axis
   bool agree = true;                           // both say stable, or both unstable, or there is one only
   std::string reason;                          // a sentence: why they agree or not
 };
-StabilityEvidence stability_evidence(const Problem& problem, const Unknowns& z, Workspace& w);
+StabilityEvidence stability_evidence(const FactoredState& at); // of a dense problem
 
 } // namespace flyball

@@ -11,11 +11,12 @@ namespace {
 
 // Whether a step (scaled) along null directions leads to another balanced state, the rest giving way as it
 // must, to `rounding` of the forces.
-bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& first, double rounding,
-                    Workspace& w) {
-  Unknowns moved = z;
+bool stays_balanced(const FactoredState& at, const Eigen::VectorXd& first, double rounding) {
+  const Problem& problem = at.problem;
+  Workspace& w = at.w.elsewhere();
+  Unknowns moved = at.z;
   Eigen::VectorXd step = first, multipliers;
-  const double shift = w.kkt(problem).shift();
+  const double shift = at.kkt().shift();
   const auto balanced = [&] {
     const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     const double left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
@@ -43,8 +44,9 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Vect
 
 // Whether where the potential falls some way motions follow it, be it along one direction or several: without
 // forces in the velocity, and where every coordinate is damped, whatever gyroscopic forces do (Kelvin, Tait
-// and Chetayev). The balance must be evaluated at z.
-bool nothing_holds(const Problem& problem, const Unknowns& z, Workspace& w) {
+// and Chetayev).
+bool nothing_holds(const FactoredState& at) {
+  const Problem& problem = at.problem;
   bool all_damped = true;
   for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
     const Link& link = problem.system.links[l];
@@ -54,16 +56,18 @@ bool nothing_holds(const Problem& problem, const Unknowns& z, Workspace& w) {
   }
   if (all_damped) return true;
   MotionProducts products;
-  products.linearize(problem, z, w.kinematics, w.residual);
+  products.linearize(problem, at.z, at.w.kinematics, at.w.residual);
   return !products.velocity_matters();
 }
 
-// Where many directions are neutral but for rounding: inverse iteration with the factors that hold them.
-Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspace& w) {
+// Where many directions are neutral but for rounding: inverse iteration with the factors whose shift resists
+// them.
+Stability of_shifted_directions(const FactoredState& at) {
+  const Problem& problem = at.problem;
   constexpr int samples = 4, iterations = 4;
-  constexpr double rounding = 1e-11; // the step is short, since what is held comes back far along it
+  constexpr double rounding = 1e-11; // the step is short, since what the shift resists returns far along it
   Stability out;
-  KktSystem& e = w.kkt(problem);
+  KktSystem& kkt = at.kkt();
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any(-1, 1);
   Eigen::VectorXd direction, one(problem.system.nv), image;
@@ -72,19 +76,19 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
     for (double& x : one)
       x = any(random);
     for (int k = 0; k < iterations; ++k) {
-      e.metric(one, image);
-      e.solve(image, one);
+      kkt.metric(one, image);
+      kkt.solve(image, one);
       one /= one.lpNorm<Eigen::Infinity>();
     }
     for (int v = 0; v < problem.system.nv; ++v)
       if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
     if (i == 0) direction = one;
   }
-  for (const KktSystem::NullDirection& f : e.null_directions()) // and what feels nothing at all
+  for (const KktSystem::NullDirection& f : kkt.null_directions()) // and what feels nothing at all
     for (const auto& [v, share] : f)
       if (std::abs(share) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
-  const bool balanced = stays_balanced(problem, z, 0.002 * direction, rounding, w) &&
-                        stays_balanced(problem, z, -0.003 * direction, rounding, w);
+  const bool balanced =
+      stays_balanced(at, 0.002 * direction, rounding) && stays_balanced(at, -0.003 * direction, rounding);
   out.reason = balanced ? StabilityReason::neutral : StabilityReason::marginal;
   for (int v = 0; balanced && v < problem.system.nv; ++v)
     if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);
@@ -93,36 +97,35 @@ Stability of_held_directions(const Problem& problem, const Unknowns& z, Workspac
 
 } // namespace
 
-Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w) {
+Stability find_pivot_stability(const FactoredState& at) {
+  const Problem& problem = at.problem;
+  KktSystem& kkt = at.kkt();
   Stability out;
-  if (const auto phases = sample_phases(problem.system, problem.parameters); !phases.empty()) {
-    if (may_vary(problem, z, phases, w)) {
-      out.reason = StabilityReason::varying;
-      out.floquet_failure = FloquetFailure::unresolved;
-      return out;
-    }
-    evaluate(problem, z, 0, w);
-    factor(problem, z, w);
+  const auto phases = sample_phases(problem.system, problem.parameters);
+  if (may_vary(problem, at.z, phases, at.w.elsewhere())) {
+    out.reason = StabilityReason::varying;
+    out.floquet_failure = FloquetFailure::unresolved;
+    return out;
   }
-  if (!problem.symmetric() || !w.kkt(problem).inertia_is_certain(problem, w)) return out;
-  if (w.kkt(problem).shift() > 0) return of_held_directions(problem, z, w);
-  const int negative = w.kkt(problem).negative_count();
-  if (w.kkt(problem).positive_definite()) {
+  if (!problem.symmetric() || !kkt.inertia_is_certain(problem, at.w)) return out;
+  if (kkt.shift() > 0) return of_shifted_directions(at);
+  const int negative = kkt.negative_count();
+  if (kkt.positive_definite()) {
     out.stable = true;
     out.reason = StabilityReason::minimum;
-  } else if (negative % 2 == 1 || (negative > 0 && nothing_holds(problem, z, w))) {
+  } else if (negative % 2 == 1 || (negative > 0 && nothing_holds(at))) {
     out.stable = false;
     out.reason = StabilityReason::unstable;
   }
-  if (!w.kkt(problem).singular()) return out;
+  if (!kkt.singular()) return out;
 
   // All at once: either nothing resists any of them, or the state is singular.
-  const std::vector<KktSystem::NullDirection> directions = w.kkt(problem).null_directions();
+  const std::vector<KktSystem::NullDirection> directions = kkt.null_directions();
   Eigen::VectorXd all = Eigen::VectorXd::Zero(problem.system.nv), one;
   std::vector<bool> takes_part(static_cast<std::size_t>(problem.system.nv));
   if (directions.size() <= 100) {
     for (const KktSystem::NullDirection& f : directions) {
-      w.kkt(problem).direction_of(f, one);
+      kkt.direction_of(f, one);
       one /= one.lpNorm<Eigen::Infinity>();
       for (int v = 0; v < problem.system.nv; ++v)
         if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
@@ -141,8 +144,7 @@ Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Worksp
     return out;
   }
   all /= all.lpNorm<Eigen::Infinity>();
-  const bool balanced =
-      stays_balanced(problem, z, 0.05 * all, 1e-9, w) && stays_balanced(problem, z, -0.11 * all, 1e-9, w);
+  const bool balanced = stays_balanced(at, 0.05 * all, 1e-9) && stays_balanced(at, -0.11 * all, 1e-9);
   if (balanced)
     for (int v = 0; v < problem.system.nv; ++v)
       if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);

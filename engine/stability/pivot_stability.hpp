@@ -5,11 +5,11 @@
 
 namespace flyball {
 
-// z must be a steady state of a problem that is not dense, factored in the workspace. The signs of the pivots
+// Of a steady state of a problem that is not dense. The signs of the pivots
 // decide where there is a potential: a minimum is stable; an odd number of negative ones is unstable whatever
 // gyroscopic forces do (Thomson and Tait; Chetayev), and so is any where there are none or every coordinate
 // is damped. Else nothing is decided and `reason` stays empty; where the motion turns with the drives that is
 // said.
-Stability find_pivot_stability(const Problem& problem, const Unknowns& z, Workspace& w);
+Stability find_pivot_stability(const FactoredState& at);
 
 } // namespace flyball

@@ -17,12 +17,14 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Whether a way (scaled) along the directions without stiffness leads to another balanced state, the rest
-// giving way as it must: a bob that turns about the vertical goes along an arc.
-bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::MatrixXd& flat,
-                    const Eigen::VectorXd& way, Workspace& w) {
-  Unknowns moved = z;
-  Eigen::VectorXd step = way;
+// Whether a step (scaled) along null directions leads to another balanced state, the rest giving way as it
+// must: a bob that turns about the vertical goes along an arc.
+bool stays_balanced(const FactoredState& at, const Eigen::MatrixXd& null_space,
+                    const Eigen::VectorXd& first) {
+  const Problem& problem = at.problem;
+  Workspace& w = at.w.elsewhere();
+  Unknowns moved = at.z;
+  Eigen::VectorXd step = first;
   for (int i = 0; i < 8; ++i) {
     w.step = step.cwiseProduct(problem.scaling.column);
     retract<double>(problem.system, w.step, moved.q);
@@ -33,13 +35,13 @@ bool stays_balanced(const Problem& problem, const Unknowns& z, const Eigen::Matr
     const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
     factor(problem, moved, w);
-    const auto all = orthonormal_completion(basis.transpose() * flat);
-    if (!all || all->cols() <= flat.cols()) return false;
-    const auto rest = all->rightCols(all->cols() - flat.cols());
+    const auto all = orthonormal_completion(basis.transpose() * null_space);
+    if (!all || all->cols() <= null_space.cols()) return false;
+    const auto rest = all->rightCols(all->cols() - null_space.cols());
     const auto solved = least_squares(large::projected(w.dense.stiffness(), basis) * rest, -left);
     if (!solved) return false;
     step = basis * (rest * *solved);
-    if (!(step.lpNorm<Eigen::Infinity>() <= way.lpNorm<Eigen::Infinity>())) return false;
+    if (!(step.lpNorm<Eigen::Infinity>() <= first.lpNorm<Eigen::Infinity>())) return false;
   }
   return false;
 }
@@ -129,10 +131,9 @@ bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<doubl
   return !phases.empty() && (!can_compare || motion_varies(problem, z.q, phases, w));
 }
 
-bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
+bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::MatrixXd& k, Workspace& w) {
   if (!problem.system.conservative) return false;
   if (problem.system.single_drives) return true;
-  const Eigen::MatrixXd k = w.dense.stiffness();
   if ((k - k.transpose()).norm() > 1e-9 * k.norm()) return false;
   // Second differences of U + lambda . Phi, whose gradient is f.
   const auto lagrangian = [&](int i, double step) {
@@ -153,25 +154,20 @@ bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w) {
     const double second = (lagrangian(i, h) - 2 * lagrangian(i, 0) + lagrangian(i, -h)) / (h * h);
     agrees = std::abs(second - k(i, i)) <= 1e-3 * k.norm();
   }
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
   return agrees;
 }
 
-Stability find_stability(const Problem& problem, const Unknowns& z, bool with_eigenvalues, Workspace& w) {
+Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
+  const Problem& problem = at.problem;
+  if (problem.form != KktForm::dense) return find_pivot_stability(at);
   Stability out;
-  if (problem.form != KktForm::dense) {
-    evaluate(problem, z, 0, w);
-    factor(problem, z, w);
-    return find_pivot_stability(problem, z, w);
-  }
-  const bool varies = motion_varies(problem, z.q, sample_phases(problem.system, problem.parameters), w);
-  evaluate(problem, z, 0, w);
-  factor(problem, z, w);
-  const bool potential = has_potential(problem, z, w);
-  const Eigen::MatrixXd basis = w.dense.constraints().basis();
+  Workspace& w = at.w;
+  const bool varies =
+      motion_varies(problem, at.z.q, sample_phases(problem.system, problem.parameters), w.elsewhere());
+  const bool potential = has_potential(problem, at.z, w.dense.stiffness(), w.elsewhere());
+  const Eigen::MatrixXd& basis = w.dense.constraints().basis();
   ReducedHessian energy; // symmetric where there is a potential, whatever Newton used
-  const Eigen::MatrixXd reduced = w.dense.reduced();
+  const Eigen::MatrixXd& reduced = w.dense.reduced();
   energy.factor(reduced, w.dense.noise(), potential);
   const bool minimum = potential && !varies && energy.positive_definite();
   if (minimum) {
@@ -179,34 +175,30 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
     out.reason = StabilityReason::minimum;
   }
 
-  // Directions nothing resists: without stiffness here, and still in balance some way along.
-  const Eigen::MatrixXd flat = basis * energy.null_basis();
-  int flat_count = 0;
+  // Neutral directions: null directions here, and still in balance at a distance.
+  const Eigen::MatrixXd null_space = basis * energy.null_basis();
+  int neutral_count = 0;
   const auto stays_along = [&](const Eigen::VectorXd& direction) {
-    return stays_balanced(problem, z, flat, 0.05 * direction, w) &&
-           stays_balanced(problem, z, flat, -0.11 * direction, w);
+    return stays_balanced(at, null_space, 0.05 * direction) &&
+           stays_balanced(at, null_space, -0.11 * direction);
   };
   // What holds for a mixture of many holds for each.
-  const bool all = flat.cols() > few_flat && stays_along(mixture_of(flat));
-  for (Eigen::Index c = 0; c < flat.cols(); ++c) {
-    Eigen::VectorXd direction = flat.col(c);
+  const bool all = null_space.cols() > few_flat && stays_along(mixture_of(null_space));
+  for (Eigen::Index c = 0; c < null_space.cols(); ++c) {
+    Eigen::VectorXd direction = null_space.col(c);
     const double size = direction.lpNorm<Eigen::Infinity>();
     if (!(size > 0)) continue;
     direction /= size;
     if (!all && !stays_along(direction)) continue;
-    ++flat_count;
+    ++neutral_count;
     for (int i = 0; i < problem.system.nv; ++i)
       if (std::abs(direction[i]) > 1e-6 && std::ranges::find(out.neutral, i) == out.neutral.end())
         out.neutral.push_back(i);
   }
   std::ranges::sort(out.neutral);
   if (varies) {
-    judge_by_multipliers(problem, z, flat_count, w, out);
+    judge_by_multipliers(problem, at.z, neutral_count, w.elsewhere(), out);
     return out;
-  }
-  if (flat.cols() > 0) {
-    evaluate(problem, z, 0, w);
-    factor(problem, z, w);
   }
 
   double most_negative = 0;
@@ -215,7 +207,7 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   }
   if (minimum && !with_eigenvalues) return out;
 
-  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
+  linearize_motion(problem.system, problem.parameters, at.z.q, w.kinematics, w.dense.linearization);
   const auto& s = problem.scaling.column;
   const Eigen::MatrixXd mass =
       large::projected(s.asDiagonal() * w.dense.linearization.mass * s.asDiagonal(), basis);
@@ -226,15 +218,15 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);
   if (minimum || !out.eigenvalues) return out;
 
-  // Eigenvalues that belong to flat directions are zero but for rounding: leave the smallest out.
+  // Eigenvalues that belong to null directions are zero but for rounding: leave the smallest out.
   std::vector<Complex> moving = *out.eigenvalues;
   std::ranges::sort(moving, [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
   const double largest = moving.empty() ? 0 : std::abs(moving.back());
-  for (int i = 0;
-       i < 2 * static_cast<int>(flat.cols()) && !moving.empty() && std::abs(moving.front()) < 1e-5 * largest;
+  for (int i = 0; i < 2 * static_cast<int>(null_space.cols()) && !moving.empty() &&
+                  std::abs(moving.front()) < 1e-5 * largest;
        ++i)
     moving.erase(moving.begin());
-  bool right = false, left = !moving.empty() || flat.cols() == 0;
+  bool right = false, left = !moving.empty() || null_space.cols() == 0;
   for (Complex x : moving) {
     const double tolerance = 1e-8 * std::abs(x) + 1e-12 * largest;
     if (x.real() > tolerance) right = true;
@@ -248,15 +240,15 @@ Stability find_stability(const Problem& problem, const Unknowns& z, bool with_ei
   if (right && falls) {
     out.stable = false;
     out.reason = StabilityReason::unstable;
-  } else if (flat_count > 0) {
+  } else if (neutral_count > 0) {
     out.reason = StabilityReason::neutral;
-  } else if (flat.cols() > 0) {
+  } else if (null_space.cols() > 0) {
     out.reason = StabilityReason::marginal;
   } else if (left) {
     out.stable = true;
     out.reason = StabilityReason::asymptotic;
   } else if (potential && most_negative < -ReducedHessian::zero) {
-    const auto damped = damping_destabilizes(problem, z.q, basis, mass, velocity, stiffness, w);
+    const auto damped = damping_destabilizes(problem, at.z.q, basis, mass, velocity, stiffness, w);
     if (!damped) return out;
     if (*damped) out.stable = false;
     out.reason = *damped ? StabilityReason::unstable : StabilityReason::gyroscopic_only;

@@ -3,7 +3,7 @@
 // turns with the drives, the multipliers of Floquet's theory alone.
 #pragma once
 
-#include "engine/solve/newton.hpp"
+#include "engine/solve/factored_state.hpp"
 #include "engine/solve/solution.hpp"
 #include "engine/stability/floquet.hpp"
 
@@ -24,17 +24,17 @@ struct Stability {
   std::vector<int> neutral; // coordinates of q_R that take part in directions nothing resists
 };
 
-// Whether f is the gradient of the amended potential at this state although drives ride on drives: its
-// Hessian on the potential's second differences, to be asked only at a steady state.
-bool has_potential(const Problem& problem, const Unknowns& z, Workspace& w);
+// Whether f is the gradient of the amended potential at a steady state z although drives ride on drives:
+// whether the scaled `stiffness` there is symmetric and agrees with the potential's second differences, which
+// are taken in `w`.
+bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::MatrixXd& stiffness, Workspace& w);
 
 // Whether the linearised motion turns with the drives, as far as can be told: comparing it over the phases
 // would take too long in very large mechanisms.
 bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w);
 
-// z must be a steady state; it is left evaluated and factored unless multipliers judge. Of a dense problem
-// `with_eigenvalues` asks for the full picture, else only the sign of a minimum is found; of others the signs
-// of the pivots tell (pivot_stability.hpp).
-Stability find_stability(const Problem& problem, const Unknowns& z, bool with_eigenvalues, Workspace& w);
+// Of a steady state. Of a dense problem `with_eigenvalues` asks for the full picture, else only the sign of a
+// minimum is found; of others the signs of the pivots tell (pivot_stability.hpp).
+Stability find_stability(const FactoredState& at, bool with_eigenvalues);
 
 } // namespace flyball

@@ -73,10 +73,10 @@ class Direct {
 
   // From the drawn pose to an answer that is known to exist and be stable, as Analysis::solve does.
   bool answer(Unknowns& z) {
-    find_steady_state(problem(), drawn_, drawn_, {.seconds = SolveOptions{}.search}, w_, steady_);
+    steady_.find(problem(), drawn_, drawn_, {.seconds = SolveOptions{}.search});
     if (!steady_.holds) return false;
     if (!steady_.found.minimum || !steady_.phases.empty())
-      stability_ = find_stability(problem(), steady_.found.z, false, w_);
+      stability_ = find_stability(steady_.factored(problem()), false);
     z = steady_.found.z;
     return true;
   }

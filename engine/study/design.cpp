@@ -163,9 +163,7 @@ class Designer {
     Workspace& w = balance_.workspace();
     s.at = response_point(balance_.mechanism(), problem, state.z, error, {true, true}, w);
     s.at.parameter = s.parameter;
-    evaluate(problem, state.z, 0, w);
-    factor(problem, state.z, w);
-    const auto rates = sensitivities(problem, balance_.mechanism(), state.z, {&address_, 1}, w);
+    const auto rates = sensitivities(factor_at(problem, state.z, w), balance_.mechanism(), {&address_, 1});
     if (!rates.empty())
       s.rate = coordinate_gradient(system_, problem.parameters, state.z.q, wanted_).dot(rates[0]);
     out_.solutions.push_back(std::move(s));

@@ -29,7 +29,8 @@ struct Case {
   Workspace workspace;
   Found found;
   std::vector<double> history;
-  Eigen::VectorXd drawn, error;
+  Eigen::VectorXd drawn;
+  ErrorEstimate error;
   Unknowns answer;
 
   explicit Case(Mechanism m) : mechanism(std::move(m)), system(compile(mechanism)) {

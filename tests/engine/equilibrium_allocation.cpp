@@ -82,7 +82,8 @@ struct Solver {
   Workspace workspace;
   Found found;
   std::vector<double> history;
-  Eigen::VectorXd drawn, error;
+  Eigen::VectorXd drawn;
+  ErrorEstimate error;
 
   explicit Solver(Mechanism m) : mechanism(std::move(m)), system(compile(mechanism)) {
     // The cuts that carry the bearing's loop along are the analysis' to find.

@@ -3,7 +3,7 @@
 #include "tests/engine/reference/random_mechanism.hpp"
 
 #include "engine/kkt/motion_products.hpp"
-#include "engine/solve/newton.hpp"
+#include "engine/solve/factored_state.hpp"
 #include "engine/stability/lowest_modes.hpp"
 
 #include <random>
@@ -79,7 +79,7 @@ std::optional<BothModes> modes_both_ways(const Mechanism& m, KktForm form, int c
   settings.damped = true;
   settings.max_iterations = 200;
   if (!newton(dense, z, w, settings, nullptr).converged) return {};
-  BothModes out{find_modes(dense, z, w), {}};
+  BothModes out{find_modes(factor_at(dense, z, w)), {}};
   std::ranges::stable_sort(out.dense, {}, &VibrationMode::natural_frequency);
   out.lowest = find_lowest_modes(large, z, count, w);
   return out;

@@ -261,12 +261,12 @@ TEST_CASE("the potential and the eigenvalues agree, or it is said why not", "[mo
     if (s.status != Status::converged) continue;
     const std::optional<StabilityEvidence> evidence = analysis.stability_evidence();
     REQUIRE(evidence.has_value());
-    CAPTURE(seed, evidence->reason, evidence->downhill, evidence->flat, evidence->growing);
+    CAPTURE(seed, evidence->reason, evidence->downhill, evidence->null, evidence->growing);
     CHECK_FALSE(evidence->reason.empty());
     if (!evidence->potential) continue;
-    if (evidence->downhill == 0 && evidence->flat == 0)
+    if (evidence->downhill == 0 && evidence->null == 0)
       CHECK(evidence->growing == 0); // Lagrange and Dirichlet
-    if (evidence->downhill % 2 == 1 && evidence->flat == 0 && evidence->growing == 0)
+    if (evidence->downhill % 2 == 1 && evidence->null == 0 && evidence->growing == 0)
       CHECK(evidence->reason.find("no mass") != std::string::npos); // Kelvin, Tait and Chetaev
     if (evidence->agree)
       ++agreed;

@@ -214,7 +214,7 @@ TEST_CASE("large chains come out as by the dense equations") {
     Eigen::VectorXd start = x.z.q;
     start[0] += 0.4;
     Found by[2];
-    Eigen::VectorXd error[2];
+    ErrorEstimate error[2];
     std::vector<double> history;
     for (const bool whole : {false, true}) {
       Workspace& w = whole ? x.dense : x.tree;
@@ -226,7 +226,7 @@ TEST_CASE("large chains come out as by the dense equations") {
     CHECK(by[0].minimum);
     CHECK(by[1].minimum);
     const Eigen::VectorXd away = (by[0].z.q.cwiseAbs() - by[1].z.q.cwiseAbs()).cwiseAbs();
-    CHECK((away.array() <= (error[0] + error[1]).array()).all());
+    CHECK((away.array() <= (error[0].solution + error[1].solution).array()).all());
   }
 }
 

@@ -27,7 +27,8 @@ struct Solve {
   Workspace workspace;
   Found found;
   std::vector<double> history;
-  Eigen::VectorXd drawn, error;
+  Eigen::VectorXd drawn;
+  ErrorEstimate error;
 
   explicit Solve(const Mechanism& mechanism) : system(compile(mechanism)) {
     bind(system, mechanism, parameters);
@@ -96,7 +97,7 @@ FlyballResult measure_flyball(const Mechanism& mechanism, bool cold_too) {
   if (solve.found.status != Status::converged)
     throw std::invalid_argument(message(solve.found, solve.problem()));
   result.iterations = solve.found.iterations;
-  result.error = solve.error.size() > 0 ? solve.error.maxCoeff() : 0;
+  result.error = solve.error.solution.size() > 0 ? solve.error.solution.maxCoeff() : 0;
   const Unknowns answer = solve.found.z;
   const Problem problem = solve.problem();
   Workspace& w = solve.workspace;
