@@ -2,7 +2,6 @@
 
 #include "app/panels/shown_plot.hpp"
 
-#include "app/panels/response_follow.hpp"
 #include "app/plot/axis.hpp"
 #include "engine/mechanism/address.hpp"
 
@@ -93,7 +92,7 @@ void follow(App& app, ResponseRequest of) {
         ResponseResult result;
         std::optional<ResponseDiagram> diagram;
         if (through && !of.all)
-          diagram = follow_through(*of.mechanism, of.address, of.from, of.to, *through, options);
+          diagram = follow_branches_through(*of.mechanism, of.address, of.from, of.to, *through, options);
         // Without a state to go through, as the command line: from the drawn pose at the range's beginning.
         result.diagram = diagram ? std::move(*diagram)
                                  : follow_branches(*of.mechanism, of.address, of.from, of.to, options);

@@ -28,7 +28,7 @@ class Diagram {
       : mechanism_(mechanism), address_(address), from_(from), to_(to), options_(options),
         follower_(mechanism, address, from, to, options) {}
 
-  ResponseDiagram run() {
+  ResponseDiagram from_drawn() {
     const auto begin = std::chrono::steady_clock::now();
     const Interruptible scope(options_.cancel);
     try {
@@ -43,6 +43,25 @@ class Diagram {
     if (out_.status == Status::converged && out_.message.empty()) out_.message = summary();
     for (const std::string& note : {begun_, bands(), follower_.limits()})
       if (out_.status == Status::converged && !note.empty()) out_.message += " " + note;
+    out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::move(out_);
+  }
+
+  std::optional<ResponseDiagram> through(const ResponsePoint& state) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Interruptible scope(options_.cancel);
+    try {
+      if (!from_state(state)) return std::nullopt;
+      off_crossings(true);
+    } catch (const Interrupted&) {
+      if (out_.branches.empty()) throw;
+    }
+    drop_folds_at_crossings();
+    out_.status = Status::converged;
+    out_.message = std::to_string(out_.branches.size()) +
+                   (out_.branches.size() == 1 ? " branch" : " branches") + " through the present state" +
+                   (follower_.cancelled() ? "; cancelled." : ".");
+    if (const std::string limits = follower_.limits(); !limits.empty()) out_.message += " " + limits;
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(out_);
   }
@@ -106,6 +125,47 @@ class Diagram {
     if (!first || known(*first)) return;
     add(follower_.follow(*first, out_.branches.empty()), true);
     out_.message.clear();
+  }
+
+  // False where there is no steady state near it, or it is singular.
+  bool from_state(const ResponsePoint& state) {
+    report_progress(options_.progress, "solving at the present state");
+    const Problem problem = follower_.problem_at(state.parameter);
+    Workspace& w = follower_.workspace();
+    Unknowns z{configuration_of(problem, state.coordinates), Eigen::VectorXd::Zero(problem.system.rows)};
+    if (!newton(problem, z, w, {}, nullptr).converged) return false;
+    if (!check_existence(problem, z.q, sample_phases(problem.system, problem.parameters), w).holds)
+      return false;
+    if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) follower_.expect_families();
+    const auto forth = follower_.begin(z, state.parameter, true),
+               back = follower_.begin(z, state.parameter, false);
+    if (!forth || !back) return false;
+    add_both_ways(*forth, *back, true, true);
+    return true;
+  }
+
+  void add_both_ways(const BranchState& forth, const BranchState& back, bool tell_progress, bool connected) {
+    FollowedBranch ahead = follower_.follow(forth, tell_progress);
+    if (ahead.closed) return add(std::move(ahead), connected);
+    FollowedBranch behind = follower_.follow(back, false);
+    std::string begin = behind.end;
+    add(joined(std::move(behind), std::move(ahead)), connected, std::move(begin));
+  }
+
+  // A branch that turns back in the crossing itself, as the bent one of a fork does, has no fold of its own.
+  void drop_folds_at_crossings() {
+    const auto same_place = [&](const ResponsePoint& a, const ResponsePoint& b) {
+      if (std::abs(a.parameter - b.parameter) > 1e-6 * std::abs(to_ - from_)) return false;
+      for (std::size_t i = 0; i < a.coordinates.size(); ++i)
+        if (std::abs(a.coordinates[i].value - b.coordinates[i].value) > 1e-3) return false; // rad, m
+      return true;
+    };
+    std::erase_if(out_.special, [&, crossings = out_.special](const SpecialPoint& fold) {
+      return fold.type == SpecialPointType::fold &&
+             std::ranges::any_of(crossings, [&](const SpecialPoint& other) {
+               return other.type == SpecialPointType::branch_point && same_place(fold.at, other.at);
+             });
+    });
   }
 
   // Bands of parametric instability may be narrower than the points lie apart.
@@ -190,14 +250,7 @@ class Diagram {
       if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) continue;
       const auto forth = follower_.begin(z, value, true), back = follower_.begin(z, value, false);
       if (!forth || !back || known(*forth)) continue;
-      FollowedBranch ahead = follower_.follow(*forth, false);
-      if (ahead.closed) {
-        add(std::move(ahead), false);
-      } else {
-        FollowedBranch behind = follower_.follow(*back, false);
-        std::string begin = behind.end;
-        add(joined(std::move(behind), std::move(ahead)), false, std::move(begin));
-      }
+      add_both_ways(*forth, *back, false, false);
       if (out_.status != Status::converged) {
         out_.message = "Nothing is followed from the drawn pose. " + out_.message;
         out_.status = Status::converged;
@@ -268,7 +321,14 @@ std::string_view word(SpecialPointType type) {
 
 ResponseDiagram follow_branches(const Mechanism& mechanism, const std::string& address, double from,
                                 double to, const BranchOptions& options) {
-  return Diagram(mechanism, address, from, to, options).run();
+  return Diagram(mechanism, address, from, to, options).from_drawn();
+}
+
+std::optional<ResponseDiagram> follow_branches_through(const Mechanism& mechanism, const std::string& address,
+                                                       double from, double to, const ResponsePoint& state,
+                                                       const BranchOptions& options) {
+  if ((state.parameter - from) * (state.parameter - to) > 0) return std::nullopt;
+  return Diagram(mechanism, address, from, to, options).through(state);
 }
 
 } // namespace flyball

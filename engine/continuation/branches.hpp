@@ -7,6 +7,7 @@
 #include "engine/task/progress.hpp"
 
 #include <atomic>
+#include <optional>
 
 namespace flyball {
 
@@ -81,6 +82,13 @@ struct BranchOptions {
 // address that does not exist.
 ResponseDiagram follow_branches(const Mechanism& mechanism, const std::string& address, double from,
                                 double to, const BranchOptions& options = {});
+
+// The branch of the equilibrium nearest to `state` at its parameter, followed both ways from there, then
+// whatever branches off it. Nothing where there is no steady state near it or its parameter lies outside the
+// range. Throws as follow_branches does.
+std::optional<ResponseDiagram> follow_branches_through(const Mechanism& mechanism, const std::string& address,
+                                                       double from, double to, const ResponsePoint& state,
+                                                       const BranchOptions& options);
 
 // The eigenvalues of consecutive points of a branch put in one order, so that entry i of every point belongs
 // to one line of a Campbell diagram: matched to what the two points before foretell. Lines are as many as
