@@ -15,8 +15,6 @@
 namespace flyball {
 namespace {
 
-constexpr double special_accuracy = 1e-11; // of the scaled arclength
-
 bool turns_with_drives(const ResponsePoint& point) {
   return point.stability_reason == StabilityReason::floquet;
 }
@@ -118,7 +116,7 @@ std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, d
   BranchState at = beyond, probe;
   double found = high, previous = low;
   int side = 0;
-  for (int i = 0; i < 80 && high - low > special_accuracy; ++i) {
+  for (int i = 0; i < 80 && high - low > tolerance::special_point; ++i) {
     double middle = low - at_low * (high - low) / (at_high - at_low);
     if (!(middle > low && middle < high)) middle = (low + high) / 2;
     int iterations = 0;
@@ -126,7 +124,7 @@ std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, d
     const double now = value(probe, middle);
     at = probe;
     found = middle;
-    if (now == 0 || (std::abs(middle - previous) < 0.1 * special_accuracy && i > 3)) break;
+    if (now == 0 || (std::abs(middle - previous) < 0.1 * tolerance::special_point && i > 3)) break;
     previous = middle;
     if ((now < 0) == (at_high < 0)) {
       high = middle;
@@ -151,28 +149,28 @@ Eigen::VectorXd BranchFollower::difference(const BranchState& a, const BranchSta
 }
 
 bool BranchFollower::same(const BranchState& a, const BranchState& b) const {
-  return std::abs(a.parameter - b.parameter) < 1e-6 * family_.scale() &&
-         same_pose(family_.problem(), a.z.q, b.z.q, 1e-5);
+  return std::abs(a.parameter - b.parameter) < tolerance::same_parameter * family_.scale() &&
+         same_pose(family_.problem(), a.z.q, b.z.q, tolerance::same_branch_pose);
 }
 
 bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& branch) {
   const double near = 2 * options_.largest_step;
   const BranchState* nearest = nullptr;
-  Eigen::VectorXd way;
+  Eigen::VectorXd offset;
   double least = near;
   for (const BranchState& s : branch.states) {
     if (std::abs(s.parameter - state.parameter) > near * family_.scale()) continue;
     const Eigen::VectorXd d = difference(s, state);
     if (d.norm() < least) {
       least = d.norm();
-      way = d;
+      offset = d;
       nearest = &s;
     }
   }
   if (!nearest) return false;
   if (same(*nearest, state)) return true;
   // Beyond its ends it may go on as another branch: the two halves of a pitchfork are one curve.
-  const double along = nearest->tangent.dot(way);
+  const double along = nearest->tangent.dot(offset);
   if (nearest == &branch.states.front() && along < -branch.lead) return false;
   if (nearest == &branch.states.back() && along > 0 && !branch.closed) return false;
   BranchState there;
@@ -201,9 +199,6 @@ void BranchFollower::land_on_border(const BranchState& state, double border, Fol
   out.points.push_back(point(last));
   out.states.push_back(std::move(last));
 }
-
-// Scaled: where a stop is reached or left, a branch has a corner, which no shorter step makes straight.
-constexpr double longest_corner = 1e-6;
 
 FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
   FollowedBranch out;
@@ -235,10 +230,11 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     int iterations = 0;
     const bool stepped = continuation_.step(state, length, next, iterations);
     const bool straight = stepped && next.tangent.dot(state.tangent) >= 0.97;
-    const bool corner = stepped && !straight && length < longest_corner;
+    const bool corner =
+        stepped && !straight && length < tolerance::longest_corner; // no shorter step is straight
     if (!straight && !corner) {
       length /= 2;
-      if (length > 1e-9) continue;
+      if (length > tolerance::least_branch_step) continue;
       out.end = "the corrector fails: the loops lock or a part of the mechanism becomes singular";
       break;
     }
@@ -379,7 +375,7 @@ BranchFollower::locate_pair_crossing(const BranchState& state, const BranchState
         locate(state, ends[0], forth ? at_stable : at_unstable, ends[1], forth ? at_unstable : at_stable,
                next, [&](const BranchState& s, double along) { return last = value(spectrum(s), along); })
             .first;
-    const double jump = std::max(1e-5, 10 * special_accuracy / (ends[1] - ends[0]));
+    const double jump = std::max(1e-5, 10 * tolerance::special_point / (ends[1] - ends[0]));
     if (std::abs(last) > jump * std::max(-at_stable, at_unstable)) continue;
     return std::pair{crossing.coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, found};
   }
@@ -392,7 +388,7 @@ std::optional<std::pair<SpecialPointType, BranchState>> BranchFollower::jumping_
                                                                                      CrossingBracket at) {
   BranchState low, high;
   int iterations = 0;
-  if (!narrow(state, special_accuracy, at) || !continuation_.step(state, at.low, low, iterations) ||
+  if (!narrow(state, tolerance::special_point, at) || !continuation_.step(state, at.low, low, iterations) ||
       !continuation_.step(state, at.high, high, iterations))
     return {};
   const bool forth = at.right_high > at.right_low;

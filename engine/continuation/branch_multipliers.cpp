@@ -7,11 +7,6 @@
 namespace flyball {
 namespace {
 
-constexpr double accuracy = 1e-11; // of the scaled arclength
-// A multiplier of a motion without damping lies on the circle until two meet, and leaves it with the root of
-// the distance: so much beyond the circle counts as having left it.
-constexpr double left = 1e-6;
-
 // ln|mu| of the largest multiplier and the multiplier itself; nothing where there are none.
 struct LargestMultiplier {
   double growth = 0;
@@ -32,15 +27,17 @@ void BranchFollower::find_multiplier_crossing(const BranchState& state, const Br
   const auto at_start = largest_multiplier(problem_at(state.parameter), state.z, w_);
   const auto at_end = largest_multiplier(problem_at(next.parameter), next.z, w_);
   if (!at_start || !at_end) return;
-  const bool damped = std::min(at_start->growth, at_end->growth) < -left;
-  const double limit = damped ? 0 : left;
+  // A multiplier of a motion without damping lies on the circle until two meet, and leaves it with the root
+  // of the distance.
+  const bool damped = std::min(at_start->growth, at_end->growth) < -tolerance::departed_multiplier;
+  const double limit = damped ? 0 : tolerance::departed_multiplier;
   double low = 0, high = length, at_low = at_start->growth - limit, at_high = at_end->growth - limit;
   if (at_low * at_high >= 0) return;
   BranchState found = next;
   // The multiplier on the side that grows tells how it left.
   std::complex<double> grows = at_low > 0 ? at_start->value : at_end->value;
   int side = 0;
-  for (int i = 0; i < 80 && high - low > accuracy && !cancelled(); ++i) {
+  for (int i = 0; i < 80 && high - low > tolerance::special_point && !cancelled(); ++i) {
     // Illinois' method where the growth is smooth; halves where it begins like a root.
     double middle = damped ? low - at_low * (high - low) / (at_high - at_low) : (low + high) / 2;
     if (!(middle > low && middle < high)) middle = (low + high) / 2;

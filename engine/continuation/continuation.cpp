@@ -25,10 +25,10 @@ bool Continuation::correct(const Unknowns& from, double parameter, const Eigen::
     retract<double>(problem.system, move, to.z.q);
     to.parameter += step[n] * family_.scale();
     moved += step;
-    if (size < 1e-9) {
+    if (size < tolerance::step) {
       family_.set(to.parameter);
       evaluate(problem, to.z, 0, w_);
-      return scaled_residual(problem, w_) < 1e-8;
+      return scaled_residual(problem, w_) < tolerance::balance;
     }
   }
   return false;

@@ -28,7 +28,7 @@ void BodyEntries::clear(int bodies, int multipliers, bool symmetric, std::size_t
     list.columns.clear();
     list.values.clear();
   }
-  loose_.assign(static_cast<std::size_t>(unknowns), false);
+  unconstrained_.assign(static_cast<std::size_t>(unknowns), false);
 }
 
 void BodyEntries::List::add(int row, int column, const Value& value) {
@@ -80,7 +80,7 @@ void BodyEntries::add_row(std::size_t list, int row, int node, const Vec6& gradi
   }
 }
 
-void BodyEntries::hold_all_by_metric() {
+void BodyEntries::keep_all_with_metric() {
   for_lists(lists_, [&](List& list) {
     for (Value& value : list.values)
       std::swap(value.stiffness, value.metric);
@@ -88,7 +88,7 @@ void BodyEntries::hold_all_by_metric() {
   number();
 }
 
-void BodyEntries::hold_above(const std::vector<double>& noise) {
+void BodyEntries::drop_unconstrained_below(const std::vector<double>& noise) {
   const std::size_t motions = 6 * noise.size();
   largest_.assign(motions, 0);
   const auto measure = [&](const List& list) {
@@ -110,16 +110,17 @@ void BodyEntries::hold_above(const std::vector<double>& noise) {
   measure(all.back());
   bool any = false;
   for (std::size_t u = 0; u < motions; ++u)
-    if (largest_[u] <= noise[u / 6]) loose_[u] = any = true;
-  if (any) for_lists(lists_, [&](List& list) { drop_loose(list); });
+    if (largest_[u] <= noise[u / 6]) unconstrained_[u] = any = true;
+  if (any) for_lists(lists_, [&](List& list) { drop_unconstrained(list); });
   number();
 }
 
-void BodyEntries::drop_loose(List& list) const {
+void BodyEntries::drop_unconstrained(List& list) const {
   std::size_t kept = 0;
   for (std::size_t e = 0; e < list.values.size(); ++e) {
     const int row = list.rows[e], column = list.columns[e];
-    if (loose_[static_cast<std::size_t>(row)] || loose_[static_cast<std::size_t>(column)]) continue;
+    if (unconstrained_[static_cast<std::size_t>(row)] || unconstrained_[static_cast<std::size_t>(column)])
+      continue;
     list.rows[kept] = row;
     list.columns[kept] = column;
     list.values[kept++] = list.values[e];
@@ -131,14 +132,14 @@ void BodyEntries::drop_loose(List& list) const {
 
 // Numbers what is solved for, and tells the matrix.
 void BodyEntries::number() {
-  place_.resize(loose_.size());
+  place_.resize(unconstrained_.size());
   int next = 0;
-  for (std::size_t u = 0; u < loose_.size(); ++u) {
+  for (std::size_t u = 0; u < unconstrained_.size(); ++u) {
     if (u == first_multiplier_) pattern_.motions = next;
-    place_[u] = loose_[u] ? -1 : next++;
+    place_[u] = unconstrained_[u] ? -1 : next++;
   }
   pattern_.size = next;
-  if (first_multiplier_ == loose_.size()) pattern_.motions = next;
+  if (first_multiplier_ == unconstrained_.size()) pattern_.motions = next;
   std::size_t entries = 0;
   for (List& list : lists_) {
     list.begin = entries;
@@ -164,16 +165,16 @@ const std::vector<double>& BodyEntries::sum(double stiffness, double metric) {
   return sum_;
 }
 
-void BodyEntries::gather(const Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const {
-  held.resize(pattern_.size);
+void BodyEntries::gather(const Eigen::VectorXd& unknowns, Eigen::VectorXd& reduced) const {
+  reduced.resize(pattern_.size);
   for (std::size_t u = 0; u < place_.size(); ++u)
-    if (const int at = place_[u]; at >= 0) held[at] = unknowns[static_cast<Eigen::Index>(u)];
+    if (const int at = place_[u]; at >= 0) reduced[at] = unknowns[static_cast<Eigen::Index>(u)];
 }
 
-void BodyEntries::spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::VectorXd& unknowns) const {
+void BodyEntries::spread(const Eigen::Ref<const Eigen::VectorXd>& reduced, Eigen::VectorXd& unknowns) const {
   unknowns.resize(static_cast<Eigen::Index>(place_.size()));
   for (std::size_t u = 0; u < place_.size(); ++u)
-    unknowns[static_cast<Eigen::Index>(u)] = place_[u] >= 0 ? held[place_[u]] : 0;
+    unknowns[static_cast<Eigen::Index>(u)] = place_[u] >= 0 ? reduced[place_[u]] : 0;
 }
 
 } // namespace flyball

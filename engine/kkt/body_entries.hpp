@@ -1,8 +1,8 @@
 // The matrix of the bodies' equations as a list of entries, each a sum of stiffness, metric and what is fixed
 // (the constraints), so that a multiple of the metric can be added without assembling anything again.
 //
-// Of the unknowns the first are six for each body. Those that nothing holds, the loose ones, are left out,
-// and the others are numbered anew: they are the ones held.
+// Of the unknowns the first are six for each body. Those without stiffness and constraint, the unconstrained
+// ones, are left out, and the others are numbered anew: the reduced unknowns.
 #pragma once
 
 #include "engine/kkt/body_stiffness.hpp"
@@ -30,21 +30,21 @@ class BodyEntries {
   // After the last entry, one of these. What is solved for are all unknowns, with the metric in the place of
   // the stiffness; or all but the motions of bodies that meet no constraint and no stiffness above `noise`,
   // by node.
-  void hold_all_by_metric();
-  void hold_above(const std::vector<double>& noise);
+  void keep_all_with_metric();
+  void drop_unconstrained_below(const std::vector<double>& noise);
 
-  // By unknown: what nothing holds.
-  const std::vector<bool>& loose() const { return loose_; }
+  // By unknown: left out.
+  const std::vector<bool>& unconstrained() const { return unconstrained_; }
 
-  // Of what is held.
+  // Of the reduced unknowns.
   const SparsePattern& pattern() const { return pattern_; }
 
   // The pattern's values: multiples of stiffness and metric, and what is fixed. Valid until the next call.
   const std::vector<double>& sum(double stiffness, double metric);
 
-  // From all unknowns to those held; and from there back, where what is loose gets nothing.
-  void gather(const Eigen::VectorXd& unknowns, Eigen::VectorXd& held) const;
-  void spread(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::VectorXd& unknowns) const;
+  // From all unknowns to the reduced ones; and from there back, zero for those left out.
+  void gather(const Eigen::VectorXd& unknowns, Eigen::VectorXd& reduced) const;
+  void spread(const Eigen::Ref<const Eigen::VectorXd>& reduced, Eigen::VectorXd& unknowns) const;
 
  private:
   // What an entry is made of.
@@ -62,15 +62,15 @@ class BodyEntries {
 
   void add_block(List& list, int a, int first_i, int b, int first_j, const Mat6& ab, const Mat6& ba,
                  const Mat6& metric_ab);
-  void drop_loose(List& list) const;
+  void drop_unconstrained(List& list) const;
   void number();
 
   SparsePattern pattern_;
   std::size_t first_multiplier_ = 0; // among the unknowns
   std::vector<List> lists_;
   std::vector<double> sum_, largest_;
-  std::vector<bool> loose_;
-  std::vector<int> place_; // by unknown: among those held; -1: loose
+  std::vector<bool> unconstrained_;
+  std::vector<int> place_; // by unknown: among the reduced ones; -1: left out
 };
 
 } // namespace flyball

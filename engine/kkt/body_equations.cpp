@@ -75,7 +75,7 @@ void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Ki
     add_rows(problem, k, part, n);
   });
   add_rows(problem, k, division.between, between_);
-  entries_.hold_above(noise_);
+  entries_.drop_unconstrained_below(noise_);
 }
 
 void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<double>& k) {
@@ -88,7 +88,7 @@ void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<dou
     add_rows(problem, k, part, n);
   });
   add_rows(problem, k, division.between, between_);
-  entries_.hold_all_by_metric();
+  entries_.keep_all_with_metric();
 }
 
 bool BodyEquations::compressed() const {
@@ -225,9 +225,9 @@ void BodyEquations::add_joint(const Problem& problem, std::size_t list, int i, c
   }
   entries_.add_body(list, i, sums.stiffness, sums.metric);
   if (x.columns == 6 && x.parent < 0) return;
-  const BodyColumns held = forbidden_motions(x);
-  for (int r = 0; r < held.cols(); ++r)
-    entries_.add_row(list, x.multipliers + r, i, held.col(r));
+  const BodyColumns forbidden = forbidden_motions(x);
+  for (int r = 0; r < forbidden.cols(); ++r)
+    entries_.add_row(list, x.multipliers + r, i, forbidden.col(r));
   if (x.parent < 0) return;
   Sums& parent = sums_[static_cast<std::size_t>(x.parent)];
   const Mat6 shift = carrying(x), w = x.d * x.weight.asDiagonal() * x.d.transpose();
@@ -236,8 +236,8 @@ void BodyEquations::add_joint(const Problem& problem, std::size_t list, int i, c
   if (q) parent.stiffness -= nodes_.unscaled(on_parent * shift);
   parent.metric += shift.transpose() * w * shift;
   entries_.add_between(list, i, x.parent, by_parent, on_parent, -w * shift);
-  for (int r = 0; r < held.cols(); ++r)
-    entries_.add_row(list, x.multipliers + r, x.parent, -shift.transpose() * held.col(r));
+  for (int r = 0; r < forbidden.cols(); ++r)
+    entries_.add_row(list, x.multipliers + r, x.parent, -shift.transpose() * forbidden.col(r));
 }
 
 void BodyEquations::add_rows(const Problem& problem, const Kinematics<double>& k, const SystemPart& part,
@@ -284,7 +284,8 @@ double BodyEquations::noise_of(const Problem& problem, const BodyNode& x,
   return KktSystem::rounding * force;
 }
 
-void BodyEquations::put(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& held) {
+void BodyEquations::assemble_rhs(const Eigen::VectorXd& force, const Eigen::VectorXd& closing,
+                                 Eigen::VectorXd& reduced) {
   work_.setZero(unknowns_);
   work_.tail(rows_) = closing;
   nodes_.for_each([&](int i) {
@@ -295,11 +296,12 @@ void BodyEquations::put(const Eigen::VectorXd& force, const Eigen::VectorXd& clo
     work_.segment<6>(6 * i) += g;
     if (n.parent >= 0) work_.segment<6>(6 * n.parent) -= about(g, n.lever);
   });
-  entries_.gather(work_, held);
+  entries_.gather(work_, reduced);
 }
 
-void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x) {
-  entries_.spread(held, work_);
+void BodyEquations::extract_solution(const Eigen::Ref<const Eigen::VectorXd>& reduced,
+                                     Eigen::Ref<Eigen::VectorXd> x) {
+  entries_.spread(reduced, work_);
   nodes_.for_each([&](int i) {
     const BodyNode& n = nodes_[i];
     Vec6 m = work_.segment<6>(6 * i);
@@ -309,9 +311,9 @@ void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::R
   });
 }
 
-void BodyEquations::take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x,
-                         Eigen::VectorXd& lambda) {
-  take(held, x);
+void BodyEquations::extract_solution(const Eigen::Ref<const Eigen::VectorXd>& reduced,
+                                     Eigen::Ref<Eigen::VectorXd> x, Eigen::VectorXd& lambda) {
+  extract_solution(reduced, x);
   lambda = work_.tail(rows_);
 }
 

@@ -35,20 +35,21 @@ class BodyEquations {
   int multipliers() const { return unknowns_ - 6 * nodes_.size(); }
   double mass() const { return mass_; } // kg, of what moves
 
-  // By unknown: motions that nothing holds, left out of what follows.
-  const std::vector<bool>& loose() const { return entries_.loose(); }
+  // By unknown: motions without stiffness and constraint, left out of what follows.
+  const std::vector<bool>& unconstrained() const { return entries_.unconstrained(); }
 
   // The matrix, and its values with multiples of stiffness and metric (1/s^2). Valid until the next call.
   const SparsePattern& pattern() const { return entries_.pattern(); }
   const std::vector<double>& sum(double stiffness, double metric) { return entries_.sum(stiffness, metric); }
 
-  // The right-hand side that asks for scaled forces of the coordinates and the rows' closing.
-  void put(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& held);
+  // The right-hand side, on the reduced unknowns, of scaled forces of the coordinates and the rows' closing.
+  void assemble_rhs(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& reduced);
 
-  // What a solution means: coordinates, and the rows' multipliers. Of what is loose they get nothing.
-  void take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x);
-  void take(const Eigen::Ref<const Eigen::VectorXd>& held, Eigen::Ref<Eigen::VectorXd> x,
-            Eigen::VectorXd& lambda);
+  // Of a solution on the reduced unknowns the scaled coordinates, and the rows' multipliers; zero for what is
+  // left out.
+  void extract_solution(const Eigen::Ref<const Eigen::VectorXd>& reduced, Eigen::Ref<Eigen::VectorXd> x);
+  void extract_solution(const Eigen::Ref<const Eigen::VectorXd>& reduced, Eigen::Ref<Eigen::VectorXd> x,
+                        Eigen::VectorXd& lambda);
 
  private:
   void lay_out(const Problem& problem, bool symmetric);

@@ -2,7 +2,7 @@
 // tree_kkt.hpp, and the body's inertia as a metric of small motions.
 //
 // Motions are (turn, shift of the link's origin), wrenches (moment about that origin, force), world axes. K_b
-// tells the change beyond that the wrench turns along with the body.
+// is the change beyond the turning of the wrench with the body.
 #pragma once
 
 #include "engine/kkt/problem.hpp"

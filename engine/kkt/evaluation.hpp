@@ -1,4 +1,4 @@
-// What the balance comes to at a state.
+// The balance evaluated at a state.
 #pragma once
 
 #include "engine/system/residual.hpp"
@@ -8,7 +8,7 @@ namespace flyball {
 struct Evaluation {
   Kinematics<double> kinematics;
   Residual<double> residual; // f and phi of eq. 23
-  Magnitudes magnitudes;     // what rounding is told by
+  Magnitudes magnitudes;     // sizes of the terms, by which rounding is judged
 };
 
 } // namespace flyball

@@ -21,7 +21,7 @@ namespace flyball {
 
 class KktSystem {
  public:
-  // A direction without stiffness but for rounding: coordinates and their shares before the rest gives way.
+  // A direction without stiffness but for rounding: coordinates and their shares before the rest follows.
   using NullDirection = std::vector<std::pair<int, double>>;
 
   static constexpr double zero = 1e-11;     // of the stiffness that a coordinate carries
@@ -76,7 +76,7 @@ class KktSystem {
   // stiff.
   virtual bool exact_inertia() const { return false; }
   // Whether it is right at this evaluated state: a redundant row that passes for an independent one counts as
-  // stiffness. Factors the constraints to tell.
+  // stiffness. Factors the constraints to find out.
   virtual bool inertia_is_certain(const Problem&, const Evaluation&) { return true; }
   bool known() const { return known_; } // else it could not be factored, and counts as zero
   double shift() const { return shift_; }

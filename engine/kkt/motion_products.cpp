@@ -11,7 +11,7 @@ namespace {
 // Of a matrix without negative eigenvalues.
 Mat3 square_root(const Mat3& a) {
   const auto axes = principal_axes((a + a.transpose()) / 2);
-  if (!axes) return Mat3::Constant(std::numeric_limits<double>::quiet_NaN()); // told by all that follows
+  if (!axes) return Mat3::Constant(std::numeric_limits<double>::quiet_NaN()); // spreads to all that follows
   return axes->vectors * axes->values.cwiseMax(0).cwiseSqrt().asDiagonal() * axes->vectors.transpose();
 }
 

@@ -53,7 +53,7 @@ class ReducedHessian {
 
 // A mixture of directions, one a column, with arbitrary shares; its largest entry is 1. What a polynomial in
 // the shares does not do along it, it does not do along any of them. Of few directions each is looked at.
-constexpr Eigen::Index few_flat = 3;
+constexpr Eigen::Index few_null_directions = 3;
 Eigen::VectorXd mixture_of(const Eigen::MatrixXd& directions);
 
 } // namespace flyball

@@ -12,9 +12,9 @@ void SparseConstraints::solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd&
   constexpr double enough = 1e-11; // of the terms of each equation
   x.setZero(equations_.coordinates());
   lambda.setZero(equations_.rows());
-  equations_.put(rhs, closing, held_);
-  if (held_.size() > 0) factors_.solve(held_, enough);
-  equations_.take(held_, x, lambda);
+  equations_.assemble_rhs(rhs, closing, reduced_);
+  if (reduced_.size() > 0) factors_.solve(reduced_, enough);
+  equations_.extract_solution(reduced_, x, lambda);
 }
 
 } // namespace flyball

@@ -11,7 +11,7 @@ namespace flyball {
 // In scaled units. Of a system with no_drive_rides().
 class SparseConstraints {
  public:
-  // Dependent rows have pivots of the size by which the loops are open, told by `tolerance`.
+  // Dependent rows have pivots of the size by which the loops are open, below `tolerance`.
   void factor(const Problem& problem, const Kinematics<double>& kinematics, double tolerance);
 
   // [W, J^T; J, 0] [x; lambda] = [rhs; closing].
@@ -24,7 +24,7 @@ class SparseConstraints {
  private:
   BodyEquations equations_;
   SparseFactorization factors_;
-  Eigen::VectorXd held_;
+  Eigen::VectorXd reduced_;
 };
 
 } // namespace flyball

@@ -5,7 +5,7 @@
 namespace flyball {
 namespace {
 
-constexpr int most_null_directions = 200; // of which all that follows is told
+constexpr int most_null_directions = 200; // that are solved for whole
 
 } // namespace
 
@@ -46,10 +46,10 @@ void SparseKkt::factor(double shift) {
 
 // What nothing holds, in coordinates: the first of the null directions, whatever the shift.
 void SparseKkt::set_force_free_directions() {
-  const std::vector<bool>& loose = equations_.loose();
+  const std::vector<bool>& unconstrained = equations_.unconstrained();
   std::size_t count = 0;
-  for (std::size_t u = 0; u < loose.size(); ++u) {
-    if (!loose[u]) continue;
+  for (std::size_t u = 0; u < unconstrained.size(); ++u) {
+    if (!unconstrained[u]) continue;
     const BodyNode& x = equations_.nodes()[static_cast<int>(u / 6)];
     if (directions_.size() == count) directions_.emplace_back();
     NullDirection& direction = directions_[count];
@@ -77,7 +77,7 @@ void SparseKkt::add_null_directions() {
   Eigen::MatrixXd motions(coordinates, space.cols());
   Eigen::VectorXd column;
   for (Eigen::Index i = 0; i < space.cols(); ++i)
-    equations_.take(space.col(i), motions.col(i));
+    equations_.extract_solution(space.col(i), motions.col(i));
   PivotedQr order;
   if (!order.compute(motions)) {
     directions_.resize(directions_.size() + static_cast<std::size_t>(count)); // counted, not named
@@ -97,9 +97,9 @@ void SparseKkt::solve_to(double enough, const Eigen::VectorXd& rhs, const Eigen:
                          Eigen::VectorXd& x, Eigen::VectorXd& lambda) {
   x.setZero(equations_.coordinates());
   lambda.setZero(rows_);
-  equations_.put(rhs, closing, held_);
-  if (held_.size() > 0) factors_.solve(held_, enough);
-  equations_.take(held_, x, lambda);
+  equations_.assemble_rhs(rhs, closing, reduced_);
+  if (reduced_.size() > 0) factors_.solve(reduced_, enough);
+  equations_.extract_solution(reduced_, x, lambda);
 }
 
 double SparseKkt::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
@@ -156,7 +156,7 @@ bool SparseKkt::inertia_is_certain(const Problem& problem, const Evaluation& at)
 int SparseKkt::independent_rows(const Problem& problem, const Evaluation& at) {
   const int rows = problem.system.rows;
   if (rows == 0 || constraints_.redundant() <= rows) return rows - (rows > 0 ? constraints_.redundant() : 0);
-  // Chains of bodies without mass leave the metric singular by itself, which its pivots do not tell apart
+  // Chains of bodies without mass leave the metric singular by itself, which its pivots do not distinguish
   // from redundant rows: the rank of the rows alone.
   Linearization l;
   linearize_constraints(problem.system, problem.parameters, at.kinematics, l);

@@ -50,7 +50,7 @@ class SparseKkt final : public KktSystem {
   std::vector<NullDirection> directions_;
   double length_ = 0; // m, the mechanism's reach
   int redundant_ = 0;
-  Eigen::VectorXd held_, none_, unused_;
+  Eigen::VectorXd reduced_, none_, unused_;
   std::vector<Vec6> motion_, wrench_; // by node
 };
 

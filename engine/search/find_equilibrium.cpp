@@ -200,8 +200,8 @@ class EquilibriumSearch {
     if (negative == 0 && (p_.system.rows == 0 || null == kkt.force_free_count())) return true;
     kkt.factor(tolerance::inertia_shift * curvature());
     const bool none_falls = kkt.negative_count() == 0;
-    const bool to_be_held = negative > 0 || kkt.null_count() < null; // the rest feels nothing at all
-    kkt.factor(none_falls && to_be_held ? tolerance::proximal_shift * curvature() : 0);
+    const bool needs_shift = negative > 0 || kkt.null_count() < null; // the rest feels nothing at all
+    kkt.factor(none_falls && needs_shift ? tolerance::proximal_shift * curvature() : 0);
     return none_falls;
   }
 
@@ -218,7 +218,7 @@ class EquilibriumSearch {
     return false;
   }
 
-  // Newton-Raphson from where the descent ended, at last with neutral directions held still.
+  // Newton-Raphson from where the descent ended, at last with neutral directions kept still.
   NewtonOutcome solve_from_bottom(bool factored) {
     const Eigen::VectorXd bottom = found_.z.q;
     NewtonSettings free;
@@ -234,9 +234,9 @@ class EquilibriumSearch {
     NewtonSettings settings;
     settings.impatient = large_;
     settings.proximal = tolerance::proximal_shift * curvature();
-    const NewtonOutcome held = newton(p_, found_.z, w_, settings, &history_);
-    found_.iterations += held.iterations;
-    return held;
+    const NewtonOutcome shifted = newton(p_, found_.z, w_, settings, &history_);
+    found_.iterations += shifted.iterations;
+    return shifted;
   }
 
   // Fills w_.assembled, or finds that it cannot be done and which cut joint stays open.

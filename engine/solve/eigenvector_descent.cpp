@@ -72,7 +72,7 @@ DescentOutcome descend_by_eigenvectors(const Problem& problem, Unknowns& z, Work
     if (saddle) {
       off = basis * hessian.eigenvectors().col(lowest_index).cwiseProduct(hessian.scale());
       const double amplitude = 0.1 / off.lpNorm<Eigen::Infinity>();
-      saddle = -lowest * amplitude * amplitude > 20 * rounding; // else flat, as far as can be told
+      saddle = -lowest * amplitude * amplitude > 20 * rounding; // else flat to rounding
     }
     if (saddle) {
       // Step off along the most unstable direction, on the side the gradient leans to, if it does.

@@ -220,7 +220,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
       // either.
       const double left = scaled_residual(problem, w);
       if (left > tolerance::balance) break;
-      // Where a direction has no stiffness, short steps tell nothing of the force along it.
+      // Where a direction has no stiffness, short steps say nothing of the force along it.
       outcome.converged =
           !kkt.singular() || (left <= tolerance::singular_residual && outcome.largest_step <= tolerance::far);
     } else if (i > 3 && size < tolerance::linear_step && size > 0.3 * previous_step &&

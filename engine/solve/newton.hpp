@@ -1,5 +1,5 @@
-// Newton-Raphson on z = [q_R; lambda] (eqs. 21 and 22). The KKT matrix tells its inertia, so the definiteness
-// of the balance is known at every iteration.
+// Newton-Raphson on z = [q_R; lambda] (eqs. 21 and 22). The inertia of the KKT matrix comes with its factors,
+// so the definiteness of the balance is known at every iteration.
 #pragma once
 
 #include "engine/kkt/workspace.hpp"
@@ -49,7 +49,7 @@ struct NewtonSettings {
   // solutions, 2004).
   double proximal = 0;
   bool trusting = false;   // stop where the next step would be within the tolerance by the last two's ratio
-  bool to_minimum = false; // of a large mechanism: give up where the potential falls some way
+  bool to_minimum = false; // of a large mechanism: give up where the balance is indefinite
   bool impatient =
       false;             // give up where steps stay long: in large mechanisms they lead nowhere and cost much
   bool factored = false; // the balance at z is evaluated and factored, and the first step takes that

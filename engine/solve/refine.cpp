@@ -83,7 +83,7 @@ void add_rounding_of_data(const Problem& problem, Workspace& w, Eigen::VectorXd&
   }
 }
 
-// The force along a direction without stiffness, some way along it.
+// The force along a null direction, at a distance along it.
 class SoftDirection {
  public:
   SoftDirection(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction, Workspace& w)
@@ -92,24 +92,24 @@ class SoftDirection {
     here_ = force_;
   }
 
-  // Whether double precision can tell that there the state is no longer in balance.
+  // Whether there the imbalance exceeds the rounding of double precision.
   bool decides(double distance) {
     move(distance);
-    if (!tells(2)) return false;
-    // A straight way leaves a bent valley and climbs its walls: with what is stiff back in balance, too? That
-    // leaves some rounding of its own.
-    for (int i = 0; i < 10 && tells(8); ++i) {
+    if (!exceeds(2)) return false;
+    // A straight step leaves a curved valley of the potential: the imbalance counts only where it remains
+    // after Newton steps in the stiff directions. These leave some rounding of their own.
+    for (int i = 0; i < 10 && exceeds(8); ++i) {
       const double before = force_;
       if (!std::isfinite(before)) return true;
       find_step_back();
       if (w_.scaled_step.lpNorm<Eigen::Infinity>() < 1) take(1);
       if (!(force_ < 0.5 * before)) return true;
     }
-    return tells(8);
+    return exceeds(8);
   }
 
  private:
-  bool tells(double times) const { return !(force_ <= times * (here_ + noise_)); }
+  bool exceeds(double times) const { return !(force_ <= times * (here_ + noise_)); }
 
   void move(double distance) {
     moved_ = z_;
@@ -135,8 +135,9 @@ class SoftDirection {
     // Where the scale is none nothing is felt at all.
     const Eigen::ArrayXd unit =
         (w_.dense.hessian().scale().array() > 0).select(1 / w_.dense.hessian().scale().array(), 0);
-    const Eigen::VectorXd held = (basis.transpose() * direction_).cwiseProduct(unit.matrix()).normalized();
-    const Eigen::VectorXd by_coordinate = held.cwiseProduct(unit.matrix());
+    const Eigen::VectorXd stiffened =
+        (basis.transpose() * direction_).cwiseProduct(unit.matrix()).normalized();
+    const Eigen::VectorXd by_coordinate = stiffened.cwiseProduct(unit.matrix());
     stiffness_ = w_.dense.reduced();
     stiffness_ += by_coordinate * by_coordinate.transpose();
     hessian_.factor(stiffness_, w_.dense.noise(), p_.symmetric());
@@ -156,9 +157,10 @@ class SoftDirection {
   double force_ = 0, noise_ = 0, here_ = 0;
 };
 
-// How far (scaled) the state can be moved along a direction without stiffness before double precision can
-// tell that it is no longer in balance; not finite where that never happens.
-double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction, Workspace& w) {
+// How far (scaled) the state can be moved along a null direction before double precision sees an imbalance;
+// not finite where it never does.
+double undetermined_distance(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& direction,
+                             Workspace& w) {
   SoftDirection soft(problem, z, direction, w.elsewhere());
   double farthest = 0;
   bool decided = false;
@@ -173,8 +175,8 @@ double undecided(const Problem& problem, const Unknowns& z, const Eigen::VectorX
   return decided ? farthest : std::numeric_limits<double>::infinity();
 }
 
-// Whether loops whose equations depend on each other here do so no longer some way along: arms straight, a
-// linkage flat. There lengths change with the square of the angles.
+// Whether loops whose equations are dependent here are independent beside it: arms straight, a linkage flat.
+// There lengths change with the square of the angles.
 bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) {
   const ConstraintSpace& constraints = w.dense.constraints();
   Workspace& beside = w.elsewhere();
@@ -186,9 +188,9 @@ bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) 
   return beside.dense.constraints().rank() > constraints.rank();
 }
 
-// How far (scaled) the force along a soft direction, which the steps left alone, asks the state to move by
-// the stiffness there; none where that is no more than rounding.
-double asked_for(const Problem& problem, const Eigen::VectorXd& direction, const Workspace& w) {
+// The displacement (scaled) that the residual force along a null direction, which the Newton steps left
+// alone, causes by the stiffness there; none where that is no more than rounding.
+double displacement_along(const Problem& problem, const Eigen::VectorXd& direction, const Workspace& w) {
   const Eigen::VectorXd size = direction.cwiseAbs();
   const double force =
       std::abs(direction.dot(w.residual.f.cwiseProduct(problem.scaling.column))) +
@@ -201,32 +203,32 @@ double asked_for(const Problem& problem, const Eigen::VectorXd& direction, const
 
 void add_singular_directions(const Problem& problem, const Unknowns& z, Workspace& w, ErrorEstimate& error) {
   Eigen::MatrixXd null_space = w.dense.constraints().basis() * w.dense.hessian().null_basis();
-  Eigen::VectorXd asked = Eigen::VectorXd::Zero(null_space.cols());
+  Eigen::VectorXd displacement = Eigen::VectorXd::Zero(null_space.cols());
   evaluate_extended(problem, z, w);
   for (Eigen::Index c = 0; c < null_space.cols(); ++c) {
     const double size = null_space.col(c).lpNorm<Eigen::Infinity>();
     if (!(size > 0)) continue;
     null_space.col(c) /= size;
-    asked[c] = asked_for(problem, null_space.col(c), w);
+    displacement[c] = displacement_along(problem, null_space.col(c), w);
   }
-  // What is never decided along a mixture of many is not along any of them.
-  const bool none =
-      null_space.cols() > few_flat && !std::isfinite(undecided(problem, z, mixture_of(null_space), w));
+  // What is never determined along a mixture of many is not along any of them.
+  const bool none = null_space.cols() > few_null_directions &&
+                    !std::isfinite(undetermined_distance(problem, z, mixture_of(null_space), w));
   for (Eigen::Index c = 0; c < null_space.cols(); ++c) {
     if (null_space.col(c).isZero(0)) continue;
-    const double distance =
-        none ? std::numeric_limits<double>::infinity() : undecided(problem, z, null_space.col(c), w);
+    const double distance = none ? std::numeric_limits<double>::infinity()
+                                 : undetermined_distance(problem, z, null_space.col(c), w);
     const Eigen::VectorXd moved = null_space.col(c).cwiseProduct(problem.scaling.column).cwiseAbs();
     if (std::isfinite(distance))
-      error.solution = error.solution.cwiseMax(std::max(distance, 4 * asked[c]) * moved);
-    else // neutral, or lost in rounding: stability tells which
+      error.solution = error.solution.cwiseMax(std::max(distance, 4 * displacement[c]) * moved);
+    else // neutral, or lost in rounding: stability decides which
       error.undetermined = error.undetermined.cwiseMax(moved);
   }
 }
 
-// A metric that held what seemed to feel nothing shortens the steps along what feels a little: without it,
-// unless there is a null direction indeed.
-void let_go(const Problem& problem, Workspace& w) {
+// A shift that kept null directions still shortens the steps along soft ones: without it, unless there is a
+// null direction indeed.
+void drop_shift(const Problem& problem, Workspace& w) {
   KktSystem& kkt = w.kkt(problem);
   const double shift = kkt.shift();
   if (shift == 0) return;
@@ -244,7 +246,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   estimate.undetermined.setZero(system.nv);
   estimate.data.setZero(system.nv);
   if (system.nv == 0) return;
-  let_go(problem, w);
+  drop_shift(problem, w);
   const DenseKkt* dense = w.matrices(problem);
   double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
   constexpr int last_round = 4;

@@ -9,11 +9,11 @@ namespace flyball {
 struct ErrorEstimate {
   // Against the equations: the last correction, what the rounding of the residual does to it, how far
   // redundant loops disagree, and two units in the last place. At a singular state also how far it could be
-  // moved before double precision can tell: at a fold half of the digits.
+  // moved before double precision sees an imbalance: at a fold half of the digits.
   Eigen::VectorXd solution;
   // What the rounding of the scene's own numbers adds for whoever compares with the scene.
   Eigen::VectorXd data;
-  // How far the state moves along directions in which double precision tells no force: neutral ones, or
+  // How far the state moves along directions in which double precision sees no force: neutral ones, or
   // softer than rounding. Zero where there are none.
   Eigen::VectorXd undetermined;
 };

@@ -17,10 +17,10 @@ constexpr double last_step = 1e-8;        // scaled; the next is its square, rou
 constexpr double trusted_error = 1e-2;    // of the step's tolerance: foreseen by the last two, so not taken
 constexpr double neutral_step = 1e-5;     // scaled; along null directions rounding makes steps as long
 constexpr double linear_step = 1e-6;      // scaled; while shrinking slowly: linear convergence, a double root
-constexpr double linear_residual = 1e-15; // scaled, where that is told: nothing is left but rounding
+constexpr double linear_residual = 1e-15; // scaled, beside linear_step: nothing is left but rounding
 constexpr double proximal_residual =
     1e-12; // scaled, where null directions are kept still: as above, many bodies
-constexpr double singular_residual = 1e-13; // scaled: without stiffness only the balance itself tells
+constexpr double singular_residual = 1e-13; // scaled: without stiffness only the balance itself decides
 // Scaled: short steps with more left are no state. No coordinate resists that force, or no step closes the
 // loop.
 constexpr double balance = 1e-8;
@@ -45,7 +45,7 @@ constexpr double slowly_closed = 1e-11;        // where the last iterations gain
 constexpr double slowly_closed_at_most = 1e-9; // the same, where they were open as much before
 
 // Descents of the amended potential.
-constexpr double potential_rounding = 1e-14; // of its terms: less it cannot be told to differ by
+constexpr double potential_rounding = 1e-14; // of its terms: a smaller difference is none
 constexpr double energy_rounding = 1e-12;    // the same between two poses far apart
 constexpr double saddle_step = 1e-6;         // scaled; steps so short, and a fall: step off a saddle
 constexpr double small_force = 1e-6;         // scaled; so small at a saddle, or along null directions
@@ -73,5 +73,34 @@ constexpr double phase_variation = 1e-2; // scaled; what the drives move further
 constexpr double push_rounding = 1e-9;  // of the terms that a force is the sum of
 constexpr double constant_push = 1e-6;  // of a force: it has not become less by more
 constexpr double remaining_push = 1e-3; // of a force: all round a turn as much is left
+
+// Directions of a state.
+constexpr double takes_part = 1e-6; // of a direction's largest entry: the coordinate moves in it
+constexpr double symmetric = 1e-9;  // of a stiffness: that of a potential may differ from its transpose so
+constexpr double second_difference = 1e-3; // scaled step, and of the stiffness what its error may be
+
+// Eigenvalues s of the linearised motion.
+constexpr double on_axis = 1e-8;             // of |s|: a real part as small is rounding
+constexpr double on_axis_of_largest = 1e-12; // of the largest |s|: rounding that all eigenvalues share
+// Of the largest |s|: a null direction has a double zero, of which rounding leaves its root.
+constexpr double null_eigenvalue = 1e-5;
+constexpr double massless = 1e-13; // of M: an inertia as small is rounding
+constexpr double without_force =
+    1e-10;                       // of K or of C + G: so little of it along a massless direction is none
+constexpr double coupled = 1e-8; // of K: between massless directions and others
+
+// Floquet multipliers mu.
+constexpr double multiplier = 1e-8;          // | |mu| - 1 |: rounding of one by itself
+constexpr double multipliers_meet = 1e-3;    // distance of two: nearer they are known to the root of that
+constexpr double meeting_multiplier = 1e-6;  // | |mu| - 1 | of these
+constexpr double neutral_multiplier = 1e-4;  // |mu - 1|: of a neutral direction and its rate, which meet at 1
+constexpr double departed_multiplier = 1e-6; // |mu| - 1 of an undamped motion: it has left the circle
+
+// Branches; lengths are scaled arclength.
+constexpr double special_point = 1e-11;    // length: folds, crossings and Hopf points are located so well
+constexpr double same_parameter = 1e-6;    // of the parameter's range, and
+constexpr double same_branch_pose = 1e-5;  // scaled: points nearer are one
+constexpr double least_branch_step = 1e-9; // length; where even this fails the loops lock
+constexpr double longest_corner = 1e-6;    // length; a stop reached or left bends the branch within it
 
 } // namespace flyball::tolerance

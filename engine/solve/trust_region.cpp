@@ -9,8 +9,8 @@ namespace flyball {
 namespace {
 
 // rad. A body that turns further is nowhere near where the model puts it. As long as light bodies, the last
-// links of a chain, leave the rest alone it is they that are held and not the whole step that is shortened:
-// so it takes no more iterations for many links than for few.
+// links of a chain, leave the rest alone it is they that are limited and not the whole step that is
+// shortened: so it takes no more iterations for many links than for few.
 constexpr double farthest_turn = 1;
 
 class TrustRegion {
@@ -37,7 +37,7 @@ class TrustRegion {
       else
         shorten_step(0.25);
       const double size = step_.lpNorm<Eigen::Infinity>();
-      if (shortened == 0 && (shift_ == 0 || shy_) && size < tolerance::converged_step)
+      if (shortened == 0 && (shift_ == 0 || prefers_short_step_) && size < tolerance::converged_step)
         return {DescentEnd::minimum, i, kkt_.shift() == 0 && !convex_};
       if (!(predicted_ > 0) || !std::isfinite(size))
         return {size < tolerance::stalled_step ? DescentEnd::minimum : DescentEnd::stalled, i};
@@ -221,10 +221,10 @@ class TrustRegion {
     rhs_ = -gradient_;
     kkt_.solve(rhs_, step_);
     multipliers_ = kkt_.multipliers();
-    const bool held = kkt_.limit_turns(farthest_turn, step_);
+    const bool limited = kkt_.limit_turns(farthest_turn, step_);
     length_ = std::sqrt(kkt_.metric_of_solution(step_, metric_step_));
-    // What is held promises more; along the rest the model has come to its end.
-    predicted_ = (-gradient_.dot(step_) + (held ? 0 : shift * length_ * length_)) / 2;
+    // Limited turns promise more; along the rest the model has come to its end.
+    predicted_ = (-gradient_.dot(step_) + (limited ? 0 : shift * length_ * length_)) / 2;
     return std::isfinite(length_);
   }
 
@@ -238,12 +238,12 @@ class TrustRegion {
   }
 
   // Minimises the model within the radius, by 25 % of it: the exact one where it is convex, else the convex
-  // one as long as that leads somewhere. Where only the lowest curvature is in the way of a longer step, the
+  // one as long as that leads somewhere. Where only the lowest curvature prevents a longer step, the
   // shorter one has to do.
   void choose_step() {
     double low = least_shift_, high = 0; // the shift sought lies between, once high is known
     bool low_definite = false, sought = false;
-    shy_ = false;
+    prefers_short_step_ = false;
     // Where the convex model was far off the exact one still is not convex, as a rule.
     const bool in_vain = falls_ || (compression_tells_ && passed_over_ < 2);
     passed_over_ = in_vain ? passed_over_ + 1 : 0;
@@ -291,8 +291,8 @@ class TrustRegion {
         if (p_.system.rows > 0 && !sought) {
           sought = true;
           find_lowest_direction();
-          shy_ = falls_by_coordinates();
-          if (shy_) break;
+          prefers_short_step_ = falls_by_coordinates();
+          if (prefers_short_step_) break;
         }
       }
       // Without forces to speak of it is the direction to take, if there is one.
@@ -300,8 +300,8 @@ class TrustRegion {
         if (shift_ != high || shift != high) solve_with(high);
         last_shift_ = high;
         find_lowest_direction();
-        shy_ = falls_by_coordinates();
-        if (!shy_) add_negative_curvature();
+        prefers_short_step_ = falls_by_coordinates();
+        if (!prefers_short_step_) add_negative_curvature();
         return;
       }
       const double next = shift_ == shift ? shift + newton_on_length() : 0;
@@ -396,7 +396,7 @@ class TrustRegion {
   bool compression_tells_ = false; // in the last step, by the convex model, which leaves it out
   int passed_over_ = 0;            // times in a row that the exact model was not tried
   bool almost_there_ = false; // the constraints were factored on the way of closing the last step's loops
-  bool shy_ = false;          // of a longer step along a fall that coordinates make
+  bool prefers_short_step_ = false; // to a longer one along a negative curvature that coordinates make
 };
 
 } // namespace

@@ -51,20 +51,21 @@ class Search {
 
   // Whether what pushes along the coordinate at the start goes on pushing wherever it leads.
   bool goes_on(const Link& link, double first) {
-    const double way = first > 0 ? -1 : 1; // downhill
+    const double downhill = first > 0 ? -1 : 1;
     const auto pushes = [&](double by, double part) {
-      const double there = slope(link.v, by) * -way;
+      const double there = slope(link.v, by) * -downhill;
       return std::isfinite(there) && there >= part * std::abs(first);
     };
     if (link.type == LinkType::prismatic) {
       const double reach = p_.scaling.column[link.v];
       return std::ranges::all_of(std::array{far, 1.0, 30.0}, [&](double s) {
-        return pushes(way * s * reach, 1 - tolerance::constant_push);
+        return pushes(downhill * s * reach, 1 - tolerance::constant_push);
       });
     }
     // A weight pulls back half a turn on; what pushes all round, and after many turns, pushes on.
     constexpr int parts = 24;
-    if (!pushes(pi, tolerance::remaining_push) || !pushes(way * far * 2 * pi, 1 - tolerance::constant_push))
+    if (!pushes(pi, tolerance::remaining_push) ||
+        !pushes(downhill * far * 2 * pi, 1 - tolerance::constant_push))
       return false;
     for (int i = 1; i < parts; ++i)
       if (!pushes(2 * pi * i / parts, tolerance::remaining_push)) return false;

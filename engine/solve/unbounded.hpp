@@ -18,7 +18,7 @@ struct Unbounded {
 // From `start` (a configuration, loops open or closed) of a problem without a steady state. Two tests: along
 // each coordinate alone, whether the generalised force keeps its sign and loses nothing of its size out to a
 // thousand times the mechanism's reach, or over whole turns; then, where there is a potential, which
-// coordinates run off in a descent that finds no bottom. Empty where neither tells, where loops cannot be
+// coordinates run off in a descent that finds no bottom. Empty where neither decides, where loops cannot be
 // closed and where the problem is cancelled.
 Unbounded find_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w);
 

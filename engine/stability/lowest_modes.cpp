@@ -72,8 +72,8 @@ class ShiftedMotion {
       const double mass = x.dot(mx);
       return mass > 0 ? std::abs(x.dot(kx)) / mass : 0;
     };
-    const bool held = singular();
-    if (held) e.factor(quotient(true));
+    const bool shifted = singular();
+    if (shifted) e.factor(quotient(true));
     for (int i = 0; i < iterations; ++i) {
       e.metric(x, y);
       solve(y, x);
@@ -82,7 +82,7 @@ class ShiftedMotion {
       x /= size;
     }
     const double lowest = std::sqrt(quotient(false));
-    if (held) e.factor();
+    if (shifted) e.factor();
     return std::isfinite(lowest) ? lowest : 0;
   }
 

@@ -225,9 +225,9 @@ StabilityEvidence stability_evidence(const FactoredState& at) {
   std::ranges::sort(eigenvalues, {}, [](Complex s) { return std::abs(s); });
   for (std::size_t i = 0; i < eigenvalues.size(); ++i) {
     const Complex s = eigenvalues[i];
-    const bool of_null = i < 2 * static_cast<std::size_t>(out.null) && std::abs(s) < 1e-5 * largest;
-    const double tolerance = 1e-8 * std::abs(s) + 1e-12 * largest;
-    if (of_null || std::abs(s.real()) <= tolerance)
+    const bool of_null =
+        i < 2 * static_cast<std::size_t>(out.null) && std::abs(s) < tolerance::null_eigenvalue * largest;
+    if (of_null || std::abs(s.real()) <= real_part_rounding(s, largest))
       ++out.standing;
     else
       ++(s.real() > 0 ? out.growing : out.decaying);

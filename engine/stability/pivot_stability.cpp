@@ -81,12 +81,12 @@ Stability of_shifted_directions(const FactoredState& at) {
       one /= one.lpNorm<Eigen::Infinity>();
     }
     for (int v = 0; v < problem.system.nv; ++v)
-      if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
+      if (std::abs(one[v]) > tolerance::takes_part) takes_part[static_cast<std::size_t>(v)] = true;
     if (i == 0) direction = one;
   }
   for (const KktSystem::NullDirection& f : kkt.null_directions()) // and what feels nothing at all
     for (const auto& [v, share] : f)
-      if (std::abs(share) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
+      if (std::abs(share) > tolerance::takes_part) takes_part[static_cast<std::size_t>(v)] = true;
   const bool balanced =
       stays_balanced(at, 0.002 * direction, rounding) && stays_balanced(at, -0.003 * direction, rounding);
   out.reason = balanced ? StabilityReason::neutral : StabilityReason::marginal;
@@ -128,13 +128,13 @@ Stability find_pivot_stability(const FactoredState& at) {
       kkt.direction_of(f, one);
       one /= one.lpNorm<Eigen::Infinity>();
       for (int v = 0; v < problem.system.nv; ++v)
-        if (std::abs(one[v]) > 1e-6) takes_part[static_cast<std::size_t>(v)] = true;
+        if (std::abs(one[v]) > tolerance::takes_part) takes_part[static_cast<std::size_t>(v)] = true;
       all += one;
     }
   } else { // each by itself would cost too much: without what follows beyond
     for (const KktSystem::NullDirection& f : directions)
       for (const auto& [v, share] : f)
-        if (std::abs(share) > 1e-6) {
+        if (std::abs(share) > tolerance::takes_part) {
           takes_part[static_cast<std::size_t>(v)] = true;
           all[v] += share;
         }
@@ -144,7 +144,8 @@ Stability find_pivot_stability(const FactoredState& at) {
     return out;
   }
   all /= all.lpNorm<Eigen::Infinity>();
-  const bool balanced = stays_balanced(at, 0.05 * all, 1e-9) && stays_balanced(at, -0.11 * all, 1e-9);
+  const bool balanced = stays_balanced(at, 0.05 * all, tolerance::neutral_force) &&
+                        stays_balanced(at, -0.11 * all, tolerance::neutral_force);
   if (balanced)
     for (int v = 0; v < problem.system.nv; ++v)
       if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);

@@ -1,4 +1,5 @@
-// What the signs of the pivots tell of stability, at the cost of an elimination and without eigenvalues.
+// What the inertia of the KKT matrix, by the signs of its pivots, says of stability, at the cost of an
+// elimination and without eigenvalues.
 #pragma once
 
 #include "engine/stability/stability.hpp"

@@ -33,7 +33,7 @@ bool stays_balanced(const FactoredState& at, const Eigen::MatrixXd& null_space,
     const Eigen::MatrixXd& basis = w.dense.constraints().basis();
     const Eigen::VectorXd left = basis.transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
     const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
-    if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= 1e-9 * force) return true;
+    if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= tolerance::neutral_force * force) return true;
     factor(problem, moved, w);
     const auto all = orthonormal_completion(basis.transpose() * null_space);
     if (!all || all->cols() <= null_space.cols()) return false;
@@ -48,8 +48,8 @@ bool stays_balanced(const FactoredState& at, const Eigen::MatrixXd& null_space,
 
 // By the multipliers, of which those of `neutral` directions (a rotation or shift that nothing resists, and
 // its rate) lie at 1.
-void judge_by_multipliers(const Problem& problem, const Unknowns& z, int neutral, Workspace& w,
-                          Stability& out) {
+void classify_by_multipliers(const Problem& problem, const Unknowns& z, int neutral, Workspace& w,
+                             Stability& out) {
   FloquetOutcome outcome;
   if (problem.system.nv <= largest_for_eigenvalues)
     outcome = find_floquet(problem, z.q, w);
@@ -63,21 +63,24 @@ void judge_by_multipliers(const Problem& problem, const Unknowns& z, int neutral
   const Floquet& floquet = out.floquet.emplace(std::move(*outcome.result));
   out.eigenvalues = floquet_exponents(floquet);
   out.reason = StabilityReason::floquet;
-  std::vector<Complex> judged = floquet.multipliers;
-  std::ranges::sort(judged, {}, [](Complex mu) { return std::abs(mu - 1.); });
-  auto begin = judged.begin();
-  for (int i = 0; i < 2 * neutral && begin != judged.end() && std::abs(*begin - 1.) < 1e-4; ++i)
+  std::vector<Complex> counted = floquet.multipliers;
+  std::ranges::sort(counted, {}, [](Complex mu) { return std::abs(mu - 1.); });
+  auto begin = counted.begin();
+  for (int i = 0;
+       i < 2 * neutral && begin != counted.end() && std::abs(*begin - 1.) < tolerance::neutral_multiplier;
+       ++i)
     ++begin;
-  judged.erase(judged.begin(), begin);
+  counted.erase(counted.begin(), begin);
   // Multipliers that lie close together are known to the root of what others are.
-  const double tolerance = 1e-8 + 10 * floquet.error;
+  const double rounding = tolerance::multiplier + 10 * floquet.error;
   bool inside = true, apart = true;
-  for (std::size_t i = 0; i < judged.size(); ++i) {
-    const double size = std::abs(judged[i]);
-    bool close = std::abs(judged[i].imag()) < 1e-3; // at 1 or -1 a pair meets
-    for (std::size_t j = 0; j < judged.size(); ++j)
-      close = close || (i != j && std::abs(judged[i] - judged[j]) < 1e-3);
-    const double limit = close ? std::max(1e-6, std::sqrt(10 * floquet.error)) : tolerance;
+  for (std::size_t i = 0; i < counted.size(); ++i) {
+    const double size = std::abs(counted[i]);
+    bool close = std::abs(counted[i].imag()) < tolerance::multipliers_meet; // at 1 or -1 a pair meets
+    for (std::size_t j = 0; j < counted.size(); ++j)
+      close = close || (i != j && std::abs(counted[i] - counted[j]) < tolerance::multipliers_meet);
+    const double limit =
+        close ? std::max(tolerance::meeting_multiplier, std::sqrt(10 * floquet.error)) : rounding;
     if (size > 1 + limit) {
       out.stable = false;
       return;
@@ -95,7 +98,7 @@ void judge_by_multipliers(const Problem& problem, const Unknowns& z, int neutral
   if (inside || apart) out.stable = true;
 }
 
-// Whether directions without mass and damping tip over at once: no finite eigenvalue tells of it. They do
+// Whether directions without mass and damping tip over at once: no finite eigenvalue shows it. They do
 // where their own stiffness is negative, and where it vanishes while they are coupled with directions that
 // have mass: with a mass e of theirs, e s^2 and m s^2 on the diagonal and c beside it, s^2 = +-c / sqrt(e m).
 std::optional<bool> massless_directions_tip(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
@@ -104,7 +107,8 @@ std::optional<bool> massless_directions_tip(const Eigen::MatrixXd& mass, const E
   SymmetricEigen shape;
   if (!shape.compute((mass + mass.transpose()) / 2)) return {};
   Eigen::Index massless = 0;
-  while (massless < mass.rows() && shape.values()[massless] < 1e-13 * std::max(mass.norm(), 1e-300))
+  while (massless < mass.rows() &&
+         shape.values()[massless] < tolerance::massless * std::max(mass.norm(), 1e-300))
     ++massless;
   if (massless == 0) return false;
   const Eigen::MatrixXd z = shape.vectors().leftCols(massless),
@@ -112,18 +116,24 @@ std::optional<bool> massless_directions_tip(const Eigen::MatrixXd& mass, const E
   SymmetricEigen local;
   if (!local.compute(z.transpose() * (stiffness + stiffness.transpose()) * z / 2)) return {};
   const double size = std::max(stiffness.norm(), 1e-300);
-  if (local.values()[0] < -1e-10 * size) return true;
-  for (Eigen::Index i = 0; i < massless && local.values()[i] < 1e-10 * size; ++i) {
+  if (local.values()[0] < -tolerance::without_force * size) return true;
+  for (Eigen::Index i = 0; i < massless && local.values()[i] < tolerance::without_force * size; ++i) {
     const Eigen::VectorXd direction = z * local.vectors().col(i);
-    if ((velocity * direction).norm() > 1e-10 * velocity.norm()) continue;
+    if ((velocity * direction).norm() > tolerance::without_force * velocity.norm()) continue;
     const double coupling = std::min((r.transpose() * stiffness * direction).norm(),
                                      (direction.transpose() * stiffness * r).norm());
-    if (coupling > 1e-8 * size && coupling * coupling > 100 * std::abs(local.values()[i]) * size) return true;
+    if (coupling > tolerance::coupled * size &&
+        coupling * coupling > 100 * std::abs(local.values()[i]) * size)
+      return true;
   }
   return false;
 }
 
 } // namespace
+
+double real_part_rounding(Complex s, double largest) {
+  return tolerance::on_axis * std::abs(s) + tolerance::on_axis_of_largest * largest;
+}
 
 bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w) {
   const System& system = problem.system;
@@ -134,7 +144,7 @@ bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<doubl
 bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::MatrixXd& k, Workspace& w) {
   if (!problem.system.conservative) return false;
   if (problem.system.single_drives) return true;
-  if ((k - k.transpose()).norm() > 1e-9 * k.norm()) return false;
+  if ((k - k.transpose()).norm() > tolerance::symmetric * k.norm()) return false;
   // Second differences of U + lambda . Phi, whose gradient is f.
   const auto lagrangian = [&](int i, double step) {
     Eigen::VectorXd q = z.q;
@@ -147,12 +157,12 @@ bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::Matri
     return amended_potential(problem.system, problem.parameters, q, w.kinematics).value +
            z.lambda.dot(w.residual.phi);
   };
-  const double h = 1e-3;
+  const double h = tolerance::second_difference;
   bool agrees = true;
   for (int i = 0; i < problem.system.nv && agrees; ++i) {
     interruption_point();
     const double second = (lagrangian(i, h) - 2 * lagrangian(i, 0) + lagrangian(i, -h)) / (h * h);
-    agrees = std::abs(second - k(i, i)) <= 1e-3 * k.norm();
+    agrees = std::abs(second - k(i, i)) <= tolerance::second_difference * k.norm();
   }
   return agrees;
 }
@@ -183,7 +193,7 @@ Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
            stays_balanced(at, null_space, -0.11 * direction);
   };
   // What holds for a mixture of many holds for each.
-  const bool all = null_space.cols() > few_flat && stays_along(mixture_of(null_space));
+  const bool all = null_space.cols() > few_null_directions && stays_along(mixture_of(null_space));
   for (Eigen::Index c = 0; c < null_space.cols(); ++c) {
     Eigen::VectorXd direction = null_space.col(c);
     const double size = direction.lpNorm<Eigen::Infinity>();
@@ -192,12 +202,13 @@ Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
     if (!all && !stays_along(direction)) continue;
     ++neutral_count;
     for (int i = 0; i < problem.system.nv; ++i)
-      if (std::abs(direction[i]) > 1e-6 && std::ranges::find(out.neutral, i) == out.neutral.end())
+      if (std::abs(direction[i]) > tolerance::takes_part &&
+          std::ranges::find(out.neutral, i) == out.neutral.end())
         out.neutral.push_back(i);
   }
   std::ranges::sort(out.neutral);
   if (varies) {
-    judge_by_multipliers(problem, at.z, neutral_count, w.elsewhere(), out);
+    classify_by_multipliers(problem, at.z, neutral_count, w.elsewhere(), out);
     return out;
   }
 
@@ -223,14 +234,14 @@ Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
   std::ranges::sort(moving, [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
   const double largest = moving.empty() ? 0 : std::abs(moving.back());
   for (int i = 0; i < 2 * static_cast<int>(null_space.cols()) && !moving.empty() &&
-                  std::abs(moving.front()) < 1e-5 * largest;
+                  std::abs(moving.front()) < tolerance::null_eigenvalue * largest;
        ++i)
     moving.erase(moving.begin());
   bool right = false, left = !moving.empty() || null_space.cols() == 0;
   for (Complex x : moving) {
-    const double tolerance = 1e-8 * std::abs(x) + 1e-12 * largest;
-    if (x.real() > tolerance) right = true;
-    if (x.real() >= -tolerance) left = false;
+    const double rounding = real_part_rounding(x, largest);
+    if (x.real() > rounding) right = true;
+    if (x.real() >= -rounding) left = false;
   }
   const auto tipping = massless_directions_tip(mass, velocity, stiffness);
   if (!tipping) return out;

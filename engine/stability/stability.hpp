@@ -24,17 +24,20 @@ struct Stability {
   std::vector<int> neutral; // coordinates of q_R that take part in directions nothing resists
 };
 
+// How far from zero (1/s) rounding may put the real part of an eigenvalue, `largest` the size of the largest.
+double real_part_rounding(std::complex<double> s, double largest);
+
 // Whether f is the gradient of the amended potential at a steady state z although drives ride on drives:
 // whether the scaled `stiffness` there is symmetric and agrees with the potential's second differences, which
 // are taken in `w`.
 bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::MatrixXd& stiffness, Workspace& w);
 
-// Whether the linearised motion turns with the drives, as far as can be told: comparing it over the phases
+// Whether the linearised motion turns with the drives, as far as is known: comparing it over the phases
 // would take too long in very large mechanisms.
 bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w);
 
 // Of a steady state. Of a dense problem `with_eigenvalues` asks for the full picture, else only the sign of a
-// minimum is found; of others the signs of the pivots tell (pivot_stability.hpp).
+// minimum is found; of others the signs of the pivots decide (pivot_stability.hpp).
 Stability find_stability(const FactoredState& at, bool with_eigenvalues);
 
 } // namespace flyball
