@@ -4,40 +4,60 @@
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/stability/stability.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace flyball {
 
 Condition coordinate_is(const CoordinateInfo& coordinate, double value) {
-  return [coordinate, value](const ExtendedBalance& balance, const ExtendedState& state, Workspace&) {
-    const Problem p = balance.problem();
-    const double now = coordinate_value(p.system, p.parameters, state.z.q, coordinate);
-    return away_from(p.system, p.parameters, coordinate, now, value) /
-           (coordinate.angle ? 1 : p.parameters.length);
-  };
+  const auto unit = [coordinate](const Problem& p) { return coordinate.angle ? 1 : p.parameters.length; };
+  return {[=](const ExtendedBalance& balance, const ExtendedState& state, Workspace&) {
+            const Problem p = balance.problem();
+            const double now = coordinate_value(p.system, p.parameters, state.z.q, coordinate);
+            return away_from(p.system, p.parameters, coordinate, now, value) / unit(p);
+          },
+          [=](const ExtendedBalance& balance, const ExtendedState& state) -> Eigen::VectorXd {
+            const Problem p = balance.problem();
+            return coordinate_gradient(p.system, p.parameters, state.z.q, coordinate)
+                       .cwiseProduct(p.scaling.column) /
+                   unit(p);
+          }};
 }
 
 Condition balance_is_singular() {
-  return [](const ExtendedBalance& balance, const ExtendedState&, Workspace& w) {
+  return {[](const ExtendedBalance& balance, const ExtendedState&, Workspace& w) {
     return balance.singularity(w);
-  };
+  }};
 }
 
 Condition branches_cross(std::size_t parameter) {
-  return [parameter](const ExtendedBalance& balance, const ExtendedState& state, Workspace& w) {
+  return {[parameter](const ExtendedBalance& balance, const ExtendedState& state, Workspace& w) {
     return balance.transversality(state, parameter, w);
-  };
+  }};
 }
 
 ExtendedBalance::ExtendedBalance(const System& system, const Mechanism& mechanism,
                                  std::vector<std::string> addresses, Eigen::VectorXd scales,
                                  std::vector<Condition> conditions, bool unfolded)
     : system_(system), mechanism_(mechanism), addresses_(std::move(addresses)), scales_(std::move(scales)),
-      conditions_(std::move(conditions)), unfolded_(unfolded) {
+      conditions_(std::move(conditions)), unfolded_(unfolded),
+      form_(system.conservative && system.single_drives && !needs_matrices() ? system.kkt_form
+                                                                             : KktForm::dense) {
   bind(system_, mechanism_, parameters_);
   set_scaling(system_, parameters_, scaling_);
   left_ = right_ = Eigen::VectorXd::Zero(system_.nv);
+}
+
+bool ExtendedBalance::needs_matrices() const {
+  return unfolded_ || std::ranges::any_of(conditions_, [](const Condition& c) { return !c.gradient; });
+}
+
+Problem ExtendedBalance::judged() const {
+  Problem p = problem();
+  if (system_.nv <= largest_for_eigenvalues) p.form = KktForm::dense;
+  return p;
 }
 
 // A state without loads has stiffness only, one without stiffness loads only.
@@ -81,14 +101,21 @@ void ExtendedBalance::rates(const ExtendedState& state, std::size_t index, Eigen
   phi = ((p[0] - p[1]) / (2 * h)).cwiseProduct(scaling_.row);
 }
 
-// Unknowns y, m (and the unfolding): the scaled step is r0 + N y + R m, and m for the parameters.
-struct ExtendedBalance::Assembled {
-  Eigen::MatrixXd columns; // [N R; 0 I]: (unknowns, k + parameters)
-  Eigen::VectorXd r0;
-  Eigen::MatrixXd matrix; // without the last row
-  Eigen::VectorXd rhs;
-  double residual = 0;
-};
+void ExtendedBalance::evaluate_extended(const Unknowns& z, Eigen::VectorXd& force, Eigen::VectorXd& phi) {
+  w_.q_extended = z.q.cast<Extended>();
+  w_.lambda_extended = z.lambda.cast<Extended>();
+  forward<Extended>(system_, parameters_, w_.q_extended, 0, w_.kinematics_extended);
+  evaluate_residual<Extended>(system_, parameters_, w_.q_extended, w_.lambda_extended, w_.kinematics_extended,
+                              w_.residual_extended);
+  phi = w_.residual_extended.phi.cast<double>().cwiseProduct(scaling_.row);
+  force = w_.residual_extended.f.cast<double>().cwiseProduct(scaling_.column);
+}
+
+double ExtendedBalance::linearize(const ExtendedState& state) {
+  if (form_ != KktForm::dense) return border(state);
+  assemble(state, assembled_);
+  return assembled_.matrix.allFinite() ? assembled_.residual : std::numeric_limits<double>::infinity();
+}
 
 void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   ExtendedState state = start;
@@ -106,14 +133,8 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   out.r0 = Eigen::VectorXd::Zero(n);
   out.matrix = Eigen::MatrixXd::Zero(k + conditions, k + count + (unfolded_ ? 1 : 0));
   out.rhs.resize(k + conditions);
-  // Forces and loops in extended precision: the last digits of the answer come from here.
-  w_.q_extended = state.z.q.cast<Extended>();
-  w_.lambda_extended = Eigen::VectorXd::Zero(system_.rows).cast<Extended>();
-  forward<Extended>(system_, parameters_, w_.q_extended, 0, w_.kinematics_extended);
-  evaluate_residual<Extended>(system_, parameters_, w_.q_extended, w_.lambda_extended, w_.kinematics_extended,
-                              w_.residual_extended);
-  const Eigen::VectorXd phi = w_.residual_extended.phi.cast<double>().cwiseProduct(scaling_.row);
-  Eigen::VectorXd force = w_.residual_extended.f.cast<double>().cwiseProduct(scaling_.column);
+  Eigen::VectorXd force, phi;
+  evaluate_extended({state.z.q, Eigen::VectorXd::Zero(system_.rows)}, force, phi);
   if (w_.dense.constraints().rank() > 0) w_.dense.constraints().solve(-phi, out.r0);
   out.matrix.topLeftCorner(k, k) = large::projected(stiffness, basis) / size;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -135,10 +156,11 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   // Conditions and their rates along every column, by central differences: they steer, the conditions
   // themselves are exact.
   for (Eigen::Index c = 0; c < conditions; ++c) {
-    const double value = conditions_[static_cast<std::size_t>(c)](*this, state, w_);
+    const double value = conditions_[static_cast<std::size_t>(c)].value(*this, state, w_);
     out.rhs[k + c] = -value;
     out.residual = std::max(out.residual, std::abs(value));
   }
+  const bool matrices = needs_matrices();
   const double h = 1e-5;
   for (Eigen::Index j = 0; j < k + count; ++j) {
     Eigen::VectorXd side[2];
@@ -146,10 +168,10 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
       ExtendedState moved = state;
       move(moved, (i == 0 ? h : -h) * out.columns.col(j));
       if (j >= k) set(moved.parameters);
-      factor_with_multipliers(this->problem(), moved.z, probe_);
+      if (matrices) factor_with_multipliers(this->problem(), moved.z, probe_);
       side[i].resize(conditions);
       for (Eigen::Index c = 0; c < conditions; ++c)
-        side[i][c] = conditions_[static_cast<std::size_t>(c)](*this, moved, probe_);
+        side[i][c] = conditions_[static_cast<std::size_t>(c)].value(*this, moved, probe_);
     }
     out.matrix.col(j).tail(conditions) = (side[0] - side[1]) / (2 * h);
     if (j >= k) set(state.parameters);
@@ -160,44 +182,130 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
     Eigen::VectorXd step = Eigen::VectorXd::Zero(n + count);
     step.head(n) = out.r0;
     move(closed, step);
-    factor_with_multipliers(problem, closed.z, probe_);
+    if (matrices) factor_with_multipliers(problem, closed.z, probe_);
     for (Eigen::Index c = 0; c < conditions; ++c)
-      out.rhs[k + c] = -conditions_[static_cast<std::size_t>(c)](*this, closed, probe_);
+      out.rhs[k + c] = -conditions_[static_cast<std::size_t>(c)].value(*this, closed, probe_);
   }
+}
+
+double ExtendedBalance::border(const ExtendedState& start) {
+  ExtendedState state = start;
+  set(state.parameters);
+  const Problem problem = this->problem();
+  const Eigen::Index n = system_.nv, count = scales_.size();
+  const auto conditions = static_cast<Eigen::Index>(conditions_.size());
+  evaluate_with_multipliers(problem, state.z, w_);
+  const double left = scaled_residual(problem, w_);
+  if (!std::isfinite(left)) return left;
+  bordered_.matrix.linearize(problem, state.z, w_);
+  Eigen::VectorXd force, phi;
+  Eigen::MatrixXd force_rates(n, count), phi_rates(system_.rows, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    rates(state, static_cast<std::size_t>(i), force, phi);
+    force_rates.col(i) = force;
+    phi_rates.col(i) = phi;
+  }
+  bordered_.matrix.set_columns(force_rates, phi_rates);
+  evaluate_extended(state.z, force, phi);
+  double residual = n > 0 ? force.lpNorm<Eigen::Infinity>() / bordered_.matrix.force_size() : 0;
+  if (phi.size() > 0) residual = std::max(residual, phi.lpNorm<Eigen::Infinity>());
+
+  bordered_.rows.resize(conditions, n + count);
+  bordered_.rhs = {-force, -phi, Eigen::VectorXd(conditions)};
+  const auto value_of = [&](Eigen::Index c) {
+    return conditions_[static_cast<std::size_t>(c)].value(*this, state, w_);
+  };
+  for (Eigen::Index c = 0; c < conditions; ++c) {
+    const double value = value_of(c);
+    bordered_.rhs.m[c] = -value;
+    residual = std::max(residual, std::abs(value));
+    bordered_.rows.row(c).head(n) =
+        conditions_[static_cast<std::size_t>(c)].gradient(*this, state).transpose();
+  }
+  const double h = 1e-5;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (const double side : {h, -h}) {
+      set(state.parameters + side * scales_[i] * Eigen::VectorXd::Unit(count, i));
+      for (Eigen::Index c = 0; c < conditions; ++c) {
+        const double part = value_of(c) / (2 * side);
+        bordered_.rows(c, n + i) = side > 0 ? part : bordered_.rows(c, n + i) + part;
+      }
+    }
+    set(state.parameters);
+  }
+  return residual;
+}
+
+std::optional<ExtendedBalance::Step> ExtendedBalance::solve(Rhs rhs, const Eigen::VectorXd& row,
+                                                            double along) {
+  return form_ == KktForm::dense ? solve_assembled(rhs, row, along) : solve_bordered(rhs, row, along);
+}
+
+std::optional<ExtendedBalance::Step> ExtendedBalance::solve_assembled(Rhs rhs, const Eigen::VectorXd& row,
+                                                                      double along) const {
+  const Assembled& a = assembled_;
+  const bool last = row.size() > 0;
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(a.matrix.rows() + (last ? 1 : 0), a.matrix.cols());
+  if (m.rows() != m.cols()) return {};
+  m.topRows(a.matrix.rows()) = a.matrix;
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(m.rows());
+  if (rhs == Rhs::balance) b.head(a.rhs.size()) = a.rhs;
+  if (last) {
+    m.bottomRows(1).leftCols(a.columns.cols()) = row.transpose() * a.columns;
+    b[a.rhs.size()] = along;
+    if (rhs == Rhs::balance) b[a.rhs.size()] -= row.head(system_.nv).dot(a.r0);
+  }
+  const auto solved = solve_square(m, b);
+  if (!solved) return {};
+  Step step{a.columns * solved->head(a.columns.cols())};
+  if (rhs == Rhs::balance) step.scaled.head(system_.nv) += a.r0;
+  if (unfolded_) step.unfolding = (*solved)[solved->size() - 1];
+  return step;
+}
+
+std::optional<ExtendedBalance::Step> ExtendedBalance::solve_bordered(Rhs rhs, const Eigen::VectorXd& row,
+                                                                     double along) {
+  const Eigen::Index n = system_.nv, count = scales_.size(), conditions = bordered_.rows.rows();
+  const bool last = row.size() > 0;
+  if (conditions + (last ? 1 : 0) != count) return {};
+  Eigen::MatrixXd rows(count, n + count);
+  rows.topRows(conditions) = bordered_.rows;
+  BorderedKkt::Vector b{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(system_.rows),
+                        Eigen::VectorXd::Zero(count)};
+  if (rhs == Rhs::balance) {
+    b.x = bordered_.rhs.x;
+    b.lambda = bordered_.rhs.lambda;
+    b.m.head(conditions) = bordered_.rhs.m;
+  }
+  if (last) {
+    rows.bottomRows(1) = row.transpose();
+    b.m[conditions] = along;
+  }
+  bordered_.matrix.set_rows(rows);
+  BorderedKkt::Vector out;
+  if (!bordered_.matrix.solve(b, out)) return {};
+  Step step{Eigen::VectorXd(n + count)};
+  step.scaled << out.x, out.m;
+  return step;
 }
 
 ExtendedOutcome ExtendedBalance::correct(ExtendedState& state, const Eigen::VectorXd& row) {
   ExtendedOutcome outcome;
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(unknowns());
-  Assembled a;
   double previous = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 40; ++i) { // a double solution halves its error only
-    assemble(state, a);
-    outcome.residual = a.residual;
-    if (!std::isfinite(a.residual) || !a.matrix.allFinite()) return outcome;
-    const bool last = row.size() > 0;
-    Eigen::MatrixXd m(a.matrix.rows() + (last ? 1 : 0), a.matrix.cols());
-    Eigen::VectorXd rhs(m.rows());
-    m.topRows(a.matrix.rows()) = a.matrix;
-    rhs.head(a.rhs.size()) = a.rhs;
-    if (last) {
-      m.bottomRows(1).setZero();
-      m.bottomRows(1).leftCols(a.columns.cols()) = row.transpose() * a.columns;
-      rhs[a.rhs.size()] = -row.head(system_.nv).dot(a.r0) - row.dot(moved);
-    }
-    if (m.rows() != m.cols()) return outcome;
-    const auto solved = solve_square(m, rhs);
+    outcome.residual = linearize(state);
+    if (!std::isfinite(outcome.residual)) return outcome;
+    const auto solved = solve(Rhs::balance, row, row.size() > 0 ? -row.dot(moved) : 0);
     if (!solved) return outcome;
-    const Eigen::VectorXd& u = *solved;
-    Eigen::VectorXd step = a.columns * u.head(a.columns.cols());
-    step.head(system_.nv) += a.r0;
+    const Eigen::VectorXd& step = solved->scaled;
     const double length = step.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(length) || length > 2) return outcome;
     // Converged before: these are the last digits, as long as they still get smaller.
     if (outcome.converged && !(length < 0.5 * previous)) break;
     move(state, step);
     moved += step;
-    if (unfolded_) state.unfolding += u[u.size() - 1];
+    state.unfolding += solved->unfolding;
     outcome.step = step;
     outcome.iterations = i + 1;
     previous = length;
@@ -215,22 +323,12 @@ ExtendedOutcome ExtendedBalance::correct(ExtendedState& state, const Eigen::Vect
 }
 
 Eigen::VectorXd ExtendedBalance::tangent(const ExtendedState& state, const Eigen::VectorXd& previous) {
-  Assembled a;
-  assemble(state, a);
-  if (!a.matrix.allFinite()) return {};
-  Eigen::MatrixXd m(a.matrix.rows() + 1, a.matrix.cols());
-  m.topRows(a.matrix.rows()) = a.matrix;
-  m.bottomRows(1).setZero();
-  m.bottomRows(1).leftCols(a.columns.cols()) = previous.transpose() * a.columns;
-  if (m.rows() != m.cols()) return {};
-  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(m.rows());
-  rhs[m.rows() - 1] = 1;
-  const auto solved = solve_square(m, rhs);
+  if (!std::isfinite(linearize(state))) return {};
+  const auto solved = solve(Rhs::none, previous, 1);
   if (!solved) return {};
-  Eigen::VectorXd out = a.columns * solved->head(a.columns.cols());
-  const double norm = out.norm();
+  const double norm = solved->scaled.norm();
   if (!std::isfinite(norm) || norm == 0) return {};
-  return out / norm;
+  return solved->scaled / norm;
 }
 
 void ExtendedBalance::set_borders(const ExtendedState& state) {
@@ -254,7 +352,7 @@ void ExtendedBalance::set_borders(const ExtendedState& state) {
   size_ = force_size(w_);
 }
 
-Eigen::MatrixXd ExtendedBalance::bordered(const Workspace& w) const {
+Eigen::MatrixXd ExtendedBalance::with_borders(const Workspace& w) const {
   const Eigen::MatrixXd& basis = w.dense.constraints().basis();
   const Eigen::Index k = basis.cols();
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(k + 1, k + 1);
@@ -265,7 +363,7 @@ Eigen::MatrixXd ExtendedBalance::bordered(const Workspace& w) const {
 }
 
 double ExtendedBalance::singularity(Workspace& w) const {
-  const Eigen::MatrixXd m = bordered(w);
+  const Eigen::MatrixXd m = with_borders(w);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(m.rows());
   rhs[m.rows() - 1] = 1;
   const auto solved = solve_square(m, rhs);
@@ -273,7 +371,7 @@ double ExtendedBalance::singularity(Workspace& w) const {
 }
 
 double ExtendedBalance::transversality(const ExtendedState& state, std::size_t index, Workspace& w) const {
-  const Eigen::MatrixXd m = bordered(w);
+  const Eigen::MatrixXd m = with_borders(w);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(m.rows());
   rhs[m.rows() - 1] = 1;
   const auto solved = solve_square(m.transpose(), rhs);

@@ -1,12 +1,16 @@
 // The balance with numbers of the mechanism among the unknowns, and as many conditions beside it: "this
-// coordinate has that value", "the balance is singular". Newton-Raphson on all of it together, on the null
-// space of the constraints, so that redundant loops do no harm.
+// coordinate has that value", "the balance is singular". Newton-Raphson on all of it together: with the
+// system's own form of the KKT matrix and block elimination (bordered_kkt.hpp) where there is a potential and
+// every condition tells its gradient; else by matrices on the null space of the constraints, so that
+// redundant loops do no harm.
 #pragma once
 
+#include "engine/continuation/bordered_kkt.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/solve/newton.hpp"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +24,14 @@ struct ExtendedState {
 
 class ExtendedBalance;
 
-// What has to vanish, at a state whose parameters are set and which is factored with its best multipliers in
-// the workspace.
-using Condition = std::function<double(const ExtendedBalance&, const ExtendedState&, Workspace&)>;
+// What has to vanish.
+struct Condition {
+  // At a state whose parameters are set and which, where there is no gradient, is factored with its best
+  // multipliers in the workspace.
+  std::function<double(const ExtendedBalance&, const ExtendedState&, Workspace&)> value;
+  // By scaled coordinates, where that takes no matrices.
+  std::function<Eigen::VectorXd(const ExtendedBalance&, const ExtendedState&)> gradient{};
+};
 
 // A coordinate has a value (rad or m).
 Condition coordinate_is(const CoordinateInfo& coordinate, double value);
@@ -46,7 +55,10 @@ class ExtendedBalance {
                   Eigen::VectorXd scales, std::vector<Condition> conditions, bool unfolded = false);
 
   void set(const Eigen::VectorXd& parameters);
-  Problem problem() const { return {system_, parameters_, scaling_}; }
+  // In the form that is solved.
+  Problem problem() const { return {system_, parameters_, scaling_, nullptr, form_}; }
+  // By matrices as far as eigenvalues are found without being asked for: what judges the stability.
+  Problem judged() const;
   const Mechanism& mechanism() const { return mechanism_; }
   const Eigen::VectorXd& scales() const { return scales_; }
   int unknowns() const { return system_.nv + static_cast<int>(scales_.size()); }
@@ -74,12 +86,43 @@ class ExtendedBalance {
   double transversality(const ExtendedState& state, std::size_t index, Workspace& w) const;
 
  private:
-  struct Assembled;
+  // Unknowns y, m (and the unfolding) of the matrices: the scaled step is r0 + N y + R m, and m for the
+  // parameters.
+  struct Assembled {
+    Eigen::MatrixXd columns; // [N R; 0 I]: (unknowns, k + parameters)
+    Eigen::VectorXd r0;
+    Eigen::MatrixXd matrix; // without the last row
+    Eigen::VectorXd rhs;
+    double residual = 0;
+  };
+  // Of block elimination.
+  struct Bordered {
+    BorderedKkt matrix;
+    Eigen::MatrixXd rows; // of the conditions
+    BorderedKkt::Vector rhs;
+  };
+  struct Step {
+    Eigen::VectorXd scaled; // coordinates, parameters
+    double unfolding = 0;
+  };
+  enum class Rhs { balance, none }; // of the balance and the conditions
+
+  // Returns the residual; not finite where nothing can be solved.
+  double linearize(const ExtendedState& state);
   void assemble(const ExtendedState& state, Assembled& out);
+  double border(const ExtendedState& state);
+  // Of what was linearised, with the product `along` of the step and `row`, where that is not empty.
+  std::optional<Step> solve(Rhs rhs, const Eigen::VectorXd& row, double along);
+  std::optional<Step> solve_assembled(Rhs rhs, const Eigen::VectorXd& row, double along) const;
+  std::optional<Step> solve_bordered(Rhs rhs, const Eigen::VectorXd& row, double along);
+  bool needs_matrices() const;
+  // Forces with these multipliers (N m, N) and loops in extended precision, scaled: the last digits of the
+  // answer come from here.
+  void evaluate_extended(const Unknowns& z, Eigen::VectorXd& force, Eigen::VectorXd& phi);
   void rates(const ExtendedState& state, std::size_t index, Eigen::VectorXd& force,
              Eigen::VectorXd& phi) const;
   double force_size(const Workspace& w) const;
-  Eigen::MatrixXd bordered(const Workspace& w) const;
+  Eigen::MatrixXd with_borders(const Workspace& w) const;
 
   const System& system_;
   Mechanism mechanism_;
@@ -87,6 +130,9 @@ class ExtendedBalance {
   Eigen::VectorXd scales_;
   std::vector<Condition> conditions_;
   bool unfolded_;
+  KktForm form_;
+  Assembled assembled_;
+  Bordered bordered_;
   Parameters parameters_;
   Scaling scaling_;
   Eigen::VectorXd left_, right_; // borders, scaled, in all coordinates

@@ -36,6 +36,7 @@ class Designer {
     BranchOptions follow;
     follow.largest_step = options_.largest_step;
     follow.eigenvalues = false;
+    follow.dense_up_to = 0;
     follow.all = options_.all;
     follow.cancel = options_.cancel;
     follow.progress = options_.progress;
@@ -161,7 +162,7 @@ class Designer {
     s.branch = static_cast<int>(branch);
     s.connected = diagram_.branches[branch].connected;
     Workspace& w = balance_.workspace();
-    s.at = response_point(balance_.mechanism(), problem, state.z, error, {true, true}, w);
+    s.at = response_point(balance_.mechanism(), balance_.judged(), state.z, error, {true, true}, w);
     s.at.parameter = s.parameter;
     const auto rates = sensitivities(factor_at(problem, state.z, w), balance_.mechanism(), {&address_, 1});
     if (!rates.empty())

@@ -333,7 +333,7 @@ class Plane {
   static PlanePoint point(ExtendedBalance& balance, PlaneCurveType type, const ExtendedState& s) {
     balance.set(s.parameters);
     ResponsePoint p =
-        response_point(balance.mechanism(), balance.problem(), s.z, {}, {false, false}, balance.workspace());
+        response_point(balance.mechanism(), balance.judged(), s.z, {}, {false, false}, balance.workspace());
     PlanePoint out{s.parameters[0], s.parameters[1], std::move(p.coordinates), {}};
     if (type == PlaneCurveType::coordinate) out.stable = p.stable;
     return out;
