@@ -237,8 +237,7 @@ class Diagram {
     const Problem problem = follower_.problem_at(value);
     Eigen::VectorXd drawn;
     drawn_configuration(problem.system, problem.parameters, drawn);
-    const Problem whole{problem.system, problem.parameters, problem.scaling, problem.cancel}; // by matrices
-    const EquilibriumList list = find_all_equilibria(whole, drawn, {}, w);
+    const EquilibriumList list = find_all_equilibria(problem, drawn, {}, w);
     out_.searched.push_back(value);
     out_.starts += list.report.starts;
     const std::vector<double> phases = sample_phases(problem.system, problem.parameters);

@@ -271,7 +271,7 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
 
 AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   State& s = *state_;
-  const Problem problem{s.system, s.parameters, s.scaling, options.cancel};
+  const Problem problem{s.system, s.parameters, s.scaling, options.cancel, s.system.kkt_form};
   for (const BodyPoint& point : options.points)
     find_point(s.system, *s.mechanism, s.parameters, point);
   SearchOptions search;
@@ -300,7 +300,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   std::vector<Entry> entries;
   SteadyState steady;
   for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i) {
-    report_progress(options.progress, "judging what was found",
+    report_progress(options.progress, "classifying what was found",
                     static_cast<double>(i) / static_cast<double>(list.states.size()));
     Found& found = steady.found;
     found = {};
@@ -315,12 +315,18 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
       continue;
     }
     const bool many = s.system.nv > largest_for_eigenvalues && options.modes == 0;
-    const Stability stability = find_stability(steady.factored(problem), !many);
+    const bool by_pivots = pivots_decide(problem);
+    const Problem classified = by_pivots ? problem : by_matrices(problem);
+    Stability stability = find_stability(steady.factored(classified), !many);
+    const bool varies = stability.floquet || stability.floquet_failure;
+    std::string without_modes;
+    if (by_pivots && options.modes > 0 && options.details && !varies)
+      without_modes = add_lowest_eigenvalues(problem, found.z, options.modes, steady.elsewhere(), stability);
     // A family along a direction that nothing resists is one entry.
     Potential potential;
-    if (s.system.conservative) {
-      potential = amended_potential(s.system, s.parameters, found.z.q, steady.factored(problem).w.kinematics);
-    }
+    if (s.system.conservative)
+      potential =
+          amended_potential(s.system, s.parameters, found.z.q, steady.factored(classified).w.kinematics);
     if (!stability.neutral.empty() && std::ranges::any_of(entries, [&](const Entry& e) {
           return e.neutral == stability.neutral && same_potential(e.potential, potential) &&
                  same_pose(problem, e.q, found.z.q, 1e-6, stability.neutral);
@@ -334,6 +340,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     if (options.details) add_condition(problem, steady, entry.solution);
     report({*s.mechanism, problem, found, steady.existence, stability, options.points},
            steady.error.solution + steady.error.data, options.details, steady.reuse(), entry.solution);
+    if (!without_modes.empty()) entry.solution.message += " " + without_modes;
     if (s.system.conservative) entry.solution.potential = potential.value;
     if (!is_finite(entry.solution)) continue;
     entries.push_back(std::move(entry));

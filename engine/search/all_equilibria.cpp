@@ -12,10 +12,14 @@ namespace flyball {
 namespace {
 
 // Seconds that an iteration takes on one core of 2020 or so: evaluating and linearising the balance, and its
-// dense factors.
-double iteration_cost(const System& system) {
+// factors in the form of the problem (measured: chains, ladders and nets of 30 to 1000 bodies).
+double iteration_cost(const Problem& problem) {
+  const System& system = problem.system;
   const double n = system.nv, m = system.rows, links = static_cast<double>(system.links.size());
   const double elements = static_cast<double>(system.springs.size() + system.body_forces.size());
+  const auto bodies = static_cast<double>(system.body_link.size());
+  if (problem.form == KktForm::tree) return 1e-9 * (600 + 600 * links + 100 * elements);
+  if (problem.form == KktForm::sparse) return 1e-9 * (600 + 12000 * bodies + 4000 * elements + 50000 * m);
   return 1e-9 * (600 + 150 * links + 100 * elements + 12 * links * n + 40 * n * n + 1.5 * n * n * n + 60 * m +
                  3 * m * n * (m + n));
 }
@@ -31,7 +35,7 @@ double deflation(const Problem& problem, const Eigen::VectorXd& q, const std::ve
 class Searcher {
  public:
   Searcher(const Problem& problem, const Eigen::VectorXd& drawn, const SearchOptions& options, Workspace& w)
-      : p_(problem), drawn_(drawn), options_(options), w_(w), cost_(iteration_cost(problem.system)) {}
+      : p_(problem), drawn_(drawn), options_(options), w_(w), cost_(iteration_cost(problem)) {}
 
   EquilibriumList run() {
     report_.ranges = search_ranges(p_, drawn_);
@@ -141,11 +145,13 @@ class Searcher {
 
   // How far (scaled) from the state that a run arrived at the same root may be found another time. A root of
   // higher order is known to half of the digits; so is one beside a singular pose of the loops, where
-  // rounding makes one more row count.
+  // rounding makes one more row count. Of large loops that pose is not known.
   double uncertainty(const NewtonOutcome& outcome) const {
     constexpr double half = 1e-4, singular_pose = 1e-3;
-    const double pivot = w_.dense.constraints().least_pivot();
-    if (pivot < singular_pose) return std::max(half, 10 * pivot);
+    if (const DenseKkt* matrices = w_.matrices(p_)) {
+      const double pivot = matrices->constraints().least_pivot();
+      if (pivot < singular_pose) return std::max(half, 10 * pivot);
+    }
     return outcome.linear ? half : tolerance::same_state;
   }
 
@@ -164,10 +170,16 @@ class Searcher {
     if (p_.system.conservative)
       out.potential = amended_potential(p_.system, p_.parameters, z.q, w_.kinematics);
     factor(p_, z, w_);
-    if (outcome.linear || !w_.dense.hessian().known() || !w_.dense.hessian().singular()) return out;
-    const Eigen::MatrixXd flat = w_.dense.constraints().basis() * w_.dense.hessian().null_basis();
+    KktSystem& kkt = w_.kkt(p_);
+    if (outcome.linear || !kkt.known() || !kkt.singular()) return out;
+    Eigen::VectorXd direction, share = Eigen::VectorXd::Zero(p_.system.nv);
+    for (const KktSystem::NullDirection& null : kkt.null_directions()) {
+      kkt.direction_of(null, direction);
+      if (const double size = largest_size(direction); size > 0)
+        share = share.cwiseMax(direction.cwiseAbs() / size);
+    }
     for (int v = 0; v < p_.system.nv; ++v)
-      if (largest_size(flat.row(v)) > 1e-6 * largest_size(flat)) out.neutral.push_back(v);
+      if (share[v] > 1e-6) out.neutral.push_back(v);
     return out;
   }
 
@@ -228,6 +240,19 @@ class Searcher {
     }
   }
 
+  // The Newton step from an evaluated and factored state, and the multipliers after it: of small systems
+  // solved for whole, so that those of redundant rows are of this state alone.
+  void find_step(Unknowns& z) {
+    if (const DenseKkt* matrices = w_.matrices(p_)) {
+      if (p_.system.rows > 0)
+        w_.residual.f.noalias() -= matrices->linearization.constraint.transpose() * z.lambda;
+      newton_step(p_, w_.residual.f, w_.residual.phi, w_, w_.scaled_step, z.lambda);
+    } else {
+      newton_step(p_, w_.residual.f, w_.residual.phi, w_, w_.scaled_step, w_.trial.lambda);
+      z.lambda += w_.trial.lambda;
+    }
+  }
+
   // Newton-Raphson on the balance times the deflation operator: the same direction, another length (Farrell
   // et al., section 3.2). True where it came near an equilibrium that is not known.
   bool deflated_newton(Unknowns& z) {
@@ -238,10 +263,8 @@ class Searcher {
       evaluate(p_, z, 0, w_);
       if (!std::isfinite(scaled_residual(p_, w_))) return false;
       factor(p_, z, w_);
-      if (!w_.dense.hessian().known()) return false;
-      if (p_.system.rows > 0)
-        w_.residual.f.noalias() -= w_.dense.linearization.constraint.transpose() * z.lambda;
-      newton_step(p_, w_.residual.f, w_.residual.phi, w_, w_.scaled_step, z.lambda);
+      if (!w_.kkt(p_).known()) return false;
+      find_step(z);
       const double size = largest_size(w_.scaled_step);
       if (!std::isfinite(size) || size == 0) return false;
       // Directional derivative of the operator along the step, by a central difference.

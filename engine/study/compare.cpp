@@ -76,7 +76,7 @@ class Direct {
     steady_.find(problem(), drawn_, drawn_, {.seconds = SolveOptions{}.search});
     if (!steady_.holds) return false;
     if (!steady_.found.minimum || !steady_.phases.empty())
-      stability_ = find_stability(steady_.factored(problem()), false);
+      stability_ = find_stability(steady_.factored(classified()), false);
     z = steady_.found.z;
     return true;
   }
@@ -100,7 +100,7 @@ class Direct {
       const double size = w_.scaled_step.size() > 0 ? w_.scaled_step.lpNorm<Eigen::Infinity>() : 0;
       correction = w_.scaled_step.cwiseProduct(scaling_.column);
       out.reference_error = size;
-      out.reference_residual = balance(w_);
+      out.reference_residual = scaled_residual(problem(), w_);
       if (!std::isfinite(size) || (i > 1 && size >= previous / 2)) break; // rounding is all that is left
       step = correction.cast<Extended>();
       retract<Extended>(system_, step, reference_);
@@ -148,20 +148,12 @@ class Direct {
   }
 
  private:
-  Problem problem() const { return {system_, parameters_, scaling_, cancel_}; }
-
-  // What no multipliers balance, and how far the loops are open, relative to the terms they are made of.
-  double balance(Workspace& w) const {
-    const Eigen::VectorXd force =
-        w.dense.constraints().basis().transpose() * w.residual.f.cwiseProduct(scaling_.column);
-    const Eigen::VectorXd size = w.dense.constraints().basis().cwiseAbs().transpose() *
-                                 w.magnitudes.force.cwiseProduct(scaling_.column);
-    double worst = 0;
-    for (Eigen::Index i = 0; i < force.size(); ++i)
-      if (size[i] > 0) worst = std::max(worst, std::abs(force[i]) / size[i]);
-    for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
-      worst = std::max(worst, std::abs(w.residual.phi[i]) * scaling_.row[i]);
-    return worst;
+  Problem problem() const { return {system_, parameters_, scaling_, cancel_, system_.kkt_form}; }
+  // By matrices as far as eigenvalues are found without being asked for.
+  Problem classified() const {
+    Problem p = problem();
+    if (system_.nv <= largest_for_eigenvalues) p.form = KktForm::dense;
+    return p;
   }
 
   const std::atomic<bool>* cancel_;
