@@ -1,7 +1,7 @@
 // A mechanism as a person builds it: bodies, joints, forces and drives, as plain values.
 //
 // Everything is given in the world frame at the drawn pose (metres, kilograms, radians, newtons,
-// seconds; right-handed). Copying a Mechanism is how undo, background solving and tests work.
+// seconds; right-handed). What undo keeps and background work takes is shared as const, not copied.
 // Names are the links between parts: a joint names its bodies, a gear its joints.
 #pragma once
 

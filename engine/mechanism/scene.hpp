@@ -1,5 +1,5 @@
-// Scene files: a Mechanism as JSON text and back (the format is described in README.md, and held by
-// assets/scene.schema.json).
+// Scene files: a Mechanism as JSON text and back (the format is described in assets/scenes/README.md, and
+// held by assets/scene.schema.json).
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
