@@ -69,6 +69,7 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
                        const SteadyStateOptions& options) {
   holds = false;
   factored_.reset();
+  refined_with_.reset();
   existence = {};
   others.reset();
   start = from;
@@ -105,6 +106,11 @@ void SteadyState::complete(const Problem& problem) {
 FactoredState SteadyState::factored(const Problem& problem) {
   if (factored_ == problem.form) return {problem, found.z, balance_};
   factored_ = problem.form;
+  // Inertia and steps of many bodies do not depend on the last correction: their factors serve on.
+  if (problem.form != KktForm::dense && problem.form == refined_with_) {
+    evaluate(problem, found.z, 0, balance_);
+    return {problem, found.z, balance_};
+  }
   return factor_at(problem, found.z, balance_, problem.form == KktForm::dense ? 0 : shift_);
 }
 
@@ -112,6 +118,7 @@ FactoredState SteadyState::factored(const Problem& problem) {
 void SteadyState::refine_found(const Problem& problem) {
   refine(problem, found.z, found.newton, balance_, error);
   shift_ = balance_.kkt(problem).shift();
+  refined_with_ = problem.form;
   factored_.reset();
 }
 

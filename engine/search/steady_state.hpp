@@ -64,6 +64,7 @@ class SteadyState {
   Workspace& elsewhere() { return balance_.elsewhere(); }
   Workspace& reuse() {
     factored_.reset();
+    refined_with_.reset();
     return balance_;
   }
 
@@ -73,8 +74,9 @@ class SteadyState {
   void search_another(const Problem& problem, const Eigen::VectorXd& drawn, double seconds);
 
   Workspace balance_;
-  std::optional<KktForm> factored_; // the form that is, at this state
-  double shift_ = 0;                // 1/s^2: of the metric that keeps its neutral directions still
+  std::optional<KktForm> factored_;     // the form that is, at this state
+  std::optional<KktForm> refined_with_; // the form whose factors refine() left, beside it
+  double shift_ = 0;                    // 1/s^2: of the metric that keeps its neutral directions still
 };
 
 } // namespace flyball
