@@ -90,6 +90,8 @@ std::string add_lowest_eigenvalues(const Problem& problem, const Unknowns& z, in
     out.stable = false;
     out.reason = StabilityReason::unstable;
   }
+  if (eigenvalues.size() > static_cast<std::size_t>(count))
+    eigenvalues.resize(static_cast<std::size_t>(count));
   out.eigenvalues = std::move(eigenvalues);
   return {};
 }

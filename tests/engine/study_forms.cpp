@@ -124,6 +124,7 @@ TEST_CASE("a coordinate is brought to its value by elimination as by matrices", 
     CAPTURE(by);
     const Corrected chain = expect_same(bench::springy_chain(30, 6, 0.3, 0), KktForm::tree, by);
     CHECK(chain.state.parameters[1] == -standard_gravity);
+    expect_same(bench::binary_tree(15, 6), KktForm::tree, by / 5);
     expect_same(held_chain(20), KktForm::sparse, by);
   }
 }
