@@ -56,7 +56,7 @@ std::optional<ResponseRequest> wanted_now(const App& app) {
   set_parameter(followed, of.address, of.from);
   // What moves no equilibrium begins no new curve.
   followed.sliders.clear();
-  followed.camera.reset();
+  followed.view.camera.reset();
   followed.simulation = {};
   of.mechanism = std::make_shared<const Mechanism>(std::move(followed));
   return of;

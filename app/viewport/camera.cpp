@@ -174,11 +174,11 @@ double ViewCamera::pixel_size(ViewSize view) const {
 ViewCamera initial_camera(const Mechanism& mechanism, const Bounds& bounds, ViewSize view) {
   ViewCamera camera;
   camera.up = up_axis(mechanism);
-  if (mechanism.camera) {
-    camera.target = mechanism.camera->target;
-    camera.distance = mechanism.camera->distance;
-    camera.azimuth = mechanism.camera->azimuth;
-    camera.elevation = mechanism.camera->elevation;
+  if (mechanism.view.camera) {
+    camera.target = mechanism.view.camera->target;
+    camera.distance = mechanism.view.camera->distance;
+    camera.azimuth = mechanism.view.camera->azimuth;
+    camera.elevation = mechanism.view.camera->elevation;
   } else {
     camera.fit(bounds, view);
   }

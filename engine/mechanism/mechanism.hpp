@@ -164,6 +164,13 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
+// How the mechanism is looked at.
+struct View {
+  std::optional<Camera> camera;
+  std::string description;
+  bool operator==(const View&) const = default;
+};
+
 struct Mechanism {
   std::string name;
   std::string description;
@@ -173,8 +180,7 @@ struct Mechanism {
   std::vector<Force> forces;
   std::vector<Slider> sliders;
   Simulation simulation;
-  std::optional<Camera> camera;
-  std::string view_description{}; // of the `view` object, which holds the camera
+  View view;
   bool operator==(const Mechanism&) const = default;
 };
 

@@ -27,14 +27,14 @@ std::string found_text(const Json& json) {
 }
 
 bool contains(scene_keys::Keys keys, std::string_view name) {
-  return std::any_of(keys.begin(), keys.end(), [&](const scene_keys::Key& key) { return key.name == name; });
+  return std::any_of(keys.begin(), keys.end(), [&](const Field& field) { return field.key == name; });
 }
 
 [[noreturn]] void fail_unknown(const std::string& path, std::string_view key, scene_keys::Keys keys,
                                std::string_view noun, std::span<const scene_keys::Keys> relatives) {
   std::vector<std::string_view> names;
-  for (const scene_keys::Key& known : keys)
-    names.push_back(known.name);
+  for (const Field& known : keys)
+    names.push_back(known.key);
   names.push_back(description_key);
   const std::string its_keys = "; its keys are " + word_list(names, "and");
   const bool elsewhere = std::any_of(relatives.begin(), relatives.end(),
@@ -108,20 +108,18 @@ std::size_t ValueReader::word(std::span<const std::string_view> words) const {
 
 ObjectReader::ObjectReader(const ValueReader& value, scene_keys::Keys keys, std::string_view noun,
                            std::span<const scene_keys::Keys> relatives)
-    : json_(value.json()), path_(value.path()), keys_(keys) {
+    : json_(value.json()), path_(value.path()) {
   if (!json_.is_object()) value.fail("an object");
   for (const auto& [key, ignored] : json_.items())
     if (key != description_key && !contains(keys, key)) fail_unknown(path_, key, keys, noun, relatives);
-  for (const scene_keys::Key& key : keys)
-    if (key.required && !has(key.name))
-      throw SceneError(key_path(path_, key.name),
-                       "missing; " + std::string(noun) + " needs it: " + std::string(key.expected));
+  for (const Field& field : keys)
+    if (field.required && !has(field.key))
+      throw SceneError(key_path(path_, field.key),
+                       "missing; " + std::string(noun) + " needs it: " + std::string(field.expected));
 }
 
-ValueReader ObjectReader::operator[](std::string_view key) const {
-  const auto known =
-      std::find_if(keys_.begin(), keys_.end(), [&](const scene_keys::Key& k) { return k.name == key; });
-  return {json_.at(key), key_path(path_, key), known->expected};
+ValueReader ObjectReader::value(const Field& field) const {
+  return {json_.at(field.key), key_path(path_, field.key), field.expected};
 }
 
 std::string ObjectReader::description() const {

@@ -61,17 +61,13 @@ class ObjectReader {
                std::span<const scene_keys::Keys> relatives = {});
 
   bool has(std::string_view key) const { return json_.contains(key); }
-  ValueReader operator[](std::string_view key) const;
-
-  double number(std::string_view key, double fallback) const {
-    return has(key) ? (*this)[key].number() : fallback;
-  }
+  // Of a field that is there.
+  ValueReader value(const Field& field) const;
   std::string description() const;
 
  private:
   const Json& json_;
   const std::string& path_;
-  scene_keys::Keys keys_;
 };
 
 // The word under `key` in an object whose other keys depend on it.

@@ -1,42 +1,43 @@
-// The keys of every object in a scene file, as the reader and the tests of assets/scene.schema.json use them.
-// `description` belongs to every object and is not listed.
+// The keys of every object in a scene file, and the words of its enumerations. `description` belongs to every
+// object and is not listed.
 #pragma once
 
-#include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/fields.hpp"
 
 #include <span>
-#include <string_view>
 
 namespace flyball::scene_keys {
 
-struct Key {
-  std::string_view name;
-  std::string_view expected; // what a right value looks like, for messages
-  bool required = false;
-};
-using Keys = std::span<const Key>;
+using Keys = std::span<const Field>;
 
 // Version of the format that this program reads and writes.
 inline constexpr int version = 1;
 
-Keys scene();
-Keys body();
-Keys shape(ShapeType type);
-Keys joint(JointType type);
-Keys spring();
-Keys stop();
-Keys drive();
-Keys force(ForceType type);
-Keys slider();
-Keys simulation();
-Keys view();
-Keys camera();
+// Of objects such as this one, whose type matters only.
+Keys of(const Mechanism& mechanism);
+Keys of(const Body& body);
+Keys of(const Shape& shape);
+Keys of(const Joint& joint);
+Keys of(const Coordinate& coordinate);
+Keys of(const CoordinateSpring& spring);
+Keys of(const Stop& stop);
+Keys of(const Drive& drive);
+Keys of(const Force& force);
+Keys of(const Slider& slider);
+Keys of(const Simulation& simulation);
+Keys of(const View& view);
+Keys of(const Camera& camera);
+
+// Of the objects of all types that this one may be mistaken for; none where there is one type.
+std::span<const Keys> of_all_types(const Joint& joint);
+std::span<const Keys> of_all_types(const Force& force);
+std::span<const Keys> of_all_types(const Shape& shape);
 
 // The words of an enumeration, in its order.
-std::span<const std::string_view> joint_types();
-std::span<const std::string_view> force_types();
-std::span<const std::string_view> shape_types();
-std::span<const std::string_view> force_frames();
-std::span<const std::string_view> slider_scales();
+std::span<const std::string_view> words_of(JointType any);
+std::span<const std::string_view> words_of(ForceType any);
+std::span<const std::string_view> words_of(ShapeType any);
+std::span<const std::string_view> words_of(ForceFrame any);
+std::span<const std::string_view> words_of(SliderScale any);
 
 } // namespace flyball::scene_keys

@@ -121,8 +121,8 @@ void find_setting_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
   const double duration = mechanism.simulation.duration;
   mistakes.expect(std::isfinite(duration) && duration > 0, "simulation.duration",
                   "expected a number above zero");
-  if (!mechanism.camera) return;
-  const Camera& camera = *mechanism.camera;
+  if (!mechanism.view.camera) return;
+  const Camera& camera = *mechanism.view.camera;
   mistakes.expect(camera.target.allFinite(), "view.camera.target", "expected three finite numbers");
   mistakes.expect(std::isfinite(camera.distance) && camera.distance > 0, "view.camera.distance",
                   "expected a number above zero");

@@ -359,7 +359,7 @@ TEST_CASE("Numbers that are none are found wherever they stand") {
   check([](Mechanism& m, double x) { m.forces[1].at->x() = x; }, "forces.push.at[0]");
   check([](Mechanism& m, double x) { m.sliders[0].to = x; }, "sliders[0].range");
   check([](Mechanism& m, double x) { m.simulation.duration = x; }, "simulation.duration");
-  check([](Mechanism& m, double x) { m.camera->azimuth = x; }, "view.camera.azimuth");
+  check([](Mechanism& m, double x) { m.view.camera->azimuth = x; }, "view.camera.azimuth");
 }
 
 TEST_CASE("After a number was set the mistakes are those that a look at all parts finds") {

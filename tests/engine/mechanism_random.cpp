@@ -149,8 +149,8 @@ Mechanism RandomMechanism::operator()() {
   for (int i = below(3); i > 0; --i)
     m.sliders.push_back({text(), number(), number(), static_cast<SliderScale>(below(2)), description()});
   if (maybe()) m.simulation = {number(), maybe(), description()};
-  if (maybe()) m.camera = Camera{vector(), number(), number(), number(), description()};
-  if (maybe()) m.view_description = text();
+  if (maybe()) m.view.camera = Camera{vector(), number(), number(), number(), description()};
+  if (maybe()) m.view.description = text();
   return m;
 }
 

@@ -98,8 +98,8 @@ TEST_CASE("Every key is read into its field") {
   CHECK(m.sliders.at(0).description == "main");
   CHECK(m.sliders.at(1).scale == SliderScale::log);
   CHECK(m.simulation == Simulation{20, false, "long"});
-  CHECK(m.camera == Camera{{0, 1, 0}, 4, 0.6, 0.3, "near"});
-  CHECK(m.view_description == "side");
+  CHECK(m.view.camera == Camera{{0, 1, 0}, 4, 0.6, 0.3, "near"});
+  CHECK(m.view.description == "side");
 }
 
 TEST_CASE("What is read is written back, descriptions too") {
