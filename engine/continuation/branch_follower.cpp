@@ -60,7 +60,7 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
 
 BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
                                const BranchOptions& options)
-    : options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from), notes_)),
+    : options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from))),
       family_(system_, with_parameter(mechanism, address, from), address, std::abs(to - from),
               system_.nv > options.dense_up_to && system_.conservative && system_.single_drives
                   ? system_.kkt_form

@@ -22,7 +22,7 @@ struct FollowedBranch {
 // A valid mechanism with one number changed. Throws SceneError.
 Mechanism with_parameter(const Mechanism& mechanism, const std::string& address, double value);
 
-// The configuration that a point's free coordinates tell.
+// The configuration given by a point's free coordinates.
 Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates);
 
 struct PointDetails {
@@ -110,7 +110,6 @@ class BranchFollower {
   Eigen::VectorXd difference(const BranchState& a, const BranchState& b) const;
 
   BranchOptions options_;
-  std::vector<std::string> notes_;
   System system_;
   Family family_;
   Continuation continuation_;

@@ -56,9 +56,9 @@ MethodChoice choose_method(Equations& equations, double t, const Eigen::VectorXd
     const bool seen = at_rest || std::max(push / size, speed) / size > tolerance;
     const double alive = !seen ? 0 : decay > 0 ? std::min(duration, -std::log(tolerance) / decay) : duration;
     const double followed = size * alive * steps_explicit * std::pow(tolerance, -1. / 8);
-    const double held = size * (duration - alive) / stable_step;
-    if (stages * (followed + held) > explicit_cost) {
-      explicit_cost = stages * (followed + held);
+    const double settled = size * (duration - alive) / stable_step;
+    if (stages * (followed + settled) > explicit_cost) {
+      explicit_cost = stages * (followed + settled);
       costly = rate;
     }
     implicit_cost = std::max(implicit_cost, 2 * size * alive * steps_implicit * std::pow(tolerance, -1. / 5));

@@ -52,7 +52,7 @@ class Equations {
              std::vector<FlipElement> flips);
 
   // s of a velocity u, and both evaluated: false where the equations cannot be solved. Then s is u, and what
-  // is told of the last evaluation means nothing until the next that succeeds.
+  // is reported of the last evaluation means nothing until the next that succeeds.
   [[nodiscard]] bool reduce(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u, Eigen::VectorXd& s);
   [[nodiscard]] bool evaluate(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& s);
   // Why they cannot, as a clause: which numbers are too far apart.

@@ -126,7 +126,7 @@ bool Equations::find_standing_stiffness() {
   const Eigen::Index rest = kinds_.cols() - damped_;
   const Eigen::MatrixXd directions = column.asDiagonal() * null_ * kinds_.rightCols(rest);
   const Eigen::MatrixXd rows = directions.transpose() * linearization_.stiffness.topRows(n_);
-  if (standing_ < rest) { // tell them from those that feel nothing
+  if (standing_ < rest) { // distinguish them from those that feel nothing
     const Eigen::MatrixXd local = rows.leftCols(n_) * directions;
     SymmetricEigen eigen;
     if (!eigen.compute((local + local.transpose()) / 2)) return false;

@@ -249,18 +249,18 @@ std::string Equations::trouble() const {
     if (!stiffnesses || !((*stiffnesses)[0] > 0))
       return motion_of(kinds_.middleCols(damped_, standing_)) + " stands in no stable balance: it would jump";
   }
-  const Eigen::Index loose = null_.cols() - damped_ - standing_;
-  if (loose == 0) return "";
-  const Eigen::MatrixXd directions = null_ * kinds_.rightCols(loose);
+  const Eigen::Index unresisted = null_.cols() - damped_ - standing_;
+  if (unresisted == 0) return "";
+  const Eigen::MatrixXd directions = null_ * kinds_.rightCols(unresisted);
   const Eigen::VectorXd force = dense_.force().head(n_).cwiseProduct(model_.scaling.column);
   Magnitudes sizes;
   evaluate_magnitudes(system_, parameters_, q_, lambda_, kinematics_, sizes);
   const Eigen::VectorXd size =
       directions.cwiseAbs().transpose() * sizes.force.head(n_).cwiseProduct(model_.scaling.column);
   const Eigen::VectorXd left = directions.transpose() * force;
-  for (Eigen::Index i = 0; i < loose; ++i)
+  for (Eigen::Index i = 0; i < unresisted; ++i)
     if (std::abs(left[i]) > no_force * size[i])
-      return motion_of(kinds_.rightCols(loose)) + " is resisted by nothing, and a force acts along it";
+      return motion_of(kinds_.rightCols(unresisted)) + " is resisted by nothing, and a force acts along it";
   return "";
 }
 

@@ -37,7 +37,7 @@ bool is_tree(const System& system) {
 MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   MotionModel m;
   m.mechanism = mechanism;
-  m.system = compile_for_drives(mechanism, m.notes);
+  m.system = compile_for_drives(mechanism);
   m.released = released(m.system);
   bind(m.system, mechanism, m.parameters);
   set_scaling(m.system, m.parameters, m.scaling);

@@ -15,7 +15,6 @@ struct MotionModel {
   Scaling scaling;       // of the free coordinates and the constraint rows
   // The equations of motion are solved along the tree (tree_motion.hpp), as far as all that moves has mass.
   bool along_tree = false;
-  std::vector<std::string> notes;
 
   Problem problem() const { return {system, parameters, scaling}; }
 };

@@ -9,6 +9,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/messages.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -241,7 +242,7 @@ struct Simulator::State {
     recorder->name(stops[i], run.stops.back());
   }
 
-  // A stop that the step went past and no event told of, as where it is grazed.
+  // A stop that the step went past and no event reported, as where it is grazed.
   bool find_missed_stops(double t) {
     bool missed = false;
     ode->unpack(y.data(), q, s);
@@ -358,7 +359,7 @@ struct Simulator::State {
     return out;
   }
 
-  // Steps so short that the rest would never be done, however many were allowed: told at once.
+  // Steps so short that the rest would never be done, however many were allowed: reported at once.
   bool is_hopeless(double t) {
     if (taken - judged_at < judged_steps) return false;
     const double rest = std::max(t, begin + options.duration) - stepped_to;
@@ -461,7 +462,7 @@ Simulator::Simulator(const Mechanism& mechanism, const SimulationOptions& option
     x.interrupt();
     return;
   }
-  x.run.notes = x.model->notes;
+  x.run.notes = notes(x.model->system, x.model->mechanism);
   x.begin = x.stepped_to;
   x.recorder = std::make_unique<Recorder>(x.run, options.reactions, options.points);
   x.recorder->use(x.model, *x.equations);

@@ -15,9 +15,9 @@ namespace flyball {
 namespace {
 
 // The velocity of all coordinates nearest to `u` in kinetic energy (massless ones: in size) that keeps the
-// loops closed, with the coordinates in `held` as they are. Names what cannot be.
+// loops closed, with the coordinates in `prescribed` as they are. Names what cannot be.
 void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q,
-                    const std::vector<int>& held, bool from_rest, Eigen::VectorXd& u) {
+                    const std::vector<int>& prescribed, bool from_rest, Eigen::VectorXd& u) {
   const int n = model.system.nv;
   Eigen::VectorXd all_q(model.released.nq), all_u(model.released.nv);
   all_q.head(model.system.nq) = q;
@@ -33,7 +33,7 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
 
   const Eigen::VectorXd& column = model.scaling.column;
   const auto rows = static_cast<Eigen::Index>(model.system.rows),
-             fixed = static_cast<Eigen::Index>(held.size());
+             fixed = static_cast<Eigen::Index>(prescribed.size());
   Eigen::MatrixXd c = Eigen::MatrixXd::Zero(rows + fixed, n);
   Eigen::VectorXd open(rows + fixed);
   c.topRows(rows) = model.scaling.row.asDiagonal() * l.constraint.leftCols(n) * column.asDiagonal();
@@ -41,7 +41,7 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
   open = open.cwiseProduct(model.scaling.row).eval();
   open.conservativeResize(rows + fixed);
   for (Eigen::Index i = 0; i < fixed; ++i) {
-    c(rows + i, held[static_cast<std::size_t>(i)]) = 1;
+    c(rows + i, prescribed[static_cast<std::size_t>(i)]) = 1;
     open[rows + i] = 0;
   }
   Eigen::VectorXd range = Eigen::VectorXd::Zero(n);
@@ -54,7 +54,7 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
   const double left = (c * range + open).lpNorm<Eigen::Infinity>();
   if (left > 1e-9 * (1 + open.lpNorm<Eigen::Infinity>())) {
     if (fixed > 0)
-      throw SceneError("joints." + name_of_coordinate(model, held.front()),
+      throw SceneError("joints." + name_of_coordinate(model, prescribed.front()),
                        "the loops do not let it move at this rate");
     Eigen::Index worst = 0;
     (c * range + open).cwiseAbs().maxCoeff(&worst);
@@ -123,7 +123,7 @@ void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, 
 
 std::vector<int> apply_kick(const SimulationOptions& options, const MotionModel& model,
                             const Eigen::VectorXd& q, Eigen::VectorXd& u) {
-  std::vector<int> held;
+  std::vector<int> prescribed;
   for (const auto& [name, rate] : options.kick) {
     const int found = coordinate_called(model.system, name);
     if (found < 0)
@@ -134,15 +134,15 @@ std::vector<int> apply_kick(const SimulationOptions& options, const MotionModel&
     if (link.v < 0) throw SceneError(name, "is driven; a kick is for free coordinates");
     if (link.type != LinkType::spherical) {
       u[link.v] += rate;
-      held.push_back(link.v);
+      prescribed.push_back(link.v);
       continue;
     }
     const Mat3 map = rotation_vector_rate(link, model.parameters.links[static_cast<std::size_t>(c.link)], q);
     u.segment<3>(link.v) += map.partialPivLu().solve(rate * Vec3::Unit(c.index - link.coordinate));
     for (int k = 0; k < 3; ++k)
-      if (std::ranges::find(held, link.v + k) == held.end()) held.push_back(link.v + k);
+      if (std::ranges::find(prescribed, link.v + k) == prescribed.end()) prescribed.push_back(link.v + k);
   }
-  return held;
+  return prescribed;
 }
 
 // The entries of a tangent vector that belong to the coordinates a start is given for.
@@ -234,19 +234,20 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
       throw SceneError("joints." + name, "cannot be closed from the start");
     }
   }
-  const auto move_on = [&](const std::vector<int>& held, bool from_rest, Eigen::VectorXd& velocity) {
-    if (model.along_tree && from_rest && held.empty() && bring_to_rest(model, t, q, velocity)) return;
-    close_velocity(model, t, q, held, from_rest, velocity);
+  const auto move_on = [&](const std::vector<int>& prescribed, bool from_rest, Eigen::VectorXd& velocity) {
+    if (model.along_tree && from_rest && prescribed.empty() && bring_to_rest(model, t, q, velocity)) return;
+    close_velocity(model, t, q, prescribed, from_rest, velocity);
   };
   const bool from_rest = options.start == Start::drawn;
-  const std::vector<int> held = apply_kick(options, model, q, u);
-  if (from_rest && !held.empty()) {
+  const std::vector<int> prescribed = apply_kick(options, model, q, u);
+  if (from_rest && !prescribed.empty()) {
     // At rest first, then the kick on top.
     Eigen::VectorXd still = Eigen::VectorXd::Zero(model.system.nv);
     move_on({}, true, still);
     u += still;
   }
-  if (model.system.rows > 0 || (from_rest && held.empty())) move_on(held, from_rest && held.empty(), u);
+  if (model.system.rows > 0 || (from_rest && prescribed.empty()))
+    move_on(prescribed, from_rest && prescribed.empty(), u);
 }
 
 } // namespace flyball

@@ -1,4 +1,4 @@
-// Bad input, told so that a person can mend it.
+// Bad input, reported so that a person can mend it.
 #pragma once
 
 #include <stdexcept>

@@ -27,13 +27,13 @@ class Printer {
     return number_text(value);
   }
 
-  static std::string flat(const Json& json, const std::string& path) {
+  static std::string one_line(const Json& json, const std::string& path) {
     if (!json.is_structured()) return scalar(json, path);
     std::string text(1, json.is_object() ? '{' : '[');
     for (std::size_t i = 0; const auto& [key, value] : json.items()) {
       if (i > 0) text += ", ";
       if (json.is_object()) text += Json(key).dump() + ": ";
-      text += flat(value, child_path(json, path, key, i++, value));
+      text += one_line(value, child_path(json, path, key, i++, value));
     }
     return text + (json.is_object() ? '}' : ']');
   }
@@ -45,7 +45,7 @@ class Printer {
 
   void print(const Json& json, std::size_t indent, const std::string& path) {
     const std::size_t start = text_.rfind('\n') + 1;
-    const std::string line = flat(json, path);
+    const std::string line = one_line(json, path);
     if (text_.size() - start + line.size() < widest || !json.is_structured() || json.empty())
       text_ += line;
     else

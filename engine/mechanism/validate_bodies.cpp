@@ -34,7 +34,7 @@ std::optional<PrincipalMoments> principal_moments(const Body& body) {
   else if (const auto axes = principal_axes(inertia / scale))
     values = axes->values * scale;
   else
-    return std::nullopt; // numbers that are not finite are told of where all numbers are looked at
+    return std::nullopt; // numbers that are not finite are reported where all numbers are checked
   return PrincipalMoments{values, relative * values.cwiseAbs().maxCoeff() +
                                       std::max(body.mass, 0.) * nanometre * nanometre};
 }

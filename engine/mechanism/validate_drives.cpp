@@ -117,10 +117,10 @@ void find_springs_on_driven(const Mechanism& mechanism, const DrivenCoordinates&
     }
 }
 
-// The joints on the way between two bodies (as BodyNumbers has them) among `joints`, which form no loop.
-std::vector<std::size_t> way_between(const Mechanism& mechanism, const BodyNumbers& numbers,
-                                     const std::vector<std::size_t>& joints, std::size_t from,
-                                     std::size_t to) {
+// The joints on the path between two bodies (as BodyNumbers has them) among `joints`, which form no loop.
+std::vector<std::size_t> path_between(const Mechanism& mechanism, const BodyNumbers& numbers,
+                                      const std::vector<std::size_t>& joints, std::size_t from,
+                                      std::size_t to) {
   constexpr std::size_t unseen = static_cast<std::size_t>(-1);
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> steps(mechanism.bodies.size() +
                                                                       1); // body, joint
@@ -139,10 +139,10 @@ std::vector<std::size_t> way_between(const Mechanism& mechanism, const BodyNumbe
         came[next] = {waiting.front(), joint};
         waiting.push_back(next);
       }
-  std::vector<std::size_t> way;
+  std::vector<std::size_t> path;
   for (std::size_t body = from; body != to; body = came[body].first)
-    way.push_back(came[body].second);
-  return way;
+    path.push_back(came[body].second);
+  return path;
 }
 
 // A loop in which every joint is driven or fixed moves as the drives say, or not at all.
@@ -160,7 +160,7 @@ void find_driven_loops(const Mechanism& mechanism, const DrivenCoordinates& driv
       } else if (!fixed) { // a loop of fixed joints alone is only redundant
         std::vector<std::string> names{joint.name};
         for (const std::size_t k :
-             way_between(mechanism, numbers, joined, numbers[joint.bodies[0]], numbers[joint.bodies[1]]))
+             path_between(mechanism, numbers, joined, numbers[joint.bodies[0]], numbers[joint.bodies[1]]))
           names.push_back(mechanism.joints[k].name);
         const std::vector<std::string_view> views(names.begin(), names.end());
         mistakes.add(joint_path(mechanism, j) + ".drive",

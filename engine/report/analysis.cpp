@@ -109,7 +109,6 @@ struct Analysis::State {
   System system;
   Parameters parameters;
   Scaling scaling;
-  std::vector<std::string> notes;
   SteadyState steady; // of the last solve
   Eigen::VectorXd drawn, answer, start;
   bool answered = false;
@@ -135,7 +134,7 @@ struct Analysis::State {
 
 Analysis::Analysis(const Mechanism& mechanism) : Analysis(std::make_shared<const Mechanism>(mechanism)) {}
 Analysis::Analysis(std::shared_ptr<const Mechanism> mechanism) : state_(std::make_unique<State>()) {
-  state_->system = compile_for_drives(*mechanism, state_->notes);
+  state_->system = compile_for_drives(*mechanism);
   state_->mechanism = std::move(mechanism);
   state_->bind_numbers();
 }
@@ -355,9 +354,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
 }
 
 SystemSummary Analysis::summary() const {
-  SystemSummary out = summarize(*state_->mechanism, state_->system, state_->parameters);
-  out.notes.insert(out.notes.end(), state_->notes.begin(), state_->notes.end());
-  return out;
+  return summarize(*state_->mechanism, state_->system, state_->parameters);
 }
 
 std::vector<Pose> Analysis::poses_at(double t) {

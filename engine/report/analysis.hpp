@@ -21,7 +21,7 @@ struct SolveOptions {
   bool details = true;  // eigenvalues, reactions and drive torques; not needed by a sweep
   // Eigenvalues asked for where there are more than 200 coordinates: those nearest to zero.
   int modes = 0;
-  std::vector<BodyPoint> points{};                   // to be told with the solution
+  std::vector<BodyPoint> points{};                   // to be reported with the solution
   std::vector<std::pair<std::string, double>> start; // "joint" or "joint.index" = value, over the drawn pose
   const std::atomic<bool>* cancel = nullptr;         // looked at all the time; then not_converged
   ReportProgress progress{};

@@ -57,6 +57,15 @@ std::string names_of(const Unbounded& found) {
 
 } // namespace
 
+std::vector<std::string> notes(const System& system, const Mechanism& mechanism) {
+  std::vector<std::string> all;
+  for (const CutJoint& cut : system.cuts)
+    if (cut.turns)
+      all.push_back("The loop is cut at " + mechanism.joints[static_cast<std::size_t>(cut.joint)].name +
+                    ", which turns at a constant rate in the steady state.");
+  return all;
+}
+
 std::string message(const Found& found, const Problem& problem) {
   const std::string falls = " potential falls on, hundreds of times the mechanism's reach away";
   const auto methods = [&] {

@@ -7,6 +7,9 @@
 
 namespace flyball {
 
+// Choices in compiling worth knowing: where a loop was cut for the drives.
+std::vector<std::string> notes(const System& system, const Mechanism& mechanism);
+
 // What happened on the way to one equilibrium, or why there is none; empty for a plain run that arrived.
 std::string message(const Found& found, const Problem& problem);
 

@@ -1,3 +1,4 @@
+#include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 
 #include <algorithm>
@@ -6,6 +7,7 @@ namespace flyball {
 
 SystemSummary summarize(const Mechanism& mechanism, const System& system, const Parameters& p) {
   SystemSummary out;
+  out.notes = notes(system, mechanism);
   out.bodies = static_cast<int>(mechanism.bodies.size());
   out.free_coordinates = system.nv;
   out.driven_coordinates = static_cast<int>(system.drives.size());

@@ -60,7 +60,7 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
 
 } // namespace
 
-System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& notes) {
+System compile_for_drives(const Mechanism& mechanism) {
   System best = compile(mechanism);
   DrivenCuts fate = drive_cuts(best, mechanism);
   std::deque<CutChoice> queue;
@@ -89,12 +89,8 @@ System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& 
     }
     enqueue(other);
   }
-  for (std::size_t c = 0; c < best.cuts.size(); ++c) {
-    const Joint& j = mechanism.joints[static_cast<std::size_t>(best.cuts[c].joint)];
-    if (fate.turned[c] && j.type != JointType::distance)
-      notes.push_back("The loop is cut at " + j.name +
-                      ", which turns at a constant rate in the steady state.");
-  }
+  for (std::size_t c = 0; c < best.cuts.size(); ++c)
+    best.cuts[c].turns = fate.turned[c] && best.cuts[c].type != JointType::distance;
   return best;
 }
 

@@ -6,8 +6,8 @@
 namespace flyball {
 
 // The cuts by preference, or the nearest others with which the drives carry the loops along: a joint that
-// must turn or slide at a constant rate in the steady state has to be cut. `notes` gets a sentence for each
-// such choice.
-System compile_for_drives(const Mechanism& mechanism, std::vector<std::string>& notes);
+// must turn or slide at a constant rate in the steady state has to be cut. Such cuts say so
+// (CutJoint::turns).
+System compile_for_drives(const Mechanism& mechanism);
 
 } // namespace flyball

@@ -19,7 +19,7 @@ class TrustRegion {
       : p_(problem), z_(z), w_(w), kkt_(w.kkt(problem)), history_(history) {}
 
   DescentOutcome run(bool all_the_way, bool falls) {
-    falls_ = falls;
+    indefinite_ = falls;
     if (falls) {
       potential_ = lagrangian(z_.q);
       take_in();
@@ -38,7 +38,7 @@ class TrustRegion {
         shorten_step(0.25);
       const double size = step_.lpNorm<Eigen::Infinity>();
       if (shortened == 0 && (shift_ == 0 || prefers_short_step_) && size < tolerance::converged_step)
-        return {DescentEnd::minimum, i, kkt_.shift() == 0 && !convex_};
+        return {DescentEnd::minimum, i, kkt_.shift() == 0 && !convex_model_tried_};
       if (!(predicted_ > 0) || !std::isfinite(size))
         return {size < tolerance::stalled_step ? DescentEnd::minimum : DescentEnd::stalled, i};
       Trial trial = move(1);
@@ -59,8 +59,8 @@ class TrustRegion {
         z_.q = moved_;
         travelled += length_;
         if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
-        compression_tells_ = convex_ && !(ratio > 0.8 && ratio < 1.25);
-        const bool model_serves = shift_ == 0 && !convex_ && std::abs(ratio - 1) < 0.1;
+        compression_decides_ = convex_model_tried_ && !(ratio > 0.8 && ratio < 1.25);
+        const bool model_serves = shift_ == 0 && !convex_model_tried_ && std::abs(ratio - 1) < 0.1;
         if (!all_the_way && p_.system.rows > 0 && model_serves && size < tolerance::newton_leads_step &&
             newton_leads())
           return {DescentEnd::near, i + 1};
@@ -130,7 +130,7 @@ class TrustRegion {
   bool close_loops() {
     if (p_.system.rows == 0) return true;
     double before = std::numeric_limits<double>::infinity();
-    almost_there_ = false;
+    constraints_are_factored_ = false;
     int slow = 0;
     const double enough = 0.01 * predicted_;
     for (int i = 0; i < 30; ++i) {
@@ -145,7 +145,7 @@ class TrustRegion {
                std::max(tolerance::slowly_closed, std::min(2 * open_, tolerance::slowly_closed_at_most));
       if (!(open < 0.1 * before) && i > 0) {
         factor_constraints(p_, w_);
-        almost_there_ = true;
+        constraints_are_factored_ = true;
       }
       before = open;
       close(p_, w_, w_.scaled_step);
@@ -177,7 +177,7 @@ class TrustRegion {
     if (p_.system.rows > 0) {
       z_.lambda.setZero();
       evaluate_residual<double>(p_.system, p_.parameters, z_.q, z_.lambda, w_.kinematics, w_.residual);
-      if (!almost_there_) factor_constraints(p_, w_);
+      if (!constraints_are_factored_) factor_constraints(p_, w_);
       best_multipliers(p_, w_, z_.lambda);
       potential_ = lagrangian(z_.q);
     }
@@ -202,7 +202,7 @@ class TrustRegion {
     gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
     force_ = largest(w_.magnitudes.force.cwiseProduct(p_.scaling.column));
     open_ = p_.system.rows == 0 ? 0 : w_.residual.phi.cwiseProduct(p_.scaling.row).lpNorm<Eigen::Infinity>();
-    convex_ = false;
+    convex_model_tried_ = false;
     least_shift_ = 0;
   }
 
@@ -245,14 +245,14 @@ class TrustRegion {
     bool low_definite = false, sought = false;
     prefers_short_step_ = false;
     // Where the convex model was far off the exact one still is not convex, as a rule.
-    const bool in_vain = falls_ || (compression_tells_ && passed_over_ < 2);
-    passed_over_ = in_vain ? passed_over_ + 1 : 0;
-    falls_ = false;
+    const bool in_vain = indefinite_ || (compression_decides_ && exact_model_skips_ < 2);
+    exact_model_skips_ = in_vain ? exact_model_skips_ + 1 : 0;
+    indefinite_ = false;
     if (low == 0 && !in_vain && solve_with(0)) {
       if (length_ <= 1.25 * radius_) return;
       low_definite = true;
-    } else if (!convex_ && kkt_.linearize_convex(p_, z_, w_)) {
-      convex_ = true;
+    } else if (!convex_model_tried_ && kkt_.linearize_convex(p_, z_, w_)) {
+      convex_model_tried_ = true;
       least_shift_ = low = 0;
       low_definite = solve_with(0);
       if (low_definite && step_.lpNorm<Eigen::Infinity>() < tolerance::saddle_step) {
@@ -390,12 +390,13 @@ class TrustRegion {
   double open_ = 0; // the loops, at z_, scaled
   double force_ = 0, unit_ = 1, radius_ = 0, length_ = 0, predicted_ = 0;
   double shift_ = 0, last_shift_ = 0;
-  double least_shift_ = 0;         // below this K + shift W is known not to be positive definite
-  bool convex_ = false;            // the convex model was tried here
-  bool falls_ = false;             // the exact model is known not to be convex here
-  bool compression_tells_ = false; // in the last step, by the convex model, which leaves it out
-  int passed_over_ = 0;            // times in a row that the exact model was not tried
-  bool almost_there_ = false; // the constraints were factored on the way of closing the last step's loops
+  double least_shift_ = 0;           // below this K + shift W is known not to be positive definite
+  bool convex_model_tried_ = false;  // the convex model was tried here
+  bool indefinite_ = false;          // the exact model is known not to be convex here
+  bool compression_decides_ = false; // in the last step, by the convex model, which leaves it out
+  int exact_model_skips_ = 0;        // times in a row that the exact model was not tried
+  bool constraints_are_factored_ =
+      false; // the constraints were factored on the way of closing the last step's loops
   bool prefers_short_step_ = false; // to a longer one along a negative curvature that coordinates make
 };
 

@@ -1,6 +1,6 @@
 // Floquet's theory of a linearised motion whose matrices turn with the drives (Floquet 1883; Meirovitch,
 // Methods of Analytical Dynamics, section 7.8): with x' = A(t) x and A(t + T) = A(t) what a motion is after a
-// period T is the monodromy matrix times what it was before. Its eigenvalues, the multipliers mu, tell what
+// period T is the monodromy matrix times what it was before. Its eigenvalues, the multipliers mu, decide what
 // grows: |mu| > 1.
 #pragma once
 

@@ -62,8 +62,7 @@ double time_of(int repeats, const Time& time, Work work) {
 class Direct {
  public:
   Direct(const Mechanism& mechanism, const std::atomic<bool>* cancel) : cancel_(cancel) {
-    std::vector<std::string> notes;
-    system_ = compile_for_drives(mechanism, notes);
+    system_ = compile_for_drives(mechanism);
     bind(system_, mechanism, parameters_);
     set_scaling(system_, parameters_, scaling_);
     drawn_configuration(system_, parameters_, drawn_);

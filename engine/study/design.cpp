@@ -23,7 +23,7 @@ class Designer {
   Designer(const Mechanism& mechanism, const std::string& address, double from, double to,
            const std::string& coordinate, double value, const DesignOptions& options)
       : mechanism_(mechanism), address_(address), from_(from), to_(to), name_(coordinate), value_(value),
-        options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from), notes_)),
+        options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from))),
         wanted_(free_coordinate(system_, coordinate)),
         balance_(system_, with_parameter(mechanism, address, from), {address},
                  Eigen::VectorXd::Constant(1, std::abs(to - from)), {coordinate_is(wanted_, value)}) {}
@@ -238,7 +238,6 @@ class Designer {
   const std::string& name_;
   double value_;
   const DesignOptions& options_;
-  std::vector<std::string> notes_;
   System system_;
   const CoordinateInfo& wanted_;
   ExtendedBalance balance_;

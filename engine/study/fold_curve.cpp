@@ -219,7 +219,7 @@ class Plane {
  public:
   Plane(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y, const PlaneOptions& options)
       : mechanism_(mechanism), x_(x), y_(y), options_(options), begin_(std::chrono::steady_clock::now()),
-        system_(compile_for_drives(at_corner(), notes_)) {
+        system_(compile_for_drives(at_corner())) {
     const double present = std::clamp(get_parameter(mechanism, y.address), y.from, y.to);
     if (!options.at.empty()) {
       for (double value : options.at)
@@ -343,7 +343,6 @@ class Plane {
   const PlaneAxis &x_, &y_;
   const PlaneOptions& options_;
   std::chrono::steady_clock::time_point begin_;
-  std::vector<std::string> notes_;
   System system_;
   std::vector<Line> lines_;
   std::size_t line_ = 0; // that is searched

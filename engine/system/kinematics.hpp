@@ -66,7 +66,7 @@ void retract(const System& system, const Configuration<S>& step, Configuration<S
 double coordinate_value(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                         const CoordinateInfo& coordinate);
 // Whether whole turns of a link's coordinate do not matter: nothing springs back, stops, gears or drives it.
-// Such an angle is told in (-pi, pi].
+// Such an angle is reported in (-pi, pi].
 bool turns_freely(const System& system, const Parameters& parameters, int link);
 
 // The rotation vector of a spherical link, in the joint's own order.

@@ -108,6 +108,7 @@ struct CutJoint {
   std::vector<ConstraintRow> rows;
   int gear_a = -1, gear_b = -1; // entries in the configuration
   int gear_va = -1, gear_vb = -1;
+  bool turns = false; // with the drives, in a steady state (compile_for_drives)
 };
 
 struct CoordinateInfo {

@@ -23,14 +23,13 @@ struct Group {
 };
 
 struct Compiled {
-  explicit Compiled(const Mechanism& m) : system(compile_for_drives(m, notes)) {
+  explicit Compiled(const Mechanism& m) : system(compile_for_drives(m)) {
     bind(system, m, parameters);
     set_scaling(system, parameters, scaling);
     drawn_configuration(system, parameters, drawn);
   }
   Problem problem() const { return {system, parameters, scaling}; }
 
-  std::vector<std::string> notes;
   System system;
   Parameters parameters;
   Scaling scaling;

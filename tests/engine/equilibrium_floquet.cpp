@@ -234,9 +234,8 @@ TEST_CASE("PeriodicMotion: a basis that comes back mirrored has twice the period
   // After half a turn the table looks the same and the line that is free is the same, the other way along.
   Turntable t;
   t.free_length = 0.5;
-  std::vector<std::string> notes;
   const Mechanism m = tied_bead(t);
-  const System system = compile_for_drives(m, notes);
+  const System system = compile_for_drives(m);
   Parameters parameters;
   bind(system, m, parameters);
   Scaling scaling;

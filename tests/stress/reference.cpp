@@ -123,9 +123,8 @@ struct Reference::State {
 };
 
 Reference::Reference(const Mechanism& mechanism) : state_(std::make_unique<State>()) {
-  std::vector<std::string> notes;
   State& s = *state_;
-  s.system = compile_for_drives(mechanism, notes);
+  s.system = compile_for_drives(mechanism);
   bind(s.system, mechanism, s.parameters);
   set_scaling(s.system, s.parameters, s.scaling);
   s.column = s.scaling.column.cast<Wide>();
