@@ -48,17 +48,24 @@ void BorderedKkt::set_columns(const Eigen::MatrixXd& forces, const Eigen::Matrix
   }
 }
 
-void BorderedKkt::set_rows(const Eigen::MatrixXd& rows) {
-  rows_ = rows;
-  complement_ = rows.rightCols(steps_.cols());
-  complement_.noalias() -= rows.leftCols(steps_.rows()) * steps_;
+void BorderedKkt::set_rows(Rows rows) {
+  rows_ = std::move(rows);
+  complement_ = rows_.m;
+  complement_.noalias() -= rows_.x * steps_;
+  if (rows_.lambda.size() > 0) complement_.noalias() -= rows_.lambda * multipliers_;
+}
+
+Eigen::VectorXd BorderedKkt::along_rows(const Eigen::VectorXd& x, const Eigen::VectorXd& lambda) const {
+  Eigen::VectorXd out = rows_.x * x;
+  if (rows_.lambda.size() > 0) out.noalias() += rows_.lambda * lambda;
+  return out;
 }
 
 bool BorderedKkt::eliminate(const Vector& rhs, Vector& out) {
   const double determinant = complement_.determinant();
   if (determinant == 0 || !std::isfinite(determinant)) return false;
   factors_->solve(rhs.x, rhs.lambda, out.x, out.lambda);
-  const auto m = solve_square(complement_, rhs.m - rows_.leftCols(steps_.rows()) * out.x);
+  const auto m = solve_square(complement_, rhs.m - along_rows(out.x, out.lambda));
   if (!m) return false;
   out.m = *m;
   out.x.noalias() -= steps_ * out.m;
@@ -73,7 +80,7 @@ double BorderedKkt::residual(const Vector& rhs, const Vector& v, Vector& out) {
   products_.constraint(v.x, closed_);
   out.x = rhs.x - product_ - constrained_ - force_rates_ * v.m;
   out.lambda = rhs.lambda - closed_ - loop_rates_ * v.m;
-  out.m = rhs.m - rows_.leftCols(v.x.size()) * v.x - rows_.rightCols(v.m.size()) * v.m;
+  out.m = rhs.m - along_rows(v.x, v.lambda) - rows_.m * v.m;
   const double rates = force_rates_.colwise().norm().dot(v.m.cwiseAbs());
   const double forces = rhs.x.norm() + terms + constrained_.norm() + rates + least_terms * force_size_;
   const double lengths = rhs.m.norm() + v.x.norm() + v.m.norm();

@@ -1,6 +1,6 @@
 // The KKT matrix A bordered by k columns, the rates of forces and loops in parameters, and as many rows,
 //   [ A     b  ] [ v ]        v = [x; lambda], b = [f_p; phi_p]: (n + rows, k)
-//   [ c  0  d  ] [ m ]        c, d: the rows, by coordinates and by parameters, (k, n) and (k, k)
+//   [ c     d  ] [ m ]        c, d: the rows, by coordinates and multipliers and by parameters
 // solved in time that grows with the bodies: by block elimination with the factors of A and refinement, which
 // is right where A itself is nearly singular, too (Govaerts and Pryce, Block elimination with one refinement
 // solves bordered linear systems accurately, 1990),
@@ -29,8 +29,11 @@ class BorderedKkt {
   void linearize(const Problem& problem, const Unknowns& z, Workspace& w);
   // b, by its parts (n, k) and (rows, k).
   void set_columns(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& loops);
-  // [c d]: (k, n + k).
-  void set_rows(const Eigen::MatrixXd& rows);
+  // [c d] by its parts (k, n), (k, rows) and (k, k).
+  struct Rows {
+    Eigen::MatrixXd x, lambda, m; // lambda: empty where it is zero
+  };
+  void set_rows(Rows rows);
 
   // d - c w: the bordered matrix is singular where this is and A is not.
   const Eigen::MatrixXd& complement() const { return complement_; }
@@ -49,7 +52,11 @@ class BorderedKkt {
   KktSystem* factors_ = nullptr;
   MotionProducts products_;
   double force_size_ = 1;
-  Eigen::MatrixXd force_rates_, loop_rates_, rows_, complement_;
+  // c v.
+  Eigen::VectorXd along_rows(const Eigen::VectorXd& x, const Eigen::VectorXd& lambda) const;
+
+  Rows rows_;
+  Eigen::MatrixXd force_rates_, loop_rates_, complement_;
   Eigen::MatrixXd steps_, multipliers_;            // w
   Eigen::VectorXd product_, constrained_, closed_; // K x, J^T lambda, J x
 };

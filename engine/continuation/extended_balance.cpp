@@ -18,54 +18,49 @@ Condition coordinate_is(const CoordinateInfo& coordinate, double value) {
             const double now = coordinate_value(p.system, p.parameters, state.z.q, coordinate);
             return away_from(p.system, p.parameters, coordinate, now, value) / unit(p);
           },
-          [=](const ExtendedBalance& balance, const ExtendedState& state) -> Eigen::VectorXd {
+          [=](const ExtendedBalance& balance, const ExtendedState& state,
+              Workspace&) -> SingularityTest::Gradient {
             const Problem p = balance.problem();
-            return coordinate_gradient(p.system, p.parameters, state.z.q, coordinate)
-                       .cwiseProduct(p.scaling.column) /
-                   unit(p);
+            return {coordinate_gradient(p.system, p.parameters, state.z.q, coordinate)
+                            .cwiseProduct(p.scaling.column) /
+                        unit(p),
+                    Eigen::VectorXd::Zero(p.system.rows)};
           }};
 }
 
 Condition balance_is_singular() {
-  return {[](const ExtendedBalance& balance, const ExtendedState&, Workspace& w) {
-    return balance.singularity(w);
-  }};
+  return {[](const ExtendedBalance& balance, const ExtendedState& state, Workspace& w) {
+            return balance.singularity().value(balance.problem(), state.z, w);
+          },
+          [](const ExtendedBalance& balance, const ExtendedState& state, Workspace& w) {
+            return balance.singularity().gradient(balance.problem(), state.z, w);
+          },
+          true};
 }
 
 Condition branches_cross(std::size_t parameter) {
   return {[parameter](const ExtendedBalance& balance, const ExtendedState& state, Workspace& w) {
-    return balance.transversality(state, parameter, w);
-  }};
+            return balance.transversality(state, parameter, w);
+          },
+          {},
+          true};
 }
 
 ExtendedBalance::ExtendedBalance(const System& system, const Mechanism& mechanism,
                                  std::vector<std::string> addresses, Eigen::VectorXd scales,
                                  std::vector<Condition> conditions, bool unfolded)
     : system_(system), mechanism_(mechanism), addresses_(std::move(addresses)), scales_(std::move(scales)),
-      conditions_(std::move(conditions)), unfolded_(unfolded),
-      form_(system.conservative && system.single_drives && !needs_matrices() ? system.kkt_form
-                                                                             : KktForm::dense) {
+      conditions_(std::move(conditions)), unfolded_(unfolded), form_(KktForm::dense) {
+  const bool gradients = std::ranges::all_of(conditions_, [](const Condition& c) { return !!c.gradient; });
+  if (system.conservative && system.single_drives && gradients && !unfolded_) form_ = system.kkt_form;
   bind(system_, mechanism_, parameters_);
   set_scaling(system_, parameters_, scaling_);
-  left_ = right_ = Eigen::VectorXd::Zero(system_.nv);
-}
-
-bool ExtendedBalance::needs_matrices() const {
-  return unfolded_ || std::ranges::any_of(conditions_, [](const Condition& c) { return !c.gradient; });
 }
 
 Problem ExtendedBalance::judged() const {
   Problem p = problem();
   if (system_.nv <= largest_for_eigenvalues) p.form = KktForm::dense;
   return p;
-}
-
-// A state without loads has stiffness only, one without stiffness loads only.
-double ExtendedBalance::force_size(const Workspace& w) const {
-  if (system_.nv == 0) return 1;
-  const double size = std::max(w.magnitudes.force.cwiseProduct(scaling_.column).maxCoeff(),
-                               w.dense.stiffness().cwiseAbs().maxCoeff());
-  return size > 0 ? size : 1;
 }
 
 void ExtendedBalance::set(const Eigen::VectorXd& parameters) {
@@ -75,8 +70,8 @@ void ExtendedBalance::set(const Eigen::VectorXd& parameters) {
 }
 
 void ExtendedBalance::move(ExtendedState& state, const Eigen::VectorXd& step) const {
-  const Eigen::VectorXd way = step.head(system_.nv).cwiseProduct(scaling_.column);
-  retract<double>(system_, way, state.z.q);
+  const Eigen::VectorXd unscaled = step.head(system_.nv).cwiseProduct(scaling_.column);
+  retract<double>(system_, unscaled, state.z.q);
   state.parameters += step.tail(scales_.size()).cwiseProduct(scales_);
 }
 
@@ -125,7 +120,7 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   const Eigen::MatrixXd basis = w_.dense.constraints().basis(), stiffness = w_.dense.stiffness();
   const Eigen::Index n = system_.nv, k = basis.cols(), count = scales_.size();
   const auto conditions = static_cast<Eigen::Index>(conditions_.size());
-  const double size = force_size(w_);
+  const double size = force_size(problem, w_);
 
   out.columns = Eigen::MatrixXd::Zero(n + count, k + count);
   out.columns.topLeftCorner(n, k) = basis;
@@ -146,8 +141,8 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   }
   out.rhs.head(k) = -basis.transpose() * (force + stiffness * out.r0) / size;
   if (unfolded_) {
-    out.matrix.col(k + count).head(k) = basis.transpose() * left_;
-    out.rhs.head(k) -= basis.transpose() * left_ * state.unfolding;
+    out.matrix.col(k + count).head(k) = basis.transpose() * singularity_.left();
+    out.rhs.head(k) -= basis.transpose() * singularity_.left() * state.unfolding;
   }
   out.residual = 0;
   if (k > 0) out.residual = (basis.transpose() * force / size).lpNorm<Eigen::Infinity>();
@@ -160,7 +155,7 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
     out.rhs[k + c] = -value;
     out.residual = std::max(out.residual, std::abs(value));
   }
-  const bool matrices = needs_matrices();
+  const bool matrices = std::ranges::any_of(conditions_, &Condition::of_matrix);
   const double h = 1e-5;
   for (Eigen::Index j = 0; j < k + count; ++j) {
     Eigen::VectorXd side[2];
@@ -210,26 +205,33 @@ double ExtendedBalance::border(const ExtendedState& start) {
   double residual = n > 0 ? force.lpNorm<Eigen::Infinity>() / bordered_.matrix.force_size() : 0;
   if (phi.size() > 0) residual = std::max(residual, phi.lpNorm<Eigen::Infinity>());
 
-  bordered_.rows.resize(conditions, n + count);
+  // Conditions and their rates in the parameters at the same unknowns, in a workspace of their own: what is
+  // factored at the state is solved with.
+  BorderedKkt::Rows& rows = bordered_.rows;
+  rows = {Eigen::MatrixXd(conditions, n), Eigen::MatrixXd(conditions, system_.rows),
+          Eigen::MatrixXd(conditions, count)};
   bordered_.rhs = {-force, -phi, Eigen::VectorXd(conditions)};
-  const auto value_of = [&](Eigen::Index c) {
-    return conditions_[static_cast<std::size_t>(c)].value(*this, state, w_);
+  const auto value_of = [&](const Condition& condition) {
+    evaluate(this->problem(), state.z, 0, probe_);
+    return condition.value(*this, state, probe_);
   };
+  const double h = 1e-5;
   for (Eigen::Index c = 0; c < conditions; ++c) {
-    const double value = value_of(c);
+    const Condition& condition = conditions_[static_cast<std::size_t>(c)];
+    const double value = value_of(condition);
     bordered_.rhs.m[c] = -value;
     residual = std::max(residual, std::abs(value));
-    bordered_.rows.row(c).head(n) =
-        conditions_[static_cast<std::size_t>(c)].gradient(*this, state).transpose();
-  }
-  const double h = 1e-5;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (const double side : {h, -h}) {
-      set(state.parameters + side * scales_[i] * Eigen::VectorXd::Unit(count, i));
-      for (Eigen::Index c = 0; c < conditions; ++c) {
-        const double part = value_of(c) / (2 * side);
-        bordered_.rows(c, n + i) = side > 0 ? part : bordered_.rows(c, n + i) + part;
+    const SingularityTest::Gradient gradient = condition.gradient(*this, state, probe_);
+    rows.x.row(c) = gradient.x.transpose();
+    rows.lambda.row(c) = gradient.lambda.transpose();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      double sides[2];
+      for (const int side : {0, 1}) {
+        const double step = (side == 0 ? h : -h) * scales_[i];
+        set(state.parameters + step * Eigen::VectorXd::Unit(count, i));
+        sides[side] = value_of(condition);
       }
+      rows.m(c, i) = (sides[0] - sides[1]) / (2 * h);
     }
     set(state.parameters);
   }
@@ -265,11 +267,10 @@ std::optional<ExtendedBalance::Step> ExtendedBalance::solve_assembled(Rhs rhs, c
 
 std::optional<ExtendedBalance::Step> ExtendedBalance::solve_bordered(Rhs rhs, const Eigen::VectorXd& row,
                                                                      double along) {
-  const Eigen::Index n = system_.nv, count = scales_.size(), conditions = bordered_.rows.rows();
+  const Eigen::Index n = system_.nv, count = scales_.size(), conditions = bordered_.rows.m.rows();
   const bool last = row.size() > 0;
   if (conditions + (last ? 1 : 0) != count) return {};
-  Eigen::MatrixXd rows(count, n + count);
-  rows.topRows(conditions) = bordered_.rows;
+  BorderedKkt::Rows rows = bordered_.rows;
   BorderedKkt::Vector b{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(system_.rows),
                         Eigen::VectorXd::Zero(count)};
   if (rhs == Rhs::balance) {
@@ -278,10 +279,15 @@ std::optional<ExtendedBalance::Step> ExtendedBalance::solve_bordered(Rhs rhs, co
     b.m.head(conditions) = bordered_.rhs.m;
   }
   if (last) {
-    rows.bottomRows(1) = row.transpose();
+    rows.x.conservativeResize(count, n);
+    rows.lambda.conservativeResize(count, system_.rows);
+    rows.m.conservativeResize(count, count);
+    rows.x.bottomRows(1) = row.head(n).transpose();
+    rows.lambda.bottomRows(1).setZero();
+    rows.m.bottomRows(1) = row.tail(count).transpose();
     b.m[conditions] = along;
   }
-  bordered_.matrix.set_rows(rows);
+  bordered_.matrix.set_rows(std::move(rows));
   BorderedKkt::Vector out;
   if (!bordered_.matrix.solve(b, out)) return {};
   Step step{Eigen::VectorXd(n + count)};
@@ -334,53 +340,17 @@ Eigen::VectorXd ExtendedBalance::tangent(const ExtendedState& state, const Eigen
 void ExtendedBalance::set_borders(const ExtendedState& state) {
   Unknowns z = state.z;
   set(state.parameters);
-  factor_with_multipliers(problem(), z, w_);
-  const Eigen::MatrixXd& basis = w_.dense.constraints().basis();
-  if (basis.cols() == 0) return;
-  const Eigen::MatrixXd reduced = large::projected(w_.dense.stiffness(), basis);
-  if (reduced.rows() >= large::from) {
-    const auto smallest = large::smallest_singular(reduced, 1);
-    if (!smallest) return;
-    left_ = basis * smallest->left;
-    right_ = basis * smallest->right;
-  } else {
-    const auto svd = singular_vectors(reduced);
-    if (!svd) return;
-    left_ = basis * svd->left.rightCols(1);
-    right_ = basis * svd->right.rightCols(1);
-  }
-  size_ = force_size(w_);
-}
-
-Eigen::MatrixXd ExtendedBalance::with_borders(const Workspace& w) const {
-  const Eigen::MatrixXd& basis = w.dense.constraints().basis();
-  const Eigen::Index k = basis.cols();
-  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(k + 1, k + 1);
-  m.topLeftCorner(k, k) = large::projected(w.dense.stiffness(), basis) / size_;
-  m.col(k).head(k) = basis.transpose() * left_;
-  m.row(k).head(k) = right_.transpose() * basis;
-  return m;
-}
-
-double ExtendedBalance::singularity(Workspace& w) const {
-  const Eigen::MatrixXd m = with_borders(w);
-  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(m.rows());
-  rhs[m.rows() - 1] = 1;
-  const auto solved = solve_square(m, rhs);
-  return solved ? (*solved)[m.rows() - 1] : std::numeric_limits<double>::quiet_NaN();
+  if (form_ == KktForm::dense)
+    factor_with_multipliers(problem(), z, w_);
+  else
+    evaluate_with_multipliers(problem(), z, w_);
+  singularity_.set_borders(problem(), z, w_);
 }
 
 double ExtendedBalance::transversality(const ExtendedState& state, std::size_t index, Workspace& w) const {
-  const Eigen::MatrixXd m = with_borders(w);
-  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(m.rows());
-  rhs[m.rows() - 1] = 1;
-  const auto solved = solve_square(m.transpose(), rhs);
-  if (!solved) return std::numeric_limits<double>::quiet_NaN();
-  const Eigen::VectorXd across = solved->head(m.rows() - 1);
-  Eigen::VectorXd force, phi, r1 = Eigen::VectorXd::Zero(system_.nv);
+  Eigen::VectorXd force, phi;
   rates(state, index, force, phi);
-  if (w.dense.constraints().rank() > 0) w.dense.constraints().solve(-phi, r1);
-  return across.dot(w.dense.constraints().basis().transpose() * (w.dense.stiffness() * r1 + force)) / size_;
+  return singularity_.leaving(force, phi, w);
 }
 
 } // namespace flyball

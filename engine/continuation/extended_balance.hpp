@@ -1,11 +1,12 @@
 // The balance with numbers of the mechanism among the unknowns, and as many conditions beside it: "this
 // coordinate has that value", "the balance is singular". Newton-Raphson on all of it together: with the
 // system's own form of the KKT matrix and block elimination (bordered_kkt.hpp) where there is a potential and
-// every condition tells its gradient; else by matrices on the null space of the constraints, so that
-// redundant loops do no harm.
+// every condition has a gradient; else by matrices on the null space of the constraints, so that redundant
+// loops do no harm.
 #pragma once
 
 #include "engine/continuation/bordered_kkt.hpp"
+#include "engine/continuation/singularity.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/solve/newton.hpp"
 
@@ -26,11 +27,14 @@ class ExtendedBalance;
 
 // What has to vanish.
 struct Condition {
-  // At a state whose parameters are set and which, where there is no gradient, is factored with its best
-  // multipliers in the workspace.
+  // At a state whose parameters are set and which is evaluated in the workspace; by matrices it is factored,
+  // too, with its best multipliers.
   std::function<double(const ExtendedBalance&, const ExtendedState&, Workspace&)> value;
-  // By scaled coordinates, where that takes no matrices.
-  std::function<Eigen::VectorXd(const ExtendedBalance&, const ExtendedState&)> gradient{};
+  // By scaled coordinates and multipliers, where that takes no matrices but maybe a potential. The workspace
+  // may be used.
+  std::function<SingularityTest::Gradient(const ExtendedBalance&, const ExtendedState&, Workspace&)>
+      gradient{};
+  bool of_matrix = false; // it looks at the KKT matrix, so that states beside one have to be factored, too
 };
 
 // A coordinate has a value (rad or m).
@@ -79,8 +83,8 @@ class ExtendedBalance {
   // singular value at this state. To be set before the conditions below are used, and kept during `correct`.
   void set_borders(const ExtendedState& state);
 
-  // Vanishes where the balance is singular: the last unknown of the balance bordered (Govaerts 2000, 4.2).
-  double singularity(Workspace& w) const;
+  // Vanishes where the balance is singular.
+  const SingularityTest& singularity() const { return singularity_; }
   // At a singular state: by how much the balance leaves its range as parameter `index` moves; vanishes at a
   // branch point.
   double transversality(const ExtendedState& state, std::size_t index, Workspace& w) const;
@@ -98,7 +102,7 @@ class ExtendedBalance {
   // Of block elimination.
   struct Bordered {
     BorderedKkt matrix;
-    Eigen::MatrixXd rows; // of the conditions
+    BorderedKkt::Rows rows; // of the conditions
     BorderedKkt::Vector rhs;
   };
   struct Step {
@@ -115,14 +119,11 @@ class ExtendedBalance {
   std::optional<Step> solve(Rhs rhs, const Eigen::VectorXd& row, double along);
   std::optional<Step> solve_assembled(Rhs rhs, const Eigen::VectorXd& row, double along) const;
   std::optional<Step> solve_bordered(Rhs rhs, const Eigen::VectorXd& row, double along);
-  bool needs_matrices() const;
   // Forces with these multipliers (N m, N) and loops in extended precision, scaled: the last digits of the
   // answer come from here.
   void evaluate_extended(const Unknowns& z, Eigen::VectorXd& force, Eigen::VectorXd& phi);
   void rates(const ExtendedState& state, std::size_t index, Eigen::VectorXd& force,
              Eigen::VectorXd& phi) const;
-  double force_size(const Workspace& w) const;
-  Eigen::MatrixXd with_borders(const Workspace& w) const;
 
   const System& system_;
   Mechanism mechanism_;
@@ -135,8 +136,7 @@ class ExtendedBalance {
   Bordered bordered_;
   Parameters parameters_;
   Scaling scaling_;
-  Eigen::VectorXd left_, right_; // borders, scaled, in all coordinates
-  double size_ = 1;              // of the forces, when the borders were set
+  SingularityTest singularity_;
   Workspace w_, probe_;
 };
 

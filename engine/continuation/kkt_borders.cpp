@@ -20,10 +20,14 @@ double KktBorders::linearize(const Unknowns& z, double parameter) {
   return left;
 }
 
+void KktBorders::set_row(const Eigen::VectorXd& row) {
+  bordered_.set_rows({row.head(n_).transpose(), {}, row.tail(1)});
+}
+
 bool KktBorders::step(const Eigen::VectorXd& border, double along, Eigen::VectorXd& step,
                       Eigen::VectorXd& lambda) {
   BorderedKkt::Vector out;
-  bordered_.set_rows(border.transpose());
+  set_row(border);
   if (!bordered_.solve({-force_, -loops_, Eigen::VectorXd::Constant(1, along)}, out)) return false;
   step.resize(n_ + 1);
   step << out.x, out.m;
@@ -33,7 +37,7 @@ bool KktBorders::step(const Eigen::VectorXd& border, double along, Eigen::Vector
 
 bool KktBorders::direction(const Eigen::VectorXd& border, Eigen::VectorXd& result) {
   BorderedKkt::Vector out;
-  bordered_.set_rows(border.transpose());
+  set_row(border);
   if (!bordered_.solve(
           {Eigen::VectorXd::Zero(n_), Eigen::VectorXd::Zero(loops_.size()), Eigen::VectorXd::Ones(1)}, out))
     return false;
@@ -68,7 +72,7 @@ std::optional<double> KktBorders::determinant(const Eigen::VectorXd& border) {
   const Problem problem = family_.problem();
   KktSystem& factors = w_.kkt(problem);
   if (!factors.inertia_is_certain(problem, w_)) return {};
-  bordered_.set_rows(border.transpose());
+  set_row(border);
   if (!iterate_inversely(3, v, rate)) return 0;
   const bool negative = (factors.negative_count() % 2 == 1) != (bordered_.complement()(0, 0) < 0);
   return negative ? -rate : rate;
@@ -78,7 +82,7 @@ bool KktBorders::second_direction(const Eigen::VectorXd& tangent, Eigen::VectorX
   if (n_ == 0) return false;
   BorderedKkt::Vector v;
   double rate = 0;
-  bordered_.set_rows(tangent.transpose());
+  set_row(tangent);
   if (!iterate_inversely(5, v, rate)) return false;
   out.resize(n_ + 1);
   out << v.x, v.m;

@@ -26,6 +26,8 @@ class KktBorders final : public BorderedBalance {
   // singular altogether. With the border set.
   bool iterate_inversely(int iterations, BorderedKkt::Vector& v, double& rate);
 
+  void set_row(const Eigen::VectorXd& row);
+
   int n_ = 0;
   BorderedKkt bordered_;
   Eigen::VectorXd force_, loops_; // of the balance, scaled, with multipliers

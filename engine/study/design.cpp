@@ -130,9 +130,9 @@ class Designer {
       const Problem problem = balance_.problem();
       state.z.q = configuration_of(problem, a.coordinates);
       const Eigen::VectorXd other = configuration_of(problem, b.coordinates);
-      const Eigen::VectorXd way =
+      const Eigen::VectorXd step =
           t * scaled_difference(problem, state.z.q, other).cwiseProduct(problem.scaling.column);
-      retract<double>(system_, way, state.z.q);
+      retract<double>(system_, step, state.z.q);
       const ExtendedOutcome outcome = balance_.correct(state, {});
       const double p = state.parameters[0];
       if (!outcome.converged || std::abs(p - a.parameter) > near) continue;

@@ -15,6 +15,9 @@
 namespace flyball {
 namespace {
 
+// Curves of crossings go by matrices, with four factorizations for each coordinate a step.
+constexpr int largest_for_crossings = 100;
+
 // One of the curves, as it is solved for.
 struct Traced {
   std::vector<ExtendedState> states;
@@ -61,18 +64,18 @@ class Tracer {
   bool lies_on(const ExtendedState& state, const Traced& curve) {
     std::size_t nearest = 0;
     double least = 2 * options_.largest_step;
-    Eigen::VectorXd way;
+    Eigen::VectorXd away;
     for (std::size_t i = 0; i < curve.states.size(); ++i) {
       const Eigen::VectorXd d = difference(curve.states[i], state);
       if (d.norm() >= least) continue;
       least = d.norm();
-      way = d;
+      away = d;
       nearest = i;
     }
-    if (way.size() == 0) return false;
+    if (away.size() == 0) return false;
     if (least < 1e-6) return true;
     ExtendedState there;
-    return step(curve.states[nearest], curve.tangents[nearest], curve.tangents[nearest].dot(way), there) >
+    return step(curve.states[nearest], curve.tangents[nearest], curve.tangents[nearest].dot(away), there) >
                0 &&
            difference(there, state).norm() < 1e-2 * least;
   }
@@ -301,6 +304,9 @@ class Plane {
     out_.curves.push_back(std::move(curve));
   }
 
+  // Counts a crossing that is not followed for the size of the system.
+  void leave_out_crossing() { ++left_out_; }
+
   void heard(Status status, const std::string& message) {
     if (out_.status == Status::converged) return;
     out_.status = status;
@@ -314,6 +320,10 @@ class Plane {
                              : std::to_string(n) + " " + what + (n == 1 ? " curve" : " curves")) +
                      " through the " + std::to_string(lines_.size()) +
                      " lines searched; there may be others between.";
+      if (left_out_ > 0)
+        out_.message += " Branches cross at " + std::to_string(left_out_) +
+                        " more points; curves of crossings are followed up to " +
+                        std::to_string(largest_for_crossings) + " coordinates.";
       if (cancelled()) out_.message = "Cancelled. " + out_.message;
     } else if (out_.message.empty()) { // before anything was found
       out_.message = "Cancelled.";
@@ -346,6 +356,7 @@ class Plane {
   System system_;
   std::vector<Line> lines_;
   std::size_t line_ = 0; // that is searched
+  int left_out_ = 0;
   std::vector<Traced> traced_;
   PlaneCurves out_;
 };
@@ -385,6 +396,8 @@ PlaneCurves fold_curves(const Mechanism& mechanism, const PlaneAxis& x, const Pl
       });
       if (s.type == SpecialPointType::fold && !at_crossing)
         plane.add(folds, PlaneCurveType::fold, line, s.at.parameter, s.at.coordinates);
+      else if (s.type == SpecialPointType::branch_point && plane.system().nv > largest_for_crossings)
+        plane.leave_out_crossing();
       else if (s.type == SpecialPointType::branch_point)
         plane.add(crossings, PlaneCurveType::branch_point, line, s.at.parameter, s.at.coordinates);
     }

@@ -3,12 +3,15 @@
 #include "tests/bench/large_scenes.hpp"
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
+#include "engine/continuation/branch_follower.hpp"
 #include "engine/continuation/extended_balance.hpp"
 #include "engine/kkt/configuration_difference.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
+#include "engine/mechanism/address.hpp"
 #include "engine/search/all_equilibria.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/study/compare.hpp"
+#include "engine/study/fold_curve.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -173,5 +176,74 @@ TEST_CASE("a comparison's reference is known to rounding where the KKT matrix is
     const auto x = std::ranges::find(c.reference, name, &CoordinateSolution::joint);
     REQUIRE(x != c.reference.end());
     CHECK(std::abs(x->value - z.q[link.q]) < 1e-12);
+  }
+}
+
+namespace {
+
+// The fold near a speed with these coordinates, at this gravity, and the direction of its curve over both.
+Corrected fold(const Mechanism& m, System& system, KktForm form, double at, double pull,
+               const std::vector<CoordinateSolution>& coordinates) {
+  system.kkt_form = form;
+  ExtendedBalance balance(system, m, {speed, gravity}, Eigen::Vector2d(4, 10), {balance_is_singular()});
+  Corrected out;
+  out.state.parameters = Eigen::Vector2d(at, pull);
+  balance.set(out.state.parameters);
+  out.state.z.q = configuration_of(balance.problem(), coordinates);
+  balance.set_borders(out.state);
+  const Eigen::VectorXd fixed = Eigen::VectorXd::Unit(balance.unknowns(), balance.unknowns() - 1);
+  out.outcome = balance.correct(out.state, fixed);
+  REQUIRE(out.outcome.converged);
+  out.tangent = balance.tangent(out.state, fixed);
+  REQUIRE(out.tangent.size() == balance.unknowns());
+  return out;
+}
+
+int folds_agree(const Mechanism& m, KktForm form, double from, double to) {
+  BranchOptions options;
+  options.all = true;
+  options.eigenvalues = false;
+  const ResponseDiagram d = follow_branches(m, speed, from, to, options);
+  REQUIRE(d.status == Status::converged);
+  System system = compile(m);
+  int folds = 0;
+  for (const SpecialPoint& point : d.special) {
+    if (point.type != SpecialPointType::fold || folds == 4) continue;
+    CAPTURE(point.at.parameter);
+    const auto by = [&](KktForm which) {
+      return fold(m, system, which, point.at.parameter, -standard_gravity, point.at.coordinates);
+    };
+    const Corrected dense = by(KktForm::dense), other = by(form);
+    CHECK(std::abs(dense.state.parameters[0] - point.at.parameter) < 1e-6);
+    CHECK((dense.state.parameters - other.state.parameters).norm() < 1e-10);
+    CHECK((dense.state.z.q - other.state.z.q).lpNorm<Eigen::Infinity>() < 1e-8);
+    CHECK((dense.tangent - other.tangent).norm() < 1e-5);
+    ++folds;
+  }
+  return folds;
+}
+
+} // namespace
+
+TEST_CASE("ExtendedBalance: folds by elimination are those by matrices", "[forms]") {
+  CHECK(folds_agree(bench::springy_chain(12, 6, 0.1, 0), KktForm::tree, 7, 12) >= 2);
+  CHECK(folds_agree(held_chain(9), KktForm::sparse, 3, 12) > 0);
+}
+
+TEST_CASE("fold_curves: a chain's, along a tree, end where matrices have the fold", "[forms]") {
+  const Mechanism m = bench::springy_chain(40, 6, 0.1, 0);
+  PlaneOptions options;
+  options.max_curves = 1;
+  options.all = true;
+  options.at = {-standard_gravity};
+  const PlaneCurves plane = fold_curves(m, {speed, 4, 5}, {gravity, -10, -9}, options);
+  INFO(plane.message);
+  REQUIRE(plane.curves.size() == 1);
+  System system = compile(m);
+  REQUIRE(system.kkt_form == KktForm::tree);
+  for (const PlanePoint* end : {&plane.curves[0].points.front(), &plane.curves[0].points.back()}) {
+    CAPTURE(end->x, end->y);
+    const Corrected there = fold(m, system, KktForm::dense, end->x, end->y, end->coordinates);
+    CHECK(std::abs(there.state.parameters[0] - end->x) < 1e-9);
   }
 }
