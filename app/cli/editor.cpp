@@ -12,6 +12,7 @@
 #include "app/panels/file_commands.hpp"
 #include "app/panels/snapshot.hpp"
 #include "app/panels/ui_style.hpp"
+#include "app/render/imgui_compat.hpp"
 #include "app/render/window.hpp"
 #include "engine/mechanism/file.hpp"
 
@@ -66,14 +67,14 @@ class Input {
     mouse_ = now;
   }
   void hold(const Window& window, const std::vector<KeyPress>& keys) {
-    ImGuiIO& io = ImGui::GetIO();
+    if constexpr (imgui_compat::queues_events) return;
     for (const int key : held_)
-      io.KeysDown[key] = glfwGetKey(window.handle(), key) == GLFW_PRESS;
+      imgui_compat::set_key(key, glfwGetKey(window.handle(), key) == GLFW_PRESS);
     held_.clear();
     for (const KeyPress& press : keys) {
       const bool known = press.key >= GLFW_KEY_SPACE && press.key <= GLFW_KEY_LAST;
-      if (!known || io.KeysDown[press.key]) continue;
-      io.KeysDown[press.key] = true;
+      if (!known || imgui_compat::key_is_down(press.key)) continue;
+      imgui_compat::set_key(press.key, true);
       held_.push_back(press.key);
     }
   }

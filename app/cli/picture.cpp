@@ -44,6 +44,7 @@ Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& o
   const PixelSize size{options.width, options.height};
   Picture picture;
   picture.image = options.interface ? interface_picture(app, size, options.scale) : view_picture(app, size);
+  picture.drawn_by = context.description();
   picture.answer = app.answer;
   return picture;
 }

@@ -22,6 +22,7 @@ struct PictureOptions {
 
 struct Picture {
   Image image;
+  std::string drawn_by; // library, renderer and version
   LiveAnswer answer; // what it shows; where nothing was solved, ticket is 0
 };
 

@@ -40,6 +40,9 @@ Ending run_render(const RenderOptions& options) {
   const Picture picture = draw_picture(options.scene, wanted);
   write_png(options.out, picture.image);
   progress.reset();
+  // Not to standard output, which the picture may go to.
+  fmt::print(stderr, "{}: {} x {} pixels, drawn by {}\n", printable(options.out.string()), wanted.width,
+             wanted.height, picture.drawn_by);
   if (wanted.drawn_pose) return {};
   if (picture.answer.error) throw SceneError("", *picture.answer.error);
   return end_with(picture.answer.solution.status == Status::converged, options.scene,

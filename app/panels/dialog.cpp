@@ -1,6 +1,7 @@
 #include "app/panels/dialog.hpp"
 
 #include "app/panels/widgets.hpp"
+#include "app/render/imgui_compat.hpp"
 
 #include <algorithm>
 
@@ -51,7 +52,7 @@ bool escape_pressed() {
 }
 
 bool enter_pressed() {
-  return key_pressed(ImGuiKey_Enter) || key_pressed(ImGuiKey_KeyPadEnter);
+  return key_pressed(ImGuiKey_Enter) || key_pressed(imgui_compat::keypad_enter);
 }
 
 int choice_buttons(App& app, std::span<const Choice> choices, int& marked) {

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <cstdint>
+#include <iterator>
 
 namespace flyball::imgui_compat {
 
@@ -23,5 +24,54 @@ inline unsigned texture_name(ImTextureID id) {
   return static_cast<unsigned>(reinterpret_cast<std::uintptr_t>(id));
 #endif
 }
+
+// Since 1.87 events wait in a queue, so that what is pressed and let go within a frame is seen.
+inline constexpr bool queues_events = IMGUI_VERSION_NUM >= 18700;
+
+#if IMGUI_VERSION_NUM >= 18700
+inline constexpr ImGuiKey keypad_enter = ImGuiKey_KeypadEnter;
+#else
+inline constexpr ImGuiKey keypad_enter = ImGuiKey_KeyPadEnter;
+#endif
+
+// Keys as input of one frame, by GLFW's codes.
+#if IMGUI_VERSION_NUM >= 18900
+inline ImGuiKey key_of(int code) {
+  if (code >= 'A' && code <= 'Z') return static_cast<ImGuiKey>(ImGuiKey_A + (code - 'A'));
+  if (code >= '0' && code <= '9') return static_cast<ImGuiKey>(ImGuiKey_0 + (code - '0'));
+  constexpr int first = 256;
+  constexpr ImGuiKey named[] = {ImGuiKey_Escape,    ImGuiKey_Enter,   ImGuiKey_Tab,        ImGuiKey_Backspace,
+                                ImGuiKey_Insert,    ImGuiKey_Delete,  ImGuiKey_RightArrow, ImGuiKey_LeftArrow,
+                                ImGuiKey_DownArrow, ImGuiKey_UpArrow, ImGuiKey_PageUp,     ImGuiKey_PageDown,
+                                ImGuiKey_Home,      ImGuiKey_End};
+  const int i = code - first;
+  return i >= 0 && i < static_cast<int>(std::size(named)) ? named[i] : ImGuiKey_None;
+}
+inline void set_key(int code, bool down) {
+  if (key_of(code) != ImGuiKey_None) ImGui::GetIO().AddKeyEvent(key_of(code), down);
+}
+inline bool key_is_down(int code) {
+  return key_of(code) != ImGuiKey_None && ImGui::IsKeyDown(key_of(code));
+}
+inline void map_key(ImGuiKey, int) {}
+inline void set_modifiers(bool ctrl, bool shift) {
+  ImGui::GetIO().AddKeyEvent(ImGuiMod_Ctrl, ctrl);
+  ImGui::GetIO().AddKeyEvent(ImGuiMod_Shift, shift);
+}
+#else
+inline void set_key(int code, bool down) {
+  ImGui::GetIO().KeysDown[code] = down;
+}
+inline bool key_is_down(int code) {
+  return ImGui::GetIO().KeysDown[code];
+}
+inline void map_key(ImGuiKey key, int code) {
+  ImGui::GetIO().KeyMap[key] = code;
+}
+inline void set_modifiers(bool ctrl, bool shift) {
+  ImGui::GetIO().KeyCtrl = ctrl;
+  ImGui::GetIO().KeyShift = shift;
+}
+#endif
 
 } // namespace flyball::imgui_compat

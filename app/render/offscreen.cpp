@@ -1,70 +1,47 @@
 #include "app/render/offscreen.hpp"
 
-#include "app/render/gl.hpp"
+#include "app/render/offscreen_provider.hpp"
 
-#include <GL/osmesa.h>
-
-#include <array>
-#include <dlfcn.h>
+#include <cstdlib>
+#include <string_view>
 
 namespace flyball {
-
 namespace {
 
-struct CloseLibrary {
-  void operator()(void* handle) const { dlclose(handle); }
-};
+OffscreenLibrary wanted_library() {
+  const char* const text = std::getenv("FLYBALL_OFFSCREEN");
+  if (!text || !*text) return OffscreenLibrary::any;
+  if (std::string_view(text) == "osmesa") return OffscreenLibrary::osmesa;
+  if (std::string_view(text) == "egl") return OffscreenLibrary::egl;
+  throw GlError(std::string("FLYBALL_OFFSCREEN: expected osmesa or egl, found \"") + text + "\"");
+}
 
-void* open_library() {
-  for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
-    if (void* handle = dlopen(name, RTLD_NOW | RTLD_LOCAL)) return handle;
-  throw GlError("drawing without a display needs libOSMesa (package libosmesa6)");
+std::unique_ptr<OffscreenProvider> make_provider(OffscreenLibrary library) {
+  if (library == OffscreenLibrary::egl) return make_egl_provider();
+  try {
+    return make_osmesa_provider();
+  } catch (const GlError& osmesa) {
+    if (library == OffscreenLibrary::osmesa) throw;
+    try {
+      return make_egl_provider();
+    } catch (const GlError& egl) {
+      throw GlError(std::string("drawing without a display: ") + osmesa.what() + "; " + egl.what());
+    }
+  }
+}
+
+const char* text_of(GLenum what) {
+  return reinterpret_cast<const char*>(glGetString(what));
 }
 
 } // namespace
 
-struct OffscreenContext::State {
-  std::unique_ptr<void, CloseLibrary> library;
-  decltype(&OSMesaCreateContextAttribs) create = nullptr;
-  decltype(&OSMesaMakeCurrent) make_current = nullptr;
-  decltype(&OSMesaDestroyContext) destroy = nullptr;
-  decltype(&OSMesaGetProcAddress) address = nullptr;
-  OSMesaContext context = nullptr;
-  // OSMesa insists on a picture of its own; everything is drawn into framebuffer objects instead.
-  std::array<unsigned char, 4> pixel{};
+OffscreenContext::OffscreenContext() : OffscreenContext(wanted_library()) {}
 
-  template <typename Function>
-  void find(Function& function, const char* name) {
-    function = reinterpret_cast<Function>(dlsym(library.get(), name));
-    if (!function) throw GlError(std::string("libOSMesa has no ") + name);
-  }
-  ~State() {
-    if (context) destroy(context);
-  }
-};
-
-OffscreenContext::OffscreenContext() : state_(std::make_unique<State>()) {
-  state_->library.reset(open_library());
-  state_->find(state_->create, "OSMesaCreateContextAttribs");
-  state_->find(state_->make_current, "OSMesaMakeCurrent");
-  state_->find(state_->destroy, "OSMesaDestroyContext");
-  state_->find(state_->address, "OSMesaGetProcAddress");
-  constexpr int attributes[] = {OSMESA_FORMAT,
-                                OSMESA_RGBA,
-                                OSMESA_DEPTH_BITS,
-                                0,
-                                OSMESA_PROFILE,
-                                OSMESA_CORE_PROFILE,
-                                OSMESA_CONTEXT_MAJOR_VERSION,
-                                3,
-                                OSMESA_CONTEXT_MINOR_VERSION,
-                                3,
-                                0};
-  state_->context = state_->create(attributes, nullptr);
-  if (!state_->context) throw GlError("OSMesa gives no OpenGL 3.3 core context");
+OffscreenContext::OffscreenContext(OffscreenLibrary library) : provider_(make_provider(library)) {
   make_current();
-  if (!gladLoadGL(reinterpret_cast<GLADloadfunc>(state_->address)))
-    throw GlError("OSMesa: the functions of OpenGL 3.3 could not be loaded");
+  if (!gladLoadGL(provider_->loader()))
+    throw GlError(std::string(provider_->name()) + ": the functions of OpenGL 3.3 could not be loaded");
 }
 
 OffscreenContext::~OffscreenContext() = default;
@@ -72,13 +49,11 @@ OffscreenContext::OffscreenContext(OffscreenContext&&) noexcept = default;
 OffscreenContext& OffscreenContext::operator=(OffscreenContext&&) noexcept = default;
 
 void OffscreenContext::make_current() {
-  if (!state_->make_current(state_->context, state_->pixel.data(), GL_UNSIGNED_BYTE, 1, 1))
-    throw GlError("OSMesa: the context cannot be made current");
+  provider_->make_current();
 }
 
 std::string OffscreenContext::description() const {
-  return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ", OpenGL " +
-         reinterpret_cast<const char*>(glGetString(GL_VERSION));
+  return std::string(provider_->name()) + ", " + text_of(GL_RENDERER) + ", OpenGL " + text_of(GL_VERSION);
 }
 
 } // namespace flyball

@@ -1,4 +1,5 @@
-// An OpenGL context without a display: OSMesa, loaded when asked for, so that the program runs without it.
+// An OpenGL context without a display: by OSMesa, else by EGL without a surface. Their libraries are loaded
+// when asked for, so that the program runs without them.
 #pragma once
 
 #include <memory>
@@ -6,21 +7,27 @@
 
 namespace flyball {
 
+enum class OffscreenLibrary { any, osmesa, egl }; // any: the first of the others that is there
+
+class OffscreenProvider;
+
 class OffscreenContext {
  public:
-  // Makes the context current on this thread. Throws GlError naming the package to install where libOSMesa
-  // is missing.
+  // As the environment variable FLYBALL_OFFSCREEN says: osmesa or egl; unset: any.
   OffscreenContext();
+  // Makes the context current on this thread. Throws GlError that says what failed, and which packages would
+  // help where nothing is there.
+  explicit OffscreenContext(OffscreenLibrary library);
   ~OffscreenContext();
   OffscreenContext(OffscreenContext&&) noexcept;
   OffscreenContext& operator=(OffscreenContext&&) noexcept;
 
   void make_current();
-  std::string description() const; // renderer and version, as OpenGL reports them
+  // Library, renderer and version: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 ...".
+  std::string description() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<OffscreenProvider> provider_;
 };
 
 } // namespace flyball

@@ -15,8 +15,8 @@ namespace flyball {
 namespace {
 
 // The matrix of the implicit steps is the Ode's own; SUNDIALS is given an empty shell in its place.
-int set_up(realtype t, N_Vector y, N_Vector rate, SUNMatrix, booleantype keep, booleantype* taken,
-           realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
+int set_up(sundials::Real t, N_Vector y, N_Vector rate, SUNMatrix, sundials::Boolean keep,
+           sundials::Boolean* taken, sundials::Real gamma, void* data, N_Vector, N_Vector, N_Vector) {
   Ode& ode = sundials::ode_of(data);
   *taken = keep ? SUNFALSE : SUNTRUE;
   if (!keep && !ode.linearise(t, sundials::data(y), sundials::data(rate))) return sundials::failure(ode);
@@ -32,13 +32,13 @@ SUNLinearSolver_Type solver_type(SUNLinearSolver) {
 SUNLinearSolver_ID solver_kind(SUNLinearSolver) {
   return SUNLINEARSOLVER_CUSTOM;
 }
-int solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+int solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, sundials::Real) {
   N_VScale(1, b, x);
   sundials::ode_of(solver->content).solve(sundials::data(x));
   return 0;
 }
 
-int project(realtype t, N_Vector y, N_Vector correction, realtype, N_Vector, void* data) {
+int project(sundials::Real t, N_Vector y, N_Vector correction, sundials::Real, N_Vector, void* data) {
   Ode& ode = sundials::ode_of(data);
   N_VScale(1, y, correction);
   if (!ode.project(t, sundials::data(correction))) return sundials::failure(ode);
@@ -87,7 +87,9 @@ class CvodeStepper : public Stepper {
     started_ = true;
     CVodeInit(memory_, sundials::rate, t, y_);
     CVodeSetUserData(memory_, &ode_);
+#if SUNDIALS_VERSION_MAJOR < 7 // later the context has the handlers
     CVodeSetErrHandlerFn(memory_, sundials::keep_silent, nullptr);
+#endif
     CVodeWFtolerances(memory_, sundials::weights);
     CVodeSetMaxNumSteps(memory_, -1);
     CVodeSetMaxHnilWarns(memory_, -1);

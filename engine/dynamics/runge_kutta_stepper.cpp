@@ -10,7 +10,7 @@
 namespace flyball {
 namespace {
 
-int project(realtype t, N_Vector y, void* data) {
+int project(sundials::Real t, N_Vector y, void* data) {
   Ode& ode = sundials::ode_of(data);
   return ode.project(t, sundials::data(y)) ? 0 : sundials::failure(ode);
 }
@@ -63,7 +63,9 @@ class RungeKuttaStepper : public Stepper {
       memory_ = ERKStepCreate(sundials::rate, t, y_, context_);
       if (!memory_) throw std::bad_alloc();
       ERKStepSetUserData(memory_, &ode_);
+#if SUNDIALS_VERSION_MAJOR < 7 // later the context has the handlers
       ERKStepSetErrHandlerFn(memory_, sundials::keep_silent, nullptr);
+#endif
       ERKStepWFtolerances(memory_, sundials::weights);
       set_method(memory_);
       // The interpolant only finds events; that of degree 3 costs no evaluations.
@@ -116,7 +118,9 @@ class RungeKuttaStepper : public Stepper {
     }
   }
 
-  void state_at(double, Eigen::VectorXd& y) override { y = y_.view(); }
+  void state_at(double, Eigen::VectorXd& y) override {
+    y = y_.view();
+  }
 
   void count(RunStatistics& s) override {
     if (!memory_) return;

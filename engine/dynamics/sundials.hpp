@@ -5,6 +5,7 @@
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
+#include <sundials/sundials_version.h>
 
 #include <Eigen/Core>
 
@@ -12,12 +13,28 @@
 
 namespace flyball::sundials {
 
-static_assert(sizeof(realtype) == sizeof(double));
+// What its versions 6 and 7 call differently.
+#if SUNDIALS_VERSION_MAJOR >= 7
+using Real = sunrealtype;
+using Boolean = sunbooleantype;
+inline int create(SUNContext* context) {
+  const int failed = SUNContext_Create(SUN_COMM_NULL, context);
+  return failed != 0 ? failed : SUNContext_ClearErrHandlers(*context);
+}
+#else
+using Real = realtype;
+using Boolean = booleantype;
+inline int create(SUNContext* context) {
+  return SUNContext_Create(nullptr, context);
+}
+inline void keep_silent(int, const char*, const char*, char*, void*) {} // a handler of messages
+#endif
+static_assert(sizeof(Real) == sizeof(double));
 
 class Context {
  public:
   Context() {
-    if (SUNContext_Create(nullptr, &context_) != 0) throw std::bad_alloc();
+    if (create(&context_) != 0) throw std::bad_alloc();
   }
   ~Context() { SUNContext_Free(&context_); }
   Context(const Context&) = delete;
@@ -59,7 +76,7 @@ inline int failure(const Ode& ode) {
   return ode.wanted() ? 1 : -1;
 }
 
-inline int rate(realtype t, N_Vector y, N_Vector out, void* data_of_user) {
+inline int rate(Real t, N_Vector y, N_Vector out, void* data_of_user) {
   Ode& ode = ode_of(data_of_user);
   return ode.rate(t, data(y), data(out)) ? 0 : failure(ode);
 }
@@ -72,11 +89,9 @@ inline int weights(N_Vector y, N_Vector out, void* ode) {
   return 0;
 }
 
-inline int event_values(realtype t, N_Vector y, realtype* out, void* ode) {
+inline int event_values(Real t, N_Vector y, Real* out, void* ode) {
   ode_of(ode).event_values(t, data(y), out);
   return 0;
 }
-
-inline void keep_silent(int, const char*, const char*, char*, void*) {}
 
 } // namespace flyball::sundials

@@ -26,7 +26,8 @@ class KeyList {
     all_.push_back(field);
   }
   void coordinates(const Joint&) {
-    for (Field field : scene_keys::of(Coordinate())) {
+    const Keys keys = scene_keys::of(Coordinate());
+    for (Field field : keys) {
       field.expected = per_coordinate;
       all_.push_back(field);
     }

@@ -85,7 +85,8 @@ class ObjectWriter {
     std::vector<Json> each;
     for (const Coordinate& coordinate : joint.coordinates)
       each.push_back(object_of(coordinate));
-    for (const Field& field : scene_keys::of(Coordinate())) {
+    const scene_keys::Keys keys = scene_keys::of(Coordinate());
+    for (const Field& field : keys) {
       const std::string key(field.key);
       if (std::ranges::none_of(each, [&](const Json& one) { return one.contains(key); })) continue;
       Json all = Json::array();

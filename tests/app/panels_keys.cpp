@@ -1,4 +1,5 @@
 // Whose keys are: a click that missed a field does no harm, and what lies over the document keeps them.
+#include "app/render/imgui_compat.hpp"
 #include "robot.hpp"
 
 #include "app/document/create.hpp"
@@ -44,7 +45,7 @@ Look look(const App& app) {
 
 struct Hand : Robot {
   Hand() : Robot({1280, 1100}) {
-    ImGui::GetIO().KeyMap[ImGuiKey_Tab] = keys::tab;
+    imgui_compat::map_key(ImGuiKey_Tab, keys::tab);
     set_mode(app, Mode::build);
     app.panels.inspector_share = 0.9f;
     select(app, {{{PartKind::joint, "spin"}}});

@@ -1,5 +1,7 @@
 #include "robot.hpp"
 
+#include "app/render/imgui_compat.hpp"
+
 #include "tests/catch.hpp"
 
 #include <cmath>
@@ -14,10 +16,9 @@ Robot::Robot(PixelSize wanted, const NumberStyle& numbers)
            .numbers = numbers}),
       stage(app, 1), size(wanted) {
   app.view.samples = 1;
-  ImGuiIO& io = ImGui::GetIO();
-  io.KeyMap[ImGuiKey_Enter] = key_enter;
-  io.KeyMap[ImGuiKey_Escape] = key_escape;
-  io.KeyMap[ImGuiKey_A] = 'A';
+  imgui_compat::map_key(ImGuiKey_Enter, key_enter);
+  imgui_compat::map_key(ImGuiKey_Escape, key_escape);
+  imgui_compat::map_key(ImGuiKey_A, 'A');
   open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
   frames(3);
 }
@@ -94,20 +95,18 @@ void Robot::wheel(const std::string& name, float notches) {
 }
 
 void Robot::key(int code, bool ctrl, bool shift) {
-  ImGuiIO& io = ImGui::GetIO();
-  const bool held_ctrl = io.KeyCtrl, held_shift = io.KeyShift;
+  const bool held_ctrl = ImGui::GetIO().KeyCtrl, held_shift = ImGui::GetIO().KeyShift;
   hold(ctrl, shift);
-  io.KeysDown[code] = true;
+  imgui_compat::set_key(code, true);
   app.keys.push_back({code, ctrl, shift});
   frames(1);
   hold(held_ctrl, held_shift);
-  io.KeysDown[code] = false;
+  imgui_compat::set_key(code, false);
   frames(2);
 }
 
 void Robot::hold(bool ctrl, bool shift) {
-  ImGui::GetIO().KeyCtrl = ctrl;
-  ImGui::GetIO().KeyShift = shift;
+  imgui_compat::set_modifiers(ctrl, shift);
 }
 
 ImVec2 Robot::pixel(const Vec3& world) {

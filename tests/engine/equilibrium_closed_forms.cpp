@@ -56,7 +56,7 @@ PlaneBody<S> carried(const Mechanism& m, const std::string& name, const Vec3& fr
           s,      b.inertia[0],           b.inertia[1],           b.inertia[3]};
 }
 
-const Joint& joint_of(const Mechanism& m, const std::string& name) {
+const Joint& joint_of(const Mechanism& m, std::string_view name) {
   return m.joints[static_cast<std::size_t>(joint_index(m, name))];
 }
 

@@ -1,0 +1,71 @@
+// Pictures without a display: whichever library makes the context, they agree.
+#include "app/render/compare.hpp"
+#include "app/render/offscreen.hpp"
+#include "app/viewport/view_renderer.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "tests/catch.hpp"
+
+#include <cstdlib>
+#include <optional>
+
+using namespace flyball;
+
+namespace {
+
+struct Drawn {
+  Image image;
+  std::string by;
+};
+
+// The governor; nothing where the library is not there.
+std::optional<Drawn> draw(OffscreenLibrary library) {
+  std::optional<OffscreenContext> context;
+  try {
+    context.emplace(library);
+  } catch (const GlError& error) {
+    WARN("skipped: " << error.what());
+    return std::nullopt;
+  }
+  const Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  ViewFrame frame;
+  frame.mechanism = &mechanism;
+  frame.camera.fit(scene_of(frame).bounds, {640, 400});
+  ViewRenderer renderer;
+  Framebuffer target(640, 400, 4);
+  renderer.draw(frame, target);
+  return Drawn{target.read(), context->description()};
+}
+
+} // namespace
+
+TEST_CASE("OffscreenContext: pictures by OSMesa and by EGL agree") {
+  const std::optional<Drawn> osmesa = draw(OffscreenLibrary::osmesa), egl = draw(OffscreenLibrary::egl);
+  if (osmesa) CHECK(osmesa->by.starts_with("OSMesa, "));
+  if (egl) CHECK(egl->by.starts_with("EGL, "));
+  REQUIRE((osmesa || egl)); // the program cannot draw without a display
+  if (!osmesa || !egl) return;
+  const ImageComparison comparison = compare(osmesa->image, egl->image);
+  INFO(osmesa->by << " and " << egl->by << ": " << comparison.message);
+  CHECK(comparison.same);
+  const Image empty(640, 400);
+  CHECK_FALSE(compare(osmesa->image, empty).same);
+}
+
+TEST_CASE("OffscreenContext: contexts of both libraries follow each other") {
+  for (int i = 0; i < 2; ++i)
+    for (const OffscreenLibrary library : {OffscreenLibrary::osmesa, OffscreenLibrary::egl}) {
+      const auto drawn = draw(library);
+      if (drawn) CHECK(drawn->image.width == 640);
+    }
+}
+
+TEST_CASE("OffscreenContext: the environment chooses the library, a wrong word is named") {
+  setenv("FLYBALL_OFFSCREEN", "glx", 1);
+  try {
+    const OffscreenContext context;
+    FAIL("taken");
+  } catch (const GlError& error) {
+    CHECK(std::string(error.what()) == "FLYBALL_OFFSCREEN: expected osmesa or egl, found \"glx\"");
+  }
+  unsetenv("FLYBALL_OFFSCREEN");
+}
