@@ -40,9 +40,10 @@ Ending run_render(const RenderOptions& options) {
   const Picture picture = draw_picture(options.scene, wanted);
   write_png(options.out, picture.image);
   progress.reset();
-  // Not to standard output, which the picture may go to.
-  fmt::print(stderr, "{}: {} x {} pixels, drawn by {}\n", printable(options.out.string()), wanted.width,
-             wanted.height, picture.drawn_by);
+  // Standard output may be where the picture goes.
+  if (std::filesystem::is_regular_file(options.out))
+    print_text(fmt::format("{}: {} x {} pixels, drawn by {}\n", options.out.string(), wanted.width,
+                           wanted.height, picture.drawn_by));
   if (wanted.drawn_pose) return {};
   if (picture.answer.error) throw SceneError("", *picture.answer.error);
   return end_with(picture.answer.solution.status == Status::converged, options.scene,
