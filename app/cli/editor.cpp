@@ -1,6 +1,5 @@
 #include "app/cli/editor.hpp"
 
-#include "app/cli/assets.hpp"
 #include "app/cli/command.hpp"
 #include "app/cli/end_signals.hpp"
 #include "app/cli/output.hpp"
@@ -12,6 +11,7 @@
 #include "app/panels/file_commands.hpp"
 #include "app/panels/snapshot.hpp"
 #include "app/panels/ui_style.hpp"
+#include "app/platform/data_folder.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/render/window.hpp"
 #include "engine/mechanism/file.hpp"
@@ -143,7 +143,8 @@ std::string title_of(const App& app) {
 
 void open_first(App& app, const std::filesystem::path& scene) {
   if (scene.empty())
-    open_scene(app, shipped_scenes() / "governor.json"); // not of the person's choice: not noted as recent
+    open_scene(app,
+               data_folder() / "scenes" / "governor.json"); // not of the person's choice: not noted as recent
   else
     open_file(app, scene);
   begin_files(app);
@@ -262,7 +263,7 @@ Ending run_window(Window& window, const std::filesystem::path& scene, const Edit
                  *stirred = true;
                  glfwPostEmptyEvent();
                },
-           .scenes = shipped_scenes(),
+           .scenes = data_folder() / "scenes",
            .theme = options.dark ? Theme::dark : Theme::light,
            .numbers = {},
            .state = state_folder()});
@@ -317,7 +318,8 @@ Ending run_editor(const std::filesystem::path& scene, const EditorOptions& optio
     }
   }
   if (window) return run_window(*window, scene, options);
-  return run_without_display(scene.empty() ? shipped_scenes() / "governor.json" : scene, options, reason);
+  return run_without_display(scene.empty() ? data_folder() / "scenes" / "governor.json" : scene, options,
+                             reason);
 }
 
 } // namespace flyball::cli

@@ -55,6 +55,8 @@ int run(int argc, char** argv) {
   add_compare(app, ending);
   add_render(app, ending);
   add_check(app, ending);
+  add_completion(app);
+  add_manual(app);
 
   try {
     app.parse(argc, argv);

@@ -1,8 +1,8 @@
 #include "app/cli/picture.hpp"
 
-#include "app/cli/assets.hpp"
 #include "app/cli/report_error.hpp"
 #include "app/panels/snapshot.hpp"
+#include "app/platform/data_folder.hpp"
 #include "app/render/offscreen.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
@@ -28,7 +28,7 @@ void read_size(const std::string& text, int largest, int& width, int& height) {
 Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& options) {
   App app({.mode = LiveSolver::Mode::immediate,
            .on_news = {},
-           .scenes = shipped_scenes(),
+           .scenes = data_folder() / "scenes",
            .theme = options.theme,
            .numbers = {}});
   app.view.samples = options.antialiased ? 4 : 1;

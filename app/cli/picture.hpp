@@ -23,7 +23,7 @@ struct PictureOptions {
 struct Picture {
   Image image;
   std::string drawn_by; // library, renderer and version
-  LiveAnswer answer; // what it shows; where nothing was solved, ticket is 0
+  LiveAnswer answer;    // what it shows; where nothing was solved, ticket is 0
 };
 
 // Throws SceneError for a scene that cannot be used and GlError where nothing can be drawn.

@@ -1,5 +1,6 @@
 #include "app/render/fonts.hpp"
 
+#include "app/platform/data_folder.hpp"
 #include "app/render/icons.hpp"
 
 #include <cmath>
@@ -16,7 +17,7 @@ constexpr ImWchar text_ranges[] = {0x0020, 0x017F, 0x0370, 0x03FF, 0x2010, 0x202
                                    0x25A0, 0x25FF, 0x2713, 0x2717, 0};
 constexpr ImWchar icon_ranges[] = {icon::first, icon::last, 0};
 
-// Folders in which distributions keep the packages' fonts.
+// Those installed with the program, else where distributions keep the packages' fonts.
 std::string find_font(std::initializer_list<const char*> names) {
   static constexpr const char* folders[] = {"/usr/share/fonts/opentype/inter/",
                                             "/usr/share/fonts/truetype/inter/",
@@ -29,9 +30,13 @@ std::string find_font(std::initializer_list<const char*> names) {
                                             "/usr/share/fonts/dejavu/",
                                             "/usr/share/fonts/TTF/"};
   std::error_code ignored;
-  for (const char* name : names)
+  for (const char* name : names) {
+    if (const std::filesystem::path own = data_folder() / "fonts" / name;
+        std::filesystem::exists(own, ignored))
+      return own.string();
     for (const char* folder : folders)
       if (std::string path = std::string(folder) + name; std::filesystem::exists(path, ignored)) return path;
+  }
   return {};
 }
 

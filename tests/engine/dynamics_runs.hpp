@@ -39,7 +39,7 @@ inline SimulationOptions kicked(SimulationOptions o, const std::string& coordina
   return o;
 }
 
-inline const CoordinateTrack& track(const Run& run, const std::string& joint, int index = 0) {
+inline const CoordinateTrack& track(const Run& run, std::string_view joint, int index = 0) {
   const auto found = std::ranges::find_if(
       run.coordinates, [&](const CoordinateTrack& t) { return t.joint == joint && t.index == index; });
   REQUIRE(found != run.coordinates.end());

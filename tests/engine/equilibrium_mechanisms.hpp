@@ -54,7 +54,7 @@ inline SolveOptions from(const std::string& joint, double value) {
   return o;
 }
 
-inline const CoordinateSolution& coordinate(const Solution& s, const std::string& joint, int index = 0) {
+inline const CoordinateSolution& coordinate(const Solution& s, std::string_view joint, int index = 0) {
   const auto found = std::ranges::find_if(
       s.coordinates, [&](const CoordinateSolution& c) { return c.joint == joint && c.index == index; });
   INFO(s.message);

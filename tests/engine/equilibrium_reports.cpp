@@ -92,7 +92,7 @@ Share on_hub(double speed) {
   return {0.3 * (0.09 * 2 + 0.01 * (2 + speed)), std::abs(0.3 * 0.03 * (2 + (2 + speed)))};
 }
 
-const DriveTorque& torque(const Solution& s, const std::string& joint) {
+const DriveTorque& torque(const Solution& s, std::string_view joint) {
   const auto found = std::ranges::find(s.drive_torques, joint, &DriveTorque::joint);
   REQUIRE(found != s.drive_torques.end());
   return *found;
