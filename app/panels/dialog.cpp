@@ -11,7 +11,7 @@ namespace {
 
 // A key that brought the dialog answers nothing in it.
 bool key_pressed(ImGuiKey key) {
-  return !ImGui::IsWindowAppearing() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false);
+  return !ImGui::IsWindowAppearing() && imgui_compat::key_pressed(key, false);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include "app/panels/widgets.hpp"
 #include "app/render/icons.hpp"
+#include "app/render/imgui_compat.hpp"
 
 #include <imgui_stdlib.h>
 
@@ -139,7 +140,7 @@ std::optional<fs::path> file_list(App& app, const std::string& name, const std::
   const int count = static_cast<int>(shown.size());
   bool moved = false;
   if (filtered && count > 0) {
-    const auto pressed = [](ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
+    const auto pressed = [](ImGuiKey key) { return imgui_compat::key_pressed(key); };
     const int step = pressed(ImGuiKey_DownArrow) - pressed(ImGuiKey_UpArrow);
     moved = step != 0;
     list.chosen = std::min(list.chosen, count - 1);

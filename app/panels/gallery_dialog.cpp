@@ -108,7 +108,7 @@ bool show_card(App& app, int i, float width) {
 // The arrow keys move from card to card; returns whether they did.
 bool move_by_keys(App& app, int columns) {
   const int count = static_cast<int>(app.files.gallery.cards.size());
-  const auto pressed = [](ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
+  const auto pressed = [](ImGuiKey key) { return imgui_compat::key_pressed(key); };
   const int step = pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow) +
                    columns * (pressed(ImGuiKey_DownArrow) - pressed(ImGuiKey_UpArrow));
   const int wanted = app.files.gallery.chosen + step;

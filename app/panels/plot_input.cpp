@@ -2,8 +2,7 @@
 #include "app/panels/plot_parts.hpp"
 #include "app/panels/widgets.hpp"
 #include "app/plot/nearest.hpp"
-
-#include <imgui_internal.h>
+#include "app/render/imgui_compat.hpp"
 
 #include <cmath>
 
@@ -15,18 +14,9 @@ constexpr double tremble = 4; // points that a click may move
 constexpr double reach = 9;   // points within which a data point or the marker is meant
 constexpr double step = 1.18; // of one notch of the wheel
 
-// Keeps the panel from scrolling with it.
-void take_wheel() {
-#if IMGUI_VERSION_NUM >= 19000
-  ImGui::SetItemKeyOwner(ImGuiKey_MouseWheelY);
-#else
-  ImGui::SetItemUsingMouseWheel();
-#endif
-}
-
 void zoom_with_wheel(const PlotFrame& frame, bool along_x, bool along_y) {
   if (!ImGui::IsItemHovered()) return;
-  take_wheel();
+  imgui_compat::take_wheel();
   const float notches = ImGui::GetIO().MouseWheel;
   if (notches == 0) return;
   const PixelPoint at = pointer_in(frame.pen);

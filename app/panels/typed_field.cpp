@@ -1,6 +1,7 @@
 #include "app/panels/typed_field.hpp"
 
 #include "app/panels/widgets.hpp"
+#include "app/render/imgui_compat.hpp"
 
 #include <imgui_stdlib.h>
 
@@ -52,7 +53,7 @@ void show_mistake(App& app, const std::string& mistake) {
 }
 
 bool escape_pressed_now() {
-  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  return imgui_compat::key_pressed(ImGuiKey_Escape);
 }
 
 // Of the field that is typed in, after it was drawn.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <cstdint>
 #include <iterator>
@@ -28,10 +29,32 @@ inline unsigned texture_name(ImTextureID id) {
 // Since 1.87 events wait in a queue, so that what is pressed and let go within a frame is seen.
 inline constexpr bool queues_events = IMGUI_VERSION_NUM >= 18700;
 
+// All that happened since the last frame is seen in the next one, as 1.86 has it: for tests.
+inline void take_events_at_once() {
+#if IMGUI_VERSION_NUM >= 18700
+  ImGui::GetIO().ConfigInputTrickleEventQueue = false;
+#endif
+}
+
+// Keeps what scrolls from doing so where the wheel turns over the last item.
+inline void take_wheel() {
+#if IMGUI_VERSION_NUM >= 19000
+  ImGui::SetItemKeyOwner(ImGuiKey_MouseWheelY);
+#else
+  ImGui::SetItemUsingMouseWheel();
+#endif
+}
+
 #if IMGUI_VERSION_NUM >= 18700
 inline constexpr ImGuiKey keypad_enter = ImGuiKey_KeypadEnter;
+inline bool key_pressed(ImGuiKey key, bool repeat = true) {
+  return ImGui::IsKeyPressed(key, repeat);
+}
 #else
 inline constexpr ImGuiKey keypad_enter = ImGuiKey_KeyPadEnter;
+inline bool key_pressed(ImGuiKey key, bool repeat = true) {
+  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), repeat);
+}
 #endif
 
 // Keys as input of one frame, by GLFW's codes.

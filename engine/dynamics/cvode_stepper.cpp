@@ -1,7 +1,6 @@
 #include "engine/dynamics/stepper.hpp"
 #include "engine/dynamics/sundials.hpp"
 
-#include <cvode/cvode.h>
 #include <cvode/cvode_ls.h>
 #include <cvode/cvode_proj.h>
 #include <sundials/sundials_linearsolver.h>
@@ -87,9 +86,7 @@ class CvodeStepper : public Stepper {
     started_ = true;
     CVodeInit(memory_, sundials::rate, t, y_);
     CVodeSetUserData(memory_, &ode_);
-#if SUNDIALS_VERSION_MAJOR < 7 // later the context has the handlers
-    CVodeSetErrHandlerFn(memory_, sundials::keep_silent, nullptr);
-#endif
+    sundials::silence_cvode(memory_);
     CVodeWFtolerances(memory_, sundials::weights);
     CVodeSetMaxNumSteps(memory_, -1);
     CVodeSetMaxHnilWarns(memory_, -1);

@@ -1,14 +1,14 @@
 #include "engine/dynamics/stepper.hpp"
 #include "engine/dynamics/sundials.hpp"
 
-#include <arkode/arkode_erkstep.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace flyball {
 namespace {
+
+namespace erk = sundials::erk;
 
 int project(sundials::Real t, N_Vector y, void* data) {
   Ode& ode = sundials::ode_of(data);
@@ -23,7 +23,7 @@ std::string clause(int flag) {
   case ARK_REPTD_RHSFUNC_ERR:
   case ARK_UNREC_RHSFUNC_ERR: return "the equations of motion have no solution there";
   case ARK_POSTPROCESS_STEP_FAIL: return "the loops cannot be kept closed";
-  default: return "the integrator stopped (" + std::string(ERKStepGetReturnFlagName(flag)) + ")";
+  default: return "the integrator stopped (" + std::string(erk::flag_name(flag)) + ")";
   }
 }
 
@@ -58,26 +58,24 @@ class RungeKuttaStepper : public Stepper {
   void start(double t, const Eigen::VectorXd& y) override {
     y_.view() = y;
     if (memory_) {
-      ERKStepReset(memory_, t, y_);
+      erk::reset(memory_, t, y_);
     } else {
       memory_ = ERKStepCreate(sundials::rate, t, y_, context_);
       if (!memory_) throw std::bad_alloc();
-      ERKStepSetUserData(memory_, &ode_);
-#if SUNDIALS_VERSION_MAJOR < 7 // later the context has the handlers
-      ERKStepSetErrHandlerFn(memory_, sundials::keep_silent, nullptr);
-#endif
-      ERKStepWFtolerances(memory_, sundials::weights);
+      erk::set_user_data(memory_, &ode_);
+      sundials::silence_erk(memory_);
+      erk::set_weights(memory_, sundials::weights);
       set_method(memory_);
       // The interpolant only finds events; that of degree 3 costs no evaluations.
-      if (ode_.events() == 0) ERKStepSetInterpolantDegree(memory_, 3);
-      ERKStepSetMaxNumSteps(memory_, -1);
-      ERKStepSetMaxHnilWarns(memory_, -1);
-      ERKStepSetMaxErrTestFails(memory_, 30);
-      if (fixed_ > 0) ERKStepSetFixedStep(memory_, fixed_);
-      if (ode_.has_manifold()) ERKStepSetPostprocessStepFn(memory_, project);
+      if (ode_.events() == 0) erk::set_interpolant_degree(memory_, 3);
+      erk::set_most_steps(memory_, -1);
+      erk::set_most_warnings(memory_, -1);
+      erk::set_most_error_failures(memory_, 30);
+      if (fixed_ > 0) erk::set_fixed_step(memory_, fixed_);
+      if (ode_.has_manifold()) erk::set_postprocess(memory_, project);
       if (ode_.events() > 0) {
-        ERKStepRootInit(memory_, ode_.events(), sundials::event_values);
-        ERKStepSetNoInactiveRootWarn(memory_);
+        erk::init_roots(memory_, ode_.events(), sundials::event_values);
+        erk::set_no_root_warning(memory_);
       }
     }
     time_ = t;
@@ -91,8 +89,8 @@ class RungeKuttaStepper : public Stepper {
     for (;;) {
       const double from = time_;
       if (!landing) before_.view() = y_.view();
-      ERKStepSetStopTime(memory_, end);
-      const int flag = ERKStepEvolve(memory_, end, y_, &time_, ARK_ONE_STEP);
+      erk::set_stop_time(memory_, end);
+      const int flag = erk::evolve(memory_, end, y_, &time_, ARK_ONE_STEP);
       out.time = time_;
       if (flag < 0) {
         out.kind = StepOutcome::failed;
@@ -101,7 +99,7 @@ class RungeKuttaStepper : public Stepper {
       }
       if (flag == ARK_ROOT_RETURN) {
         std::vector<int> found(static_cast<std::size_t>(ode_.events()));
-        ERKStepGetRootInfo(memory_, found.data());
+        erk::roots_found(memory_, found.data());
         out.events.clear();
         for (int i = 0; i < ode_.events(); ++i)
           if (found[static_cast<std::size_t>(i)] != 0) out.events.push_back(i);
@@ -111,23 +109,21 @@ class RungeKuttaStepper : public Stepper {
         landing = true;
         end = time_;
         time_ = from;
-        ERKStepReset(memory_, from, before_);
+        erk::reset(memory_, from, before_);
         continue;
       }
       if (!landing || time_ >= end) return out;
     }
   }
 
-  void state_at(double, Eigen::VectorXd& y) override {
-    y = y_.view();
-  }
+  void state_at(double, Eigen::VectorXd& y) override { y = y_.view(); }
 
   void count(RunStatistics& s) override {
     if (!memory_) return;
     RunStatistics now;
-    ERKStepGetNumSteps(memory_, &now.steps);
+    erk::steps(memory_, &now.steps);
     ERKStepGetNumRhsEvals(memory_, &now.evaluations);
-    ERKStepGetNumErrTestFails(memory_, &now.rejected);
+    erk::error_failures(memory_, &now.rejected);
     s.steps += now.steps - seen_.steps;
     s.evaluations += now.evaluations - seen_.evaluations;
     s.rejected += now.rejected - seen_.rejected;
@@ -136,7 +132,7 @@ class RungeKuttaStepper : public Stepper {
 
  private:
   void release() {
-    if (memory_) ERKStepFree(&memory_);
+    if (memory_) erk::release(&memory_);
   }
 
   Ode& ode_;

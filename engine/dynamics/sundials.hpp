@@ -2,10 +2,9 @@
 #pragma once
 
 #include "engine/dynamics/stepper.hpp"
+#include "engine/dynamics/sundials_compat.hpp"
 
 #include <nvector/nvector_serial.h>
-#include <sundials/sundials_context.h>
-#include <sundials/sundials_version.h>
 
 #include <Eigen/Core>
 
@@ -13,28 +12,10 @@
 
 namespace flyball::sundials {
 
-// What its versions 6 and 7 call differently.
-#if SUNDIALS_VERSION_MAJOR >= 7
-using Real = sunrealtype;
-using Boolean = sunbooleantype;
-inline int create(SUNContext* context) {
-  const int failed = SUNContext_Create(SUN_COMM_NULL, context);
-  return failed != 0 ? failed : SUNContext_ClearErrHandlers(*context);
-}
-#else
-using Real = realtype;
-using Boolean = booleantype;
-inline int create(SUNContext* context) {
-  return SUNContext_Create(nullptr, context);
-}
-inline void keep_silent(int, const char*, const char*, char*, void*) {} // a handler of messages
-#endif
-static_assert(sizeof(Real) == sizeof(double));
-
 class Context {
  public:
   Context() {
-    if (create(&context_) != 0) throw std::bad_alloc();
+    if (create_context(&context_) != 0) throw std::bad_alloc();
   }
   ~Context() { SUNContext_Free(&context_); }
   Context(const Context&) = delete;

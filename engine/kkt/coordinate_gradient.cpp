@@ -40,7 +40,7 @@ double away_from(const System& system, const Parameters& parameters, const Coord
   return turns ? std::remainder(value - wanted, 2 * std::numbers::pi) : value - wanted;
 }
 
-const CoordinateInfo& free_coordinate(const System& system, const std::string& name) {
+const CoordinateInfo& free_coordinate(const System& system, std::string_view name) {
   std::string known;
   for (const CoordinateInfo& c : system.coordinates) {
     const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
@@ -48,12 +48,13 @@ const CoordinateInfo& free_coordinate(const System& system, const std::string& n
         coordinate_count(joint.type) == 1 ? joint.name : joint.name + "." + std::to_string(c.index);
     const bool driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
     if (label == name) {
-      if (driven) throw SceneError(name, "is driven; expected a free coordinate");
+      if (driven) throw SceneError(std::string(name), "is driven; expected a free coordinate");
       return c;
     }
     if (!driven) known += (known.empty() ? "" : ", ") + label;
   }
-  throw SceneError(name, known.empty() ? "there is no free coordinate" : "expected one of " + known);
+  throw SceneError(std::string(name),
+                   known.empty() ? "there is no free coordinate" : "expected one of " + known);
 }
 
 } // namespace flyball

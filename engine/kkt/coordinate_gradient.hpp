@@ -24,6 +24,6 @@ double away_from(const System& system, const Parameters& parameters, const Coord
 
 // The free coordinate named "joint" or "joint.index". Throws SceneError where there is none, or where it is
 // driven.
-const CoordinateInfo& free_coordinate(const System& system, const std::string& name);
+const CoordinateInfo& free_coordinate(const System& system, std::string_view name);
 
 } // namespace flyball

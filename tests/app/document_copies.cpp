@@ -35,7 +35,7 @@ double value(const Solution& solution, const std::string& joint) {
   return NAN;
 }
 
-const Joint& joint(const Mechanism& m, const std::string& name) {
+const Joint& joint(const Mechanism& m, std::string_view name) {
   const int i = joint_index(m, name);
   REQUIRE(i >= 0);
   return m.joints[static_cast<std::size_t>(i)];

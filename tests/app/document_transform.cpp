@@ -25,10 +25,10 @@ Part force(const std::string& name) {
   return {PartKind::force, name};
 }
 
-const Body& body_of(const Mechanism& m, const std::string& name) {
+const Body& body_of(const Mechanism& m, std::string_view name) {
   return m.bodies[static_cast<std::size_t>(body_index(m, name))];
 }
-const Joint& joint_of(const Mechanism& m, const std::string& name) {
+const Joint& joint_of(const Mechanism& m, std::string_view name) {
   return m.joints[static_cast<std::size_t>(joint_index(m, name))];
 }
 const Force& force_of(const Mechanism& m, const std::string& name) {

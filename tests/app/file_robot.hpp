@@ -5,6 +5,7 @@
 #include "temporary_folder.hpp"
 
 #include "app/panels/file_commands.hpp"
+#include "app/render/imgui_compat.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/scene.hpp"
@@ -23,9 +24,8 @@ inline constexpr const char* crashed = "another machine:1:1";
 class FileRobot : public Robot {
  public:
   explicit FileRobot(const TemporaryFolder& folder, const char* owner = nullptr) {
-    ImGuiIO& io = ImGui::GetIO();
-    io.KeyMap[ImGuiKey_DownArrow] = key_down;
-    io.KeyMap[ImGuiKey_RightArrow] = key_right;
+    imgui_compat::map_key(ImGuiKey_DownArrow, key_down);
+    imgui_compat::map_key(ImGuiKey_RightArrow, key_right);
     app.options.state = folder / "state";
     if (owner) app.files.owner = owner;
     begin_files(app);

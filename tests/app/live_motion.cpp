@@ -29,7 +29,7 @@ SimulationOptions lasting(double duration) {
   return options;
 }
 
-const CoordinateTrack& track(const Run& run, const std::string& joint) {
+const CoordinateTrack& track(const Run& run, std::string_view joint) {
   return *std::ranges::find(run.coordinates, joint, &CoordinateTrack::joint);
 }
 

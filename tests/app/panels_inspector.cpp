@@ -6,6 +6,7 @@
 #include "app/panels/inspector_parts.hpp"
 #include "app/panels/layout.hpp"
 #include "app/panels/quantity.hpp"
+#include "app/render/imgui_compat.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
@@ -24,9 +25,8 @@ constexpr int key_tab = 258, key_up = 265, key_f2 = 291;
 // In a window, with a scene open and being built.
 struct Hand : Robot {
   explicit Hand(PixelSize in = window) : Robot(in) {
-    ImGuiIO& io = ImGui::GetIO();
-    io.KeyMap[ImGuiKey_Tab] = key_tab;
-    io.KeyMap[ImGuiKey_UpArrow] = key_up;
+    imgui_compat::map_key(ImGuiKey_Tab, key_tab);
+    imgui_compat::map_key(ImGuiKey_UpArrow, key_up);
     app.panels.inspector_share = 0.85f;
     set_mode(app, Mode::build);
     frames(2);

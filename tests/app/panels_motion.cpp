@@ -26,7 +26,7 @@ const Run& run_of(const App& app) {
   return *shown->run;
 }
 
-const CoordinateTrack& track(const Run& run, const std::string& joint) {
+const CoordinateTrack& track(const Run& run, std::string_view joint) {
   return *std::ranges::find(run.coordinates, joint, &CoordinateTrack::joint);
 }
 

@@ -4,6 +4,7 @@
 #include "app/panels/snapshot.hpp"
 #include "app/plot/colors.hpp"
 #include "app/plot/csv.hpp"
+#include "app/render/imgui_compat.hpp"
 #include "app/render/offscreen.hpp"
 #include "engine/mechanism/file.hpp"
 #include "temporary_folder.hpp"
@@ -50,8 +51,9 @@ struct Bench {
     io.IniFilename = nullptr;
     io.DisplaySize = {900 * scale, 700 * scale};
     io.DeltaTime = 0.05f;
-    io.KeyMap[ImGuiKey_Enter] = 257;
-    io.KeyMap[ImGuiKey_Escape] = 256;
+    imgui_compat::map_key(ImGuiKey_Enter, 257);
+    imgui_compat::map_key(ImGuiKey_Escape, 256);
+    imgui_compat::take_events_at_once();
     app.scale = scale;
     app.fonts = load_fonts(*io.Fonts, 16, scale);
     unsigned char* pixels = nullptr;
@@ -184,7 +186,7 @@ TEST_CASE("a plot is panned with a drag") {
 TEST_CASE("a box is zoomed into by either gesture") {
   for (const bool shift : {false, true}) {
     Bench bench;
-    ImGui::GetIO().KeyShift = shift;
+    imgui_compat::set_modifiers(false, shift);
     bench.drag(bench.at(2, 8), bench.at(4, 5), shift ? 0 : 1);
     CHECK(bench.range(0)[0] == Approx(2).margin(0.05));
     CHECK(bench.range(1)[1] == Approx(8).margin(0.05));

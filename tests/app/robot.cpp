@@ -19,6 +19,7 @@ Robot::Robot(PixelSize wanted, const NumberStyle& numbers)
   imgui_compat::map_key(ImGuiKey_Enter, key_enter);
   imgui_compat::map_key(ImGuiKey_Escape, key_escape);
   imgui_compat::map_key(ImGuiKey_A, 'A');
+  imgui_compat::take_events_at_once();
   open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
   frames(3);
 }
@@ -95,17 +96,18 @@ void Robot::wheel(const std::string& name, float notches) {
 }
 
 void Robot::key(int code, bool ctrl, bool shift) {
-  const bool held_ctrl = ImGui::GetIO().KeyCtrl, held_shift = ImGui::GetIO().KeyShift;
-  hold(ctrl, shift);
+  imgui_compat::set_modifiers(ctrl, shift);
   imgui_compat::set_key(code, true);
   app.keys.push_back({code, ctrl, shift});
   frames(1);
-  hold(held_ctrl, held_shift);
+  imgui_compat::set_modifiers(ctrl_, shift_);
   imgui_compat::set_key(code, false);
   frames(2);
 }
 
 void Robot::hold(bool ctrl, bool shift) {
+  ctrl_ = ctrl;
+  shift_ = shift;
   imgui_compat::set_modifiers(ctrl, shift);
 }
 

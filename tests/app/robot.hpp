@@ -43,6 +43,9 @@ class Robot {
   void begin_empty(double height);
   void type(const std::string& text);
   Image picture();
+
+ private:
+  bool ctrl_ = false, shift_ = false; // held
 };
 
 inline constexpr int key_enter = 257, key_escape = 256;
