@@ -49,7 +49,7 @@ class EglDisplay {
       for (EGLint i = 0; i < count; ++i)
         if (initialize(display_of(EGL_PLATFORM_DEVICE_EXT, device[static_cast<std::size_t>(i)], nullptr)))
           return;
-    throw GlError("EGL has no display without a surface");
+    throw GlError("EGL has no display without a surface; is there a driver (package libegl-mesa0)?");
   }
 
   bool initialize(EGLDisplay display) {
@@ -82,6 +82,7 @@ class EglProvider final : public OffscreenProvider {
     display_.find(create, "eglCreateContext");
     display_.find(bind, "eglBindAPI");
     display_.find(make_current_, "eglMakeCurrent");
+    display_.find(current_, "eglGetCurrentContext");
     display_.find(destroy_, "eglDestroyContext");
     display_.find(address_, "eglGetProcAddress");
     constexpr EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
@@ -96,7 +97,8 @@ class EglProvider final : public OffscreenProvider {
     if (context_ == EGL_NO_CONTEXT) throw GlError("EGL gives no OpenGL 3.3 core context");
   }
   ~EglProvider() override {
-    make_current_(display_.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    // Another may have become the thread's since.
+    if (current_() == context_) make_current_(display_.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     destroy_(display_.get(), context_);
   }
   const char* name() const override { return "EGL"; }
@@ -109,6 +111,7 @@ class EglProvider final : public OffscreenProvider {
  private:
   const EglDisplay& display_;
   decltype(&eglMakeCurrent) make_current_ = nullptr;
+  decltype(&eglGetCurrentContext) current_ = nullptr;
   decltype(&eglDestroyContext) destroy_ = nullptr;
   decltype(&eglGetProcAddress) address_ = nullptr;
   EGLContext context_ = EGL_NO_CONTEXT;

@@ -17,15 +17,20 @@ struct Drawn {
   std::string by;
 };
 
-// The governor; nothing where the library is not there.
-std::optional<Drawn> draw(OffscreenLibrary library) {
-  std::optional<OffscreenContext> context;
+// Nothing where the library is not there.
+std::optional<OffscreenContext> context_by(OffscreenLibrary library) {
   try {
-    context.emplace(library);
+    return OffscreenContext(library);
   } catch (const GlError& error) {
     WARN("skipped: " << error.what());
     return std::nullopt;
   }
+}
+
+// The governor.
+std::optional<Drawn> draw(OffscreenLibrary library) {
+  const std::optional<OffscreenContext> context = context_by(library);
+  if (!context) return std::nullopt;
   const Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
   ViewFrame frame;
   frame.mechanism = &mechanism;
@@ -57,6 +62,17 @@ TEST_CASE("OffscreenContext: contexts of both libraries follow each other") {
       const auto drawn = draw(library);
       if (drawn) CHECK(drawn->image.width == 640);
     }
+}
+
+TEST_CASE("OffscreenContext: the end of one leaves the next one current") {
+  for (const OffscreenLibrary library : {OffscreenLibrary::osmesa, OffscreenLibrary::egl}) {
+    std::optional<OffscreenContext> context = context_by(library);
+    if (!context) continue;
+    *context = OffscreenContext(library);
+    CHECK(glGetString(GL_VERSION) != nullptr);
+    const Framebuffer target(8, 8, 1);
+    CHECK_NOTHROW(check_gl("making a framebuffer"));
+  }
 }
 
 TEST_CASE("OffscreenContext: the environment chooses the library, a wrong word is named") {
