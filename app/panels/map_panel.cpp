@@ -18,7 +18,7 @@ namespace flyball {
 namespace {
 
 constexpr float choices_width = 320; // points
-constexpr int fewest = 2, most = 401;
+constexpr int fewest_cells = 2, most_cells = 401;
 
 // Two fields side by side after one label.
 void two_fields(App& app, const std::string& label, const char* help, QuantityField first,
@@ -76,8 +76,8 @@ void point_counts(App& app) {
                          .help = "Values along the axis, 2 to 401. Each place is a solve of its own.",
                          .least = Least::above_zero,
                          .set = [which](App& then, double typed) {
-                           then.study.map.choice.axes[which].count =
-                               static_cast<int>(std::clamp(std::round(typed), double{fewest}, double{most}));
+                           then.study.map.choice.axes[which].count = static_cast<int>(
+                               std::clamp(std::round(typed), double{fewest_cells}, double{most_cells}));
                          }};
   };
   two_fields(app, "Points", "How many values across, and up.", field("map/x/count", 0),

@@ -41,8 +41,8 @@ void gap(const App& app) {
   const float s = app.scale;
   ImGui::SameLine(0, 8 * s);
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float top = at.y + 5 * s, bottom = at.y + ImGui::GetFrameHeight() - 3 * s;
-  ImGui::GetWindowDrawList()->AddLine({at.x, top}, {at.x, bottom}, packed(ui_colors(app.theme).border),
+  const float from = at.y + 5 * s, to = at.y + ImGui::GetFrameHeight() - 3 * s;
+  ImGui::GetWindowDrawList()->AddLine({at.x, from}, {at.x, to}, packed(ui_colors(app.theme).border),
                                       std::max(1.f, std::round(s)));
   ImGui::SameLine(0, 9 * s);
 }

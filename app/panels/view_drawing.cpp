@@ -13,7 +13,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float margin = 1.5f; // points, in the background's colour
+constexpr float ring_margin = 1.5f; // points, in the background's colour
 
 Color background(const App& app) {
   return palette(app.theme).background_top;
@@ -43,7 +43,7 @@ void draw_lines(const App& app, std::span<const ImVec2> points, const Color& col
   const int count = static_cast<int>(points.size());
   const ImDrawFlags flags = closed ? ImDrawFlags_Closed : ImDrawFlags_None;
   list.AddPolyline(points.data(), count, packed(background(app), 0.7f * alpha), flags,
-                   (width + 2 * margin) * app.scale);
+                   (width + 2 * ring_margin) * app.scale);
   list.AddPolyline(points.data(), count, packed(color, alpha), flags, width * app.scale);
 }
 
@@ -56,7 +56,7 @@ void draw_dot(const App& app, ImVec2 at, float radius, bool open) {
     list.AddCircle(at, radius * s, packed(accent), 0, 2 * s);
     return;
   }
-  list.AddCircleFilled(at, (radius + margin) * s, packed(background(app), 0.8f));
+  list.AddCircleFilled(at, (radius + ring_margin) * s, packed(background(app), 0.8f));
   list.AddCircleFilled(at, radius * s, packed(accent));
 }
 
