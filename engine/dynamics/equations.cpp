@@ -24,6 +24,7 @@ Equations::Equations(const MotionModel& model, const Watch& watch)
       n_(model.system.nv), drives_(static_cast<int>(model.system.drives.size())),
       dense_(model, rows_, regular_) {
   if (model.along_tree) tree_.emplace(model);
+  if (model.sparse) sparse_.emplace(model);
   q_.setZero(system_.nq);
   u_.setZero(system_.nv);
   s_.setZero(system_.nv);
@@ -174,7 +175,7 @@ double Equations::energy_scale() {
 }
 
 double Equations::position_drift() const {
-  return system_.rows > 0 ? dense_.phi().lpNorm<Eigen::Infinity>() : 0;
+  return system_.rows > 0 ? phi().lpNorm<Eigen::Infinity>() : 0;
 }
 
 double Equations::velocity_drift() {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "engine/dynamics/dense_motion.hpp"
+#include "engine/dynamics/sparse_motion.hpp"
 #include "engine/dynamics/tree_motion.hpp"
 #include "engine/dynamics/watch.hpp"
 #include "engine/system/reactions.hpp"
@@ -77,7 +78,8 @@ class Equations {
   // The same with the velocity changed by an impulse of the constraints, so that momentum is kept.
   bool catch_up(double t, Eigen::VectorXd& q, Eigen::VectorXd& s);
   // The smallest pivot of the independent constraint rows over the largest, of the last evaluation.
-  double independence() const { return dense_.saddle().independence(); }
+  // Not known, and so 1, where the equations are sparse or go along a tree.
+  double independence() const { return solver_ == &dense_ ? dense_.saddle().independence() : 1; }
   bool needs_projection() const { return !rows_.empty() || standing_ > 0; }
 
   // How far the loops are open, and how fast they open: the largest row (m, rad or 1), at an evaluated state.
@@ -115,6 +117,12 @@ class Equations {
   MotionPoint point();
   const Eigen::VectorXd& sided_configuration();
   bool choose_tree(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
+  bool choose_sparse(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
+  void take_all();
+  bool is_sparse() const { return sparse_ && solver_ == &*sparse_; }
+  const Eigen::VectorXd& phi() const { return is_sparse() ? sparse_->phi() : dense_.phi(); }
+  bool factor_constraints();
+  void shortest(const Eigen::VectorXd& closing, Eigen::VectorXd& step);
   void choose_structure(double t, Eigen::VectorXd& q, const Eigen::VectorXd& u);
   void choose_rows();
   void choose_idle();
@@ -151,8 +159,9 @@ class Equations {
   Kinematics<double> kinematics_;
   std::vector<LinkRates> carried_;
   DenseMotion dense_;
-  std::optional<TreeMotion> tree_; // of a model that goes along it
-  MotionSolver* solver_ = &dense_; // one of these
+  std::optional<TreeMotion> tree_;     // of a model that goes along it
+  std::optional<SparseMotion> sparse_; // of a model whose equations may be sparse
+  MotionSolver* solver_ = &dense_;     // one of these
   Eigen::VectorXd row_values_, bias_, target_force_, target_rows_, scaled_a_, scaled_lambda_, full_a_, step_;
 
   // Null directions Y of M and Phi_q in scaled coordinates, the identity on the idle ones: (n, idle).

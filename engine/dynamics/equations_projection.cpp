@@ -20,6 +20,20 @@ double Equations::open_rows() {
   return row_values_.lpNorm<Eigen::Infinity>();
 }
 
+bool Equations::factor_constraints() {
+  if (!is_sparse()) return dense_.factor_constraints(point());
+  sparse_->factor_constraints(point());
+  return true;
+}
+
+// The shortest scaled step of the regular coordinates that changes the rows by `closing`.
+void Equations::shortest(const Eigen::VectorXd& closing, Eigen::VectorXd& step) {
+  if (is_sparse())
+    sparse_->close(closing, step);
+  else
+    dense_.saddle().shortest(closing, step);
+}
+
 bool Equations::close_loops(double t, Eigen::VectorXd& q, const Eigen::VectorXd& s, double& shift) {
   double previous = 0;
   for (int i = 0; i < 12 && !watch_.over(); ++i) {
@@ -27,10 +41,11 @@ bool Equations::close_loops(double t, Eigen::VectorXd& q, const Eigen::VectorXd&
     place();
     const double open = open_rows();
     if (!std::isfinite(open)) return false;
-    if (!dense_.factor_constraints(point())) return false;
+    // Sparse factors cost more than another step, and the loops are all but closed.
+    if ((i == 0 || !is_sparse()) && !factor_constraints()) return false;
     // Rounding leaves a few units in the last place, and further steps only stir them.
     if (open < 2e-16 || (i > 0 && open < 1e-13 && open > 0.3 * previous)) return true;
-    dense_.saddle().shortest(row_values_, scaled_a_);
+    shortest(row_values_, scaled_a_);
     for (std::size_t j = 0; j < regular_.size(); ++j)
       step_[regular_[j]] = scaled_a_[static_cast<Eigen::Index>(j)] * model_.scaling.column[regular_[j]];
     shift += scaled_a_.lpNorm<Eigen::Infinity>();
@@ -74,7 +89,7 @@ bool Equations::project(double t, Eigen::VectorXd& q, Eigen::VectorXd& s, double
       row_values_.resize(static_cast<Eigen::Index>(rows_.size()));
       for (std::size_t r = 0; r < rows_.size(); ++r)
         row_values_[static_cast<Eigen::Index>(r)] = -bias_[rows_[r]] * model_.scaling.row[rows_[r]];
-      dense_.saddle().shortest(row_values_, scaled_a_);
+      shortest(row_values_, scaled_a_);
       for (std::size_t j = 0; j < regular_.size(); ++j)
         s[regular_[j]] += scaled_a_[static_cast<Eigen::Index>(j)] * model_.scaling.column[regular_[j]];
     }

@@ -6,15 +6,18 @@
 #include "engine/mechanism/error.hpp"
 
 #include "engine/linear/large.hpp"
+#include "engine/linear/largest.hpp"
 #include "engine/linear/spectral.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace flyball {
 namespace {
 
 constexpr double no_mass = 1e-13;     // relative to what moves with a coordinate
-constexpr double dependent = 1e-9;    // pivots of the constraint rows
+constexpr double dependent = 1e-9;    // pivots of the constraint rows, of the largest
+constexpr double no_gradient = 1e-13; // of a row by a radian or the reach: rounding
 constexpr double no_stiffness = 1e-9; // relative to the mechanism's stiffest
 constexpr double no_force = 1e-8;     // relative to the terms it is made of
 
@@ -51,6 +54,7 @@ void Equations::choose_rows() {
   linearize_constraints(system_, parameters_, kinematics_, linearization_);
   const Eigen::MatrixXd scaled = model_.scaling.row.asDiagonal() * linearization_.constraint.leftCols(n_) *
                                  model_.scaling.column.asDiagonal();
+  if (largest_size(scaled) <= no_gradient) return; // nothing is held that could move
   PivotedQr qr;
   if (!qr.compute(scaled.transpose())) refuse_numbers();
   for (Eigen::Index i = 0; i < qr.rank(dependent); ++i)
@@ -139,7 +143,7 @@ void Equations::choose_kinds() {
 
 bool Equations::analyse(double t, Eigen::VectorXd& q, const Eigen::VectorXd& u) {
   const std::vector<int> rows = rows_, idle = idle_;
-  if (!choose_tree(t, q, u)) choose_structure(t, q, u);
+  if (!choose_tree(t, q, u) && !choose_sparse(t, q, u)) choose_structure(t, q, u);
   return rows_ != rows || idle_ != idle;
 }
 
@@ -150,12 +154,29 @@ bool Equations::choose_tree(double t, const Eigen::VectorXd& q, const Eigen::Vec
   place();
   if (!tree_->factor(point()) || !tree_->carries_all()) return false;
   solver_ = &*tree_;
+  take_all();
+  return true;
+}
+
+// By sparse equations, if all that moves has mass.
+bool Equations::choose_sparse(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u) {
+  if (!sparse_) return false;
+  load(t, q, u);
+  place();
+  if (!sparse_->analyse(point())) return false;
+  solver_ = &*sparse_;
+  take_all();
+  return true;
+}
+
+// All coordinates carry mass, and all rows are taken.
+void Equations::take_all() {
   damped_ = standing_ = 0;
   idle_.clear();
-  regular_.clear();
-  for (int v = 0; v < n_; ++v)
-    regular_.push_back(v);
-  return true;
+  regular_.resize(static_cast<std::size_t>(n_));
+  std::iota(regular_.begin(), regular_.end(), 0);
+  rows_.resize(static_cast<std::size_t>(system_.rows));
+  std::iota(rows_.begin(), rows_.end(), 0);
 }
 
 void Equations::choose_structure(double t, Eigen::VectorXd& q, const Eigen::VectorXd& u) {
@@ -229,6 +250,7 @@ bool Equations::find_standing_balance(double t, Eigen::VectorXd& q, const Eigen:
 }
 
 bool Equations::structure_changed() const {
+  if (is_sparse()) return sparse_->structure_changed();
   if (static_cast<int>(rows_.size()) < system_.rows) {
     if (independence() < 1e-3 * chosen_independence_) return true;
     // Rows that followed from the others may do so no longer.

@@ -15,6 +15,8 @@ struct MotionModel {
   Scaling scaling;       // of the free coordinates and the constraint rows
   // The equations of motion are solved along the tree (tree_motion.hpp), as far as all that moves has mass.
   bool along_tree = false;
+  // They are as sparse equations of the bodies (sparse_motion.hpp), as far as the same holds.
+  bool sparse = false;
 
   Problem problem() const { return {system, parameters, scaling}; }
 };

@@ -1,6 +1,7 @@
 #include "engine/dynamics/start.hpp"
 
 #include "engine/dynamics/articulated_bodies.hpp"
+#include "engine/dynamics/sparse_motion.hpp"
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
@@ -80,9 +81,10 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
   u += step.cwiseProduct(column);
 }
 
-// The same from rest for what goes along a tree: the momentum of everything, the drives' motion included,
-// vanishes along every free coordinate. False where not all of them move mass.
-bool bring_to_rest(const MotionModel& model, double t, const Eigen::VectorXd& q, Eigen::VectorXd& u) {
+// The same with nothing prescribed, without matrices: along a tree, or by sparse equations. False where not
+// all that moves has mass, or the loops cannot stay closed.
+bool close_velocity_of_many(const MotionModel& model, double t, const Eigen::VectorXd& q, bool from_rest,
+                            Eigen::VectorXd& u) {
   Eigen::VectorXd all_q(model.released.nq), all_u(model.released.nv);
   all_q.head(model.system.nq) = q;
   all_u.head(model.system.nv) = u;
@@ -90,8 +92,6 @@ bool bring_to_rest(const MotionModel& model, double t, const Eigen::VectorXd& q,
   Kinematics<double> k;
   std::vector<LinkRates> none;
   move(model.released, model.parameters, {all_q, all_u}, k, none);
-  ArticulatedBodies bodies(model.released, model.system.nv);
-  if (!bodies.factor(model.parameters, k) || !bodies.carry_all()) return false;
   std::vector<Vec6> momenta(k.links.size());
   for (std::size_t l = 0; l < momenta.size(); ++l) {
     BodyInertia body;
@@ -102,7 +102,25 @@ bool bring_to_rest(const MotionModel& model, double t, const Eigen::VectorXd& q,
     momenta[l] = times_inertia(body, velocity);
   }
   Eigen::VectorXd change(model.system.nv);
-  bodies.solve(momenta, Eigen::VectorXd::Zero(model.released.nv), change);
+  if (model.along_tree) {
+    ArticulatedBodies bodies(model.released, model.system.nv);
+    if (!from_rest || !bodies.factor(model.parameters, k) || !bodies.carry_all()) return false;
+    bodies.solve(momenta, Eigen::VectorXd::Zero(model.released.nv), change);
+    u += change;
+    return true;
+  }
+  SparseMotion motion(model);
+  const MotionPoint point{model.parameters, all_q, all_u, k, none};
+  if (!motion.analyse(point)) return false;
+  Eigen::VectorXd open;
+  constraint_rates(model.released, model.parameters, all_u, k, none, open);
+  motion.correct_velocity(point, open, from_rest ? &momenta : nullptr, change);
+  const double before = open.cwiseProduct(model.scaling.row).lpNorm<Eigen::Infinity>();
+  all_u.head(model.system.nv) = u + change;
+  set_drives(model.system, model.parameters, t, all_q, all_u);
+  move(model.released, model.parameters, {all_q, all_u}, k, none);
+  constraint_rates(model.released, model.parameters, all_u, k, none, open);
+  if (!(open.cwiseProduct(model.scaling.row).lpNorm<Eigen::Infinity>() <= 1e-9 * (1 + before))) return false;
   u += change;
   return true;
 }
@@ -235,7 +253,9 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
     }
   }
   const auto move_on = [&](const std::vector<int>& prescribed, bool from_rest, Eigen::VectorXd& velocity) {
-    if (model.along_tree && from_rest && prescribed.empty() && bring_to_rest(model, t, q, velocity)) return;
+    if ((model.along_tree || model.sparse) && prescribed.empty() &&
+        close_velocity_of_many(model, t, q, from_rest, velocity))
+      return;
     close_velocity(model, t, q, prescribed, from_rest, velocity);
   };
   const bool from_rest = options.start == Start::drawn;

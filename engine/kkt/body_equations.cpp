@@ -13,8 +13,8 @@ struct JointTerms {
   Mat6 stiffness = Mat6::Zero(), turns = Mat6::Zero();
 };
 
-JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Vec6& load,
-                       const Eigen::VectorXd& q) {
+JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Vec6& load, const Eigen::VectorXd& q,
+                       const MotionWeights& weights) {
   const int k = x.columns;
   const double length = problem.parameters.length;
   JointTerms terms;
@@ -32,16 +32,18 @@ JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Vec6& lo
     for (int d = 0; d < k; ++d) { // what is nearer the root feels a wrench turn, and a rotation its own
       const int at = x.stage[static_cast<std::size_t>(d)];
       if (at < x.stage[column] || (at == x.stage[column] && k > 1 && link.type == LinkType::spherical))
-        g(d, c) += x.s.col(d).dot(turns.col(c));
+        g(d, c) += weights.stiffness * x.s.col(d).dot(turns.col(c));
     }
-    if (!lp.elastic) continue;
     if (link.type != LinkType::spherical) {
-      const double unit = problem.scaling.column[link.v];
-      g(c, c) += lp.force[0].curvature(q[link.q]) * unit * unit;
+      const double unit = problem.scaling.column[link.v] * problem.scaling.column[link.v];
+      if (lp.elastic) g(c, c) += weights.stiffness * lp.force[0].curvature(q[link.q]) * unit;
+      g(c, c) += weights.velocity * lp.force[0].damping * unit;
     } else if (link.v == x.v[column]) {
-      g.block<3, 3>(c, c) += rotation_stiffness(link, lp, q);
+      if (lp.elastic) g.block<3, 3>(c, c) += weights.stiffness * rotation_stiffness(link, lp, q);
+      if (weights.velocity != 0) g.block<3, 3>(c, c) += weights.velocity * rotation_damping(link, lp, q);
     }
   }
+  turns *= weights.stiffness;
   return terms;
 }
 
@@ -56,26 +58,51 @@ Mat6 carrying(const BodyNode& x) {
 
 void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                              const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines) {
-  const Division& division = problem.system.division;
+  weights_ = {};
   lay_out(problem, problem.symmetric());
+  add_all(problem, z, k, residual, lines);
   noise_.resize(static_cast<std::size_t>(nodes_.size()));
+  nodes_.for_each(
+      [&](int i) { noise_[static_cast<std::size_t>(i)] = noise_of(problem, nodes_[i], magnitudes); });
+  entries_.drop_unconstrained_below(noise_);
+}
+
+void BodyEquations::assemble_motion(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                                    const Residual<double>& residual, const Magnitudes& magnitudes,
+                                    const MotionWeights& weights) {
+  weights_ = weights;
+  const bool mass_alone = weights.velocity == 0 && weights.stiffness == 0;
+  lay_out(problem, mass_alone);
+  add_all(problem, z, k, residual, Lines::exact);
+  noise_.assign(static_cast<std::size_t>(nodes_.size()), 0);
+  if (!mass_alone)
+    nodes_.for_each([&](int i) {
+      noise_[static_cast<std::size_t>(i)] = weights.stiffness * noise_of(problem, nodes_[i], magnitudes);
+    });
+  entries_.drop_unconstrained_below(noise_);
+}
+
+void BodyEquations::add_all(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                            const Residual<double>& residual, Lines lines) {
+  const Division& division = problem.system.division;
+  const bool forces = weights_.stiffness != 0 || weights_.velocity != 0;
   for_parts(division, [&](const SystemPart& part, std::size_t n) {
     add_bodies(problem, k, n, true);
-    add_pairs(problem, z, k, lines, part, n);
+    if (forces) add_pairs(problem, z, k, lines, part, n);
   });
-  add_body_forces(problem, k);
-  add_pairs(problem, z, k, lines, division.between, between_);
-  if (problem.parameters.moving) add_dampers(problem, k, between_);
+  if (forces) {
+    add_body_forces(problem, k);
+    add_pairs(problem, z, k, lines, division.between, between_);
+    if (problem.parameters.moving) add_dampers(problem, k, between_);
+  }
   for_parts(division, [&](const SystemPart& part, std::size_t n) {
     for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];) {
-      sum_up_load(i, residual);
+      if (forces) sum_up_load(i, residual);
       add_joint(problem, n, i, &z.q);
-      noise_[static_cast<std::size_t>(i)] = noise_of(problem, nodes_[i], magnitudes);
     }
     add_rows(problem, k, part, n);
   });
   add_rows(problem, k, division.between, between_);
-  entries_.drop_unconstrained_below(noise_);
 }
 
 void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<double>& k) {
@@ -127,6 +154,14 @@ void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>&
     if (stiff) {
       sums.load.setZero();
       set_body_stiffness(problem.parameters, static_cast<std::size_t>(x.link), k, x, sums.stiffness);
+      sums.stiffness *= weights_.stiffness;
+      if (weights_.velocity != 0 && !x.massless())
+        sums.stiffness += weights_.velocity * coriolis_matrix(x, k.links[static_cast<std::size_t>(x.link)].w);
+      if (weights_.mass != 0) {
+        BodyInertia body = x;
+        body.turning = 0;
+        sums.stiffness += weights_.mass * inertia_matrix(body);
+      }
     } else {
       set_body_inertia(problem.parameters, static_cast<std::size_t>(x.link), k, x);
     }
@@ -141,27 +176,39 @@ void BodyEquations::add_bodies(const Problem& problem, const Kinematics<double>&
 void BodyEquations::add_body_forces(const Problem& problem, const Kinematics<double>& k) {
   for (std::size_t i = 0; i < problem.system.body_forces.size(); ++i) {
     const BodyForceElement& e = problem.system.body_forces[i];
-    if (const int n = nodes_.at(e.link); n >= 0)
-      add_body_force(e, problem.parameters.body_forces[i], k, sums_[static_cast<std::size_t>(n)].stiffness);
+    const BodyForceParameters& f = problem.parameters.body_forces[i];
+    const int n = nodes_.at(e.link);
+    if (n < 0) continue;
+    Mat6 change = Mat6::Zero();
+    add_body_force(e, f, k, change);
+    change *= weights_.stiffness;
+    if (weights_.velocity != 0 && f.type == ForceType::drag) {
+      Mat6 drag = Mat6::Zero();
+      add_body_drag(e, f, k, drag);
+      change += weights_.velocity * drag;
+    }
+    sums_[static_cast<std::size_t>(n)].stiffness += change;
   }
 }
 
 void BodyEquations::add_pair(std::size_t list, int a, int b, const PairBlocks& x) {
   if (x.compressed) compressed_[list] = true;
   const int na = nodes_.at(a), nb = nodes_.at(b);
+  const double weight = weights_.stiffness;
   if (na >= 0) {
-    sums_[static_cast<std::size_t>(na)].stiffness += x.aa;
+    sums_[static_cast<std::size_t>(na)].stiffness += weight * x.aa;
     sums_[static_cast<std::size_t>(na)].load += x.on_a;
   }
   if (nb >= 0) {
-    sums_[static_cast<std::size_t>(nb)].stiffness += x.bb;
+    sums_[static_cast<std::size_t>(nb)].stiffness += weight * x.bb;
     sums_[static_cast<std::size_t>(nb)].load += x.on_b;
   }
   if (na < 0 || nb < 0) return;
   if (na == nb)
-    sums_[static_cast<std::size_t>(na)].stiffness += x.ab + x.ba;
+    sums_[static_cast<std::size_t>(na)].stiffness += weight * (x.ab + x.ba);
   else
-    entries_.add_between(list, na, nb, nodes_.scaled(x.ab), nodes_.scaled(x.ba), Mat6::Zero());
+    entries_.add_between(list, na, nb, nodes_.scaled(weight * x.ab), nodes_.scaled(weight * x.ba),
+                         Mat6::Zero());
 }
 
 void BodyEquations::add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
@@ -172,6 +219,7 @@ void BodyEquations::add_pairs(const Problem& problem, const Unknowns& z, const K
     const auto i = static_cast<std::size_t>(n);
     const PointSpringElement& e = system.springs[i];
     add_pair(list, e.ends.a, e.ends.b, spring_blocks(e, p.springs[i], k, p.moving, lines));
+    if (weights_.velocity != 0) add_damping(list, e.ends, spring_damping(e, p.springs[i], k));
   }
   PairBlocks sum;
   for (const int n : part.cuts) {
@@ -196,8 +244,26 @@ void BodyEquations::add_pairs(const Problem& problem, const Unknowns& z, const K
 void BodyEquations::add_dampers(const Problem& problem, const Kinematics<double>& k, std::size_t list) {
   for (std::size_t i = 0; i < problem.system.cut_dampers.size(); ++i) {
     const CutDamperElement& e = problem.system.cut_dampers[i];
-    add_pair(list, e.ends.a, e.ends.b, damper_blocks(e, problem.parameters.cut_dampers[i], k));
+    const CutDamperParameters& damper = problem.parameters.cut_dampers[i];
+    add_pair(list, e.ends.a, e.ends.b, damper_blocks(e, damper, k));
+    if (weights_.velocity != 0) add_damping(list, e.ends, damper_damping(e, damper, k));
   }
+}
+
+// c g g^T of both ends.
+void BodyEquations::add_damping(std::size_t list, const PairEnds& ends, const PairDamping& x) {
+  if (x.damping == 0) return;
+  const double weight = weights_.velocity * x.damping;
+  const int na = nodes_.at(ends.a), nb = nodes_.at(ends.b);
+  const auto block = [&](const Vec6& on, const Vec6& by) { return Mat6(weight * on * by.transpose()); };
+  if (na >= 0) sums_[static_cast<std::size_t>(na)].stiffness += block(x.rate.a, x.rate.a);
+  if (nb >= 0) sums_[static_cast<std::size_t>(nb)].stiffness += block(x.rate.b, x.rate.b);
+  if (na < 0 || nb < 0) return;
+  if (na == nb)
+    sums_[static_cast<std::size_t>(na)].stiffness += block(x.rate.a, x.rate.b) + block(x.rate.b, x.rate.a);
+  else
+    entries_.add_between(list, na, nb, nodes_.scaled(block(x.rate.a, x.rate.b)),
+                         nodes_.scaled(block(x.rate.b, x.rate.a)), Mat6::Zero());
 }
 
 // Of a body with all beyond it, whose own loads were summed up before.
@@ -216,7 +282,7 @@ void BodyEquations::add_joint(const Problem& problem, std::size_t list, int i, c
   Sums& sums = sums_[static_cast<std::size_t>(i)];
   Mat6 p = Mat6::Zero(), t = Mat6::Zero();
   if (q) {
-    const JointTerms terms = joint_terms(problem, x, sums.load, *q);
+    const JointTerms terms = joint_terms(problem, x, sums.load, *q, weights_);
     p = x.d * terms.stiffness * x.d.transpose();
     sums.stiffness = nodes_.scaled(sums.stiffness) + p;
     if (x.parent >= 0) t = terms.turns * x.d.transpose();

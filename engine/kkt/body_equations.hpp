@@ -17,12 +17,24 @@
 
 namespace flyball {
 
+// What the matrix of a motion's equations is a sum of: M, C + G and K.
+struct MotionWeights {
+  double mass = 0, velocity = 0, stiffness = 1;
+};
+
 class BodyEquations {
  public:
   // The balance at z, of a system with no_drive_rides(). Kinematics, residual and magnitudes must be at z;
   // the residual's wrenches of the links are used, not its sums with multipliers.
   void assemble(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                 const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines);
+
+  // The same of a motion's equations of second order: in the place of K the sum by `weights`, K and C those
+  // of bodies that stand still in their drive's frame. Residual and kinematics are those of the motion, with
+  // its accelerations where K is asked for; without, residual and magnitudes are not looked at.
+  void assemble_motion(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
+                       const Residual<double>& residual, const Magnitudes& magnitudes,
+                       const MotionWeights& weights);
 
   // The constraints, with the metric alone as a stiffness.
   void assemble_metric(const Problem& problem, const Kinematics<double>& kinematics);
@@ -53,6 +65,8 @@ class BodyEquations {
 
  private:
   void lay_out(const Problem& problem, bool symmetric);
+  void add_all(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
+               const Residual<double>& residual, Lines lines);
   // Of the bodies of one part, and of its elements; of the elements between parts.
   void add_bodies(const Problem& problem, const Kinematics<double>& kinematics, std::size_t part, bool stiff);
   void add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics, Lines lines,
@@ -60,6 +74,7 @@ class BodyEquations {
   void add_body_forces(const Problem& problem, const Kinematics<double>& kinematics);
   void add_dampers(const Problem& problem, const Kinematics<double>& kinematics, std::size_t list);
   void add_pair(std::size_t list, int a, int b, const PairBlocks& blocks);
+  void add_damping(std::size_t list, const PairEnds& ends, const PairDamping& damping);
   void sum_up_load(int node, const Residual<double>& residual);
   void add_joint(const Problem& problem, std::size_t list, int node, const Eigen::VectorXd* q);
   void add_rows(const Problem& problem, const Kinematics<double>& kinematics, const SystemPart& part,
@@ -74,6 +89,7 @@ class BodyEquations {
     Mat6 metric;    // scaled
   };
 
+  MotionWeights weights_;
   std::size_t between_ = 0;      // the list of entries of what is between parts; of one part alone its own
   std::vector<char> compressed_; // by list of entries: some line is
   int coordinates_ = 0, rows_ = 0, first_row_ = 0, unknowns_ = 0;

@@ -154,9 +154,9 @@ void MotionProducts::add_pairs(const Problem& problem, const Unknowns& z, const 
   }
 }
 
-void MotionProducts::add_damper(const PairEnds& ends, double damping, const RowGradient& g) {
-  if (damping == 0) return;
-  dampers_.push_back({node_at(ends.a), node_at(ends.b), damping, g});
+void MotionProducts::add_damper(const PairEnds& ends, const PairDamping& damping) {
+  if (damping.damping == 0) return;
+  dampers_.push_back({node_at(ends.a), node_at(ends.b), damping});
   has_dampers_ = true;
 }
 
@@ -164,26 +164,10 @@ void MotionProducts::add_dampers(const Problem& problem, const Kinematics<double
   const System& system = problem.system;
   const Parameters& p = problem.parameters;
   dampers_.clear();
-  const auto along = [&](const PairEnds& ends, const Vec3& on_a, const Vec3& on_b, const Vec3& direction) {
-    RowGradient g;
-    g.a << -(on_a - k.at(ends.a).o).cross(direction), -direction;
-    g.b << (on_b - k.at(ends.b).o).cross(direction), direction;
-    return g;
-  };
-  for (std::size_t i = 0; i < system.springs.size(); ++i) {
-    const PairEnds& ends = system.springs[i].ends;
-    const SpringState<double> s = spring_state(system.springs[i], p.springs[i], k);
-    add_damper(ends, p.springs[i].damping, along(ends, s.a, s.b, s.direction));
-  }
-  for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
-    const CutDamperElement& e = system.cut_dampers[i];
-    const CutDamperParameters& d = p.cut_dampers[i];
-    const Vec3 axis = k.at(e.ends.a).R * d.axis, b = k.point(e.ends.b, d.b);
-    RowGradient turning;
-    turning.a << -axis, Vec3::Zero();
-    turning.b << axis, Vec3::Zero();
-    add_damper(e.ends, d.damping, e.angular ? turning : along(e.ends, b, b, axis));
-  }
+  for (std::size_t i = 0; i < system.springs.size(); ++i)
+    add_damper(system.springs[i].ends, spring_damping(system.springs[i], p.springs[i], k));
+  for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
+    add_damper(system.cut_dampers[i].ends, damper_damping(system.cut_dampers[i], p.cut_dampers[i], k));
 }
 
 void MotionProducts::set_rows(const Problem& problem, const Kinematics<double>& k) {
@@ -290,9 +274,10 @@ void MotionProducts::velocity(const Eigen::VectorXd& x, Eigen::VectorXd& out) {
   for (Node& n : nodes_)
     n.wrench.setZero();
   for (const Damper& d : dampers_) {
-    const double force = d.damping * (d.g.a.dot(motion_of(d.a)) + d.g.b.dot(motion_of(d.b)));
-    if (d.a >= 0) node(d.a).wrench += force * d.g.a;
-    if (d.b >= 0) node(d.b).wrench += force * d.g.b;
+    const RowGradient& g = d.pair.rate;
+    const double force = d.pair.damping * (g.a.dot(motion_of(d.a)) + g.b.dot(motion_of(d.b)));
+    if (d.a >= 0) node(d.a).wrench += force * g.a;
+    if (d.b >= 0) node(d.b).wrench += force * g.b;
   }
   inwards(out, [&](Node& n) {
     if (n.damped) n.wrench += n.damping * n.motion;

@@ -65,11 +65,9 @@ class MotionProducts {
     int a = -1, b = -1;
     PairBlocks blocks;
   };
-  // Of a damper: damping g g^T, g the rate by the motions of both.
   struct Damper {
     int a = -1, b = -1;
-    double damping = 0;
-    RowGradient g;
+    PairDamping pair;
   };
   struct Gradient {
     int row = 0, v = 0;
@@ -83,7 +81,7 @@ class MotionProducts {
   void add_body_forces(const Problem& problem, const Kinematics<double>& k);
   void add_pair(const PairEnds& ends, const PairBlocks& blocks);
   void add_pairs(const Problem& problem, const Unknowns& z, const Kinematics<double>& k);
-  void add_damper(const PairEnds& ends, double damping, const RowGradient& g);
+  void add_damper(const PairEnds& ends, const PairDamping& damping);
   void add_dampers(const Problem& problem, const Kinematics<double>& k);
   void set_rows(const Problem& problem, const Kinematics<double>& k);
   bool coriolis_matters();

@@ -205,4 +205,30 @@ RowGradient body_row_gradient(const CutJoint& cut, const CutParameters& p, const
   return g;
 }
 
+PairDamping spring_damping(const PointSpringElement& e, const PointSpringParameters& p,
+                           const Kinematics<double>& k) {
+  const SpringState<double> s = spring_state(e, p, k);
+  PairDamping out;
+  out.damping = p.damping;
+  out.rate.a << -(s.a - k.at(e.ends.a).o).cross(s.direction), -s.direction;
+  out.rate.b << (s.b - k.at(e.ends.b).o).cross(s.direction), s.direction;
+  return out;
+}
+
+PairDamping damper_damping(const CutDamperElement& e, const CutDamperParameters& p,
+                           const Kinematics<double>& k) {
+  const Vec3 axis = k.at(e.ends.a).R * p.axis;
+  PairDamping out;
+  out.damping = p.damping;
+  if (e.angular) {
+    out.rate.a << -axis, Vec3::Zero();
+    out.rate.b << axis, Vec3::Zero();
+    return out;
+  }
+  const Vec3 b = k.point(e.ends.b, p.b);
+  out.rate.a << -(b - k.at(e.ends.a).o).cross(axis), -axis;
+  out.rate.b << (b - k.at(e.ends.b).o).cross(axis), axis;
+  return out;
+}
+
 } // namespace flyball

@@ -37,4 +37,15 @@ struct RowGradient {
 RowGradient body_row_gradient(const CutJoint& cut, const CutParameters& joint, const ConstraintRow& row,
                               const Kinematics<double>& kinematics);
 
+// Of a damper between two bodies: how fast it is drawn or turned by a unit of either's velocity, and its
+// constant (N s/m, N m s), so that the wrenches are -damping rate rate^T velocity.
+struct PairDamping {
+  RowGradient rate;
+  double damping = 0;
+};
+PairDamping spring_damping(const PointSpringElement& element, const PointSpringParameters& spring,
+                           const Kinematics<double>& kinematics);
+PairDamping damper_damping(const CutDamperElement& element, const CutDamperParameters& damper,
+                           const Kinematics<double>& kinematics);
+
 } // namespace flyball

@@ -1,12 +1,8 @@
 // Motion along a tree: the same as by the dense equations, at any size.
 #include "tests/bench/large_scenes.hpp"
+#include "tests/engine/dynamics_forms.hpp"
 #include "tests/engine/dynamics_runs.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
-
-#include "engine/dynamics/motion_ode.hpp"
-#include "engine/dynamics/start.hpp"
-
-#include <random>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -18,89 +14,6 @@ using reference::RandomDrives;
 using reference::RandomOptions;
 
 namespace {
-
-// A mechanism in motion, with its equations of one kind.
-struct Motion {
-  Motion(const Mechanism& mechanism, bool along_tree) : model(make_motion_model(mechanism, true)) {
-    model.along_tree = along_tree;
-    equations = std::make_unique<Equations>(model, watch);
-  }
-
-  // Anywhere, everything moving; `spin` is the part of that of rotations of three coordinates.
-  void stir(std::uint32_t seed, double spin) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> any(-1, 1);
-    drawn_configuration(model.system, model.parameters, q);
-    Eigen::VectorXd step(model.system.nv);
-    s.resize(model.system.nv);
-    for (int v = 0; v < model.system.nv; ++v) {
-      step[v] = 0.4 * any(random) * model.scaling.column[v];
-      s[v] = 3 * any(random) * model.scaling.column[v];
-    }
-    for (const Link& link : model.system.links)
-      if (link.v >= 0 && link.type == LinkType::spherical) s.segment<3>(link.v) *= spin;
-    retract<double>(model.system, step, q);
-    std::vector<FlipElement> flips = list_flips(model.system, model.parameters);
-    for (FlipElement& flip : flips) {
-      const auto l = static_cast<std::size_t>(flip.link);
-      flip.side = joint_rotation(model.system.links[l], model.parameters.links[l], q).w() >= 0;
-    }
-    equations->latch({}, {}, flips);
-    equations->analyse(time, q, s);
-    REQUIRE(equations->evaluate(time, q, s));
-  }
-
-  // (I - gamma J)^-1 of any vector, in coordinates and rates.
-  Eigen::VectorXd newton_step(double gamma, bool by_quotients) {
-    MotionOde ode(*equations, watch, 1e-10, 1, 1);
-    Eigen::VectorXd y;
-    ode.pack(q, s, Eigen::Vector3d::Zero(), y);
-    NewtonMatrix matrix;
-    if (by_quotients) {
-      const auto rate = [&](const double* at, double* out) { return ode.rate(time, at, out); };
-      Eigen::VectorXd rates(y.size());
-      REQUIRE(ode.rate(time, y.data(), rates.data()));
-      REQUIRE(matrix.take_quotients(rate, y.data(), rates.data(),
-                                    Eigen::VectorXd::Ones(model.system.nq + model.system.nv), ode.size()));
-    } else {
-      REQUIRE(equations->evaluate(time, q, s));
-      REQUIRE(matrix.take_derivatives(*equations, y.data()));
-    }
-    REQUIRE(matrix.factor(gamma));
-    for (Eigen::Index i = 0; i < y.size(); ++i)
-      y[i] = std::sin(1.1 * static_cast<double>(i) + 0.2);
-    matrix.solve(y.data());
-    return y.head(model.system.nq + model.system.nv);
-  }
-
-  // The configuration after so many seconds from rest.
-  Eigen::VectorXd after(double seconds, Integrator method) {
-    SimulationOptions o;
-    Eigen::VectorXd u, y;
-    find_start(o, model, q, u);
-    equations->latch({}, {}, list_flips(model.system, model.parameters));
-    equations->analyse(0, q, u);
-    REQUIRE(equations->reduce(0, q, u, s));
-    MotionOde ode(*equations, watch, 1e-10, 1, 1);
-    ode.pack(q, s, Eigen::Vector3d::Zero(), y);
-    const auto stepper = method == Integrator::runge_kutta ? make_runge_kutta_stepper(ode, 0)
-                                                           : make_cvode_stepper(ode, method);
-    stepper->start(0, y);
-    for (double t = 0; t < seconds;) {
-      const StepOutcome outcome = stepper->step(seconds);
-      REQUIRE(outcome.kind == StepOutcome::advanced);
-      t = outcome.time;
-    }
-    stepper->state_at(seconds, y);
-    return y.head(model.system.nq);
-  }
-
-  static constexpr double time = 0.37; // s
-  Watch watch;
-  MotionModel model;
-  std::unique_ptr<Equations> equations;
-  Eigen::VectorXd q, s;
-};
 
 bool is_tree(const System& system) {
   return system.rows == 0 && system.springs.empty() && system.cut_dampers.empty() && system.nv > 0;
@@ -115,29 +28,13 @@ RandomOptions trees(std::uint32_t seed) {
   return o;
 }
 
-double size_of(const Eigen::VectorXd& v) {
-  return v.lpNorm<Eigen::Infinity>();
-}
-
-// Of the mass matrix in scaled units, largest eigenvalue over smallest.
-double condition(const Motion& m) {
-  MassMatrix mass;
-  evaluate_mass(m.model.released, m.model.parameters, m.equations->kinematics(), mass);
-  const int n = m.model.system.nv;
-  const auto column = m.model.scaling.column.asDiagonal();
-  const Eigen::MatrixXd scaled = column * mass.mass.topLeftCorner(n, n) * column;
-  const auto values = symmetric_eigenvalues(scaled);
-  REQUIRE(values);
-  return (*values)[n - 1] / (*values)[0];
-}
-
 } // namespace
 
 TEST_CASE("accelerations and drive torques along a tree are those of the dense equations") {
   int compared = 0, drives = 0, with_balls = 0, with_drag = 0, with_stops = 0;
   for (std::uint32_t seed = 1; seed <= 400; ++seed) {
     const Mechanism mechanism = reference::random_mechanism(seed, trees(seed));
-    Motion dense(mechanism, false), tree(mechanism, true);
+    Motion dense(mechanism, Form::dense), tree(mechanism, Form::tree);
     if (!is_tree(tree.model.system)) continue;
     CAPTURE(seed, tree.model.system.nv);
     dense.stir(seed, 1);
@@ -178,7 +75,7 @@ TEST_CASE("the matrix of implicit steps along a tree is that of the dense equati
   for (std::uint32_t seed = 1; seed <= 400; ++seed) {
     const Mechanism mechanism = reference::random_mechanism(seed, trees(seed));
     for (const double gamma : {1e-3, 3e-2}) {
-      Motion dense(mechanism, false), tree(mechanism, true);
+      Motion dense(mechanism, Form::dense), tree(mechanism, Form::tree);
       if (!is_tree(tree.model.system)) break;
       CAPTURE(seed, gamma, tree.model.system.nv);
       const bool ball = std::ranges::any_of(
@@ -206,7 +103,7 @@ TEST_CASE("the matrix of implicit steps along a tree is that of the dense equati
 
 TEST_CASE("a motion along a tree is that by the dense equations") {
   const auto both = [](const Mechanism& m, double seconds, Integrator method) {
-    Motion dense(m, false), tree(m, true);
+    Motion dense(m, Form::dense), tree(m, Form::tree);
     const Eigen::VectorXd a = dense.after(seconds, method), b = tree.after(seconds, method);
     CHECK(dynamic_cast<TreeMotion*>(&tree.equations->solver()));
     CHECK_FALSE(dynamic_cast<TreeMotion*>(&dense.equations->solver()));
@@ -224,7 +121,7 @@ TEST_CASE("a motion along a tree is that by the dense equations") {
 TEST_CASE("a start at rest in the world is the same along a tree") {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     const Mechanism mechanism = reference::random_mechanism(seed, trees(seed));
-    Motion dense(mechanism, false), tree(mechanism, true);
+    Motion dense(mechanism, Form::dense), tree(mechanism, Form::tree);
     if (!is_tree(tree.model.system)) continue;
     CAPTURE(seed);
     tree.stir(seed, 1);
@@ -246,7 +143,7 @@ TEST_CASE("what has coordinates without mass does not go along the tree") {
   Mechanism m = bench::springy_chain(40, 5, 0.1, 1e-3);
   m.bodies.back().mass = 0;
   m.bodies.back().inertia.fill(0);
-  Motion motion(m, true);
+  Motion motion(m, Form::tree);
   motion.stir(1, 1);
   CHECK(motion.equations->has_massless());
   CHECK_FALSE(dynamic_cast<TreeMotion*>(&motion.equations->solver()));

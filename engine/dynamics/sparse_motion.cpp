@@ -1,0 +1,172 @@
+#include "engine/dynamics/sparse_motion.hpp"
+
+#include "engine/kkt/kkt_system.hpp"
+
+namespace flyball {
+namespace {
+
+constexpr double no_force = 1e-8;     // of the terms it is made of
+constexpr double enough = 1e-11;      // of the terms of each equation
+constexpr double enough_step = 1e-6;  // the same in Newton's iteration
+constexpr double independent = 1e-10; // of a row of the constraints, its pivot with the metric
+
+} // namespace
+
+SparseMotion::SparseMotion(const MotionModel& model)
+    : model_(model), system_(model.released), n_(model.system.nv) {
+  none_.setZero(system_.rows);
+  zero_lambda_.setZero(system_.rows);
+}
+
+bool SparseMotion::analyse(const MotionPoint& point) {
+  if (system_.rows > 0) factor_constraints(point);
+  expected_nullity_ = system_.rows > 0 ? constraints_.redundant() : 0;
+  if (!factor(point)) return false;
+  expected_size_ = bodies_.pattern().size;
+  return mass_.nullity() == expected_nullity_ && find_still(point);
+}
+
+// What has neither mass nor constraint: the turns of point masses as a rule. False where forces act on it.
+bool SparseMotion::find_still(const MotionPoint& point) {
+  still_.clear();
+  const std::vector<bool>& free = bodies_.unconstrained();
+  for (std::size_t u = 0; u < free.size(); ++u) {
+    if (!free[u]) continue;
+    const BodyNode& x = bodies_.nodes()[static_cast<int>(u / 6)];
+    for (int c = 0; c < x.columns; ++c)
+      if (x.d(static_cast<Eigen::Index>(u % 6), c) != 0) still_.push_back(x.v[static_cast<std::size_t>(c)]);
+  }
+  if (still_.empty()) return true;
+  take_in(point, zero_lambda_);
+  for (const int v : still_)
+    if (std::abs(loaded_.f[v]) > no_force * magnitudes_.force[v]) return false;
+  step_bodies_.assemble_motion(model_.problem(), at_, linearised_, loaded_, magnitudes_,
+                               {.mass = 1, .velocity = 1, .stiffness = 1});
+  return step_bodies_.unconstrained() == free;
+}
+
+bool SparseMotion::structure_changed() const {
+  return mass_.nullity() != expected_nullity_ || bodies_.pattern().size != expected_size_;
+}
+
+bool SparseMotion::factor(const MotionPoint& point) {
+  at_.q = point.q;
+  bodies_.assemble_motion(model_.problem(), at_, point.kinematics, residual_, magnitudes_,
+                          {.mass = 1, .velocity = 0, .stiffness = 0});
+  const std::vector<double>& values = bodies_.sum(1, 0);
+  for (const double value : values)
+    if (!std::isfinite(value)) return false;
+  mass_.factor(bodies_.pattern(), values, KktSystem::zero);
+  return true;
+}
+
+void SparseMotion::solve(BodyEquations& equations, SparseFactorization& factors, const Eigen::VectorXd& force,
+                         const Eigen::VectorXd& closing, Eigen::VectorXd& x, Eigen::VectorXd& lambda) {
+  x.setZero(n_);
+  lambda.setZero(system_.rows);
+  equations.assemble_rhs(force, closing, reduced_);
+  if (reduced_.size() > 0) factors.solve(reduced_, &factors == &step_ ? enough_step : enough);
+  equations.extract_solution(reduced_, x, lambda);
+  for (const int v : still_)
+    x[v] = 0;
+}
+
+bool SparseMotion::accelerate(const MotionPoint& point, Eigen::VectorXd& a, Eigen::VectorXd& lambda) {
+  const Scaling& scaling = model_.scaling;
+  evaluate_residual<double>(system_, point.parameters, point.q, zero_lambda_, point.kinematics, residual_);
+  add_coordinate_damping(system_, point.parameters, point.q, point.u, residual_.f);
+  constraint_accelerations(system_, point.parameters, nullptr, point.kinematics, point.carried, bias_);
+  force_ = -residual_.f.head(n_).cwiseProduct(scaling.column);
+  closing_ = -bias_.cwiseProduct(scaling.row);
+  solve(bodies_, mass_, force_, closing_, scaled_a_, scaled_lambda_);
+  a = scaled_a_.cwiseProduct(scaling.column);
+  lambda = scaled_lambda_.cwiseProduct(scaling.row);
+  if (!a.allFinite() || !lambda.allFinite()) return false;
+  if (model_.system.drives.empty()) return true;
+  all_a_.setZero(system_.nv);
+  all_a_.head(n_) = a;
+  move(system_, point.parameters, {point.q, point.u, nullptr, &all_a_}, accelerated_, carried_);
+  evaluate_residual<double>(system_, point.parameters, point.q, lambda, accelerated_, loaded_);
+  add_coordinate_damping(system_, point.parameters, point.q, point.u, loaded_.f);
+  drive_forces_ = loaded_.f.tail(system_.nv - n_);
+  return true;
+}
+
+double SparseMotion::drive_force(int drive) const {
+  return drive_forces_[drive];
+}
+
+std::string SparseMotion::unsolved() const {
+  return "the numbers overflow, or the mass matrix is singular to rounding";
+}
+
+bool SparseMotion::linearise(const MotionPoint& point, const Eigen::VectorXd& lambda) {
+  take_in(point, lambda);
+  products_.linearize(model_.problem(), at_, linearised_, loaded_);
+  return loaded_.f.allFinite();
+}
+
+void SparseMotion::take_in(const MotionPoint& point, const Eigen::VectorXd& lambda) {
+  at_.q = point.q;
+  at_.lambda = lambda;
+  linearised_ = point.kinematics;
+  evaluate_residual<double>(system_, point.parameters, point.q, lambda, linearised_, loaded_);
+  evaluate_magnitudes(system_, point.parameters, point.q, lambda, linearised_, magnitudes_);
+}
+
+bool SparseMotion::factor_step(double gamma, const std::vector<Mat3>&) {
+  gamma_ = gamma;
+  step_bodies_.assemble_motion(model_.problem(), at_, linearised_, loaded_, magnitudes_,
+                               {.mass = 1, .velocity = gamma, .stiffness = gamma * gamma});
+  step_.factor(step_bodies_.pattern(), step_bodies_.sum(1, 0), KktSystem::zero);
+  return step_.nullity() == expected_nullity_ && step_bodies_.pattern().size == expected_size_;
+}
+
+// With ds = b_s + z the constraints hold z: (M + gamma C + gamma^2 K) z + J^T mu = -gamma C b_s - K (gamma^2
+// b_s + gamma b_q), J z = 0.
+void SparseMotion::solve_step(const Eigen::VectorXd& b_q, Eigen::VectorXd& s) {
+  const Eigen::VectorXd& column = model_.scaling.column;
+  scaled_s_ = s.cwiseQuotient(column);
+  products_.velocity(scaled_s_, product_);
+  force_ = -gamma_ * product_;
+  scaled_s_ = gamma_ * (gamma_ * scaled_s_ + b_q.cwiseQuotient(column));
+  products_.stiffness(scaled_s_, product_);
+  force_ -= product_;
+  solve(step_bodies_, step_, force_, none_, scaled_a_, scaled_lambda_);
+  s += scaled_a_.cwiseProduct(column);
+}
+
+void SparseMotion::correct_velocity(const MotionPoint& point, const Eigen::VectorXd& rates,
+                                    const std::vector<Vec6>* momenta, Eigen::VectorXd& change) {
+  const Scaling& scaling = model_.scaling;
+  force_.setZero(n_);
+  if (momenta) {
+    std::vector<Vec6> beyond = *momenta;
+    for (std::size_t l = beyond.size(); l-- > 0;) {
+      const Link& link = model_.system.links[l];
+      const Vec3& origin = point.kinematics.links[l].o;
+      for (int c = 0; link.v >= 0 && c < (link.type == LinkType::spherical ? 3 : 1); ++c) {
+        const Column<double>& x = point.kinematics.columns[static_cast<std::size_t>(link.v + c)];
+        force_[link.v + c] = -scaling.column[link.v + c] *
+                             (x.turn().dot(beyond[l].head<3>()) + x.at(origin).dot(beyond[l].tail<3>()));
+      }
+      if (link.parent < 0) continue;
+      const auto parent = static_cast<std::size_t>(link.parent);
+      beyond[parent] += about(beyond[l], origin - point.kinematics.links[parent].o);
+    }
+  }
+  closing_ = -rates.cwiseProduct(scaling.row);
+  solve(bodies_, mass_, force_, closing_, scaled_a_, scaled_lambda_);
+  change = scaled_a_.cwiseProduct(scaling.column);
+}
+
+void SparseMotion::factor_constraints(const MotionPoint& point) {
+  constraints_.factor(model_.problem(), point.kinematics, independent);
+}
+
+void SparseMotion::close(const Eigen::VectorXd& closing, Eigen::VectorXd& step) {
+  force_.setZero(n_);
+  constraints_.solve(force_, closing, step, unused_);
+}
+
+} // namespace flyball
