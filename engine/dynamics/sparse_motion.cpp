@@ -161,7 +161,7 @@ void SparseMotion::correct_velocity(const MotionPoint& point, const Eigen::Vecto
 }
 
 void SparseMotion::factor_constraints(const MotionPoint& point) {
-  constraints_.factor(model_.problem(), point.kinematics, independent);
+  constraints_.factor(model_.problem(), point.kinematics, independent, BodyEntries::Zeros::kept);
 }
 
 void SparseMotion::close(const Eigen::VectorXd& closing, Eigen::VectorXd& step) {

@@ -18,7 +18,8 @@ void for_lists(Lists& lists, const Work& work) {
 
 } // namespace
 
-void BodyEntries::clear(int bodies, int multipliers, bool symmetric, std::size_t lists) {
+void BodyEntries::clear(int bodies, int multipliers, bool symmetric, std::size_t lists, Zeros zeros) {
+  keep_zeros_ = zeros == Zeros::kept;
   first_multiplier_ = static_cast<std::size_t>(6 * bodies);
   const int unknowns = 6 * bodies + multipliers;
   pattern_.clear(unknowns, symmetric);
@@ -53,7 +54,7 @@ void BodyEntries::add_between(std::size_t list, int a, int b, const Mat6& ab, co
   for (const int i : {0, 3})
     for (const int j : {0, 3}) {
       const bool shifts = i == 3 && j == 3;
-      if (shifts || !ab.block<3, 3>(i, j).isZero(0) || !ba.block<3, 3>(j, i).isZero(0) ||
+      if (shifts || keep_zeros_ || !ab.block<3, 3>(i, j).isZero(0) || !ba.block<3, 3>(j, i).isZero(0) ||
           !metric_ab.block<3, 3>(i, j).isZero(0))
         add_block(lists_[list], a, i, b, j, ab, ba, metric_ab);
     }
@@ -74,7 +75,7 @@ void BodyEntries::add_block(List& list, int a, int first_i, int b, int first_j, 
 
 void BodyEntries::add_row(std::size_t list, int row, int node, const Vec6& gradient) {
   if (node < 0) return;
-  for (int i = gradient.head<3>().isZero(0) ? 3 : 0; i < 6; ++i) {
+  for (int i = !keep_zeros_ && gradient.head<3>().isZero(0) ? 3 : 0; i < 6; ++i) {
     lists_[list].add(row, 6 * node + i, {0, 0, gradient[i]});
     if (!pattern_.symmetric) lists_[list].add(6 * node + i, row, {0, 0, gradient[i]});
   }

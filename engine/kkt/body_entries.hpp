@@ -15,8 +15,10 @@ namespace flyball {
 class BodyEntries {
  public:
   // Starts anew, with as many lists as can be added to side by side. Of a symmetric matrix one triangle is
-  // kept.
-  void clear(int bodies, int multipliers, bool symmetric, std::size_t lists);
+  // kept. Blocks that are zero by chance of the pose are left out, or kept where the pattern is to stay as
+  // the mechanism moves.
+  enum class Zeros { left_out, kept };
+  void clear(int bodies, int multipliers, bool symmetric, std::size_t lists, Zeros zeros = Zeros::left_out);
 
   // A body's own six equations.
   void add_body(std::size_t list, int node, const Mat6& stiffness, const Mat6& metric);
@@ -66,6 +68,7 @@ class BodyEntries {
   void number();
 
   SparsePattern pattern_;
+  bool keep_zeros_ = false;
   std::size_t first_multiplier_ = 0; // among the unknowns
   std::vector<List> lists_;
   std::vector<double> sum_, largest_;

@@ -59,7 +59,7 @@ Mat6 carrying(const BodyNode& x) {
 void BodyEquations::assemble(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                              const Residual<double>& residual, const Magnitudes& magnitudes, Lines lines) {
   weights_ = {};
-  lay_out(problem, problem.symmetric());
+  lay_out(problem, problem.symmetric(), BodyEntries::Zeros::left_out);
   add_all(problem, z, k, residual, lines);
   noise_.resize(static_cast<std::size_t>(nodes_.size()));
   nodes_.for_each(
@@ -72,7 +72,7 @@ void BodyEquations::assemble_motion(const Problem& problem, const Unknowns& z, c
                                     const MotionWeights& weights) {
   weights_ = weights;
   const bool mass_alone = weights.velocity == 0 && weights.stiffness == 0;
-  lay_out(problem, mass_alone);
+  lay_out(problem, mass_alone, BodyEntries::Zeros::kept);
   add_all(problem, z, k, residual, Lines::exact);
   noise_.assign(static_cast<std::size_t>(nodes_.size()), 0);
   if (!mass_alone)
@@ -105,9 +105,10 @@ void BodyEquations::add_all(const Problem& problem, const Unknowns& z, const Kin
   add_rows(problem, k, division.between, between_);
 }
 
-void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<double>& k) {
+void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<double>& k,
+                                    BodyEntries::Zeros zeros) {
   const Division& division = problem.system.division;
-  lay_out(problem, true);
+  lay_out(problem, true, zeros);
   for_parts(division, [&](const SystemPart&, std::size_t n) { add_bodies(problem, k, n, false); });
   for_parts(division, [&](const SystemPart& part, std::size_t n) {
     for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];)
@@ -123,7 +124,7 @@ bool BodyEquations::compressed() const {
 }
 
 // Numbers the unknowns: motions, multipliers of tree joints, those of cut joints.
-void BodyEquations::lay_out(const Problem& problem, bool symmetric) {
+void BodyEquations::lay_out(const Problem& problem, bool symmetric, BodyEntries::Zeros zeros) {
   coordinates_ = problem.system.nv;
   rows_ = problem.system.rows;
   nodes_.lay_out(problem);
@@ -137,7 +138,7 @@ void BodyEquations::lay_out(const Problem& problem, bool symmetric) {
   unknowns_ = first_row_ + rows_;
   const std::size_t parts = problem.system.division.parts.size();
   between_ = parts > 1 ? parts : 0;
-  entries_.clear(nodes_.size(), multipliers(), symmetric, between_ + 1);
+  entries_.clear(nodes_.size(), multipliers(), symmetric, between_ + 1, zeros);
   compressed_.assign(between_ + 1, false);
   sums_.resize(static_cast<std::size_t>(nodes_.size()));
 }
@@ -301,7 +302,8 @@ void BodyEquations::add_joint(const Problem& problem, std::size_t list, int i, c
   // The parent's sums are in units of its own as yet.
   if (q) parent.stiffness -= nodes_.unscaled(on_parent * shift);
   parent.metric += shift.transpose() * w * shift;
-  entries_.add_between(list, i, x.parent, by_parent, on_parent, -w * shift);
+  if (q == nullptr || weights_.stiffness != 0 || weights_.velocity != 0)
+    entries_.add_between(list, i, x.parent, by_parent, on_parent, -w * shift);
   for (int r = 0; r < forbidden.cols(); ++r)
     entries_.add_row(list, x.multipliers + r, x.parent, -shift.transpose() * forbidden.col(r));
 }

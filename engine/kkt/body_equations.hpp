@@ -37,7 +37,8 @@ class BodyEquations {
                        const MotionWeights& weights);
 
   // The constraints, with the metric alone as a stiffness.
-  void assemble_metric(const Problem& problem, const Kinematics<double>& kinematics);
+  void assemble_metric(const Problem& problem, const Kinematics<double>& kinematics,
+                       BodyEntries::Zeros zeros = BodyEntries::Zeros::left_out);
 
   const BodyNodes& nodes() const { return nodes_; }
   bool symmetric() const { return pattern().symmetric; }
@@ -64,7 +65,7 @@ class BodyEquations {
                         Eigen::VectorXd& lambda);
 
  private:
-  void lay_out(const Problem& problem, bool symmetric);
+  void lay_out(const Problem& problem, bool symmetric, BodyEntries::Zeros zeros);
   void add_all(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                const Residual<double>& residual, Lines lines);
   // Of the bodies of one part, and of its elements; of the elements between parts.

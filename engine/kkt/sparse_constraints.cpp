@@ -2,8 +2,9 @@
 
 namespace flyball {
 
-void SparseConstraints::factor(const Problem& problem, const Kinematics<double>& k, double tolerance) {
-  equations_.assemble_metric(problem, k);
+void SparseConstraints::factor(const Problem& problem, const Kinematics<double>& k, double tolerance,
+                               BodyEntries::Zeros zeros) {
+  equations_.assemble_metric(problem, k, zeros);
   factors_.factor(equations_.pattern(), equations_.sum(1, 0), tolerance);
 }
 

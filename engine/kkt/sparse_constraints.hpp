@@ -12,7 +12,8 @@ namespace flyball {
 class SparseConstraints {
  public:
   // Dependent rows have pivots of the size by which the loops are open, below `tolerance`.
-  void factor(const Problem& problem, const Kinematics<double>& kinematics, double tolerance);
+  void factor(const Problem& problem, const Kinematics<double>& kinematics, double tolerance,
+              BodyEntries::Zeros zeros = BodyEntries::Zeros::left_out);
 
   // [W, J^T; J, 0] [x; lambda] = [rhs; closing].
   void solve(const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
