@@ -1,5 +1,5 @@
 // The equations of motion by dense matrices of all free coordinates and independent rows: for mechanisms of
-// any kind, with loops, springs between bodies and bodies without mass, of some hundred coordinates at most.
+// any kind, also with bodies without mass that forces act on, of some hundred coordinates at most.
 #pragma once
 
 #include "engine/dynamics/motion_model.hpp"

@@ -21,6 +21,9 @@ struct MotionModel {
   Problem problem() const { return {system, parameters, scaling}; }
 };
 
+// Springs or dampers act between two bodies, beside what is in tree joints.
+bool has_pairs(const System& system);
+
 // Compiles. Throws SceneError.
 MotionModel make_motion_model(const Mechanism& mechanism, bool damped);
 

@@ -1,6 +1,6 @@
 // What solves the equations of motion at a state (eq. 19), for the accelerations and for the steps of
-// implicit methods: by dense matrices (dense_motion.hpp), or along a tree in time proportional to its bodies
-// (tree_motion.hpp).
+// implicit methods: by dense matrices (dense_motion.hpp), along a tree in time proportional to its bodies
+// (tree_motion.hpp), or as sparse equations of the bodies (sparse_motion.hpp).
 //
 // The steps of implicit methods. With y = [q; s], q' = s and M s' + h(q, s) = 0, and with K the derivative of
 // M s' + h with q at fixed s', C that with s, the Jacobian J of y' gives (I - gamma J) [dq; ds] = [b_q; b_s]

@@ -5,25 +5,22 @@
 namespace flyball {
 namespace {
 
-constexpr double no_force = 1e-8;     // of the terms it is made of
 constexpr double enough = 1e-11;      // of the terms of each equation
-constexpr double enough_step = 1e-6;  // the same in Newton's iteration
 constexpr double independent = 1e-10; // of a row of the constraints, its pivot with the metric
 
 } // namespace
 
 SparseMotion::SparseMotion(const MotionModel& model)
-    : model_(model), system_(model.released), n_(model.system.nv) {
-  none_.setZero(system_.rows);
+    : model_(model), system_(model.released), n_(model.system.nv), step_(model) {
   zero_lambda_.setZero(system_.rows);
 }
 
 bool SparseMotion::analyse(const MotionPoint& point) {
   if (system_.rows > 0) factor_constraints(point);
-  expected_nullity_ = system_.rows > 0 ? constraints_.redundant() : 0;
+  redundant_ = system_.rows > 0 ? constraints_.redundant() : 0;
   if (!factor(point)) return false;
   expected_size_ = bodies_.pattern().size;
-  return mass_.nullity() == expected_nullity_ && find_still(point);
+  return mass_.nullity() <= redundant_ && find_still(point);
 }
 
 // What has neither mass nor constraint: the turns of point masses as a rule. False where forces act on it.
@@ -36,17 +33,11 @@ bool SparseMotion::find_still(const MotionPoint& point) {
     for (int c = 0; c < x.columns; ++c)
       if (x.d(static_cast<Eigen::Index>(u % 6), c) != 0) still_.push_back(x.v[static_cast<std::size_t>(c)]);
   }
-  if (still_.empty()) return true;
-  take_in(point, zero_lambda_);
-  for (const int v : still_)
-    if (std::abs(loaded_.f[v]) > no_force * magnitudes_.force[v]) return false;
-  step_bodies_.assemble_motion(model_.problem(), at_, linearised_, loaded_, magnitudes_,
-                               {.mass = 1, .velocity = 1, .stiffness = 1});
-  return step_bodies_.unconstrained() == free;
+  return still_.empty() || step_.nothing_acts(point, still_, free);
 }
 
 bool SparseMotion::structure_changed() const {
-  return mass_.nullity() != expected_nullity_ || bodies_.pattern().size != expected_size_;
+  return mass_.nullity() > redundant_ || bodies_.pattern().size != expected_size_;
 }
 
 bool SparseMotion::factor(const MotionPoint& point) {
@@ -60,13 +51,13 @@ bool SparseMotion::factor(const MotionPoint& point) {
   return true;
 }
 
-void SparseMotion::solve(BodyEquations& equations, SparseFactorization& factors, const Eigen::VectorXd& force,
-                         const Eigen::VectorXd& closing, Eigen::VectorXd& x, Eigen::VectorXd& lambda) {
+void SparseMotion::solve(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
+                         Eigen::VectorXd& lambda) {
   x.setZero(n_);
   lambda.setZero(system_.rows);
-  equations.assemble_rhs(force, closing, reduced_);
-  if (reduced_.size() > 0) factors.solve(reduced_, &factors == &step_ ? enough_step : enough);
-  equations.extract_solution(reduced_, x, lambda);
+  bodies_.assemble_rhs(force, closing, reduced_);
+  if (reduced_.size() > 0) mass_.solve(reduced_, enough);
+  bodies_.extract_solution(reduced_, x, lambda);
   for (const int v : still_)
     x[v] = 0;
 }
@@ -78,7 +69,7 @@ bool SparseMotion::accelerate(const MotionPoint& point, Eigen::VectorXd& a, Eige
   constraint_accelerations(system_, point.parameters, nullptr, point.kinematics, point.carried, bias_);
   force_ = -residual_.f.head(n_).cwiseProduct(scaling.column);
   closing_ = -bias_.cwiseProduct(scaling.row);
-  solve(bodies_, mass_, force_, closing_, scaled_a_, scaled_lambda_);
+  solve(force_, closing_, scaled_a_, scaled_lambda_);
   a = scaled_a_.cwiseProduct(scaling.column);
   lambda = scaled_lambda_.cwiseProduct(scaling.row);
   if (!a.allFinite() || !lambda.allFinite()) return false;
@@ -101,39 +92,18 @@ std::string SparseMotion::unsolved() const {
 }
 
 bool SparseMotion::linearise(const MotionPoint& point, const Eigen::VectorXd& lambda) {
-  take_in(point, lambda);
-  products_.linearize(model_.problem(), at_, linearised_, loaded_);
-  return loaded_.f.allFinite();
-}
-
-void SparseMotion::take_in(const MotionPoint& point, const Eigen::VectorXd& lambda) {
-  at_.q = point.q;
-  at_.lambda = lambda;
-  linearised_ = point.kinematics;
-  evaluate_residual<double>(system_, point.parameters, point.q, lambda, linearised_, loaded_);
-  evaluate_magnitudes(system_, point.parameters, point.q, lambda, linearised_, magnitudes_);
+  return step_.linearise(point, lambda);
 }
 
 bool SparseMotion::factor_step(double gamma, const std::vector<Mat3>&) {
-  gamma_ = gamma;
-  step_bodies_.assemble_motion(model_.problem(), at_, linearised_, loaded_, magnitudes_,
-                               {.mass = 1, .velocity = gamma, .stiffness = gamma * gamma});
-  step_.factor(step_bodies_.pattern(), step_bodies_.sum(1, 0), KktSystem::zero);
-  return step_.nullity() == expected_nullity_ && step_bodies_.pattern().size == expected_size_;
+  step_.factor(gamma);
+  return step_.nullity() <= redundant_ && step_.size() == expected_size_;
 }
 
-// With ds = b_s + z the constraints hold z: (M + gamma C + gamma^2 K) z + J^T mu = -gamma C b_s - K (gamma^2
-// b_s + gamma b_q), J z = 0.
 void SparseMotion::solve_step(const Eigen::VectorXd& b_q, Eigen::VectorXd& s) {
-  const Eigen::VectorXd& column = model_.scaling.column;
-  scaled_s_ = s.cwiseQuotient(column);
-  products_.velocity(scaled_s_, product_);
-  force_ = -gamma_ * product_;
-  scaled_s_ = gamma_ * (gamma_ * scaled_s_ + b_q.cwiseQuotient(column));
-  products_.stiffness(scaled_s_, product_);
-  force_ -= product_;
-  solve(step_bodies_, step_, force_, none_, scaled_a_, scaled_lambda_);
-  s += scaled_a_.cwiseProduct(column);
+  step_.solve(b_q, s);
+  for (const int v : still_)
+    s[v] = 0;
 }
 
 void SparseMotion::correct_velocity(const MotionPoint& point, const Eigen::VectorXd& rates,
@@ -156,7 +126,7 @@ void SparseMotion::correct_velocity(const MotionPoint& point, const Eigen::Vecto
     }
   }
   closing_ = -rates.cwiseProduct(scaling.row);
-  solve(bodies_, mass_, force_, closing_, scaled_a_, scaled_lambda_);
+  solve(force_, closing_, scaled_a_, scaled_lambda_);
   change = scaled_a_.cwiseProduct(scaling.column);
 }
 

@@ -1,16 +1,10 @@
 // The equations of motion as sparse equations of the bodies (kkt/body_equations.hpp, with inertia for
 // stiffness): for nets and loops of many bodies, where everything that moves has mass and no drive rides on
 // what moves freely.
-//
-// Matrices of implicit steps leave out what velocities and accelerations beside those of the drives add to K
-// and C: they are those of bodies that stand still in their drive's frame, as in every steady state.
-// Newton's iteration needs no more (Hairer and Wanner, Solving Ordinary Differential Equations II, section
-// IV.8); a fast motion, whose derivatives they are not, is followed in short steps anyway.
 #pragma once
 
 #include "engine/dynamics/motion_model.hpp"
-#include "engine/dynamics/motion_solver.hpp"
-#include "engine/kkt/motion_products.hpp"
+#include "engine/dynamics/sparse_step.hpp"
 #include "engine/kkt/sparse_constraints.hpp"
 
 namespace flyball {
@@ -24,8 +18,7 @@ class SparseMotion final : public MotionSolver {
   // False where there are such directions, which these equations cannot follow, unless nothing at all acts
   // along them: then they stand still.
   bool analyse(const MotionPoint& point);
-  // Whether the rows that others imply, or what has mass, are others than they were then; of the last
-  // factor().
+  // Whether more is singular than then, or something else has mass; of the last factor().
   bool structure_changed() const;
 
   bool factor(const MotionPoint& point) override;
@@ -50,33 +43,29 @@ class SparseMotion final : public MotionSolver {
 
  private:
   bool find_still(const MotionPoint& point);
-  void take_in(const MotionPoint& point, const Eigen::VectorXd& lambda);
-  // [M, J^T; J, 0] [x; lambda] = [force; closing], scaled; with the factors of M or those of a step.
-  void solve(BodyEquations& equations, SparseFactorization& factors, const Eigen::VectorXd& force,
-             const Eigen::VectorXd& closing, Eigen::VectorXd& x, Eigen::VectorXd& lambda);
+  // [M, J^T; J, 0] [x; lambda] = [force; closing], scaled.
+  void solve(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
+             Eigen::VectorXd& lambda);
 
   const MotionModel& model_;
   const System& system_; // released
   int n_;
-  BodyEquations bodies_, step_bodies_;
-  SparseFactorization mass_, step_;
+  BodyEquations bodies_;
+  SparseFactorization mass_;
+  SparseStep step_;
   SparseConstraints constraints_;
-  int expected_nullity_ = 0, expected_size_ = 0;
+  // Rows that others imply, at most: rounding may leave one of them a pivot, which does no harm.
+  int redundant_ = 0;
+  int expected_size_ = 0;
   std::vector<int> still_; // coordinates that nothing acts on
 
-  Residual<double> residual_;
-  Eigen::VectorXd none_, zero_lambda_, bias_, force_, closing_, scaled_a_, scaled_lambda_, reduced_, unused_;
-  Eigen::VectorXd drive_forces_;
-  // At the point of the last accelerate() with its accelerations, and of the last linearise().
-  Kinematics<double> accelerated_, linearised_;
-  std::vector<LinkRates> carried_;
-  Residual<double> loaded_;
-  Magnitudes magnitudes_;
-  Eigen::VectorXd all_a_;
   Unknowns at_;
-  MotionProducts products_;
-  double gamma_ = 0;
-  Eigen::VectorXd scaled_s_, product_;
+  Residual<double> residual_, loaded_; // without accelerations and multipliers, and with them
+  Magnitudes magnitudes_;
+  Kinematics<double> accelerated_;
+  std::vector<LinkRates> carried_;
+  Eigen::VectorXd zero_lambda_, bias_, force_, closing_, scaled_a_, scaled_lambda_, reduced_, unused_, all_a_;
+  Eigen::VectorXd drive_forces_;
 };
 
 } // namespace flyball

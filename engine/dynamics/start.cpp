@@ -102,13 +102,13 @@ bool close_velocity_of_many(const MotionModel& model, double t, const Eigen::Vec
     momenta[l] = times_inertia(body, velocity);
   }
   Eigen::VectorXd change(model.system.nv);
-  if (model.along_tree) {
-    ArticulatedBodies bodies(model.released, model.system.nv);
-    if (!from_rest || !bodies.factor(model.parameters, k) || !bodies.carry_all()) return false;
+  if (ArticulatedBodies bodies(model.released, model.system.nv);
+      model.along_tree && from_rest && bodies.factor(model.parameters, k) && bodies.carry_all()) {
     bodies.solve(momenta, Eigen::VectorXd::Zero(model.released.nv), change);
     u += change;
     return true;
   }
+  if (!model.sparse) return false;
   SparseMotion motion(model);
   const MotionPoint point{model.parameters, all_q, all_u, k, none};
   if (!motion.analyse(point)) return false;

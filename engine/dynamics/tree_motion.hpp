@@ -1,11 +1,13 @@
-// The equations of motion along a tree, in time proportional to its bodies: for mechanisms without loops or
-// anything between two bodies but tree joints, where every coordinate moves mass.
+// The equations of motion along a tree, in time proportional to its bodies: for mechanisms without loops,
+// where every coordinate moves mass. Steps of implicit methods are eliminated along it, too, or, where
+// springs or dampers act between two bodies, by sparse equations.
 #pragma once
 
 #include "engine/dynamics/articulated_bodies.hpp"
 #include "engine/dynamics/body_wrenches.hpp"
 #include "engine/dynamics/motion_model.hpp"
 #include "engine/dynamics/newton_elimination.hpp"
+#include "engine/dynamics/sparse_step.hpp"
 
 namespace flyball {
 
@@ -28,7 +30,8 @@ class TreeMotion final : public MotionSolver {
  private:
   const MotionModel& model_;
   ArticulatedBodies bodies_;
-  NewtonElimination step_;
+  std::optional<NewtonElimination> elimination_;
+  std::optional<SparseStep> step_; // with springs or dampers between bodies
   std::vector<Vec6> wrenches_;
   Eigen::VectorXd force_; // of all coordinates
   std::vector<double> drive_forces_;

@@ -90,6 +90,37 @@ void add_in_parts(const System& system, const Pass& pass) {
   pass.add_elements(division.between);
 }
 
+template <class S>
+void add_spring(const System& system, const Parameters& p, const Kinematics<S>& k, std::size_t i,
+                Configuration<S>& f) {
+  const PointSpringElement& e = system.springs[i];
+  const SpringState<S> s = spring_state(e, p.springs[i], k);
+  // With no free length the force is k d, well defined where the points meet.
+  const bool linear = p.springs[i].free_length == 0 && p.springs[i].damping == 0;
+  const Vec3T<S> pull =
+      linear ? Vec3T<S>(S(p.springs[i].stiffness) * (s.b - s.a)) : Vec3T<S>(s.tension * s.direction);
+  for (const SupportColumn& c : e.ends.support) {
+    const S g = pull.dot(k.columns[static_cast<std::size_t>(c.v)].at(c.second ? s.b : s.a));
+    f[c.v] += c.second ? g : -g;
+  }
+}
+
+template <class S>
+void add_cut_damper(const System& system, const Parameters& p, const Kinematics<S>& k, std::size_t i,
+                    Configuration<S>& f) {
+  const CutDamperElement& e = system.cut_dampers[i];
+  const CutDamperParameters& d = p.cut_dampers[i];
+  const Vec3T<S> axis = k.at(e.ends.a).R * d.axis.cast<S>();
+  const Vec3T<S> b = k.point(e.ends.b, d.b);
+  const S rate = e.angular ? axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w)
+                           : axis.dot(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b));
+  for (const SupportColumn& c : e.ends.support) {
+    const Column<S>& column = k.columns[static_cast<std::size_t>(c.v)];
+    const S g = S(d.damping) * rate * (e.angular ? axis.dot(column.turn()) : axis.dot(column.at(b)));
+    f[c.v] += c.second ? g : -g;
+  }
+}
+
 // A pass over the mechanism that adds up what acts on it.
 template <class S>
 struct ResidualPass {
@@ -135,33 +166,6 @@ struct ResidualPass {
     }
   }
 
-  void add_spring(std::size_t i) const {
-    const PointSpringElement& e = system.springs[i];
-    const SpringState<S> s = spring_state(e, p.springs[i], k);
-    // With no free length the force is k d, well defined where the points meet.
-    const bool linear = p.springs[i].free_length == 0 && p.springs[i].damping == 0;
-    const Vec3T<S> pull =
-        linear ? Vec3T<S>(S(p.springs[i].stiffness) * (s.b - s.a)) : Vec3T<S>(s.tension * s.direction);
-    for (const SupportColumn& c : e.ends.support) {
-      const S g = pull.dot(k.columns[static_cast<std::size_t>(c.v)].at(c.second ? s.b : s.a));
-      out.f[c.v] += c.second ? g : -g;
-    }
-  }
-
-  void add_cut_damper(std::size_t i) const {
-    const CutDamperElement& e = system.cut_dampers[i];
-    const CutDamperParameters& d = p.cut_dampers[i];
-    const Vec3T<S> axis = k.at(e.ends.a).R * d.axis.cast<S>();
-    const Vec3T<S> b = k.point(e.ends.b, d.b);
-    const S rate = e.angular ? axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w)
-                             : axis.dot(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b));
-    for (const SupportColumn& c : e.ends.support) {
-      const Column<S>& column = k.columns[static_cast<std::size_t>(c.v)];
-      const S g = S(d.damping) * rate * (e.angular ? axis.dot(column.turn()) : axis.dot(column.at(b)));
-      out.f[c.v] += c.second ? g : -g;
-    }
-  }
-
   void add_cut(std::size_t i) const {
     const CutJoint& cut = system.cuts[i];
     for (std::size_t r = 0; r < cut.rows.size(); ++r)
@@ -171,7 +175,7 @@ struct ResidualPass {
 
   void add_elements(const SystemPart& part) const {
     for (const int i : part.springs)
-      add_spring(static_cast<std::size_t>(i));
+      add_spring(system, p, k, static_cast<std::size_t>(i), out.f);
     for (const int i : part.cuts)
       add_cut(static_cast<std::size_t>(i));
   }
@@ -186,12 +190,20 @@ struct ResidualPass {
     out.f.resize(system.nv);
     add_in_parts(system, *this);
     for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
-      add_cut_damper(i);
+      add_cut_damper(system, p, k, i, out.f);
     evaluate_constraints(system, p, q, k, out.phi);
   }
 };
 
 } // namespace
+
+void add_pair_forces(const System& system, const Parameters& p, const Kinematics<double>& k,
+                     Eigen::VectorXd& f) {
+  for (std::size_t i = 0; i < system.springs.size(); ++i)
+    add_spring(system, p, k, i, f);
+  for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
+    add_cut_damper(system, p, k, i, f);
+}
 
 template <class S>
 void evaluate_constraints(const System& system, const Parameters& p, const Configuration<S>& q,

@@ -40,6 +40,10 @@ void evaluate_magnitudes(const System& system, const Parameters& parameters, con
                          const Eigen::VectorXd& lambda, const Kinematics<double>& kinematics,
                          Magnitudes& out);
 
+// Adds what springs and dampers between two bodies ask of the coordinates, a part of the residual's f.
+void add_pair_forces(const System& system, const Parameters& parameters, const Kinematics<double>& kinematics,
+                     Eigen::VectorXd& f);
+
 // Applied on the link by a force, torque or drag: force (N) at a point, and a torque (N m).
 template <class S>
 struct AppliedForce {
