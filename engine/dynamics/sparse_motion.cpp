@@ -16,11 +16,24 @@ SparseMotion::SparseMotion(const MotionModel& model)
 }
 
 bool SparseMotion::analyse(const MotionPoint& point) {
-  if (system_.rows > 0) factor_constraints(point);
-  redundant_ = system_.rows > 0 ? constraints_.redundant() : 0;
   if (!factor(point)) return false;
   expected_size_ = bodies_.pattern().size;
-  return mass_.nullity() <= redundant_ && find_still(point);
+  redundant_ = mass_.nullity();
+  return find_still(point) && (redundant_ == 0 || all_singular_are_rows(point));
+}
+
+// What is singular are multipliers of redundant rows alone, not motions without mass: then any force is in
+// balance with what it accelerates.
+bool SparseMotion::all_singular_are_rows(const MotionPoint& point) {
+  force_.resize(n_);
+  for (int v = 0; v < n_; ++v)
+    force_[v] = std::sin(1.3 * v * v + 0.7);
+  for (const int v : still_)
+    force_[v] = 0;
+  closing_.setZero(system_.rows);
+  solve(force_, closing_, scaled_a_, scaled_lambda_);
+  return step_.linearise(point, zero_lambda_) &&
+         step_.imbalance(scaled_a_, scaled_lambda_, force_) < 1e-6; // where a motion has no mass, about one
 }
 
 // What has neither mass nor constraint: the turns of point masses as a rule. False where forces act on it.

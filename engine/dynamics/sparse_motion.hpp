@@ -43,6 +43,7 @@ class SparseMotion final : public MotionSolver {
 
  private:
   bool find_still(const MotionPoint& point);
+  bool all_singular_are_rows(const MotionPoint& point);
   // [M, J^T; J, 0] [x; lambda] = [force; closing], scaled.
   void solve(const Eigen::VectorXd& force, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
              Eigen::VectorXd& lambda);

@@ -1,6 +1,7 @@
 #include "engine/dynamics/sparse_step.hpp"
 
 #include "engine/kkt/kkt_system.hpp"
+#include "engine/linear/largest.hpp"
 
 namespace flyball {
 namespace {
@@ -41,6 +42,13 @@ bool SparseStep::nothing_acts(const MotionPoint& point, const std::vector<int>& 
     if (std::abs(residual_.f[v]) > no_force * magnitudes_.force[v]) return false;
   assemble(1, 1);
   return bodies_.unconstrained() == unconstrained;
+}
+
+double SparseStep::imbalance(const Eigen::VectorXd& x, const Eigen::VectorXd& lambda,
+                             const Eigen::VectorXd& force) {
+  products_.mass(x, product_);
+  products_.constraint_transposed(lambda, force_);
+  return largest_size(product_ + force_ - force);
 }
 
 void SparseStep::factor(double gamma) {

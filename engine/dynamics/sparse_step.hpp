@@ -26,6 +26,9 @@ class SparseStep {
   bool nothing_acts(const MotionPoint& point, const std::vector<int>& coordinates,
                     const std::vector<bool>& unconstrained);
 
+  // The largest entry of M x + J^T lambda - force where K was taken in, scaled.
+  double imbalance(const Eigen::VectorXd& x, const Eigen::VectorXd& lambda, const Eigen::VectorXd& force);
+
   void factor(double gamma);
   int nullity() const { return factors_.nullity(); }  // redundant rows as a rule
   int size() const { return bodies_.pattern().size; } // of the last factor()

@@ -92,6 +92,41 @@ TEST_CASE("accelerations, multipliers and drive torques by sparse equations are 
   CHECK(redundant > 5);
 }
 
+TEST_CASE("motions without mass are not taken for redundant rows") {
+  int massless = 0, taken = 0;
+  for (std::uint32_t seed = 1; seed <= 400; ++seed) {
+    RandomOptions o = loops(seed);
+    o.loops = 1 + static_cast<int>(seed % 2);
+    o.massless = true;
+    const Mechanism mechanism = reference::random_mechanism(seed, o);
+    Motion dense(mechanism, Form::dense), sparse(mechanism, Form::sparse);
+    if (!no_drive_rides(sparse.model.system) || sparse.model.system.rows == 0) continue;
+    CAPTURE(seed, sparse.model.system.nv, sparse.model.system.rows);
+    try {
+      dense.stir(seed, 1);
+      if (!close(dense) || !dense.equations->has_massless() || dense.equations->independence() < 1e-3)
+        continue;
+      sparse.q = dense.q;
+      sparse.s = dense.s;
+      sparse.equations->latch({}, {}, dense.flips);
+      sparse.equations->analyse(Motion::time, sparse.q, sparse.s);
+    } catch (const SceneError&) {
+      continue;
+    }
+    ++massless;
+    if (!is_sparse(sparse)) continue;
+    ++taken; // nothing acts on what has no mass
+    REQUIRE(sparse.equations->evaluate(Motion::time, sparse.q, sparse.s));
+    const Eigen::VectorXd& column = sparse.model.scaling.column;
+    const Eigen::VectorXd a = dense.equations->acceleration().cwiseQuotient(column),
+                          b = sparse.equations->acceleration().cwiseQuotient(column);
+    CHECK(size_of(a - b) <= 1e-6 * (1 + size_of(a)));
+  }
+  CAPTURE(massless, taken);
+  CHECK(massless > 20);
+  CHECK(taken < massless);
+}
+
 TEST_CASE("the sparse matrix of implicit steps is the dense one of what stands still in its drive's frame") {
   int compared = 0;
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
