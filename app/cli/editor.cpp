@@ -8,12 +8,12 @@
 #include "app/cli/state_folder.hpp"
 #include "app/cli/window_keys.hpp"
 #include "app/cli/window_state.hpp"
-#include "app/panels/file_commands.hpp"
-#include "app/panels/snapshot.hpp"
-#include "app/panels/ui_style.hpp"
 #include "app/platform/data_folder.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/render/window.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/snapshot.hpp"
+#include "app/ui/widgets/ui_style.hpp"
 #include "engine/mechanism/file.hpp"
 
 #include <backends/imgui_impl_glfw.h>

@@ -1,8 +1,8 @@
 #include "app/cli/movie.hpp"
 
 #include "app/cli/progress.hpp"
-#include "app/panels/run_movie.hpp"
 #include "app/render/offscreen.hpp"
+#include "app/ui/studies/motion/run_movie.hpp"
 #include "engine/mechanism/error.hpp"
 
 #include <array>

@@ -1,9 +1,9 @@
 #include "app/cli/picture.hpp"
 
 #include "app/cli/report_error.hpp"
-#include "app/panels/snapshot.hpp"
 #include "app/platform/data_folder.hpp"
 #include "app/render/offscreen.hpp"
+#include "app/ui/snapshot.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"

@@ -1,8 +1,8 @@
 // A scene drawn off-screen, as `render` and a window without a display do it.
 #pragma once
 
-#include "app/panels/app.hpp"
 #include "app/render/image.hpp"
+#include "app/ui/app.hpp"
 
 #include <filesystem>
 

@@ -1,7 +1,7 @@
 // What was pressed in a window, as the keyboard's layout has it.
 #pragma once
 
-#include "app/panels/app.hpp"
+#include "app/ui/app.hpp"
 
 #include <optional>
 

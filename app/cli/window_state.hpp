@@ -1,7 +1,7 @@
 // What the window shows, as JSON: how a test outside the program reads it.
 #pragma once
 
-#include "app/panels/app.hpp"
+#include "app/ui/app.hpp"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #include "building.hpp"
 
-#include "app/panels/commands.hpp"
-#include "app/panels/layout.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/layout.hpp"
 #include "tests/catch.hpp"
 
 namespace flyball::test {

@@ -4,8 +4,8 @@
 #include "robot.hpp"
 #include "temporary_folder.hpp"
 
-#include "app/panels/file_commands.hpp"
 #include "app/render/imgui_compat.hpp"
+#include "app/ui/file_commands.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/scene.hpp"

@@ -1,7 +1,7 @@
 // A window with a mechanism whose solution does not matter: the drawn pose stands for the steady state.
 #pragma once
 
-#include "app/panels/app.hpp"
+#include "app/ui/app.hpp"
 
 namespace flyball::test {
 

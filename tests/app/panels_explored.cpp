@@ -1,5 +1,5 @@
 // Trying values while exploring changes nothing of the document, until they are kept.
-#include "app/panels/file_commands.hpp"
+#include "app/ui/file_commands.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/scene.hpp"

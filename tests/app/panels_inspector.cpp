@@ -3,10 +3,10 @@
 
 #include "app/document/create.hpp"
 #include "app/document/mass_properties.hpp"
-#include "app/panels/inspector_parts.hpp"
-#include "app/panels/layout.hpp"
-#include "app/panels/quantity.hpp"
 #include "app/render/imgui_compat.hpp"
+#include "app/session/quantity.hpp"
+#include "app/ui/inspector/inspector_parts.hpp"
+#include "app/ui/layout.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"

@@ -1,7 +1,7 @@
 // What a person does at the window, done by a robot off-screen.
 #include "robot.hpp"
 
-#include "app/panels/snapshot.hpp"
+#include "app/ui/snapshot.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 

@@ -1,5 +1,5 @@
 // What acts in a joint can be seen and reached without scrolling, in a window as small as most.
-#include "app/panels/layout.hpp"
+#include "app/ui/layout.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"
 

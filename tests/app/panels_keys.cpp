@@ -3,9 +3,9 @@
 #include "robot.hpp"
 
 #include "app/document/create.hpp"
-#include "app/panels/commands.hpp"
-#include "app/panels/number_text.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/session/number_text.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 

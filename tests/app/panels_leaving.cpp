@@ -3,7 +3,7 @@
 #include "robot.hpp"
 
 #include "app/live/worker.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "tests/catch.hpp"
 
 #include <chrono>

@@ -1,7 +1,7 @@
 // The view tells which pose is drawn how.
-#include "app/panels/legend.hpp"
-#include "app/panels/motion_control.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/ui/panels/legend.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"
 

@@ -1,9 +1,9 @@
 // The map of two parameters, as a person uses it.
 #include "robot.hpp"
 
-#include "app/panels/map_control.hpp"
-#include "app/panels/study_panels.hpp"
 #include "app/plot/csv.hpp"
+#include "app/ui/studies/map/map_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 

@@ -1,9 +1,9 @@
 // The modes of the state that is shown, moving in the view, and the Campbell diagram.
 #include "robot.hpp"
 
-#include "app/panels/campbell.hpp"
-#include "app/panels/modes_control.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/ui/studies/modes/campbell.hpp"
+#include "app/ui/studies/modes/modes_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 

@@ -1,8 +1,8 @@
 // The damped motion beside the steady state, as a person uses it.
 #include "robot.hpp"
 
-#include "app/panels/motion_control.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"

@@ -3,9 +3,9 @@
 #include "fake_ffmpeg.hpp"
 #include "robot.hpp"
 
-#include "app/panels/commands.hpp"
-#include "app/panels/motion_control.hpp"
-#include "app/panels/movie_export.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/motion/movie_export.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"

@@ -1,5 +1,5 @@
 // What was last done is told for a while.
-#include "app/panels/notice.hpp"
+#include "app/ui/widgets/notice.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"
 

@@ -1,5 +1,5 @@
-#include "app/panels/number_text.hpp"
-#include "app/panels/parameter_list.hpp"
+#include "app/session/number_text.hpp"
+#include "app/session/parameter_list.hpp"
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"

@@ -2,8 +2,8 @@
 #include "robot.hpp"
 
 #include "app/document/remove.hpp"
-#include "app/panels/motion_control.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>

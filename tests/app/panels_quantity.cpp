@@ -1,5 +1,5 @@
 // What may be typed where a number is wanted.
-#include "app/panels/quantity.hpp"
+#include "app/session/quantity.hpp"
 #include "tests/catch.hpp"
 
 #include <array>

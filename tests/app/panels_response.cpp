@@ -2,9 +2,9 @@
 // for a parameter, and sensitivities stand below pinned sliders.
 #include "robot.hpp"
 
-#include "app/panels/response_control.hpp"
-#include "app/panels/sensitivity_line.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/ui/studies/response/response_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/sensitivity_line.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"

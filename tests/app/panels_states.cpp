@@ -1,8 +1,8 @@
 // All equilibria of a mechanism in the window, as a person uses the list.
 #include "robot.hpp"
 
-#include "app/panels/states_control.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/ui/studies/states/states_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 

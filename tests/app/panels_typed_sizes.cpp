@@ -2,7 +2,7 @@
 #include "robot.hpp"
 
 #include "app/document/create.hpp"
-#include "app/panels/commands.hpp"
+#include "app/ui/commands.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>

@@ -2,9 +2,9 @@
 // 1.86 needs it. Draws real frames off-screen.
 #pragma once
 
-#include "app/panels/app.hpp"
-#include "app/panels/stage.hpp"
 #include "app/render/offscreen.hpp"
+#include "app/ui/app.hpp"
+#include "app/ui/stage.hpp"
 
 #include <string>
 

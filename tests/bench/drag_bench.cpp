@@ -1,8 +1,8 @@
 // How smoothly the window goes on while the governor's stiffness slider is dragged with its response curve
 // open: the interface and everything in the background, without the drawing of pixels, which is the graphics
 // card's. And what a slider's move costs beside the solve in a net of 10 000 point masses.
-#include "app/panels/panels.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "tests/bench/large_scenes.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // What it costs to look at a mechanism of 10 to 10 000 bodies: frames of the window while the camera turns,
 // while everything moves and while nothing happens, on OpenGL in software, which is the slowest there is.
 // Nothing is solved: the drawn pose stands for the steady state.
-#include "app/panels/panels.hpp"
-#include "app/panels/stage.hpp"
 #include "app/render/offscreen.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/stage.hpp"
 #include "app/viewport/picking.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/scene.hpp"

@@ -2,10 +2,10 @@
 #include "building.hpp"
 #include "stored_picture.hpp"
 
-#include "app/panels/commands.hpp"
-#include "app/panels/file_commands.hpp"
-#include "app/panels/motion_control.hpp"
-#include "app/panels/study_panels.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Every shipped scene, as the view and as the whole interface.
 #include "stored_picture.hpp"
 
-#include "app/panels/file_commands.hpp"
-#include "app/panels/panels.hpp"
 #include "app/render/offscreen.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
 #include "tests/catch.hpp"
 
 using namespace flyball;

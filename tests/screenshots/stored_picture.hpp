@@ -1,9 +1,9 @@
 // Pictures that are kept in expected/, and what the program draws now.
 #pragma once
 
-#include "app/panels/app.hpp"
-#include "app/panels/snapshot.hpp"
 #include "app/render/compare.hpp"
+#include "app/ui/app.hpp"
+#include "app/ui/snapshot.hpp"
 
 #include <filesystem>
 #include <string>

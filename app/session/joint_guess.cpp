@@ -1,0 +1,156 @@
+#include "app/session/joint_guess.hpp"
+
+#include "app/viewport/assembly.hpp"
+#include "app/viewport/bodies_near.hpp"
+#include "app/viewport/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+struct Structure {
+  std::vector<bool> grounded;                // by body: a chain of joints leads to the ground
+  std::vector<std::array<int, 2>> neighbors; // -1: ground
+
+  explicit Structure(const Mechanism& mechanism) : grounded(mechanism.bodies.size()) {
+    const std::vector<Pose> drawn = drawn_poses(mechanism);
+    const Assembly assembly(mechanism, drawn);
+    std::vector<std::vector<std::size_t>> joined(mechanism.bodies.size());
+    std::vector<std::size_t> open;
+    const auto reach = [&](std::size_t body) {
+      if (!grounded[body]) open.push_back(body);
+      grounded[body] = true;
+    };
+    for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
+      if (!has_at(mechanism.joints[j].type)) continue;
+      const auto [a, b] = assembly.joint_bodies[j];
+      neighbors.push_back({a, b});
+      if (a >= 0 && b >= 0) {
+        joined[static_cast<std::size_t>(a)].push_back(static_cast<std::size_t>(b));
+        joined[static_cast<std::size_t>(b)].push_back(static_cast<std::size_t>(a));
+      } else if (a >= 0 || b >= 0) {
+        reach(static_cast<std::size_t>(std::max(a, b)));
+      }
+    }
+    while (!open.empty()) {
+      const std::size_t body = open.back();
+      open.pop_back();
+      for (const std::size_t other : joined[body])
+        reach(other);
+    }
+  }
+  bool hangs(int body) const { return grounded[static_cast<std::size_t>(body)]; }
+  bool joined(int a, int b) const {
+    return std::ranges::any_of(neighbors, [&](const auto& pair) {
+      return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
+    });
+  }
+};
+
+// Of two bodies the one that hangs on the ground first.
+std::array<int, 2> in_order(const Structure& structure, int a, int b) {
+  return structure.hangs(b) && !structure.hangs(a) ? std::array{b, a} : std::array{a, b};
+}
+
+std::array<int, 2> pair_at(const Structure& structure, const std::vector<int>& there) {
+  if (there.size() == 1) return {-1, there[0]};
+  const auto loose = std::ranges::find_if(there, [&](int body) { return !structure.hangs(body); });
+  if (loose != there.end()) {
+    for (const int other : there)
+      if (structure.hangs(other)) return {other, *loose};
+    return {std::min(there[0], there[1]), std::max(there[0], there[1])};
+  }
+  for (std::size_t i = 0; i < there.size(); ++i)
+    for (std::size_t k = i + 1; k < there.size(); ++k)
+      if (!structure.joined(there[i], there[k]))
+        return {std::min(there[i], there[k]), std::max(there[i], there[k])};
+  return {std::min(there[0], there[1]), std::max(there[0], there[1])};
+}
+
+bool parallel(const Vec3& a, const Vec3& b) {
+  return a.cross(b).norm() < 1e-9;
+}
+
+// Its centre line, with the greatest coordinate positive; nothing for other bodies.
+std::optional<Vec3> rod_axis(const Body& body) {
+  for (const Shape& shape : body.shapes) {
+    if (shape.type != ShapeType::cylinder && shape.type != ShapeType::capsule) continue;
+    Vec3 axis = (shape.to - shape.from).stableNormalized();
+    Vec3::Index largest = 0;
+    if (!(axis.cwiseAbs().maxCoeff(&largest) > 0)) continue;
+    if (axis[largest] < 0) axis = -axis;
+    return Vec3(axis.array() + 0.0);
+  }
+  return std::nullopt;
+}
+
+const Body* find_body(const Mechanism& mechanism, const std::string& name) {
+  const int i = body_index(mechanism, name);
+  return i < 0 ? nullptr : &mechanism.bodies[static_cast<std::size_t>(i)];
+}
+
+} // namespace
+
+std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<const Instance> instances,
+                                        const Selection& selected, const Vec3& at, double reach) {
+  if (mechanism.bodies.empty()) return {};
+  const Structure structure(mechanism);
+  const auto names = [&](const std::array<int, 2>& pair) {
+    std::array<std::string, 2> found;
+    for (std::size_t i = 0; i < 2; ++i)
+      found[i] =
+          pair[i] < 0 ? std::string(ground_name) : mechanism.bodies[static_cast<std::size_t>(pair[i])].name;
+    return found;
+  };
+  const std::vector<std::string> chosen = selected.names(PartKind::body);
+  if (chosen.size() == 2) {
+    const int a = body_index(mechanism, chosen[0]), b = body_index(mechanism, chosen[1]);
+    if (a >= 0 && b >= 0) return names(in_order(structure, a, b));
+  }
+  const std::vector<NearBody> near = bodies_near(mechanism, instances, at);
+  std::vector<int> there;
+  for (const NearBody& body : near)
+    if (body.distance <= reach) there.push_back(body.body);
+  if (there.empty()) there.push_back(near.front().body);
+  return names(pair_at(structure, there));
+}
+
+std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std::string, 2>& bodies) {
+  std::vector<BodyAxis> axes;
+  const auto add = [&](const std::string& label, const Vec3& axis) {
+    for (int i = 0; i < 3; ++i)
+      if (parallel(axis, Vec3::Unit(i))) return;
+    if (std::ranges::none_of(axes, [&](const BodyAxis& other) { return parallel(axis, other.axis); }))
+      axes.push_back({label, axis});
+  };
+  for (const std::string& name : bodies) {
+    const Body* body = find_body(mechanism, name);
+    if (!body) continue;
+    if (const auto rod = rod_axis(*body)) add(name, *rod);
+    const Mat3 frame = body->rotation.normalized().toRotationMatrix();
+    for (int i = 0; i < 3; ++i)
+      add(name + " " + "xyz"[i], frame.col(i));
+  }
+  return axes;
+}
+
+Vec3 guess_axis(const Mechanism& mechanism, JointType type, const std::array<std::string, 2>& bodies,
+                int normal) {
+  if (type != JointType::prismatic && type != JointType::cylindrical) return Vec3::Unit(normal);
+  for (const std::string& name : bodies)
+    if (const Body* body = find_body(mechanism, name))
+      if (const auto rod = rod_axis(*body)) return *rod;
+  return up_axis(mechanism).array() + 0.0;
+}
+
+Vec3 axis_across(const Vec3& axis) {
+  Vec3::Index least = 0;
+  axis.cwiseAbs().minCoeff(&least);
+  const Vec3 unit = Vec3::Unit(least);
+  return (unit - axis * axis.dot(unit) / axis.squaredNorm()).normalized();
+}
+
+} // namespace flyball

@@ -1,0 +1,271 @@
+#include "app/session/parameter_list.hpp"
+
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace flyball {
+
+namespace {
+
+std::vector<std::string> split(std::string_view address) {
+  std::vector<std::string> parts(1);
+  for (const char c : address) {
+    if (c == '.')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+// 1, 2 or 5 times a power of ten, not below the value.
+double round_up(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double m : {1.0, 2.0, 5.0})
+    if (value <= m * power * (1 + 1e-12)) return m * power;
+  return 10 * power;
+}
+
+double power_of_ten(double value) {
+  return std::pow(10, std::round(std::log10(value)));
+}
+
+struct Range {
+  double from = 0, to = 1;
+  bool log = false;
+};
+
+// For a number that is zero: what a person may want to try.
+double usual(std::string_view unit) {
+  if (unit == "rad/s") return 20;
+  if (unit == "rad") return 3;
+  if (unit == "m/s^2") return 10;
+  if (unit == "N/m" || unit == "N m/rad") return 1000;
+  return unit == "N" || unit == "N m" || unit == "N s/m" ? 100 : 1;
+}
+
+Range range_for(double value, std::string_view unit, bool stiffness) {
+  const double size = std::abs(value);
+  if (stiffness && value > 0) return {power_of_ten(value / 100), power_of_ten(value * 100), true};
+  // What has no direction is not negative.
+  const bool one_sided = unit == "kg" || unit == "kg m^2" || unit == "s" || unit == "N s/m" ||
+                         unit == "N m s/rad" || unit == "N s^2/m^2" || stiffness;
+  if (size == 0) return {one_sided ? 0 : -usual(unit), usual(unit), false};
+  return value < 0 ? Range{-round_up(2 * size), 0, false} : Range{0, round_up(2 * size), false};
+}
+
+bool is_stiffness(std::string_view address) {
+  return address.ends_with(".stiffness");
+}
+
+// "drive.0.speed" of a joint with several coordinates becomes "speed 0", and "position.1" "position y".
+std::string what_of(const std::vector<std::string>& parts) {
+  const auto is_index = [](const std::string& part) {
+    return part.find_first_not_of("0123456789") == std::string::npos;
+  };
+  const auto axis = [](const std::string& index) {
+    return std::string(1, "xyz"[static_cast<std::size_t>(std::atoi(index.c_str())) % 3]);
+  };
+  if (parts.front() == "gravity") return parts.size() > 1 ? axis(parts[1]) : "";
+  if (parts.size() > 3 && parts[2] == "inertia")
+    return "inertia " +
+           std::array<std::string, 6>{
+               "xx", "yy", "zz", "xy", "xz", "yz"}[static_cast<std::size_t>(std::atoi(parts[3].c_str()) % 6)];
+  constexpr std::array vectors{"position", "at", "axis", "axes", "x_axis", "points", "vector"};
+  const bool vector = parts.size() > 3 && std::ranges::find(vectors, parts[2]) != vectors.end();
+  if (vector) return parts[2] + (parts.size() > 4 ? " " + parts[3] : "") + " " + axis(parts.back());
+  if (parts.size() > 3 && is_index(parts.back())) return parts[2] + " " + parts.back();
+  std::string words = parts.back();
+  const bool plain = parts.back() == "speed" || parts.back() == "stiffness";
+  for (std::size_t i = 2; i + 1 < parts.size(); ++i) {
+    if (is_index(parts[i]))
+      words += " " + parts[i];
+    else if (!plain || (parts[i] != "drive" && parts[i] != "spring"))
+      words = parts[i] + " " + words;
+  }
+  return words;
+}
+
+std::optional<double> number_at(const Mechanism& mechanism, const std::string& address) {
+  try {
+    return get_parameter(mechanism, address);
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
+ParameterControl named_control(const std::string& address, ParameterGroup group, std::string unit,
+                               double value, std::optional<double> file_value) {
+  ParameterControl control;
+  const std::vector<std::string> parts = split(address);
+  control.address = address;
+  control.group = group;
+  control.name = parts.size() > 2 ? parts[1] : parts[0];
+  control.what = what_of(parts);
+  std::ranges::replace(control.what, '_', ' ');
+  control.unit = std::move(unit);
+  control.value = value;
+  control.file_value = file_value.value_or(value);
+  return control;
+}
+
+// Where the parts of the file are, by name.
+struct FileParts {
+  explicit FileParts(const Mechanism& file) {
+    for (const Joint& joint : file.joints)
+      joints.emplace(joint.name, &joint);
+    for (const Force& force : file.forces)
+      forces.emplace(force.name, &force);
+  }
+  const Coordinate* coordinate(const std::string& joint, std::size_t i) const {
+    const auto found = joints.find(joint);
+    return found != joints.end() && i < found->second->coordinates.size() ? &found->second->coordinates[i]
+                                                                          : nullptr;
+  }
+  std::unordered_map<std::string_view, const Joint*> joints;
+  std::unordered_map<std::string_view, const Force*> forces;
+};
+
+// Of every drive and spring, in the scene's order.
+std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, const Mechanism& file) {
+  const FileParts saved(file);
+  std::vector<ParameterControl> controls;
+  for (const Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      const Coordinate& coordinate = joint.coordinates[i];
+      const Coordinate* before = saved.coordinate(joint.name, i);
+      const bool angle = is_angle(joint.type, static_cast<int>(i));
+      const std::string path = "joints." + joint.name + ".";
+      const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
+      std::optional<double> stiffness, speed, damping;
+      if (before && before->spring) stiffness = before->spring->stiffness;
+      if (before && before->drive) speed = before->drive->speed;
+      if (before && before->damping != 0) damping = before->damping;
+      if (coordinate.spring)
+        controls.push_back(named_control(path + "spring" + index + ".stiffness", ParameterGroup::springs,
+                                         angle ? "N m/rad" : "N/m", coordinate.spring->stiffness, stiffness));
+      if (coordinate.drive)
+        controls.push_back(named_control(path + "drive" + index + ".speed", ParameterGroup::drives,
+                                         angle ? "rad/s" : "m/s", coordinate.drive->speed, speed));
+      if (coordinate.damping != 0 || damping)
+        controls.push_back(named_control(path + "damping" + index, ParameterGroup::dampers,
+                                         angle ? "N m s/rad" : "N s/m", coordinate.damping, damping));
+    }
+  for (const Force& force : mechanism.forces) {
+    if (force.type != ForceType::spring) continue;
+    const auto found = saved.forces.find(force.name);
+    const bool was_spring = found != saved.forces.end() && found->second->type == ForceType::spring;
+    if (const double before = was_spring ? found->second->damping : 0; force.damping != 0 || before != 0)
+      controls.push_back(named_control("forces." + force.name + ".damping", ParameterGroup::dampers, "N s/m",
+                                       force.damping, before != 0 ? std::optional(before) : std::nullopt));
+    if (force.stiffness == 0) continue; // a damper alone
+    controls.push_back(named_control("forces." + force.name + ".stiffness", ParameterGroup::springs, "N/m",
+                                     force.stiffness,
+                                     was_spring ? std::optional(found->second->stiffness) : std::nullopt));
+  }
+  for (ParameterControl& control : controls) {
+    const Range range = range_for(control.file_value, control.unit, is_stiffness(control.address));
+    control.from = range.from;
+    control.to = range.to;
+    control.log = range.log;
+  }
+  return controls;
+}
+
+} // namespace
+
+std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, const Mechanism& file) {
+  std::vector<ParameterControl> controls;
+  std::unordered_set<std::string> pinned;
+  for (const Slider& slider : mechanism.sliders) {
+    // Of an unfinished mechanism, it may be of a number that is not there.
+    const std::optional<double> value = number_at(mechanism, slider.parameter);
+    if (!value || !pinned.insert(slider.parameter).second) continue;
+    ParameterControl& control = controls.emplace_back(
+        named_control(slider.parameter, ParameterGroup::pinned, parameter_unit(mechanism, slider.parameter),
+                      *value, number_at(file, slider.parameter)));
+    control.from = slider.from;
+    control.to = slider.to;
+    control.log = slider.scale == SliderScale::log;
+  }
+  for (ParameterControl& control : automatic_controls(mechanism, file))
+    if (!pinned.contains(control.address)) controls.push_back(std::move(control));
+  for (ParameterControl& control : controls) {
+    const double span = std::abs(control.to - control.from);
+    if (!control.log && span > 0) control.step = slider_step(span);
+  }
+  std::ranges::stable_sort(controls, {}, &ParameterControl::group);
+  return controls;
+}
+
+bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechanism, const Mechanism& file,
+                const std::string& address) {
+  const auto control = std::ranges::find(controls, address, &ParameterControl::address);
+  const std::optional<double> value = number_at(mechanism, address), saved = number_at(file, address);
+  if (control == controls.end() || !value || saved != control->file_value) return false;
+  // Springs and dampers of zero have no slider of their own.
+  const bool always = control->group == ParameterGroup::pinned || control->group == ParameterGroup::drives;
+  if (!always && (*value == 0 || *saved == 0)) return false;
+  control->value = *value;
+  return true;
+}
+
+Slider slider_for(const Mechanism& mechanism, const std::string& address) {
+  const Range range =
+      range_for(get_parameter(mechanism, address), parameter_unit(mechanism, address), is_stiffness(address));
+  Slider slider;
+  slider.parameter = address;
+  slider.from = range.from;
+  slider.to = range.to;
+  slider.scale = range.log ? SliderScale::log : SliderScale::linear;
+  return slider;
+}
+
+std::string parameter_phrase(std::string_view address) {
+  const std::vector<std::string> parts = split(address);
+  std::string what = what_of(parts);
+  std::ranges::replace(what, '_', ' ');
+  return what + " of " + (parts.size() > 2 ? parts[1] : parts[0]);
+}
+
+double slider_step(double span) {
+  return std::pow(10, std::floor(std::log10(span / 200)));
+}
+
+double slider_place(const ParameterControl& control, double value) {
+  double place = 0;
+  if (control.log)
+    place = value > 0 ? std::log(value / control.from) / std::log(control.to / control.from) : 0;
+  else if (control.to != control.from)
+    place = (value - control.from) / (control.to - control.from);
+  return std::clamp(place, 0.0, 1.0);
+}
+
+double slider_value(const ParameterControl& control, double place, bool fine) {
+  place = std::clamp(place, 0.0, 1.0);
+  if (place == 0) return control.from;
+  if (place == 1) return control.to;
+  if (control.log) {
+    // Three digits, four for a fine hand.
+    const double value = control.from * std::pow(control.to / control.from, place);
+    return std::strtod(fmt::format("{:.{}e}", value, fine ? 3 : 2).c_str(), nullptr);
+  }
+  const double value = control.from + place * (control.to - control.from);
+  if (control.step <= 0) return value;
+  // Through decimal text, so that 0.3 is 0.3 and not 3 * 0.1.
+  const int places = static_cast<int>(std::round(-std::log10(control.step))) + (fine ? 1 : 0);
+  if (places <= 0) return std::round(value * std::pow(10, places)) / std::pow(10, places);
+  return std::strtod(fmt::format("{:.{}f}", value, places).c_str(), nullptr);
+}
+
+} // namespace flyball

@@ -1,0 +1,105 @@
+#include "app/session/response_quantity.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+constexpr double turns = 1 / (2 * std::numbers::pi);
+
+// The end of the key where it begins like that.
+std::optional<std::string> after(const std::string& key, std::string_view begin) {
+  if (!key.starts_with(begin)) return std::nullopt;
+  return key.substr(begin.size());
+}
+
+// Line k of one point belongs with line k of the next: where lines cross, the order changes with them.
+template <class Part>
+std::vector<double> sorted_parts(const ResponsePoint& point, Part part) {
+  std::vector<double> values;
+  values.reserve(point.eigenvalues.size());
+  for (const std::complex<double>& e : point.eigenvalues)
+    values.push_back(part(e));
+  std::ranges::sort(values);
+  return values;
+}
+
+} // namespace
+
+ResponsePoint response_point(const Solution& solution, double parameter) {
+  ResponsePoint point;
+  point.parameter = parameter;
+  point.coordinates = solution.coordinates;
+  point.stable = solution.stable;
+  point.stability_reason = solution.stability_reason;
+  if (solution.eigenvalues) point.eigenvalues = *solution.eigenvalues;
+  point.reactions = solution.reactions;
+  point.drive_torques = solution.drive_torques;
+  return point;
+}
+
+std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point) {
+  std::vector<ResponseQuantity> out;
+  for (const CoordinateSolution& c : point.coordinates)
+    if (!c.driven)
+      out.push_back(
+          {"value " + coordinate_label(c), coordinate_label(c), "Coordinates", c.angle ? "rad" : "m", 1});
+  for (const DriveTorque& d : point.drive_torques)
+    if (!d.varying)
+      out.push_back({"drive " + coordinate_label(d),
+                     (d.angle ? "drive torque of " : "drive force of ") + coordinate_label(d), "Drives",
+                     d.angle ? "N m" : "N", 1});
+  for (const Reaction& r : point.reactions)
+    out.push_back({"force " + r.joint, "force through " + r.joint, "Reactions", "N", 1});
+  for (const Reaction& r : point.reactions)
+    out.push_back({"torque " + r.joint, "torque through " + r.joint, "Reactions", "N m", 1});
+  if (!point.eigenvalues.empty()) {
+    out.push_back({"growth", "largest real part", "Eigenvalues", "1/s", 1});
+    out.push_back({"real", "real parts", "Eigenvalues", "1/s", 1});
+    out.push_back({"frequency", "frequencies", "Eigenvalues", "Hz", turns});
+  }
+  return out;
+}
+
+bool needs_reactions(const std::string& key) {
+  return key.starts_with("drive ") || key.starts_with("force ") || key.starts_with("torque ");
+}
+
+std::vector<double> quantity_values(const ResponsePoint& point, const std::string& key) {
+  if (const auto name = after(key, "value ")) {
+    for (const CoordinateSolution& c : point.coordinates)
+      if (coordinate_label(c) == *name) return {c.value};
+  } else if (const auto drive = after(key, "drive ")) {
+    for (const DriveTorque& d : point.drive_torques)
+      if (coordinate_label(d) == *drive) return {d.value};
+  } else if (const auto force = after(key, "force ")) {
+    for (const Reaction& r : point.reactions)
+      if (r.joint == *force) return {r.force.norm()};
+  } else if (const auto torque = after(key, "torque ")) {
+    for (const Reaction& r : point.reactions)
+      if (r.joint == *torque) return {r.torque.norm()};
+  } else if (key == "real") {
+    return sorted_parts(point, [](const auto& e) { return e.real(); });
+  } else if (key == "frequency") {
+    return sorted_parts(point, [](const auto& e) { return std::abs(e.imag()); });
+  } else if (key == "growth" && !point.eigenvalues.empty()) {
+    return {sorted_parts(point, [](const auto& e) { return e.real(); }).back()};
+  }
+  return {};
+}
+
+std::optional<double> quantity_mark(const ResponsePoint& point, const std::string& key) {
+  const std::vector<double> values = quantity_values(point, key);
+  if (values.empty()) return std::nullopt;
+  if (values.size() == 1) return values.front();
+  // Of eigenvalues the one that decides: farthest to the right, or its frequency.
+  const auto right =
+      std::ranges::max_element(point.eigenvalues, {}, [](const std::complex<double>& e) { return e.real(); });
+  return key == "real" ? right->real() : std::abs(right->imag());
+}
+
+} // namespace flyball

@@ -1,0 +1,53 @@
+#include "app/session/state_words.hpp"
+
+#include "app/render/icons.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flyball {
+
+StabilityWords stability_words(std::optional<bool> stable, std::optional<StabilityReason> reason,
+                               const UiColors& colors) {
+  const char* why = reason ? reason_text(*reason) : "";
+  if (stable == true) return {icon::check, "stable", why, colors.good};
+  if (stable == false) return {icon::warning, "unstable", why, colors.bad};
+  if (reason == StabilityReason::neutral) return {icon::check, "neutral", why, colors.good};
+  if (reason == StabilityReason::gyroscopic_only) return {icon::warning, "held by spin", why, colors.warn};
+  return {icon::question, "undecided", why, colors.warn};
+}
+
+const char* reason_text(StabilityReason reason) {
+  switch (reason) {
+  case StabilityReason::minimum: return "A minimum of the amended potential.";
+  case StabilityReason::asymptotic: return "Every disturbance dies out.";
+  case StabilityReason::gyroscopic_only:
+    return "Held by gyroscopic effects alone; any damping destabilises it.";
+  case StabilityReason::neutral: return "Stable but for directions that nothing resists.";
+  case StabilityReason::marginal: return "Too close to the limit of stability to tell.";
+  case StabilityReason::unstable: return "Disturbances grow.";
+  case StabilityReason::floquet:
+    return "By the Floquet multipliers: the linearised motion turns with the drives.";
+  case StabilityReason::varying:
+    return "The linearised motion turns with the drives, and no multipliers tell of it.";
+  }
+  return "";
+}
+
+bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b,
+                const std::vector<std::string>& neutral) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].joint != b[i].joint || a[i].index != b[i].index) return false;
+    if (a[i].driven || std::ranges::find(neutral, a[i].joint) != neutral.end()) continue;
+    double apart = a[i].value - b[i].value;
+    if (a[i].angle) apart = std::remainder(apart, 2 * std::numbers::pi);
+    const double rounding = 1e-6 * (a[i].angle ? 1 : std::max(1e-3, std::abs(a[i].value)));
+    if (!(std::abs(apart) <= rounding + 10 * (a[i].error + b[i].error))) return false;
+  }
+  return true;
+}
+
+} // namespace flyball

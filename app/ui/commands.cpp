@@ -1,0 +1,556 @@
+#include "app/ui/commands.hpp"
+
+#include "app/ui/edit_commands.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/key_focus.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/settings.hpp"
+#include "app/ui/studies/modes/modes_control.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/ui_style.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <stdexcept>
+
+namespace flyball {
+
+namespace {
+
+constexpr double right_angle = std::numbers::pi / 2;
+
+constexpr KeyPress plain(int key) {
+  return {key, false, false};
+}
+constexpr KeyPress ctrl(int key) {
+  return {key, true, false};
+}
+constexpr KeyPress shift(int key) {
+  return {key, false, true};
+}
+constexpr KeyPress ctrl_shift(int key) {
+  return {key, true, true};
+}
+
+bool any_selected(const App& app) {
+  return !app.selection().empty();
+}
+bool holds_parts(const App& app) {
+  return !app.mechanism().bodies.empty();
+}
+template <Tool tool>
+void choose_tool(App& app) {
+  set_tool(app, tool);
+}
+template <Tool tool>
+bool tool_chosen(const App& app) {
+  return app.tool.tool == tool;
+}
+
+template <auto which, auto unit>
+void show_in(App& app) {
+  DisplayUnits units = app.units;
+  units.*which = unit;
+  choose_units(app, units);
+}
+template <auto which, auto unit>
+bool shown_in(const App& app) {
+  return app.units.*which == unit;
+}
+
+std::string undo_label(const App& app) {
+  const Document& document = app.document;
+  return document.can_undo() ? "Undo " + document.steps()[document.position()].name : "Undo";
+}
+std::string redo_label(const App& app) {
+  const Document& document = app.document;
+  return document.can_redo() ? "Redo " + document.steps()[document.position() + 1].name : "Redo";
+}
+
+void choose_none(App& app) {
+  set_tool(app, Tool::select);
+  select(app, {});
+}
+
+const std::array table{
+    Command{.id = "file.new",
+            .title = "New",
+            .help = "An empty document.",
+            .key = ctrl('N'),
+            .run = new_document},
+    Command{.id = "file.open",
+            .title = "Open…",
+            .help = "Open a scene file.",
+            .key = ctrl('O'),
+            .run = show_open_dialog},
+    Command{.id = "file.examples",
+            .title = "Examples…",
+            .help = "Mechanisms to start from, with pictures.",
+            .key = ctrl_shift('O'),
+            .run = show_gallery},
+    Command{.id = "file.save",
+            .title = "Save",
+            .help = "Write the scene to its file.",
+            .key = ctrl('S'),
+            .run = save_document,
+            .separated = true},
+    Command{.id = "file.save_as",
+            .title = "Save as…",
+            .help = "Write the scene to another file.",
+            .key = ctrl_shift('S'),
+            .run = show_save_dialog},
+    Command{.id = "file.reload",
+            .title = "Reload",
+            .help = "Read the file again, as it is on disk now.",
+            .key = ctrl('R'),
+            .run = reload_document,
+            .enabled = [](const App& app) { return !app.document.file().empty(); }},
+    Command{.id = "file.export",
+            .title = "Export a picture…",
+            .help = "Save what is seen as a PNG file.",
+            .key = ctrl('E'),
+            .run = show_export_dialog,
+            .separated = true},
+    Command{.id = "file.quit",
+            .title = "Quit",
+            .help = "Leave the program; asks before unsaved work is lost.",
+            .key = ctrl('Q'),
+            .run = quit,
+            .separated = true},
+
+    Command{.id = "edit.undo",
+            .title = "Undo",
+            .help = "Take the last edit back.",
+            .key = ctrl('Z'),
+            .run = undo,
+            .enabled = [](const App& app) { return app.document.can_undo(); },
+            .label = undo_label},
+    Command{.id = "edit.redo",
+            .title = "Redo",
+            .help = "Do again what was taken back.",
+            .key = ctrl_shift('Z'),
+            .also = ctrl('Y'),
+            .run = redo,
+            .enabled = [](const App& app) { return app.document.can_redo(); },
+            .label = redo_label},
+    Command{.id = "edit.history",
+            .title = "History",
+            .help = "Every step, to go back to.",
+            .key = ctrl('H'),
+            .run = [](App& app) { app.inspector.history = !app.inspector.history; },
+            .checked = [](const App& app) { return app.inspector.history; }},
+    Command{.id = "edit.cut",
+            .title = "Cut",
+            .help = "Copy the selected parts and delete them.",
+            .key = ctrl('X'),
+            .run = cut_selected,
+            .enabled = any_selected,
+            .separated = true},
+    Command{.id = "edit.copy",
+            .title = "Copy",
+            .help = "Copy the selected parts as text, for this or another document.",
+            .key = ctrl('C'),
+            .run = copy_selected,
+            .enabled = any_selected},
+    Command{.id = "edit.paste",
+            .title = "Paste",
+            .help = "Add the parts that were copied.",
+            .key = ctrl('V'),
+            .run = paste_parts},
+    Command{.id = "edit.duplicate",
+            .title = "Duplicate",
+            .help = "Copy the selected parts beside themselves, with what holds them.",
+            .key = ctrl('D'),
+            .run = duplicate_selected,
+            .enabled = any_selected},
+    Command{.id = "edit.delete",
+            .title = "Delete",
+            .help = "Remove the selected parts and what hangs on them.",
+            .key = plain(keys::del),
+            .also = plain(keys::backspace),
+            .run = delete_selected,
+            .enabled = any_selected},
+    Command{.id = "edit.mirror",
+            .title = "Mirror…",
+            .help = "Make the mirror image of the selected bodies, with what holds them.",
+            .key = ctrl('M'),
+            .run = show_mirror_dialog,
+            .enabled = any_selected,
+            .separated = true},
+    Command{.id = "edit.circular",
+            .title = "Circular copy…",
+            .help = "Repeat the selected bodies round an axis, with what holds them.",
+            .key = ctrl_shift('M'),
+            .run = show_circular_dialog,
+            .enabled = any_selected},
+    Command{.id = "edit.gear",
+            .title = "Join by a gear",
+            .help = "Couple the two selected joints: the second turns as the first does.",
+            .run = gear_selected,
+            .enabled = [](const App& app) { return app.selection().names(PartKind::joint).size() == 2; }},
+    Command{.id = "edit.rename",
+            .title = "Rename",
+            .help = "Another name for the selected part; every reference follows.",
+            .key = plain(keys::f2),
+            .run = start_rename,
+            .enabled = [](const App& app) { return app.selection().parts.size() == 1; }},
+    Command{.id = "edit.all",
+            .title = "Select all",
+            .help = "Select every part.",
+            .key = ctrl('A'),
+            .run = select_all,
+            .enabled = holds_parts,
+            .separated = true},
+    Command{.id = "edit.none",
+            .title = "Select nothing",
+            .help = "Drop the selection and the tool.",
+            .key = plain(keys::escape),
+            .run = choose_none},
+
+    Command{.id = "insert.ball",
+            .title = "Ball",
+            .help = "A solid ball: click where its centre is.",
+            .key = shift('B'),
+            .run = choose_tool<Tool::ball>,
+            .checked = tool_chosen<Tool::ball>},
+    Command{.id = "insert.block",
+            .title = "Block",
+            .help = "A solid block: click where its centre is.",
+            .key = shift('K'),
+            .run = choose_tool<Tool::block>,
+            .checked = tool_chosen<Tool::block>},
+    Command{.id = "insert.rod",
+            .title = "Rod",
+            .help = "A solid rod: click its two ends.",
+            .key = shift('R'),
+            .run = choose_tool<Tool::rod>,
+            .checked = tool_chosen<Tool::rod>},
+    Command{.id = "insert.plate",
+            .title = "Plate",
+            .help = "A thin block: click where its centre is.",
+            .key = shift('P'),
+            .run = choose_tool<Tool::plate>,
+            .checked = tool_chosen<Tool::plate>},
+    Command{.id = "insert.joint",
+            .title = "Joint",
+            .help = "Join two bodies, or a body and the ground: click the point where they meet.",
+            .key = plain('J'),
+            .run = choose_tool<Tool::joint>,
+            .checked = tool_chosen<Tool::joint>,
+            .separated = true},
+    Command{.id = "insert.distance",
+            .title = "Link",
+            .help = "A massless link of constant length between two points (a distance joint).",
+            .key = plain('L'),
+            .run = choose_tool<Tool::distance>,
+            .checked = tool_chosen<Tool::distance>},
+    Command{.id = "insert.spring",
+            .title = "Spring",
+            .help = "A spring between two points.",
+            .key = plain('S'),
+            .run = choose_tool<Tool::spring>,
+            .checked = tool_chosen<Tool::spring>,
+            .separated = true},
+    Command{.id = "insert.damper",
+            .title = "Damper",
+            .help = "A damper between two points.",
+            .key = plain('D'),
+            .run = choose_tool<Tool::damper>,
+            .checked = tool_chosen<Tool::damper>},
+    Command{.id = "insert.force",
+            .title = "Force",
+            .help = "A constant force at a point of a body.",
+            .key = shift('F'),
+            .run = choose_tool<Tool::force>,
+            .checked = tool_chosen<Tool::force>},
+    Command{.id = "insert.torque",
+            .title = "Torque",
+            .help = "A constant torque on a body.",
+            .key = shift('T'),
+            .run = choose_tool<Tool::torque>,
+            .checked = tool_chosen<Tool::torque>},
+    Command{.id = "insert.drag",
+            .title = "Air drag",
+            .help = "The drag of air at rest, at a point of a body.",
+            .key = shift('A'),
+            .run = choose_tool<Tool::drag>,
+            .checked = tool_chosen<Tool::drag>},
+
+    Command{.id = "view.mode",
+            .title = "Build",
+            .help = "Edit the drawn pose; or else explore the steady state with sliders.",
+            .key = plain(keys::tab),
+            .run = [](App& app) { set_mode(app, app.mode == Mode::build ? Mode::explore : Mode::build); },
+            .checked = [](const App& app) { return app.mode == Mode::build; }},
+    Command{.id = "view.play",
+            .title = "Turn",
+            .help = "Turn the mechanism at its drives' speeds.",
+            .key = plain(' '),
+            .run =
+                [](App& app) {
+                  // A mode in the view is what moves.
+                  if (moving_mode(app))
+                    app.study.modes.playing = !app.study.modes.playing;
+                  else
+                    play(app, !app.playback.playing);
+                },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.playback.playing; }},
+    Command{.id = "view.select",
+            .title = "Select and move",
+            .help = "Pick parts; arrows at the selected ones move them.",
+            .key = plain('V'),
+            .run = choose_tool<Tool::select>,
+            .checked = tool_chosen<Tool::select>,
+            .separated = true},
+    Command{.id = "view.rotate",
+            .title = "Select and rotate",
+            .help = "Pick parts; rings round the selected ones turn them.",
+            .key = plain('R'),
+            .run = choose_tool<Tool::rotate>,
+            .checked = tool_chosen<Tool::rotate>},
+    Command{.id = "view.box",
+            .title = "Select a box",
+            .help = "Drag a frame round the parts to select (or hold Ctrl).",
+            .key = plain('B'),
+            .run = choose_tool<Tool::box>,
+            .checked = tool_chosen<Tool::box>},
+    Command{.id = "view.snap",
+            .title = "Snap",
+            .help = "Snap to points, the grid and round angles; Ctrl while dragging does the opposite.",
+            .key = plain('N'),
+            .run = [](App& app) { app.tool.snap = !app.tool.snap; },
+            .checked = [](const App& app) { return app.tool.snap; }},
+    Command{.id = "view.fit",
+            .title = "All in view",
+            .help = "Move the camera so that everything is seen.",
+            .key = plain('F'),
+            .run = [](App& app) { app.view.fit = app.view.keep_direction = true; },
+            .separated = true},
+    Command{.id = "view.front",
+            .title = "From the front",
+            .help = "Look from the front.",
+            .key = plain('1'),
+            .run = [](App& app) { look_from(app, 0, 0); }},
+    Command{.id = "view.side",
+            .title = "From the side",
+            .help = "Look from the right.",
+            .key = plain('2'),
+            .run = [](App& app) { look_from(app, right_angle, 0); }},
+    Command{.id = "view.top",
+            .title = "From above",
+            .help = "Look from above.",
+            .key = plain('3'),
+            .run = [](App& app) { look_from(app, 0, right_angle); }},
+    Command{.id = "view.iso",
+            .title = "Isometric",
+            .help = "Look from the front, right and above.",
+            .key = plain('4'),
+            .run = [](App& app) { look_from(app, right_angle / 2, isometric_elevation); }},
+    Command{.id = "view.ghost",
+            .title = "Ghost",
+            .help = "The drawn pose behind the steady state, or the other way round.",
+            .key = plain('G'),
+            .run = [](App& app) { app.view.ghost = !app.view.ghost; },
+            .checked = [](const App& app) { return app.view.ghost; },
+            .separated = true},
+    Command{.id = "view.grid",
+            .title = "Grid",
+            .help = "The grid on the floor.",
+            .run = [](App& app) { app.view.grid = !app.view.grid; },
+            .checked = [](const App& app) { return app.view.grid; }},
+    Command{.id = "view.shadow",
+            .title = "Shadow",
+            .help = "The shadow on the floor.",
+            .run = [](App& app) { app.view.shadow = !app.view.shadow; },
+            .checked = [](const App& app) { return app.view.shadow; }},
+    Command{.id = "view.theme",
+            .title = "Dark colours",
+            .help = "Light or dark.",
+            .run =
+                [](App& app) {
+                  app.theme = app.theme == Theme::dark ? Theme::light : Theme::dark;
+                  apply_style(app.theme, app.scale);
+                },
+            .checked = [](const App& app) { return app.theme == Theme::dark; },
+            .separated = true},
+
+    Command{.id = "units.degrees",
+            .title = "Angles in degrees",
+            .help = "Angles in fields, results and plots; any unit can be typed.",
+            .run = show_in<&DisplayUnits::angle, AngleUnit::degree>,
+            .checked = shown_in<&DisplayUnits::angle, AngleUnit::degree>},
+    Command{.id = "units.radians",
+            .title = "Angles in radians",
+            .help = "Angles in fields, results and plots; any unit can be typed.",
+            .run = show_in<&DisplayUnits::angle, AngleUnit::radian>,
+            .checked = shown_in<&DisplayUnits::angle, AngleUnit::radian>},
+    Command{.id = "units.metres",
+            .title = "Lengths in metres",
+            .help = "Lengths in fields, results and plots; stiffness in N/m.",
+            .run = show_in<&DisplayUnits::length, LengthUnit::metre>,
+            .checked = shown_in<&DisplayUnits::length, LengthUnit::metre>,
+            .separated = true},
+    Command{.id = "units.millimetres",
+            .title = "Lengths in millimetres",
+            .help = "Lengths in fields, results and plots; stiffness in N/mm.",
+            .run = show_in<&DisplayUnits::length, LengthUnit::millimetre>,
+            .checked = shown_in<&DisplayUnits::length, LengthUnit::millimetre>},
+    Command{.id = "units.radians_per_second",
+            .title = "Speeds of turning in rad/s",
+            .help = "Drive speeds and rates of angles, everywhere.",
+            .run = show_in<&DisplayUnits::speed, SpeedUnit::radian>,
+            .checked = shown_in<&DisplayUnits::speed, SpeedUnit::radian>,
+            .separated = true},
+    Command{.id = "units.rpm",
+            .title = "Speeds of turning in rpm",
+            .help = "Drive speeds and rates of angles, everywhere.",
+            .run = show_in<&DisplayUnits::speed, SpeedUnit::rpm>,
+            .checked = shown_in<&DisplayUnits::speed, SpeedUnit::rpm>},
+    Command{.id = "units.degrees_per_second",
+            .title = "Speeds of turning in °/s",
+            .help = "Drive speeds and rates of angles, everywhere.",
+            .run = show_in<&DisplayUnits::speed, SpeedUnit::degree>,
+            .checked = shown_in<&DisplayUnits::speed, SpeedUnit::degree>},
+
+    Command{.id = "study.motion",
+            .title = "Motion",
+            .help = "The damped motion beside the steady state, and plots of it.",
+            .key = plain('M'),
+            .run = [](App& app) { open_study(app, Study::motion); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::motion; }},
+    Command{.id = "study.response",
+            .title = "Response",
+            .help = "The steady states over one parameter: branches, folds and crossings, live.",
+            .key = plain('C'),
+            .run = [](App& app) { open_study(app, Study::response); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::response; }},
+    Command{.id = "study.states",
+            .title = "All equilibria",
+            .help = "Every equilibrium that a bounded search finds, stable or not.",
+            .key = plain('E'),
+            .run = [](App& app) { open_study(app, Study::states); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::states; }},
+    Command{.id = "study.modes",
+            .title = "Modes",
+            .help =
+                "How the steady state swings, moving in the view, and at which speeds (Campbell diagram).",
+            .key = plain('O'),
+            .run = [](App& app) { open_study(app, Study::modes); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::modes; }},
+    Command{.id = "study.map",
+            .title = "Map of two parameters",
+            .help = "A coordinate in colours over the plane of two parameters, with the curves of folds.",
+            .key = plain('P'),
+            .run = [](App& app) { open_study(app, Study::map); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::map; }},
+    Command{.id = "study.compare",
+            .title = "Compare",
+            .help = "Error against run time: the direct solution and the damped motion.",
+            .run = [](App& app) { open_study(app, Study::compare); },
+            .enabled = holds_parts,
+            .checked = [](const App& app) { return app.study.open == Study::compare; }},
+    Command{.id = "study.export",
+            .title = "Export the run…",
+            .help = "Save the motion that is shown as a film: MP4, GIF or numbered pictures.",
+            .run = show_movie_dialog,
+            .enabled = [](const App& app) { return app.motion.on && shown_motion(app) != nullptr; },
+            .separated = true},
+
+    Command{.id = "help.palette",
+            .title = "Find a command…",
+            .help = "Every command by name.",
+            .key = ctrl('P'),
+            .run = [](App& app) { app.commands.palette_wanted = true; }},
+    Command{.id = "help.shortcuts",
+            .title = "Shortcuts",
+            .help = "Every key and what it does.",
+            .key = plain('?'),
+            .also = plain(keys::f1),
+            .run = [](App& app) { app.commands.shortcuts = !app.commands.shortcuts; },
+            .checked = [](const App& app) { return app.commands.shortcuts; }},
+};
+
+bool pressed(const Command& command, KeyPress key) {
+  // Where a sign sits on the keyboard, and whether Shift is needed for it, is the layout's business.
+  if (key.key == '?') key.shift = false;
+  return key.key != 0 && (key == command.key || key == command.also);
+}
+
+} // namespace
+
+std::span<const Command> commands() {
+  return table;
+}
+
+const Command& command(std::string_view id) {
+  const auto found = std::ranges::find(table, id, &Command::id);
+  if (found == table.end()) throw std::out_of_range("no command " + std::string(id));
+  return *found;
+}
+
+void run_command(App& app, std::string_view id) {
+  if (const Command& wanted = command(id); is_enabled(app, wanted)) wanted.run(app);
+}
+
+bool is_enabled(const App& app, const Command& command) {
+  return !command.enabled || command.enabled(app);
+}
+
+std::string label_of(const App& app, const Command& command) {
+  return command.label ? command.label(app) : command.title;
+}
+
+std::string key_text(const KeyPress& key) {
+  if (key.key == 0) return {};
+  std::string text = std::string(key.ctrl ? "Ctrl+" : "") + (key.shift ? "Shift+" : "");
+  switch (key.key) {
+  case ' ': return text + "Space";
+  case keys::escape: return text + "Esc";
+  case keys::tab: return text + "Tab";
+  case keys::backspace: return text + "Backspace";
+  case keys::del: return text + "Delete";
+  case keys::f1: return text + "F1";
+  case keys::f2: return text + "F2";
+  default: return text + static_cast<char>(key.key);
+  }
+}
+
+namespace {
+
+// Something has come up that has its own use for keys.
+bool keys_are_wanted(const App& app) {
+  return app.dialog.showing || app.dialog.wanted != Dialog::none || app.commands.palette_showing ||
+         app.commands.palette_wanted || app.commands.shortcuts;
+}
+
+void act_on(App& app, const KeyPress& key) {
+  // The first Escape gives the keys back to the view.
+  if (key == plain(keys::escape) && std::exchange(app.commands.focus, {}).in_panel) return;
+  for (const Command& command : table)
+    if (pressed(command, key) && is_enabled(app, command)) {
+      if (may_command(app, key)) command.run(app);
+      return;
+    }
+  may_command(app, key); // no command, but maybe the beginning of a number
+}
+
+} // namespace
+
+void handle_shortcuts(App& app) {
+  // The palette has its own use for keys.
+  if (app.commands.palette_showing) return;
+  const std::vector<KeyPress> pressed_keys = std::exchange(app.keys, {});
+  if (ImGui::GetIO().WantTextInput || !app.inspector.typing.name.empty() || app.dialog.showing) return;
+  for (const KeyPress& key : pressed_keys)
+    if (!keys_are_wanted(app)) act_on(app, key);
+}
+
+} // namespace flyball

@@ -1,0 +1,45 @@
+// Everything a person can ask for by name: one table that menus, shortcuts, the palette and the sheet of
+// shortcuts are made of.
+#pragma once
+
+#include "app/ui/app.hpp"
+
+#include <span>
+
+namespace flyball {
+
+struct Command {
+  const char* id;    // "edit.undo": its menu and a word; menus hold the commands in the table's order
+  const char* title; // as in the menu
+  const char* help;  // one sentence
+  KeyPress key{};    // key 0: none
+  KeyPress also{};   // another key for it
+  void (*run)(App&) = nullptr;
+  bool (*enabled)(const App&) = nullptr;      // null: always
+  bool (*checked)(const App&) = nullptr;      // null: no state
+  bool separated = false;                     // a line above it in the menu
+  std::string (*label)(const App&) = nullptr; // a longer title; null: `title`
+};
+
+std::span<const Command> commands();
+const Command& command(std::string_view id); // throws std::out_of_range
+void run_command(App& app, std::string_view id);
+bool is_enabled(const App& app, const Command& command);
+std::string label_of(const App& app, const Command& command);
+// "Ctrl+Shift+Z", "F2", "Delete"; empty without one.
+std::string key_text(const KeyPress& key);
+
+// The keys of the last frames, unless something is being typed.
+void handle_shortcuts(App& app);
+
+void menu_bar(App& app);
+void command_palette(App& app);
+void shortcut_sheet(App& app);
+
+// GLFW's codes of keys without a character.
+namespace keys {
+inline constexpr int escape = 256, enter = 257, tab = 258, backspace = 259, insert = 260, del = 261,
+                     right = 262, left = 263, down = 264, up = 265, home = 268, end = 269, f1 = 290, f2 = 291;
+} // namespace keys
+
+} // namespace flyball

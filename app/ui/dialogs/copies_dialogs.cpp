@@ -1,0 +1,122 @@
+// What Mirror and Circular copy ask for.
+#include "app/document/copies.hpp"
+#include "app/document/transform.hpp"
+#include "app/ui/edit_commands.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+constexpr std::array axis_names{"x", "y", "z"};
+
+Vec3 unit(int axis) {
+  return Vec3::Unit(axis);
+}
+
+// The axis something turns about: of the first driven revolute joint. What a governor's arms stand round.
+struct Spin {
+  Vec3 point = Vec3::Zero(), axis = Vec3::UnitY();
+};
+Spin spin_of(const Mechanism& mechanism) {
+  for (const Joint& joint : mechanism.joints)
+    for (const Coordinate& coordinate : joint.coordinates)
+      if (coordinate.drive && has_axis(joint.type)) return {joint.at, joint.axis};
+  return {};
+}
+
+int main_axis(const Vec3& direction) {
+  int axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
+
+// Buttons x, y, z of which one is on.
+void axis_choice(App& app, const std::string& name, const std::array<const char*, 3>& labels, int& axis) {
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0) ImGui::SameLine();
+    const auto at = static_cast<std::size_t>(i);
+    if (text_button(app, name + "/" + axis_names[at], labels[at], axis == i)) axis = i;
+  }
+}
+
+void point_fields(App& app, const std::string& name, Vec3& point) {
+  for (int i = 0; i < 3; ++i) {
+    double value = point[i];
+    const auto at = static_cast<std::size_t>(i);
+    if (plain_quantity_field(app, name + "/" + axis_names[at], axis_names[at], "m",
+                             "A point on it, in metres, as drawn.", value))
+      point[i] = value;
+  }
+}
+
+// The buttons below; returns whether to go ahead.
+bool accepted(App& app, const std::string& name, const char* text) {
+  ImGui::Dummy({0, 4 * app.scale});
+  const bool go = text_button(app, name + "/ok", text, true);
+  ImGui::SameLine();
+  if (text_button(app, name + "/cancel", "Cancel") || escape_pressed() || go) close_dialog();
+  return go;
+}
+
+} // namespace
+
+void show_mirror_dialog(App& app) {
+  if (app.selection().empty()) return;
+  const Spin spin = spin_of(app.mechanism());
+  CopyChoice& choice = app.commands.copy;
+  choice.point = spin.point;
+  // The plane through the spin axis from which the selected parts stand off most.
+  Vec3 off = centre_of(app.mechanism(), app.selection()).value_or(spin.point) - spin.point;
+  off[main_axis(spin.axis)] = 0;
+  choice.axis = off.isZero(1e-12) ? (main_axis(spin.axis) + 1) % 3 : main_axis(off);
+  app.dialog.wanted = Dialog::mirror;
+}
+
+void show_circular_dialog(App& app) {
+  if (app.selection().empty()) return;
+  const Spin spin = spin_of(app.mechanism());
+  app.commands.copy.point = spin.point;
+  app.commands.copy.axis = main_axis(spin.axis);
+  app.dialog.wanted = Dialog::circular;
+}
+
+void mirror_dialog(App& app) {
+  if (!begin_dialog(app, Dialog::mirror, "Mirror the selected parts", 420)) return;
+  CopyChoice& choice = app.commands.copy;
+  paragraph("At the plane through this point, at right angles to", colors_of(app).dim);
+  axis_choice(app, "mirror/axis", {"x", "y", "z"}, choice.axis);
+  point_fields(app, "mirror/point", choice.point);
+  if (accepted(app, "mirror", "Mirror"))
+    edit(app, "Mirror", [&](Mechanism& mechanism, Selection& selection) {
+      selection = mirror_parts(mechanism, selection, choice.point, unit(choice.axis));
+    });
+  end_dialog();
+}
+
+void circular_dialog(App& app) {
+  if (!begin_dialog(app, Dialog::circular, "Copy the selected parts round an axis", 420)) return;
+  CopyChoice& choice = app.commands.copy;
+  paragraph("Evenly round the axis through this point along", colors_of(app).dim);
+  axis_choice(app, "circular/axis", {"x", "y", "z"}, choice.axis);
+  point_fields(app, "circular/point", choice.point);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("In all");
+  ImGui::SameLine(90 * app.scale);
+  ImGui::SetNextItemWidth(120 * app.scale);
+  ImGui::InputInt("##count", &choice.count);
+  choice.count = std::clamp(choice.count, 2, 100);
+  note_widget(app.widgets, "circular/count");
+  help_on_hover("How many there are then, the selected one included.");
+  if (accepted(app, "circular", "Copy"))
+    edit(app, "Circular copy", [&](Mechanism& mechanism, Selection& selection) {
+      selection = circular_copy(mechanism, selection, choice.point, unit(choice.axis), choice.count);
+    });
+  end_dialog();
+}
+
+} // namespace flyball

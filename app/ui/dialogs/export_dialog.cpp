@@ -1,0 +1,68 @@
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/file_list.hpp"
+#include "app/ui/widgets/size_fields.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+constexpr int smallest = 16, largest = 8192; // pixels
+
+constexpr std::array sizes{PictureSize{"720p", "1280 × 720", 1280, 720},
+                           PictureSize{"1080p", "1920 × 1080", 1920, 1080},
+                           PictureSize{"4k", "3840 × 2160", 3840, 2160}};
+
+void save(App& app) {
+  DialogState& dialog = app.dialog;
+  const std::filesystem::path file = typed_file(app, ".png");
+  if (!may_replace(app, file)) return;
+  app.export_request = ExportRequest{file, std::clamp(dialog.width, smallest, largest),
+                                     std::clamp(dialog.height, smallest, largest), dialog.panels};
+  close_dialog();
+}
+
+} // namespace
+
+void show_export_dialog(App& app) {
+  app.dialog.wanted = Dialog::export_picture;
+  std::error_code ignored;
+  show_folder(app, std::filesystem::current_path(ignored));
+  app.files.replacing.clear();
+  const std::filesystem::path& file = app.document.file();
+  const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
+  app.dialog.path = (app.files.list.shown / ("flyball-" + stem + ".png")).string();
+}
+
+void export_dialog(App& app) {
+  if (!begin_dialog(app, Dialog::export_picture, "Save a picture", 480)) return;
+  DialogState& dialog = app.dialog;
+  bool accepted = path_field(app, "export", "Name");
+
+  size_fields(app, "export", sizes, 80, dialog.width, dialog.height);
+  ImGui::SetCursorPosX(80 * app.scale);
+  ImGui::Checkbox("With the panels", &dialog.panels);
+  note_widget(app.widgets, "export/panels");
+
+  const bool fits =
+      std::min(dialog.width, dialog.height) >= smallest && std::max(dialog.width, dialog.height) <= largest;
+  if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app).bad);
+  const std::filesystem::path file = typed_file(app, ".png");
+  const bool replaces = file == app.files.replacing;
+  if (replaces) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+  ImGui::Dummy({0, 2 * app.scale});
+  ImGui::BeginDisabled(!fits || dialog.path.empty());
+  accepted = text_button(app, "export/save", replaces ? "Replace" : "Save", true) || accepted;
+  ImGui::EndDisabled();
+  if (accepted && fits && !dialog.path.empty()) save(app);
+  ImGui::SameLine();
+  if (text_button(app, "export/cancel", "Cancel") || escape_pressed()) close_dialog();
+  end_dialog();
+}
+
+} // namespace flyball

@@ -1,0 +1,167 @@
+// The shipped scenes with pictures.
+#include "app/render/imgui_compat.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/scene_pictures.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/scene.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float pad = 8, gap = 12;  // points
+constexpr int about_lines = 3;      // below a name
+constexpr float about_size = 0.88f; // of the text's
+
+std::string first_sentence(const std::string& text) {
+  return text.substr(0, std::min(text.find(". "), text.size()) + 1);
+}
+
+std::vector<SceneCard> read_cards(const fs::path& folder) {
+  std::vector<SceneCard> cards;
+  std::error_code failed;
+  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
+    if (it->path().extension() != ".json") continue;
+    try {
+      Mechanism mechanism = load_scene(it->path());
+      std::string about = first_sentence(mechanism.description);
+      cards.push_back({it->path(), std::move(mechanism), std::move(about)});
+    } catch (const SceneError&) { // an example that cannot be opened is none
+    }
+  }
+  std::ranges::sort(cards, {}, [](const SceneCard& card) {
+    return std::pair(card.mechanism.bodies.size() + card.mechanism.joints.size(), card.mechanism.name);
+  });
+  return cards;
+}
+
+float about_height(const App& app) {
+  return about_lines * std::round(about_size * app.fonts.text->FontSize);
+}
+
+float card_height(const App& app) {
+  return (scene_picture_height + 2 * pad) * app.scale + ImGui::GetTextLineHeight() + about_height(app);
+}
+
+// As many words as there is room for.
+std::string fitting(const App& app, const std::string& text, float size, float width) {
+  const ImFont* font = app.fonts.text;
+  const auto fits = [&](const std::string& part) {
+    return font->CalcTextSizeA(size, FLT_MAX, width, part.c_str()).y <= about_height(app) + 1;
+  };
+  std::string part = text;
+  while (!fits(part)) {
+    const std::size_t space = part.find_last_of(' ');
+    if (space == std::string::npos) break;
+    part = part.substr(0, space) + "…";
+  }
+  return part;
+}
+
+// Returns whether it was clicked.
+bool show_card(App& app, int i, float width) {
+  GalleryState& gallery = app.files.gallery;
+  const SceneCard& card = gallery.cards[static_cast<std::size_t>(i)];
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale;
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const ImVec2 to(from.x + width, from.y + card_height(app));
+  const std::string name = "gallery/" + card.file.filename().string();
+  const bool clicked = ImGui::InvisibleButton(name.c_str(), {width, to.y - from.y});
+  note_widget(app.widgets, name);
+  const bool hovered = ImGui::IsItemHovered();
+  if (hovered && (ImGui::GetIO().MouseDelta.x != 0 || ImGui::GetIO().MouseDelta.y != 0)) gallery.chosen = i;
+  const bool chosen = i == gallery.chosen;
+
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float bottom = from.y + scene_picture_height * s * width / (scene_picture_width * s);
+  list.AddRectFilled(from, to, packed(chosen ? colors.raised : colors.panel), 6 * s);
+  if (card.picture)
+    list.AddImageRounded(imgui_compat::texture_id(card.picture), from, {to.x, bottom}, {0, 1}, {1, 0},
+                         IM_COL32_WHITE, 6 * s, ImDrawFlags_RoundCornersTop);
+  list.AddRect(from, to, packed(chosen ? colors.accent : colors.border), 6 * s, 0,
+               std::max(1.f, std::round((chosen ? 2.f : 1.f) * s)));
+  const ImVec2 text(from.x + pad * s, bottom + 5 * s);
+  const float room = width - 2 * pad * s;
+  ImFont* font = app.fonts.text;
+  const float size = std::round(about_size * font->FontSize);
+  list.PushClipRect(from, {to.x - pad * s, to.y}, true);
+  list.AddText(app.fonts.strong, app.fonts.strong->FontSize, text, packed(colors.text),
+               card.mechanism.name.c_str());
+  const ImVec2 about(text.x, text.y + ImGui::GetTextLineHeight() + 2 * s);
+  const std::string shown = fitting(app, card.about, size, room);
+  list.AddText(font, size, about, packed(colors.dim), shown.c_str(), nullptr, room);
+  list.PopClipRect();
+  if (hovered && shown != card.about) help_on_hover(card.about.c_str());
+  return clicked;
+}
+
+// The arrow keys move from card to card; returns whether they did.
+bool move_by_keys(App& app, int columns) {
+  const int count = static_cast<int>(app.files.gallery.cards.size());
+  const auto pressed = [](ImGuiKey key) { return imgui_compat::key_pressed(key); };
+  const int step = pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow) +
+                   columns * (pressed(ImGuiKey_DownArrow) - pressed(ImGuiKey_UpArrow));
+  const int wanted = app.files.gallery.chosen + step;
+  if (step == 0 || wanted < 0 || wanted >= count) return false;
+  app.files.gallery.chosen = wanted;
+  return true;
+}
+
+} // namespace
+
+void show_gallery(App& app) {
+  app.files.gallery.cards = read_cards(app.options.scenes);
+  app.files.gallery.chosen = 0;
+  app.dialog.wanted = Dialog::gallery;
+}
+
+void gallery_dialog(App& app) {
+  GalleryState& gallery = app.files.gallery;
+  const float s = app.scale;
+  gallery.showing = false;
+  if (!begin_dialog(app, Dialog::gallery, "Examples", 3 * scene_picture_width + 2 * gap + 47)) return;
+  gallery.showing = true;
+  const int count = static_cast<int>(gallery.cards.size());
+  const float between = gap * s;
+  const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
+  const int columns =
+      std::max(1, static_cast<int>((room + between) / (scene_picture_width * s * 0.8f + between)));
+  const float width =
+      std::min((room + between) / static_cast<float>(columns) - between, scene_picture_width * s);
+  const float rows = std::ceil(static_cast<float>(count) / static_cast<float>(columns));
+  const float height =
+      std::min(rows * (card_height(app) + between) - between, ImGui::GetIO().DisplaySize.y - 150 * s);
+  const bool moved = move_by_keys(app, columns);
+  fs::path opened;
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {between, between});
+  ImGui::BeginChild("cards", {0, std::max(height, 60 * s)});
+  if (count == 0) paragraph("There are no examples beside this program.", colors_of(app).dim);
+  for (int i = 0; i < count; ++i) {
+    if (i % columns != 0) ImGui::SameLine();
+    if (show_card(app, i, width)) opened = gallery.cards[static_cast<std::size_t>(i)].file;
+    if (moved && i == gallery.chosen) ImGui::SetScrollHereY();
+  }
+  ImGui::EndChild();
+  ImGui::PopStyleVar();
+  if (count > 0 && enter_pressed()) opened = gallery.cards[static_cast<std::size_t>(gallery.chosen)].file;
+  if (text_button(app, "gallery/cancel", "Cancel") || escape_pressed() || !opened.empty()) close_dialog();
+  ImGui::SameLine();
+  if (text_button(app, "gallery/open", "Open a file…")) {
+    close_dialog();
+    show_open_dialog(app);
+  }
+  if (!opened.empty()) open_file(app, opened);
+  end_dialog();
+}
+
+} // namespace flyball

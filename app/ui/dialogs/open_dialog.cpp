@@ -1,0 +1,88 @@
+#include "app/render/icons.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/file_list.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float list_height = 250, recent_width = 210; // points
+
+void choose(App& app, const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) {
+    app.files.message = "There is no " + file.string() + ".";
+    return;
+  }
+  close_dialog();
+  // Where it cannot be read the view says why.
+  open_file(app, file);
+}
+
+// Returns the one that was clicked.
+fs::path recent_list(App& app) {
+  fs::path clicked;
+  ImGui::BeginChild("recent", {recent_width * app.scale, list_height * app.scale});
+  ImGui::TextDisabled("Recent");
+  for (std::size_t i = 0; i < app.files.recent.size(); ++i) {
+    const fs::path& file = app.files.recent[i];
+    ImGui::PushID(file.c_str());
+    const std::string text = std::string(icon::file) + "  " + file.filename().string();
+    if (ImGui::Selectable(text.c_str(), false, ImGuiSelectableFlags_DontClosePopups)) clicked = file;
+    ImGui::PopID();
+    note_widget(app.widgets, "open/recent/" + std::to_string(i));
+    help_on_hover(file.c_str());
+  }
+  ImGui::EndChild();
+  return clicked;
+}
+
+} // namespace
+
+void show_open_dialog(App& app) {
+  const fs::path& file = app.document.file();
+  show_folder(app, !file.empty() ? file.parent_path() : usual_folder(app));
+  app.dialog.wanted = Dialog::open;
+  app.dialog.path.clear();
+}
+
+void open_dialog(App& app) {
+  const bool with_recent = !app.files.recent.empty();
+  if (!begin_dialog(app, Dialog::open, "Open a scene", with_recent ? 720 : 560)) return;
+  const bool entered = path_field(app, "open", "Name, or part of it, or a path");
+  std::optional<fs::path> file;
+  if (with_recent) {
+    if (const fs::path recent = recent_list(app); !recent.empty()) file = recent;
+    ImGui::SameLine(0, 16 * app.scale);
+    ImGui::BeginGroup();
+  }
+  folder_line(app, "open");
+  const float line = ImGui::GetFrameHeightWithSpacing() + 2 * app.scale;
+  if (auto clicked = file_list(app, "open", ".json", true, list_height * app.scale - line)) file = clicked;
+  if (with_recent) ImGui::EndGroup();
+  if (!app.files.message.empty()) paragraph(app.files.message, colors_of(app).bad);
+  ImGui::Dummy({0, 2 * app.scale});
+  const bool pressed = text_button(app, "open/open", "Open", true);
+  if (entered || pressed)
+    if (auto typed = entered_file(app, true)) file = typed;
+  ImGui::SameLine();
+  if (text_button(app, "open/cancel", "Cancel") || escape_pressed()) close_dialog();
+  if (!app.options.scenes.empty()) {
+    ImGui::SameLine();
+    if (text_button(app, "open/examples", "Examples…")) {
+      close_dialog();
+      show_gallery(app);
+    }
+  }
+  if (file) choose(app, *file);
+  end_dialog();
+}
+
+} // namespace flyball

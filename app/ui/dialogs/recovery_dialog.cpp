@@ -1,0 +1,84 @@
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <array>
+#include <ctime>
+
+namespace flyball {
+
+namespace {
+
+constexpr std::array answers{Choice{"recover/recover", "Recover"}, Choice{"recover/discard", "Discard"},
+                             Choice{"recover/later", "Not now"}};
+
+// "today, 14:03" or "3 November, 14:03".
+std::string time_text(std::int64_t seconds) {
+  const auto when = static_cast<std::time_t>(seconds), now = std::time(nullptr);
+  std::tm then{}, today{};
+  ::localtime_r(&when, &then);
+  ::localtime_r(&now, &today);
+  const bool same_day = then.tm_year == today.tm_year && then.tm_yday == today.tm_yday;
+  std::array<char, 64> text{};
+  std::strftime(text.data(), text.size(), same_day ? "today, %H:%M" : "%e %B, %H:%M", &then);
+  return text.data();
+}
+
+std::string title(const Leftover& leftover) {
+  const std::filesystem::path& file = leftover.autosave.file;
+  return file.empty() ? leftover.autosave.name + " (no file yet)" : file.filename().string();
+}
+
+void row(App& app, int i) {
+  const Leftover& leftover = app.files.leftovers[static_cast<std::size_t>(i)];
+  const UiColors& colors = colors_of(app);
+  ImGui::PushID(i);
+  const float left = ImGui::GetCursorPosX();
+  if (ImGui::Selectable("##leftover", app.files.chosen_leftover == i, ImGuiSelectableFlags_DontClosePopups,
+                        {0, ImGui::GetTextLineHeight()}))
+    app.files.chosen_leftover = i;
+  note_widget(app.widgets, "recover/" + std::to_string(i));
+  help_on_hover(leftover.autosave.file.c_str());
+  ImGui::SameLine(left + 4 * app.scale);
+  clipped_text(title(leftover), 260 * app.scale);
+  ImGui::SameLine(290 * app.scale);
+  ImGui::TextColored(colors.dim, "%s", time_text(leftover.autosave.made).c_str());
+  ImGui::PopID();
+}
+
+} // namespace
+
+void recovery_dialog(App& app) {
+  if (!begin_dialog(app, Dialog::recover, "Unsaved work was found", 500)) return;
+  FileState& files = app.files;
+  const UiColors& colors = colors_of(app);
+  const int count = static_cast<int>(files.leftovers.size());
+  if (ImGui::IsWindowAppearing()) files.chosen_leftover = 0;
+  paragraph("The program ended before this was saved:", colors.dim);
+  ImGui::PushStyleColor(ImGuiCol_Header, colors.raised);
+  for (int i = 0; i < count; ++i)
+    row(app, i);
+  ImGui::PopStyleColor();
+  const auto chosen = static_cast<std::size_t>(files.chosen_leftover);
+  if (chosen < files.leftovers.size() && files.leftovers[chosen].outdated)
+    paragraph("Its file has changed since. Recovering does not touch the file, and Undo goes back to what it "
+              "says.",
+              colors.warn);
+  const int answer = choice_buttons(app, answers, files.choice);
+  const bool escaped = escape_pressed();
+  if (chosen < files.leftovers.size() && (answer == 0 || answer == 1)) {
+    const Leftover leftover = files.leftovers[chosen];
+    if (answer == 0) {
+      files.leftovers.clear();
+      recover(app, leftover);
+    } else {
+      discard(app, leftover);
+      files.chosen_leftover = 0;
+    }
+  }
+  if (answer == 2 || escaped || files.leftovers.empty()) close_dialog();
+  end_dialog();
+}
+
+} // namespace flyball

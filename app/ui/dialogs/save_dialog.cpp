@@ -1,0 +1,79 @@
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/file_list.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+namespace flyball {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// "swing_pendulum" as a person would write it.
+std::string words_of(std::string stem) {
+  for (char& c : stem)
+    if (c == '_') c = ' ';
+  if (!stem.empty() && stem[0] >= 'a' && stem[0] <= 'z') stem[0] = static_cast<char>(stem[0] - 'a' + 'A');
+  return stem;
+}
+
+void save(App& app) {
+  const fs::path file = typed_file(app, ".json");
+  if (!may_replace(app, file)) return;
+  // A mechanism that nobody has named is called as its file is.
+  if (app.document.file().empty() && app.mechanism().name == Document::empty_mechanism().name)
+    edit(app, "Name", [&](Mechanism& m, Selection&) { m.name = words_of(file.stem().string()); });
+  app.files.message = save_to(app, file);
+  app.files.replacing.clear();
+  if (!app.files.message.empty()) return;
+  close_dialog();
+  leave_now(app);
+}
+
+} // namespace
+
+void ask_where_to_save(App& app, std::string why) {
+  const fs::path& file = app.document.file();
+  std::error_code ignored;
+  show_folder(app, is_example(app) ? fs::current_path(ignored) : usual_folder(app));
+  app.files.message = std::move(why);
+  app.files.replacing.clear();
+  app.dialog.wanted = Dialog::save;
+  app.dialog.path = file.empty() ? file_stem(app.mechanism().name) + ".json" : file.filename().string();
+}
+
+void save_dialog(App& app) {
+  if (!begin_dialog(app, Dialog::save, "Save as", 560)) return;
+  const bool entered = path_field(app, "save", "Name");
+  folder_line(app, "save");
+  if (const auto clicked = file_list(app, "save", ".json", false, 220 * app.scale))
+    app.dialog.path = clicked->filename().string();
+  const fs::path file = typed_file(app, ".json");
+  const bool replaces = file == app.files.replacing;
+  if (replaces)
+    paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+  else if (!app.files.message.empty())
+    paragraph(app.files.message, colors_of(app).bad);
+  else if (is_example(app))
+    paragraph("Examples stay as they are; this will be a file of your own.", colors_of(app).dim);
+  ImGui::Dummy({0, 2 * app.scale});
+  const bool usable = !app.dialog.path.empty();
+  ImGui::BeginDisabled(!usable);
+  const bool pressed = text_button(app, "save/save", replaces ? "Replace" : "Save", true);
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  if (text_button(app, "save/cancel", "Cancel") || escape_pressed()) {
+    close_dialog();
+    app.files.then = {};
+  } else if (usable && (entered || pressed)) {
+    std::error_code ignored;
+    if (fs::is_directory(typed_path(app), ignored))
+      entered_file(app, false); // goes there
+    else
+      save(app);
+  }
+  end_dialog();
+}
+
+} // namespace flyball

@@ -1,0 +1,48 @@
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+constexpr std::array answers{Choice{"unsaved/save", "Save"}, Choice{"unsaved/discard", "Don't save"},
+                             Choice{"unsaved/cancel", "Cancel"}};
+
+std::string question(const App& app) {
+  const std::string name = document_name(app);
+  if (app.files.watch.vanished()) return name + " is no longer on disk. What is open here is in no file.";
+  return name + " has changes that are not saved.";
+}
+
+void save(App& app) {
+  if (app.document.file().empty() || is_example(app)) return ask_where_to_save(app, {});
+  if (std::string why = save_to(app, app.document.file()); !why.empty())
+    return ask_where_to_save(app, std::move(why));
+  leave_now(app);
+}
+
+} // namespace
+
+void unsaved_dialog(App& app) {
+  if (!begin_dialog(app, Dialog::unsaved, "Save the changes?", 440)) return;
+  const UiColors& colors = colors_of(app);
+  if (ImGui::IsWindowAppearing() && app.files.watch.differs()) app.files.conflict = true;
+  paragraph(question(app), colors.text);
+  if (app.files.conflict)
+    paragraph("The file has changed on disk meanwhile; saving replaces what is there.", colors.warn);
+  const int answer = choice_buttons(app, answers, app.files.choice);
+  if (answer >= 0 || escape_pressed()) close_dialog();
+  if (answer == 0)
+    save(app);
+  else if (answer == 1)
+    leave_now(app);
+  else if (answer == 2 || escape_pressed())
+    app.files.then = {};
+  end_dialog();
+}
+
+} // namespace flyball

@@ -1,0 +1,153 @@
+#include "app/ui/edit_commands.hpp"
+
+#include "app/document/clipboard.hpp"
+#include "app/document/copies.hpp"
+#include "app/document/create.hpp"
+#include "app/document/remove.hpp"
+#include "app/document/transform.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+#include <unordered_set>
+
+namespace flyball {
+
+namespace {
+
+// "ball1", or "3 parts".
+std::string words_for(const Selection& selection) {
+  if (selection.parts.size() == 1) return selection.parts.front().name;
+  return std::to_string(selection.parts.size()) + " parts";
+}
+
+// "joints arm1 and knee1, force push": what goes with the selected parts though it is not selected.
+std::string dependents_words(const App& app) {
+  Selection more = with_dependents(app.document.stored(), app.selection());
+  std::erase_if(more.parts, [&](const Part& part) { return app.selection().has(part); });
+  std::string words;
+  for (const auto& [kind, word] :
+       {std::pair(PartKind::joint, "joint"), std::pair(PartKind::force, "force")}) {
+    const std::vector<std::string> names = more.names(kind);
+    if (names.empty()) continue;
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    words += (words.empty() ? "" : ", ") + std::string(word) + (names.size() > 1 ? "s " : " ") +
+             word_list(views, "and");
+  }
+  return words;
+}
+
+// Takes the selected parts out, and says what went with them.
+void remove_selected(App& app, const std::string& step, const std::string& done) {
+  const std::string what = words_for(app.selection()), along = dependents_words(app);
+  const std::uint64_t before = app.document.revision();
+  edit(app, step + " " + what, [](Mechanism& mechanism, Selection& selection) {
+    remove_parts(mechanism, selection);
+    selection = {};
+  });
+  if (!along.empty() && app.document.revision() != before)
+    app.notice = done + " " + what + " together with " + along + ".";
+}
+
+} // namespace
+
+void delete_selected(App& app) {
+  if (!app.selection().empty()) remove_selected(app, "Delete", "Deleted");
+}
+
+namespace {
+
+// Far enough for a copy to be seen beside its original, a round number of metres.
+double copy_step(const App& app) {
+  return std::pow(10, std::round(std::log10(app.view.camera.distance / 8)));
+}
+
+// Whether a body of the selection stands where another does.
+bool lies_on_another(const Mechanism& mechanism, const Selection& selection) {
+  const std::vector<std::string> names = selection.names(PartKind::body);
+  const std::unordered_set<std::string_view> selected(names.begin(), names.end());
+  std::set<std::array<double, 3>> others;
+  const auto place = [](const Body& body) {
+    return std::array{body.position.x(), body.position.y(), body.position.z()};
+  };
+  for (const Body& body : mechanism.bodies)
+    if (!selected.contains(body.name)) others.insert(place(body));
+  return std::ranges::any_of(mechanism.bodies, [&](const Body& body) {
+    return selected.contains(body.name) && others.contains(place(body));
+  });
+}
+
+} // namespace
+
+void duplicate_selected(App& app) {
+  if (app.selection().empty()) return;
+  const double step = copy_step(app);
+  edit(app, "Duplicate " + words_for(app.selection()), [&](Mechanism& mechanism, Selection& selection) {
+    selection = duplicate_parts(mechanism, selection, step * Vec3(1, 0, 0));
+  });
+}
+
+void copy_selected(App& app) {
+  if (app.selection().empty()) return;
+  try {
+    ImGui::SetClipboardText(copy_text(app.mechanism(), app.selection()).c_str());
+    app.notice = "Copied " + words_for(app.selection());
+  } catch (const SceneError& error) {
+    show_error(app, error.what());
+  }
+}
+
+void cut_selected(App& app) {
+  copy_selected(app);
+  if (!app.selection().empty()) remove_selected(app, "Cut", "Cut");
+}
+
+void paste_parts(App& app) {
+  const char* text = ImGui::GetClipboardText();
+  if (!text || !*text) {
+    app.notice = "Nothing has been copied.";
+    return;
+  }
+  edit(app, "Paste", [&](Mechanism& mechanism, Selection& selection) {
+    try {
+      selection = paste_text(mechanism, text);
+    } catch (const SceneError&) {
+      throw SceneError("", "What was copied is no part of a mechanism.");
+    }
+    constexpr int most = 20; // copies side by side
+    for (int i = 0; i < most && lies_on_another(mechanism, selection); ++i)
+      move_parts(mechanism, selection, copy_step(app) * Vec3(1, 0, 0));
+  });
+}
+
+void select_all(App& app) {
+  Selection all;
+  for (const Body& body : app.mechanism().bodies)
+    all.parts.push_back({PartKind::body, body.name});
+  for (const Joint& joint : app.mechanism().joints)
+    all.parts.push_back({PartKind::joint, joint.name});
+  for (const Force& force : app.mechanism().forces)
+    all.parts.push_back({PartKind::force, force.name});
+  select(app, std::move(all));
+}
+
+void gear_selected(App& app) {
+  const std::vector<std::string> joints = app.selection().names(PartKind::joint);
+  if (joints.size() != 2) return;
+  edit(app, "Gear " + joints[0] + " and " + joints[1], [&](Mechanism& mechanism, Selection& selection) {
+    std::array<std::string, 2> ends;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Joint& joint = mechanism.joints[static_cast<std::size_t>(joint_index(mechanism, joints[i]))];
+      if (joint.coordinates.empty()) throw SceneError(joint.name, "a gear needs a joint with a coordinate");
+      ends[i] = coordinate_name(joint, 0);
+    }
+    selection.set({PartKind::joint, add_gear(mechanism, ends, -1)});
+  });
+}
+
+} // namespace flyball

@@ -1,0 +1,22 @@
+// What the Edit menu does with the selected parts.
+#pragma once
+
+#include "app/ui/app.hpp"
+
+namespace flyball {
+
+void delete_selected(App& app);
+void duplicate_selected(App& app);
+void copy_selected(App& app); // to the clipboard, as text
+void cut_selected(App& app);
+void paste_parts(App& app);
+void select_all(App& app);
+void show_mirror_dialog(App& app);
+void show_circular_dialog(App& app);
+// Joins the two selected joints by a gear, or the selected coordinates' first ones.
+void gear_selected(App& app);
+
+void mirror_dialog(App& app);
+void circular_dialog(App& app);
+
+} // namespace flyball

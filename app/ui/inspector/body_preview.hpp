@@ -1,0 +1,11 @@
+// The outline of a body that is not there yet, over the picture.
+#pragma once
+
+#include "app/document/create.hpp"
+#include "app/ui/panels/view_input.hpp"
+
+namespace flyball {
+
+void draw_body_outline(const App& app, const ViewInput& input, const NewBody& body);
+
+} // namespace flyball

@@ -1,0 +1,249 @@
+#include "app/document/mass_properties.hpp"
+#include "app/document/transform.hpp"
+#include "app/ui/inspector/inspector_parts.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/tools/joints_along.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+Selection only(const Body& body) {
+  return {{{PartKind::body, body.name}}};
+}
+
+// Rx, then Ry, then Rz, about the world's axes (deg).
+Quat turned(const Vec3& turns) {
+  const Vec3 angles = turns / degrees;
+  return Quat(Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
+              Eigen::AngleAxisd(angles.x(), Vec3::UnitX()));
+}
+
+Vec3 turns_of(const Quat& rotation) {
+  const Mat3 r = rotation.normalized().toRotationMatrix();
+  const double y = std::asin(std::clamp(-r(2, 0), -1.0, 1.0));
+  const bool locked = std::abs(r(2, 0)) > 1 - 1e-12; // x and z turn about the same axis then
+  const double x = locked ? 0 : std::atan2(r(2, 1), r(2, 2));
+  const double z = locked ? std::atan2(-r(0, 1), r(1, 1)) : std::atan2(r(1, 0), r(0, 0));
+  Vec3 turns = Vec3(x, y, z) * degrees;
+  for (double& turn : turns)
+    turn = std::strtod(fmt::format("{:.9f}", turn).c_str(), nullptr) + 0.0; // no negative zero
+  return turns;
+}
+
+// Angles that were typed stay as typed, though others would turn the body as far.
+Vec3 shown_turns(App& app, const Body& body) {
+  InspectorState& state = app.inspector;
+  const Part part{PartKind::body, body.name};
+  if (state.turned != part || state.turned_to.coeffs() != body.rotation.coeffs()) {
+    state.turned = part;
+    state.turned_to = body.rotation;
+    state.turns = turns_of(body.rotation);
+  }
+  return state.turns;
+}
+
+void turn_body(App& app, const std::string& name, int axis, double angle) {
+  const int index = body_index(app.mechanism(), name);
+  if (index < 0) return;
+  Vec3 turns = shown_turns(app, app.mechanism().bodies[static_cast<std::size_t>(index)]);
+  turns[axis] = angle;
+  edit(app, "Turn " + name, [&](Mechanism& mechanism, Selection&) {
+    Body& body = mechanism.bodies[static_cast<std::size_t>(index)];
+    const Quat to = turned(turns);
+    if (!app.inspector.mass_alone)
+      rotate_parts(mechanism, only(body), body.position, to * body.rotation.normalized().conjugate(),
+                   joints_of_moved(app, false));
+    body.rotation = to;
+  });
+  if (!app.inspector.mass_alone)
+    tell_joints(app, only(app.mechanism().bodies[static_cast<std::size_t>(index)]), false);
+  app.inspector.turned_to = app.mechanism().bodies[static_cast<std::size_t>(index)].rotation;
+  app.inspector.turns = turns;
+}
+
+void move_body(App& app, const std::string& name, int axis, double to) {
+  const int index = body_index(app.mechanism(), name);
+  if (index < 0) return;
+  edit(app, "Move " + name, [&](Mechanism& mechanism, Selection&) {
+    Body& body = mechanism.bodies[static_cast<std::size_t>(index)];
+    Vec3 position = body.position;
+    position[axis] = to;
+    if (app.inspector.mass_alone)
+      body.position = position;
+    else
+      set_point(mechanism, {{PartKind::body, name}, 0}, position, joints_of_moved(app, false));
+  });
+  if (!app.inspector.mass_alone)
+    tell_joints(app, only(app.mechanism().bodies[static_cast<std::size_t>(index)]), false);
+}
+
+void inertia_rows(App& app, const Body& body) {
+  constexpr std::array keys{"xx", "yy", "zz", "xy", "xz", "yz"};
+  constexpr std::array helps{
+      "Moment of inertia about the body's x axis through the mass centre.",
+      "Moment of inertia about the body's y axis through the mass centre.",
+      "Moment of inertia about the body's z axis through the mass centre.",
+      "Product of inertia: the tensor's own entry, minus the integral of x y dm.",
+      "Product of inertia: the tensor's own entry, minus the integral of x z dm.",
+      "Product of inertia: the tensor's own entry, minus the integral of y z dm.",
+  };
+  const bool has_products =
+      std::any_of(body.inertia.begin() + 3, body.inertia.end(), [](double product) { return product != 0; });
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i == 3 && !inspector_section(app, "inspector/products", "Products of inertia", has_products)) return;
+    quantity_row(app, (i < 3 ? "Inertia " : "Product ") + std::string(keys[i]),
+                 {.name = std::string("inspector/inertia/") + keys[i],
+                  .value = body.inertia[i],
+                  .unit = "kg m^2",
+                  .help = helps[i],
+                  .least = i < 3 ? Least::zero : Least::any,
+                  .address = "bodies." + body.name + ".inertia." + std::to_string(i)});
+  }
+}
+
+// A density that was typed is shown as typed, not as the mass by the volume comes out.
+double shown_density(const App& app, const Body& body, double density) {
+  const auto given = app.inspector.given_masses.find(body.name);
+  if (given == app.inspector.given_masses.end() || given->second.mass) return density;
+  const double typed = given->second.density;
+  return std::abs(typed - density) <= 1e-13 * typed ? typed : density;
+}
+
+void density_row(App& app, const Body& body) {
+  const std::optional<double> density = density_of(body);
+  if (!density) return;
+  quantity_row(app, "Density",
+               {.name = "inspector/density",
+                .value = shown_density(app, body, *density),
+                .unit = "kg/m^3",
+                .help = "The mass by the volume of the shapes; typing it makes the body a uniform solid.",
+                .least = Least::zero,
+                .set = [name = body.name](App& changed, double value) {
+                  changed.inspector.given_masses[name] = {false, value};
+                  edit(changed, "Set density of " + name, [&](Mechanism& mechanism, Selection&) {
+                    for (Body& same : mechanism.bodies)
+                      if (same.name == name) take_mass_properties(same, value);
+                  });
+                }});
+}
+
+} // namespace
+
+bool is_uniform_solid(const Body& body) {
+  const std::optional<double> density = density_of(body);
+  if (!density || !(body.mass > 0)) return false;
+  Body solid = body;
+  if (!take_mass_properties(solid, *density)) return false;
+  constexpr double tolerance = 1e-6;
+  double largest = 0, difference = 0;
+  for (std::size_t i = 0; i < body.inertia.size(); ++i) {
+    largest = std::max(largest, std::abs(solid.inertia[i]));
+    difference = std::max(difference, std::abs(solid.inertia[i] - body.inertia[i]));
+  }
+  const double size = std::sqrt(largest / body.mass); // about the radius of gyration
+  return difference <= tolerance * largest && (solid.position - body.position).norm() <= tolerance * size;
+}
+
+bool follows_shapes(const App& app, const Body& body) {
+  return app.inspector.independent != Part{PartKind::body, body.name} && is_uniform_solid(body);
+}
+
+void mass_section(App& app, const Body& body) {
+  if (!inspector_section(app, "inspector/mass section", "Mass", true)) return;
+  const bool follows = follows_shapes(app, body);
+  QuantityField mass{.name = "inspector/mass",
+                     .value = body.mass,
+                     .unit = "kg",
+                     .help = follows ? "Inertia goes with it, as in a solid of one density."
+                                     : "Mass; zero is allowed.",
+                     .least = Least::zero,
+                     .address = "bodies." + body.name + ".mass"};
+  mass.set = [name = body.name, follows](App& changed, double value) {
+    changed.inspector.given_masses[name] = {true, 0};
+    if (!follows) return set_number(changed, "bodies." + name + ".mass", value);
+    edit(changed, "Set mass of " + name, [&](Mechanism& mechanism, Selection&) {
+      for (Body& same : mechanism.bodies) {
+        if (same.name != name || (value > 0 && take_uniform_mass(same, value))) continue;
+        same.mass = value; // a drawing without mass: no density says so
+        same.inertia = {};
+      }
+    });
+  };
+  quantity_row(app, "Mass", mass);
+  density_row(app, body);
+  inertia_rows(app, body);
+  if (!density_of(body)) return;
+  const Part part{PartKind::body, body.name};
+  if (check_row(
+          app, "inspector/uniform", "Uniform solid", follows,
+          "Mass centre and inertia are those of the shapes at one density, and stay so when the mass or a "
+          "size changes."))
+    later(app, [part, follows](App& changed) {
+      changed.inspector.independent = follows ? part : Part{};
+      if (follows) return;
+      edit(changed, "Make " + part.name + " uniform", [&](Mechanism& mechanism, Selection&) {
+        for (Body& same : mechanism.bodies)
+          if (same.name == part.name) take_uniform_mass(same, same.mass);
+      });
+    });
+}
+
+void rotation_section(App& app, const Body& body) {
+  const bool turned = body.rotation.coeffs() != Quat::Identity().coeffs();
+  if (!inspector_section(app, "inspector/rotation section", "Rotation as drawn", turned)) return;
+  vector_rows(app, "Turned",
+              {.name = "inspector/rotation",
+               .value = shown_turns(app, body),
+               .unit = "deg",
+               .help = "The body is turned about the world's x, then y, then z axis.",
+               .set = [name = body.name](App& changed, int axis, double angle) {
+                 turn_body(changed, name, axis, angle);
+               }});
+}
+
+void body_inspector(App& app, const Body& body) {
+  name_row(app, {PartKind::body, body.name});
+  text_row(app, "inspector/description", "Note", body.description, "A note for whoever reads the scene.",
+           [name = body.name](App& changed, const std::string& text) {
+             edit_body(changed, "Describe " + name, name, [text](Body& same) { same.description = text; });
+           });
+  vector_rows(app, "Position",
+              {.name = "inspector/position",
+               .value = body.position,
+               .unit = "m",
+               .help = app.inspector.mass_alone
+                           ? "The mass centre in the world, as drawn; it moves alone."
+                           : "The mass centre in the world, as drawn; what is on the body moves along.",
+               .address = "bodies." + body.name + ".position",
+               .set = [name = body.name](App& changed, int axis, double value) {
+                 move_body(changed, name, axis, value);
+               }});
+  if (check_row(
+          app, "inspector/mass alone", "Move mass centre alone", app.inspector.mass_alone,
+          "Typing a position or rotation moves the mass centre and the axes of inertia, and leaves shapes, "
+          "joints and ends of springs where they are."))
+    app.inspector.mass_alone = !app.inspector.mass_alone;
+  if (check_row(
+          app, "inspector/leave joints", "Leave joints behind", app.inspector.leave_joints,
+          "A body that is moved or turned, here or in the view, leaves its joints where they are in the "
+          "world; otherwise they go with it. In the view Shift does the opposite.",
+          app.inspector.mass_alone ? "A mass centre that moves alone leaves everything." : nullptr))
+    app.inspector.leave_joints = !app.inspector.leave_joints;
+  mass_section(app, body);
+  rotation_section(app, body);
+  shapes_section(app, body);
+}
+
+} // namespace flyball

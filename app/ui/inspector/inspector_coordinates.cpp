@@ -1,0 +1,261 @@
+// What acts on each coordinate of a joint: drive, spring, damper, stop; and where it settles.
+#include "app/session/units.hpp"
+#include "app/ui/inspector/inspector_parts.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+namespace {
+
+// What a new drive, spring, ... begins with, to be changed at once.
+struct Beginning {
+  double speed, stiffness, damping, stop_reach, stop_stiffness;
+};
+constexpr Beginning of_angle{10, 10, 1, 0.5, 1000}, of_length{0.1, 1000, 10, 0.1, 1e5};
+
+// One coordinate and how it is called in addresses and widgets.
+struct CoordinateRows {
+  App& app;
+  const Joint& joint;
+  int i;
+
+  const Coordinate& coordinate() const { return joint.coordinates[static_cast<std::size_t>(i)]; }
+  bool angle() const { return is_angle(joint.type, i); }
+  const Beginning& beginning() const { return angle() ? of_angle : of_length; }
+  std::string value_unit() const { return angle() ? "rad" : "m"; }
+  std::string stiffness_unit() const { return angle() ? "N m/rad" : "N/m"; }
+  // "spring.1" where there are several coordinates.
+  std::string key(const std::string& word) const {
+    return joint.coordinates.size() > 1 ? word + "." + std::to_string(i) : word;
+  }
+
+  // Of a widget for the number or thing at this address.
+  static std::string widget(std::string address) {
+    std::ranges::replace(address, '.', '/');
+    return "inspector/" + address;
+  }
+
+  const CoordinateSolution* solution() const {
+    if (!converged(app)) return nullptr;
+    for (const CoordinateSolution& found : app.answer.solution.coordinates)
+      if (found.joint == joint.name && found.index == i) return &found;
+    return nullptr;
+  }
+
+  void change(const std::string& step, const std::function<void(Coordinate&)>& edit) const {
+    edit_joint(app, step, joint.name, [edit, i = static_cast<std::size_t>(i)](Joint& same) {
+      if (i < same.coordinates.size()) edit(same.coordinates[i]);
+    });
+  }
+
+  // Beside the one before, where there is room for it.
+  void beside_last(const char* label) const {
+    const float width = ImGui::GetFrameHeight() + ImGui::CalcTextSize(label).x + 10 * app.scale;
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    const float gap = 6 * app.scale;
+    if (ImGui::GetItemRectMax().x + gap + width <= right) ImGui::SameLine(0, gap);
+  }
+
+  // A tick; `removed` and `added` edit the coordinate.
+  void tick(const std::string& word, const char* label, const char* what, bool on, const char* help,
+            const char* refused, const std::function<void(Coordinate&)>& removed,
+            const std::function<void(Coordinate&)>& added) const {
+    if (!check_row(app, widget(key(word)), label, on, help, on ? nullptr : refused)) return;
+    const std::string step =
+        (on ? "Remove " : "Add ") + std::string(what) + (on ? " of " : " to ") + joint.name;
+    change(step, on ? removed : added);
+  }
+
+  void number(const std::string& label, const std::string& address, double value, const std::string& unit,
+              const char* help, Least least = Least::any, const std::function<void(App&)>& reset = {}) const {
+    quantity_row(app, label,
+                 {.name = widget(address),
+                  .value = value,
+                  .unit = unit,
+                  .help = help,
+                  .least = least,
+                  .address = "joints." + joint.name + "." + address},
+                 reset);
+  }
+
+  // Always in its place, so that nothing below it moves with what is ticked there or found meanwhile.
+  void settled() const {
+    const CoordinateSolution* found = solution();
+    // Words and digits are of different heights.
+    const float next = ImGui::GetCursorPosY() + ImGui::GetTextLineHeightWithSpacing() + std::round(app.scale);
+    if (coordinate().drive || (found && found->driven)) {
+      no_value("driven", "It moves at a constant speed, so there is no place where it settles.");
+    } else if (!found) {
+      no_value("not known", "There is no steady state of which this could be told.");
+    } else {
+      const NumberStyle& numbers = app.options.numbers;
+      const ShownUnit unit = coordinate_unit(angle(), app.units);
+      std::string help = value_text(found->value, found->error, numbers) + " " + value_unit();
+      if (found->error > 0)
+        help += " ± " + magnitude_text(std::max(found->error, numbers.noise), numbers) + " " + value_unit();
+      row(app, "Settles at", value_text(unit.shown(found->value), found->error * unit.factor, numbers),
+          unit.text.c_str(), ("In the steady state: " + help + ".").c_str());
+    }
+    note_widget(app.widgets, widget(key("settles")));
+    ImGui::SetCursorPosY(next);
+  }
+
+  // The row of a value that there is not.
+  void no_value(const char* word, const char* help) const {
+    ImGui::BeginDisabled();
+    row(app, "Settles at", word, "", help);
+    ImGui::EndDisabled();
+  }
+
+  void drive() const {
+    const char* refused = nullptr;
+    if (is_rotation_vector(joint.type, i))
+      refused = "A component of a rotation vector cannot be driven; use revolute joints.";
+    else if (joint.cut == true)
+      refused = "A joint that is cut has no coordinate to drive.";
+    else if (coordinate().spring || coordinate().stop)
+      refused = "Not beside a spring or stop, which would never settle; take it away first.";
+    const Beginning& b = beginning();
+    tick(
+        "drive", "Drive", "drive", coordinate().drive.has_value(),
+        "Moves the coordinate at a constant speed.", refused, [](Coordinate& c) { c.drive.reset(); },
+        [speed = b.speed](Coordinate& c) { c.drive.emplace().speed = speed; });
+  }
+
+  void drive_numbers() const {
+    if (coordinate().drive)
+      number("Speed", key("drive") + ".speed", coordinate().drive->speed, value_unit() + "/s",
+             "The constant speed of the coordinate; right-handed about or along the axis.");
+  }
+
+  // Why nothing that has to settle may act on it; null where it may.
+  const char* driven() const {
+    if (coordinate().drive) return "Not on a driven coordinate: its torque or force would never settle.";
+    const CoordinateSolution* found = solution();
+    return found && found->driven
+               ? "Not on a coordinate driven through a gear: its torque or force would never settle."
+               : nullptr;
+  }
+
+  void spring() const {
+    tick(
+        "spring", "Spring", "spring", coordinate().spring.has_value(), "Pulls the coordinate to a value.",
+        driven(), [](Coordinate& c) { c.spring.reset(); },
+        [stiffness = beginning().stiffness](Coordinate& c) {
+          c.spring.emplace();
+          c.spring->stiffness = stiffness;
+          c.spring->free = c.drawn;
+        });
+  }
+
+  void spring_numbers() const {
+    if (!coordinate().spring) return;
+    number("Stiffness", key("spring") + ".stiffness", coordinate().spring->stiffness, stiffness_unit(),
+           angle() ? "Torque by the angle from where the spring is slack."
+                   : "Force by the distance from where the spring is slack.");
+    number("Slack at", key("spring") + ".free", coordinate().spring->free, value_unit(),
+           "The coordinate's value at which the spring is slack.");
+  }
+
+  void damper() const {
+    tick(
+        "damper", "Damper", "damper", coordinate().damping != 0,
+        "Resists the coordinate's motion; the steady state is the same.", nullptr,
+        [](Coordinate& c) { c.damping = 0; },
+        [damping = beginning().damping](Coordinate& c) { c.damping = damping; });
+  }
+
+  void damper_numbers() const {
+    if (coordinate().damping != 0)
+      number("Damping", key("damping"), coordinate().damping, angle() ? "N m s/rad" : "N s/m",
+             angle() ? "Torque by the speed of the angle." : "Force by the speed of the slide.", Least::zero);
+  }
+
+  // A limit that may be absent.
+  void limit(const char* label, const char* word, const std::optional<double>& value,
+             std::optional<double> Stop::*which, double usual) const {
+    const std::string address = key("stop") + "." + word;
+    if (value) {
+      const bool last = !coordinate().stop->lower || !coordinate().stop->upper;
+      std::function<void(App&)> reset;
+      if (!last)
+        reset = [rows = joint.name, at = static_cast<std::size_t>(i), which, word](App& changed) {
+          edit_joint(changed, std::string("Remove ") + word + " stop of " + rows, rows, [=](Joint& same) {
+            if (at < same.coordinates.size() && same.coordinates[at].stop)
+              ((*same.coordinates[at].stop).*which).reset();
+          });
+        };
+      return number(label, address, *value, value_unit(), "Beyond this value the stop pushes back.",
+                    Least::any, reset);
+    }
+    row_label(app, label, "No limit on this side.");
+    if (text_button(app, widget(address) + "/add", "Add a limit"))
+      change(std::string("Add ") + word + " stop to " + joint.name, [which, usual](Coordinate& c) {
+        if (c.stop) (*c.stop).*which = c.drawn + usual;
+      });
+    help_on_hover("A limit on this side too.");
+  }
+
+  void stop() const {
+    const Beginning& b = beginning();
+    tick(
+        "stop", "Stop", "stop", coordinate().stop.has_value(),
+        "A stiff one-sided spring that acts beyond a limit.", driven(), [](Coordinate& c) { c.stop.reset(); },
+        [b](Coordinate& c) {
+          c.stop.emplace();
+          c.stop->lower = c.drawn - b.stop_reach;
+          c.stop->upper = c.drawn + b.stop_reach;
+          c.stop->stiffness = b.stop_stiffness;
+        });
+  }
+
+  void stop_numbers() const {
+    if (!coordinate().stop) return;
+    const Beginning& b = beginning();
+    limit("Stop from", "lower", coordinate().stop->lower, &Stop::lower, -b.stop_reach);
+    limit("Stop to", "upper", coordinate().stop->upper, &Stop::upper, b.stop_reach);
+    number("Stop stiffness", key("stop") + ".stiffness", coordinate().stop->stiffness, stiffness_unit(),
+           "How hard the stop pushes back beyond its limits.", Least::above_zero);
+  }
+
+  void all() const {
+    settled();
+    number("Drawn as", key("coordinate"), coordinate().drawn, value_unit(),
+           "What the coordinate is called in the drawn pose; a label, it moves nothing.");
+    // All that can act in one line, which stays where it is; below it the numbers of what does act.
+    drive();
+    beside_last("Spring");
+    spring();
+    beside_last("Damper");
+    damper();
+    beside_last("Stop");
+    stop();
+    drive_numbers();
+    spring_numbers();
+    damper_numbers();
+    stop_numbers();
+  }
+
+  bool acted_on() const {
+    const Coordinate& c = coordinate();
+    return c.drive || c.spring || c.stop || c.damping != 0;
+  }
+};
+
+} // namespace
+
+void coordinate_sections(App& app, const Joint& joint) {
+  const auto count = static_cast<int>(joint.coordinates.size());
+  if (count != coordinate_count(joint.type)) return; // a mistake, told elsewhere
+  for (int i = 0; i < count; ++i) {
+    const CoordinateRows rows{app, joint, i};
+    const std::string section = "inspector/coordinate " + std::to_string(i);
+    if (inspector_section(app, section, coordinate_title(joint.type, i), count <= 2 || rows.acted_on()))
+      rows.all();
+  }
+}
+
+} // namespace flyball

@@ -1,0 +1,127 @@
+#include "app/ui/inspector/inspector_parts.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+std::string address_of(const Force& force, const std::string& key) {
+  return "forces." + force.name + "." + key;
+}
+
+void spring_rows(App& app, const Force& force) {
+  const Part part{PartKind::force, force.name};
+  for (std::size_t end = 0; end < 2; ++end) {
+    body_end_row(app, part, force.bodies, end, end == 0 ? "From" : "To");
+    end_point_rows(app, part, force.points, end);
+  }
+  quantity_row(app, "Stiffness",
+               {.name = "inspector/stiffness",
+                .value = force.stiffness,
+                .unit = "N/m",
+                .help = "Force by how far it is stretched; zero for a damper alone.",
+                .address = address_of(force, "stiffness")});
+  std::function<void(App&)> reset;
+  if (force.free_length)
+    reset = [name = force.name](App& changed) {
+      edit_force(changed, "Length of " + name + " as drawn", name,
+                 [](Force& same) { same.free_length.reset(); });
+    };
+  quantity_row(app, "Free length",
+               {.name = "inspector/free_length",
+                .value = force.free_length.value_or(drawn_distance(force.points)),
+                .unit = "m",
+                .help = "The length at which the spring is slack.",
+                .least = Least::zero,
+                .address = address_of(force, "free_length"),
+                .standard = !force.free_length},
+               reset);
+  quantity_row(app, "Damping",
+               {.name = "inspector/damping",
+                .value = force.damping,
+                .unit = "N s/m",
+                .help = "Force by the speed at which its length changes.",
+                .least = Least::zero,
+                .address = address_of(force, "damping")});
+}
+
+void point_rows(App& app, const Force& force) {
+  const int body = body_index(app.mechanism(), force.body);
+  const Vec3 centre =
+      body < 0 ? Vec3(Vec3::Zero()) : app.mechanism().bodies[static_cast<std::size_t>(body)].position;
+  std::function<void(App&)> reset;
+  if (force.at)
+    reset = [name = force.name](App& changed) {
+      edit_force(changed, "Point of " + name + " at the mass centre", name,
+                 [](Force& same) { same.at.reset(); });
+    };
+  vector_rows(app, "Point",
+              {.name = "inspector/at",
+               .value = force.at.value_or(centre),
+               .unit = "m",
+               .help = force.at ? "Where it acts on the body, in the world, as drawn."
+                                : "Where it acts: the body's mass centre, unless another point is typed.",
+               .address = address_of(force, "at"),
+               .standard = !force.at},
+              reset);
+}
+
+void vector_field(App& app, const Force& force) {
+  const bool torque = force.type == ForceType::torque;
+  vector_rows(app, torque ? "Torque" : "Force",
+              {.name = "inspector/vector",
+               .value = force.vector,
+               .unit = torque ? "N m" : "N",
+               .help = force.frame == ForceFrame::world ? "Components along the world's axes."
+                                                        : "Components along the body's axes.",
+               .address = address_of(force, "vector")});
+  constexpr std::array<std::string_view, 2> frames{"world", "body"};
+  const auto chosen =
+      choice_row(app, "inspector/frame", "Axes", frames, static_cast<std::size_t>(force.frame),
+                 "World: it keeps its direction; body: it turns with the body.");
+  if (chosen)
+    edit_force(app, "Axes of " + force.name, force.name,
+               [frame = static_cast<ForceFrame>(*chosen)](Force& same) { same.frame = frame; });
+}
+
+void drag_rows(App& app, const Force& force) {
+  quantity_row(app, "Linear",
+               {.name = "inspector/linear",
+                .value = force.linear,
+                .unit = "N s/m",
+                .help = "Force by the speed through air at rest.",
+                .least = Least::zero,
+                .address = address_of(force, "linear")});
+  quantity_row(app, "Quadratic",
+               {.name = "inspector/quadratic",
+                .value = force.quadratic,
+                .unit = "N s^2/m^2",
+                .help = "Force by the square of the speed through air at rest.",
+                .least = Least::zero,
+                .address = address_of(force, "quadratic")});
+}
+
+} // namespace
+
+void force_inspector(App& app, const Force& force) {
+  name_row(app, {PartKind::force, force.name});
+  text_row(app, "inspector/description", "Note", force.description, "A note for whoever reads the scene.",
+           [name = force.name](App& changed, const std::string& text) {
+             edit_force(changed, "Describe " + name, name, [text](Force& same) { same.description = text; });
+           });
+  if (force.type == ForceType::spring) return spring_rows(app, force);
+  const std::vector<std::string> choices = body_choices(app.mechanism(), false);
+  if (const auto chosen =
+          name_choice_row(app, "inspector/body", "Body", choices, force.body, "The body it acts on."))
+    edit_force(app, "Body of " + force.name, force.name,
+               [chosen = *chosen](Force& same) { same.body = chosen; });
+  point_rows(app, force);
+  if (force.type == ForceType::drag)
+    drag_rows(app, force);
+  else
+    vector_field(app, force);
+}
+
+} // namespace flyball

@@ -1,0 +1,69 @@
+// What is known of the selected part, to be read and edited.
+#include "app/render/icons.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/inspector/inspector_parts.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <cctype>
+
+namespace flyball {
+
+namespace {
+
+std::string title_of(const App& app) {
+  const Selection& selection = app.selection();
+  if (selection.empty()) return "Scene";
+  if (selection.parts.size() > 1) return std::to_string(selection.parts.size()) + " parts";
+  const PartId id = find_part(app.mechanism(), selection.parts.front());
+  const auto i = static_cast<std::size_t>(id.index);
+  std::string word = "body";
+  if (id.kind == PartKind::joint) word = std::string(type_name(app.mechanism().joints[i].type)) + " joint";
+  if (id.kind == PartKind::force) word = type_name(app.mechanism().forces[i].type);
+  word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+  return word;
+}
+
+// The title, and at the right a way to be rid of what it names.
+void title(App& app) {
+  const float start = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushFont(app.fonts.strong);
+  ImGui::TextUnformatted(title_of(app).c_str());
+  ImGui::PopFont();
+  note_widget(app.widgets, "inspector/title");
+  if (app.selection().parts.size() != 1) return;
+  const float side = ImGui::GetFrameHeight() + 2 * app.scale;
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(start + width - side);
+  if (icon_button(app, "inspector/delete", icon::trash, "Delete it, with what hangs on it."))
+    later(app, [](App& changed) { run_command(changed, "edit.delete"); });
+}
+
+void contents(App& app) {
+  const Selection& selection = app.selection();
+  if (selection.empty()) return scene_inspector(app);
+  if (selection.parts.size() > 1) return several_inspector(app);
+  const PartId id = find_part(app.mechanism(), selection.parts.front());
+  const auto i = static_cast<std::size_t>(id.index);
+  if (id.kind == PartKind::body) body_inspector(app, app.mechanism().bodies[i]);
+  if (id.kind == PartKind::joint) joint_inspector(app, app.mechanism().joints[i]);
+  if (id.kind == PartKind::force) force_inspector(app, app.mechanism().forces[i]);
+}
+
+} // namespace
+
+void inspector_panel(App& app, const PanelRect& rect) {
+  // Tab goes from field to field only from one that is typed in; otherwise the key has another meaning.
+  begin_panel("inspector", rect,
+              app.inspector.typing.name.empty() ? static_cast<int>(ImGuiWindowFlags_NoNavInputs) : 0);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, ImGui::GetStyle().FramePadding.y});
+  title(app);
+  contents(app);
+  ImGui::PopStyleVar(2);
+  ImGui::End();
+}
+
+} // namespace flyball

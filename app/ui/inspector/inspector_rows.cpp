@@ -1,0 +1,312 @@
+#include "app/ui/inspector/inspector_rows.hpp"
+
+#include "app/document/rename.hpp"
+#include "app/render/icons.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/address.hpp"
+
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr std::size_t searchable = 15; // names, from which on a choice is searched rather than looked through
+
+template <class List, class Change>
+void change_named(List& list, const std::string& name, const Change& change) {
+  const auto found = std::ranges::find_if(list, [&](const auto& part) { return part.name == name; });
+  if (found != list.end()) change(*found);
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  };
+  return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
+}
+
+// Begins the list of a choice beside the label.
+bool begin_choice(App& app, const std::string& name, const std::string& label, const std::string& chosen,
+                  const char* help) {
+  ImGui::SetNextItemWidth(row_label(app, label, help));
+  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
+  const bool open = ImGui::BeginCombo(("##" + name).c_str(), chosen.c_str());
+  ImGui::PopStyleColor();
+  if (!open) {
+    note_widget(app.widgets, name);
+    help_on_hover(help);
+  }
+  return open;
+}
+
+// A body's point keeps being told of.
+void rename_told_point(App& app, const Part& part, const std::string& name) {
+  if (part.kind != PartKind::body) return;
+  if (auto told = app.inspector.points.extract(part.name)) {
+    told.key() = name;
+    app.inspector.points.insert(std::move(told));
+  }
+}
+
+// Of a joint or force, whose fields are called the same.
+template <class Change>
+void change_bodies(App& app, const Part& part, const Change& change) {
+  if (part.kind == PartKind::joint)
+    edit_joint(app, "Bodies of " + part.name, part.name, change);
+  else
+    edit_force(app, "Bodies of " + part.name, part.name, change);
+}
+
+void swap_bodies(App& app, const Part& part) {
+  change_bodies(app, part, [](auto& held) {
+    std::swap(held.bodies[0], held.bodies[1]);
+    std::swap(held.points[0], held.points[1]);
+  });
+}
+
+} // namespace
+
+void edit_later(App& app, const std::string& step, std::function<void(Mechanism&, Selection&)> change) {
+  later(app, [step, change = std::move(change)](App& changed) {
+    edit(changed, step, [&](Mechanism& mechanism, Selection& selection) {
+      change(mechanism, selection);
+      drop_lost_sliders(changed.mechanism(), mechanism);
+    });
+  });
+}
+
+void edit_body(App& app, const std::string& step, const std::string& name,
+               std::function<void(Body&)> change) {
+  edit_later(app, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
+    change_named(mechanism.bodies, name, change);
+  });
+}
+
+void edit_joint(App& app, const std::string& step, const std::string& name,
+                std::function<void(Joint&)> change) {
+  edit_later(app, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
+    change_named(mechanism.joints, name, change);
+  });
+}
+
+void edit_force(App& app, const std::string& step, const std::string& name,
+                std::function<void(Force&)> change) {
+  edit_later(app, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
+    change_named(mechanism.forces, name, change);
+  });
+}
+
+void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism) {
+  const auto known = [](const Mechanism& in, const std::string& address) {
+    try {
+      get_parameter(in, address);
+      return true;
+    } catch (const SceneError&) {
+      return false;
+    }
+  };
+  std::erase_if(mechanism.sliders, [&](const Slider& slider) {
+    return !known(mechanism, slider.parameter) && known(before, slider.parameter);
+  });
+}
+
+bool inspector_section(App& app, const std::string& name, const char* title, bool open) {
+  const auto found = app.inspector.open.find(name);
+  bool now = open;
+  if (found != app.inspector.open.end()) {
+    now = found->second;
+  } else {
+    // What is open stays open while one works in it, even if the last number that opened it goes.
+    if (app.inspector.seen_of.parts != app.selection().parts) {
+      app.inspector.seen.clear();
+      app.inspector.seen_of = app.selection();
+    }
+    bool& seen = app.inspector.seen[name];
+    now = seen = seen || open;
+  }
+  const bool before = now;
+  ImGui::Dummy({0, 2 * app.scale});
+  section(app, name, title, now);
+  if (now != before) app.inspector.open[name] = now;
+  return now;
+}
+
+float row_label(App& app, const std::string& label, const char* help) {
+  const float labels = label_width(app), width = ImGui::GetContentRegionAvail().x;
+  const float start = ImGui::GetCursorPosX();
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+  clipped_text(label, labels - 3 * app.scale);
+  ImGui::PopStyleColor();
+  help_on_hover(help);
+  ImGui::SameLine(0, 0);
+  ImGui::SetCursorPosX(start + labels);
+  return std::max(width - labels - margin_width(app), 20 * app.scale);
+}
+
+bool name_field(App& app, const std::string& widget, const Part& part, float width) {
+  TextField field{.name = widget,
+                  .text = part.name,
+                  .check =
+                      [&app, part](const std::string& typed) {
+                        try {
+                          Mechanism copy = app.mechanism();
+                          rename_part(copy, part, typed);
+                          return std::string();
+                        } catch (const SceneError& error) {
+                          return error.expected();
+                        }
+                      },
+                  .take =
+                      [part](App& changed, const std::string& typed) {
+                        rename_told_point(changed, part, typed);
+                        edit(changed, "Rename " + part.name + " to " + typed,
+                             [&](Mechanism& mechanism, Selection& selection) {
+                               rename_part(mechanism, part, typed);
+                               std::ranges::replace(selection.parts, part, Part{part.kind, typed});
+                             });
+                      }};
+  return text_field(app, field, width);
+}
+
+void name_row(App& app, const Part& part) {
+  const char* help = "What the part is called in the scene, in results and in addresses.";
+  const float width = row_label(app, "Name", help);
+  if (!name_field(app, "inspector/name", part, width)) help_on_hover(help);
+}
+
+void text_row(App& app, const std::string& name, const std::string& label, const std::string& text,
+              const char* help, const std::function<void(App&, const std::string&)>& take) {
+  const float width = row_label(app, label, help);
+  if (!text_field(app, {.name = name, .text = text, .check = {}, .take = take}, width) && !text.empty())
+    help_on_hover(text.c_str());
+}
+
+std::optional<std::size_t> choice_row(App& app, const std::string& name, const std::string& label,
+                                      std::span<const std::string_view> options, std::size_t chosen,
+                                      const char* help) {
+  std::optional<std::size_t> other;
+  if (!begin_choice(app, name, label, std::string(options[chosen]), help)) return other;
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    const std::string option(options[i]);
+    if (ImGui::Selectable(option.c_str(), i == chosen) && i != chosen) other = i;
+    note_widget(app.widgets, name + "/" + option);
+  }
+  ImGui::EndCombo();
+  return other;
+}
+
+std::optional<std::string> name_choice_row(App& app, const std::string& name, const std::string& label,
+                                           std::span<const std::string> options, const std::string& chosen,
+                                           const char* help) {
+  std::optional<std::string> other;
+  if (!begin_choice(app, name, label, chosen, help)) return other;
+  std::string& search = app.inspector.choice_search;
+  if (ImGui::IsWindowAppearing()) search.clear();
+  if (options.size() > searchable) {
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-1);
+    ImGui::InputTextWithHint("##search", "Search", &search);
+    note_widget(app.widgets, name + "/search");
+  }
+  std::vector<const std::string*> shown;
+  for (const std::string& option : options)
+    if (search.empty() || contains(option, search)) shown.push_back(&option);
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(shown.size()));
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      const std::string& option = *shown[static_cast<std::size_t>(i)];
+      ImGui::PushID(i);
+      if (ImGui::Selectable(option.c_str(), option == chosen) && option != chosen) other = option;
+      ImGui::PopID();
+      note_widget(app.widgets, name + "/" + option);
+    }
+  ImGui::EndCombo();
+  return other;
+}
+
+bool check_row(App& app, const std::string& name, const std::string& label, bool on, const char* help,
+               const char* refused) {
+  bool now = on;
+  const float row_height = ImGui::GetFrameHeight();
+  ImGui::BeginDisabled(refused != nullptr);
+  ImGui::PushID(name.c_str());
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.f, std::round(app.scale)));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {8 * app.scale, 1 * app.scale});
+  // As high as other rows, so that several can stand in one.
+  const float spare = std::max(row_height - ImGui::GetFrameHeight(), 0.f);
+  ImGui::BeginGroup();
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + spare / 2);
+  const bool clicked = ImGui::Checkbox(label.c_str(), &now);
+  const float used = ImGui::GetItemRectSize().x;
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y);
+  ImGui::Dummy({used, spare / 2});
+  ImGui::EndGroup();
+  ImGui::PopStyleVar(2);
+  ImGui::PopID();
+  ImGui::EndDisabled();
+  note_widget(app.widgets, name);
+  help_on_hover(refused ? refused : help);
+  return clicked;
+}
+
+void vector_rows(App& app, const std::string& label, const VectorField& field,
+                 const std::function<void(App&)>& reset) {
+  for (int i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    QuantityField number{.name = field.name + "/" + axis_letters[at],
+                         .value = field.value[i],
+                         .unit = field.unit,
+                         .help = field.help,
+                         .standard = field.standard,
+                         .axis = i};
+    if (!field.address.empty()) number.address = field.address + "." + std::to_string(i);
+    if (field.set) number.set = [set = field.set, i](App& changed, double value) { set(changed, i, value); };
+    quantity_row(app, i == 0 ? label : "", number, i == 0 ? reset : std::function<void(App&)>());
+  }
+}
+
+std::vector<std::string> body_choices(const Mechanism& mechanism, bool ground) {
+  std::vector<std::string> names;
+  if (ground) names.emplace_back(ground_name);
+  for (const Body& body : mechanism.bodies)
+    names.push_back(body.name);
+  return names;
+}
+
+void body_end_row(App& app, const Part& part, const std::array<std::string, 2>& bodies, std::size_t end,
+                  const char* label) {
+  const std::vector<std::string> choices = body_choices(app.mechanism(), true);
+  const std::string name = "inspector/bodies/" + std::to_string(end);
+  const char* help = end == 0 ? "The first body: what coordinates and reactions are counted from."
+                              : "The second body, which a positive coordinate moves.";
+  if (const auto chosen = name_choice_row(app, name, label, choices, bodies[end], help)) {
+    if (*chosen == bodies[1 - end]) // two ends on one body have no meaning
+      swap_bodies(app, part);
+    else
+      change_bodies(app, part, [end, body = *chosen](auto& held) { held.bodies[end] = body; });
+  }
+  if (end == 0) return;
+  ImGui::SameLine(0, 0);
+  if (margin_button(app, "inspector/bodies/swap", icon::swap, "Swap the two.")) swap_bodies(app, part);
+}
+
+void end_point_rows(App& app, const Part& part, const std::array<Vec3, 2>& points, std::size_t end) {
+  const char* list = part.kind == PartKind::joint ? "joints." : "forces.";
+  vector_rows(app, "at",
+              {.name = "inspector/points/" + std::to_string(end),
+               .value = points[end],
+               .unit = "m",
+               .help = "Where it holds that body, in the world, as drawn.",
+               .address = list + part.name + ".points." + std::to_string(end)});
+}
+
+} // namespace flyball

@@ -1,0 +1,70 @@
+// What inspectors are made of: rows with a label and something to edit. Edits wait until the panels are drawn
+// (see typed_field.hpp).
+#pragma once
+
+#include "app/ui/widgets/quantity_field.hpp"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace flyball {
+
+// Edits the part of that name, wherever it is by then; nothing where it is gone.
+void edit_body(App& app, const std::string& step, const std::string& name, std::function<void(Body&)> change);
+void edit_joint(App& app, const std::string& step, const std::string& name,
+                std::function<void(Joint&)> change);
+void edit_force(App& app, const std::string& step, const std::string& name,
+                std::function<void(Force&)> change);
+void edit_later(App& app, const std::string& step, std::function<void(Mechanism&, Selection&)> change);
+// Takes out sliders of numbers that `before` had and `mechanism` has not.
+void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism);
+
+// A part of an inspector that opens and closes, and remembers it.
+bool inspector_section(App& app, const std::string& name, const char* title, bool open);
+
+// The label; what follows stands beside it. Returns the width for it (without the margin).
+float row_label(App& app, const std::string& label, const char* help = nullptr);
+// With references following; says in place why a name cannot be taken.
+void name_row(App& app, const Part& part);
+// A field in which the part is given another name; whether it is being typed in.
+bool name_field(App& app, const std::string& widget, const Part& part, float width);
+void text_row(App& app, const std::string& name, const std::string& label, const std::string& text,
+              const char* help, const std::function<void(App&, const std::string&)>& take);
+// One of several words; the new one where another was chosen.
+std::optional<std::size_t> choice_row(App& app, const std::string& name, const std::string& label,
+                                      std::span<const std::string_view> options, std::size_t chosen,
+                                      const char* help);
+// One of many names, searchable where there are very many.
+std::optional<std::string> name_choice_row(App& app, const std::string& name, const std::string& label,
+                                           std::span<const std::string> options, const std::string& chosen,
+                                           const char* help);
+// A tick; `refused` says why it cannot be set. Returns whether it was clicked.
+bool check_row(App& app, const std::string& name, const std::string& label, bool on, const char* help,
+               const char* refused = nullptr);
+// Three numbers, each its own row.
+struct VectorField {
+  std::string name; // of the widgets: "inspector/at" has "inspector/at/x"
+  Vec3 value = Vec3::Zero();
+  std::string unit{}, help{};
+  std::string address{}; // of the vector
+  std::function<void(App&, int, double)> set{};
+  bool standard = false;
+};
+void vector_rows(App& app, const std::string& label, const VectorField& field,
+                 const std::function<void(App&)>& reset = {});
+
+// The bodies' names, after the ground's where it may be chosen.
+std::vector<std::string> body_choices(const Mechanism& mechanism, bool ground);
+// One of the two bodies of a joint or spring; beside the second a button that swaps them. The ends of both
+// stay on their bodies.
+void body_end_row(App& app, const Part& part, const std::array<std::string, 2>& bodies, std::size_t end,
+                  const char* label);
+// The point of that end, of a distance joint or spring.
+void end_point_rows(App& app, const Part& part, const std::array<Vec3, 2>& points, std::size_t end);
+
+inline constexpr std::array<const char*, 3> axis_letters{"x", "y", "z"};
+
+} // namespace flyball

@@ -1,0 +1,227 @@
+// How a body looks: its shapes, their sizes and colours.
+#include "app/document/mass_properties.hpp"
+#include "app/render/icons.hpp"
+#include "app/ui/inspector/inspector_parts.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "app/viewport/scene_list.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+using Change = std::function<void(Body&, Shape&)>;
+
+// Mass or density as before, whichever was typed last; the density where none was.
+void take_again(const App& app, Body& body, double density) {
+  const auto given = app.inspector.given_masses.find(body.name);
+  const bool typed = given != app.inspector.given_masses.end();
+  if (typed && given->second.mass) {
+    take_uniform_mass(body, body.mass);
+    return;
+  }
+  const bool same = typed && std::abs(given->second.density - density) <= 1e-13 * density;
+  take_mass_properties(body, same ? given->second.density : density);
+}
+
+// Edits one shape; the mass follows where it did before.
+void edit_shape(App& app, const std::string& body, std::size_t index, const char* what,
+                const Change& change) {
+  later(app, [=](App& changed) {
+    edit(changed, std::string(what) + " " + body, [&](Mechanism& mechanism, Selection&) {
+      for (Body& same : mechanism.bodies) {
+        if (same.name != body || index >= same.shapes.size()) continue;
+        const bool follows = follows_shapes(changed, same);
+        const std::optional<double> density = density_of(same);
+        change(same, same.shapes[index]);
+        if (follows && density) take_again(changed, same, *density);
+      }
+    });
+  });
+}
+
+struct ShapeRows {
+  App& app;
+  const Body& body;
+  std::size_t index;
+  std::string name; // of the widgets
+
+  const Shape& shape() const { return body.shapes[index]; }
+  Vec3 centre() const { return shape().at.value_or(body.position); }
+
+  void length(const std::string& label, const std::string& key, double value, const char* help,
+              const std::function<void(Shape&, double)>& set) const {
+    quantity_row(app, label,
+                 {.name = name + "/" + key,
+                  .value = value,
+                  .unit = "m",
+                  .help = help,
+                  .least = Least::above_zero,
+                  .set = [body = body.name, index = index, set](App& changed, double typed) {
+                    edit_shape(changed, body, index, "Size",
+                               [set, typed](Body&, Shape& s) { set(s, typed); });
+                  }});
+  }
+
+  void point(const std::string& label, const std::string& key, const Vec3& value, const char* help,
+             const std::function<Vec3&(Body&, Shape&)>& place, bool standard = false) const {
+    vector_rows(app, label,
+                {.name = name + "/" + key,
+                 .value = value,
+                 .unit = "m",
+                 .help = help,
+                 .set =
+                     [body = body.name, index = index, place](App& changed, int axis, double typed) {
+                       edit_shape(changed, body, index, "Shape",
+                                  [=](Body& b, Shape& s) { place(b, s)[axis] = typed; });
+                     },
+                 .standard = standard});
+  }
+
+  void sizes() const {
+    if (shape().type == ShapeType::box) {
+      constexpr std::array helps{"Edge along the body's x axis.", "Edge along the body's y axis.",
+                                 "Edge along the body's z axis."};
+      for (int i = 0; i < 3; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        length(std::string("Edge ") + axis_letters[at], std::string("size/") + axis_letters[at],
+               shape().size[i], helps[at], [i](Shape& s, double value) { s.size[i] = value; });
+      }
+    } else {
+      length("Radius", "radius", shape().radius, "Radius of the shape.",
+             [](Shape& s, double value) { s.radius = value; });
+    }
+    if (shape().type == ShapeType::sphere || shape().type == ShapeType::box) {
+      point(
+          "Centre", "at", centre(), "Centre of the shape in the world, as drawn.",
+          [](Body& b, Shape& s) -> Vec3& {
+            if (!s.at) s.at = b.position;
+            return *s.at;
+          },
+          !shape().at);
+    } else {
+      point("From", "from", shape().from, "One end of the centre line in the world, as drawn.",
+            [](Body&, Shape& s) -> Vec3& { return s.from; });
+      point("To", "to", shape().to, "The other end of the centre line in the world, as drawn.",
+            [](Body&, Shape& s) -> Vec3& { return s.to; });
+    }
+  }
+
+  void swatch(int i, const std::optional<Color>& color, float side) const {
+    const bool on = color ? shape().color && *shape().color == numbers(*color) : !shape().color;
+    const std::string widget = name + "/color/" + (color ? std::to_string(i) : "default");
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    if (ImGui::InvisibleButton(widget.c_str(), {side, side})) {
+      std::optional<std::array<double, 3>> wanted;
+      if (color) wanted = numbers(*color);
+      edit_shape(app, body.name, index, "Colour", [wanted](Body&, Shape& s) { s.color = wanted; });
+    }
+    note_widget(app.widgets, widget);
+    help_on_hover(color ? "Colour of the shape." : "The colour the program chooses for the body.");
+    const UiColors& colors = colors_of(app);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 to(from.x + side, from.y + side), middle((from.x + to.x) / 2, (from.y + to.y) / 2);
+    if (color)
+      list.AddCircleFilled(middle, 0.42f * side, packed(to_imgui(*color)));
+    else
+      list.AddCircle(middle, 0.38f * side, packed(colors.dim), 0, 1.5f * app.scale);
+    if (on) list.AddCircle(middle, 0.5f * side, packed(colors.accent), 0, 2 * app.scale);
+  }
+
+  void colours() const {
+    constexpr std::array palette{okabe_ito::orange, okabe_ito::sky_blue, okabe_ito::green,
+                                 okabe_ito::yellow, okabe_ito::blue,     okabe_ito::vermillion,
+                                 okabe_ito::purple, rgb(0x9AA3AD)};
+    const float width = row_label(app, "Colour", "How the shape is coloured; it means nothing else.");
+    const float side = ImGui::GetFrameHeight() - 4 * app.scale, gap = 3 * app.scale;
+    const int a_row = std::max(1, static_cast<int>((width + margin_width(app) + gap) / (side + gap)));
+    ImGui::BeginGroup();
+    for (int i = 0; i <= static_cast<int>(palette.size()); ++i) {
+      if (i % a_row != 0) ImGui::SameLine(0, gap);
+      swatch(i - 1, i == 0 ? std::nullopt : std::optional(palette[static_cast<std::size_t>(i - 1)]), side);
+    }
+    ImGui::EndGroup();
+  }
+
+  static std::array<double, 3> numbers(const Color& color) {
+    // Through bytes, so that a file has the colour as it is on screen.
+    const auto part = [](float x) { return std::round(static_cast<double>(x) * 255) / 255; };
+    return {part(color.r), part(color.g), part(color.b)};
+  }
+
+  void type() const {
+    constexpr std::array<std::string_view, 4> types{"sphere", "box", "cylinder", "capsule"};
+    const auto chosen = choice_row(app, name + "/type", "Shape", types,
+                                   static_cast<std::size_t>(shape().type), "What the body looks like.");
+    if (chosen)
+      edit_shape(app, body.name, index, "Shape",
+                 [type = static_cast<ShapeType>(*chosen)](Body& b, Shape& s) { s = shape_as(s, type, b); });
+    ImGui::SameLine(0, 0);
+    if (margin_button(app, name + "/remove", icon::close, "Take this shape away; the mass stays."))
+      edit_body(app, "Remove a shape of " + body.name, body.name, [index = index](Body& same) {
+        if (index < same.shapes.size())
+          same.shapes.erase(same.shapes.begin() + static_cast<std::ptrdiff_t>(index));
+      });
+  }
+};
+
+void add_shape(App& app, const Body& body) {
+  Shape shape;
+  shape.radius = body.shapes.empty() ? 2 * scene_scale(app.mechanism()).unit : body.shapes.back().radius;
+  if (!(shape.radius > 0)) shape.radius = body.shapes.back().size.maxCoeff() / 2;
+  edit_body(app, "Add a shape to " + body.name, body.name,
+            [shape](Body& same) { same.shapes.push_back(shape); });
+}
+
+} // namespace
+
+Shape shape_as(const Shape& shape, ShapeType type, const Body& body) {
+  Shape other = shape;
+  other.type = type;
+  const auto is_rod = [](ShapeType t) { return t == ShapeType::cylinder || t == ShapeType::capsule; };
+  if (is_rod(shape.type) && is_rod(type)) return other;
+  const Quat turn = body.rotation.normalized();
+  // Half the edges of a box around it, along the body's axes.
+  Vec3 centre = shape.at.value_or(body.position), half = Vec3::Constant(shape.radius);
+  if (shape.type == ShapeType::box) half = shape.size / 2;
+  if (is_rod(shape.type)) {
+    centre = (shape.from + shape.to) / 2;
+    half = ((turn.conjugate() * (shape.to - shape.from)).cwiseAbs() / 2).cwiseMax(shape.radius);
+  }
+  int longest = 0;
+  half.maxCoeff(&longest);
+  if (is_rod(type)) {
+    const Vec3 along = turn * (half[longest] * Vec3::Unit(longest));
+    other.from = centre - along;
+    other.to = centre + along;
+    other.at.reset();
+    other.radius = half.minCoeff();
+    return other;
+  }
+  if (is_rod(shape.type)) other.at = centre;
+  other.from = other.to = Vec3::Zero();
+  other.size = type == ShapeType::box ? Vec3(2 * half) : Vec3(Vec3::Zero());
+  other.radius = type == ShapeType::box ? 0 : half.minCoeff();
+  return other;
+}
+
+void shapes_section(App& app, const Body& body) {
+  if (!inspector_section(app, "inspector/shapes section", "Shapes", true)) return;
+  if (body.shapes.empty()) paragraph("Drawn from what is joined to it.", colors_of(app).dim);
+  for (std::size_t i = 0; i < body.shapes.size(); ++i) {
+    if (i > 0) ImGui::Dummy({0, 3 * app.scale});
+    const ShapeRows rows{app, body, i, "inspector/shapes/" + std::to_string(i)};
+    rows.type();
+    rows.sizes();
+    rows.colours();
+  }
+  if (text_button(app, "inspector/shapes/add", "Add a shape")) add_shape(app, body);
+  help_on_hover("Another solid that the body looks like; its mass stays until a density is typed.");
+}
+
+} // namespace flyball

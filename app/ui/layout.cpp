@@ -1,0 +1,152 @@
+#include "app/ui/layout.hpp"
+
+#include "app/ui/widgets/ui_style.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr float toolbar_height = 68, narrow = 1060;                    // points
+constexpr float least_panel = 230, most_panel = 560, least_view = 240; // points
+
+float panel_width(float wanted, float room) {
+  return std::clamp(wanted, least_panel, std::max(least_panel, std::min(most_panel, room)));
+}
+
+// Of the height of two panels, for the upper one.
+float upper_share(const App& app, const Layout& layout, float height) {
+  const PanelState& panels = app.panels;
+  if (layout.stacked && app.mode == Mode::explore) {
+    if (panels.stacked_share > 0) return panels.stacked_share;
+    if (panels.parameters_height == 0) return 0.4f;
+    return std::clamp(panels.parameters_height * app.scale / height, 0.15f, 0.5f);
+  }
+  return panels.inspector_share;
+}
+
+// Two panels one above the other.
+void divide(const PanelRect& whole, float share, PanelRect& upper, PanelRect& lower) {
+  upper = lower = whole;
+  upper.height = std::round(whole.height * share);
+  lower.y += upper.height;
+  lower.height -= upper.height;
+}
+
+// With the second view to the right of the first.
+void share_view(const App& app, Layout& layout) {
+  if (!motion_beside(app)) return;
+  layout.beside = layout.view;
+  layout.view.width = std::max(std::floor(layout.view.width / 2), 1.f);
+  layout.beside.x += layout.view.width;
+  layout.beside.width = std::max(layout.beside.width - layout.view.width, 1.f);
+}
+
+// Returns how far the person has dragged the line this frame. Each has a small window of its own, above the
+// panels.
+float splitter(App& app, const char* name, const PanelRect& line, bool upright) {
+  const float grip = 4 * app.scale, thick = std::max(1.f, std::round(app.scale));
+  const ImVec2 from(line.x - (upright ? grip : 0), line.y - (upright ? 0 : grip));
+  const ImVec2 size(upright ? 2 * grip : line.width, upright ? line.height : 2 * grip);
+  ImGui::SetNextWindowPos(from);
+  ImGui::SetNextWindowSize(size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleVar(2);
+  ImGui::InvisibleButton("line", size);
+  note_widget(app.widgets, name);
+  const bool active = ImGui::IsItemActive(), lit = active || ImGui::IsItemHovered();
+  if (lit) ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
+  const UiColors& colors = ui_colors(app.theme);
+  const ImVec2 to(line.x + (upright ? thick : line.width), line.y + (upright ? line.height : thick));
+  ImGui::GetWindowDrawList()->AddRectFilled(
+      {line.x, line.y}, to, ImGui::ColorConvertFloat4ToU32(lit ? colors.accent : colors.border));
+  ImGui::End();
+  if (!active) return 0;
+  return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
+}
+
+} // namespace
+
+Layout layout_of(const App& app, float width, float height) {
+  const float s = app.scale;
+  const bool building = app.mode == Mode::build;
+  Layout layout;
+  const float top = std::round(toolbar_height * s);
+  float below = std::max(height - top, 1.f);
+  layout.toolbar = {0, 0, width, top};
+  if (!building && app.study.open != Study::none) {
+    const float study = std::round(below * app.panels.study_share);
+    below -= study;
+    layout.study = {0, top + below, width, study};
+  }
+  layout.stacked = width < narrow * s;
+  if (layout.stacked) {
+    const float panel = std::round(s * panel_width(app.panels.stacked_width, width / s - least_view));
+    layout.view = {0, top, std::max(width - panel, 1.f), below};
+    share_view(app, layout);
+    layout.side = {layout.view.width, top, panel, below};
+    const float share = upper_share(app, layout, below);
+    if (building)
+      divide(layout.side, share, layout.outline, layout.inspector);
+    else
+      divide(layout.side, share, layout.parameters, layout.results);
+    return layout;
+  }
+  const float right =
+      std::round(s * panel_width(app.panels.results_width, width / s - least_view - least_panel));
+  const float left =
+      std::round(s * panel_width(app.panels.parameters_width, (width - right) / s - least_view));
+  (building ? layout.outline : layout.parameters) = {0, top, left, below};
+  layout.side = {width - right, top, right, below};
+  if (building || !app.selection().empty())
+    divide(layout.side, upper_share(app, layout, below), layout.inspector, layout.results);
+  else
+    layout.results = layout.side;
+  layout.view = {left, top, std::max(width - left - right, 1.f), below};
+  share_view(app, layout);
+  return layout;
+}
+
+void drag_splitters(App& app, const Layout& layout) {
+  const float s = app.scale;
+  PanelState& panels = app.panels;
+  const auto clamped = [](float points) { return std::clamp(points, least_panel, most_panel); };
+  const PanelRect& side = layout.side;
+  float& side_width = layout.stacked ? panels.stacked_width : panels.results_width;
+  if (!layout.stacked) {
+    const float by = splitter(app, "splitter/left", {layout.view.x, layout.view.y, 1, side.height}, true);
+    panels.parameters_width = clamped(panels.parameters_width + by / s);
+  }
+  side_width =
+      clamped(side_width - splitter(app, "splitter/right", {side.x, side.y, 1, side.height}, true) / s);
+  if (layout.study.height > 0) {
+    const PanelRect& study = layout.study;
+    const float moved = splitter(app, "splitter/study", {study.x, study.y, study.width, 1}, false);
+    const float whole = study.height + side.height;
+    panels.study_share = std::clamp(panels.study_share - moved / whole, 0.2f, 0.75f);
+  }
+  const PanelRect& lower = layout.results.height > 0 ? layout.results : layout.inspector;
+  if (lower.height == side.height) return;
+  const float by = splitter(app, "splitter/lower", {side.x, lower.y, side.width, 1}, false);
+  if (by == 0) return;
+  const float share = std::clamp(upper_share(app, layout, side.height) + by / side.height, 0.15f, 0.85f);
+  (layout.stacked && app.mode == Mode::explore ? panels.stacked_share : panels.inspector_share) = share;
+}
+
+void begin_panel(const char* name, const PanelRect& rect, int more_flags) {
+  ImGui::SetNextWindowPos({rect.x, rect.y});
+  ImGui::SetNextWindowSize({rect.width, rect.height});
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | more_flags);
+}
+
+} // namespace flyball

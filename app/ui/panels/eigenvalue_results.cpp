@@ -1,0 +1,57 @@
+// How small disturbances of the steady state behave.
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// In the order of the list: round-off leaves parts that ought to vanish at a tiny fraction of the largest.
+std::string part_text(double value, double largest) {
+  return value_text(value, std::max(largest * 1e-5, 1e-12), {6, 1e-16, false});
+}
+
+// Where the linearised motion turns with the drives: what a period makes of a disturbance.
+void multiplier_results(App& app, const Floquet& floquet) {
+  if (!section(app, "results/eigenvalues", "Floquet multipliers", app.panels.eigenvalues)) return;
+  paragraph("The linearised motion turns with the drives. In a period a disturbance becomes a multiplier "
+            "times what it "
+            "was: above 1 in size it grows.",
+            colors_of(app).dim);
+  row(app, "Period", value_text(floquet.period, 1e-4 * floquet.period, {6, 1e-16, false}), "s");
+  for (std::size_t i = 0; i < floquet.growth.size(); ++i) {
+    const std::complex<double> mu = floquet.multipliers[i];
+    if (mu.imag() < 0) continue; // its conjugate stands for both
+    const double size = std::abs(floquet.multipliers.front());
+    const std::string imaginary = mu.imag() > 1e-9 * size ? " ± " + part_text(mu.imag(), size) + " i" : "";
+    row(app, "Multiplier", part_text(mu.real(), size) + imaginary, "");
+    row(app, "Growth", value_text(floquet.growth[i], 1e-6 / floquet.period, {6, 1e-16, false}), "1/s");
+  }
+}
+
+} // namespace
+
+void eigenvalue_results(App& app) {
+  if (app.answer.solution.floquet) return multiplier_results(app, *app.answer.solution.floquet);
+  const auto& eigenvalues = app.answer.solution.eigenvalues;
+  if (!eigenvalues || eigenvalues->empty()) return;
+  if (!section(app, "results/eigenvalues", "Eigenvalues", app.panels.eigenvalues)) return;
+  paragraph("Disturbances grow or die out with the real part and swing with the imaginary part.",
+            colors_of(app).dim);
+  double largest = 0;
+  for (const std::complex<double>& z : *eigenvalues)
+    largest = std::max(largest, std::abs(z));
+  for (const std::complex<double>& z : *eigenvalues) {
+    if (z.imag() < 0) continue; // its conjugate stands for both
+    const bool pair = z.imag() > 1e-5 * largest;
+    const double frequency = z.imag() / 6.283185307179586;
+    const std::string label = pair ? value_text(frequency, largest * 1e-4, {4, 1e-16, false}) + " Hz" : "";
+    const std::string imaginary = pair ? " ± " + part_text(z.imag(), largest) + " i" : "";
+    row(app, label, part_text(z.real(), largest) + imaginary, "1/s");
+  }
+}
+
+} // namespace flyball

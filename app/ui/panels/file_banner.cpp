@@ -1,0 +1,70 @@
+#include "app/render/icons.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// What is on disk is known now and not wanted.
+void keep_mine(App& app) {
+  const std::filesystem::path file = app.document.file();
+  try {
+    app.files.watch = FileWatch(file, read_bytes(file, 0.));
+  } catch (const SceneError&) { // gone: there is nothing to be kept from
+  }
+  const bool save_wanted = app.files.save_wanted;
+  app.files.conflict = app.files.save_wanted = false;
+  if (save_wanted) save_document(app);
+}
+
+void conflict(App& app) {
+  const UiColors& colors = colors_of(app);
+  const bool saving = app.files.save_wanted;
+  ImGui::AlignTextToFramePadding();
+  paragraph(std::string(icon::warning) + "  " + (saving ? "Not saved yet: " : "") + document_name(app) +
+                " has changed on disk, and there are unsaved changes here.",
+            colors.text);
+  if (text_button(app, "banner/reload", "Take the file's")) reload_document(app);
+  help_on_hover("Read the file again. Undo brings the unsaved changes back.");
+  ImGui::SameLine();
+  if (text_button(app, "banner/keep", saving ? "Overwrite the file" : "Keep mine", true)) keep_mine(app);
+}
+
+void discarded(App& app) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("The unsaved work was discarded.");
+  ImGui::SameLine();
+  if (text_button(app, "banner/bring_back", "Bring it back")) bring_back_discarded(app);
+  ImGui::SameLine();
+  if (text_button(app, "banner/close", icon::close)) app.files.aside.clear();
+}
+
+} // namespace
+
+void file_banner(App& app, const PanelRect& view) {
+  const bool both_changed = app.files.conflict && !app.document.file().empty();
+  if (app.dialog.showing || (!both_changed && app.files.aside.empty())) return;
+  const float s = app.scale;
+  ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
+  if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, view.width - 24 * s), 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::Begin("file banner", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PopStyleVar(2);
+  if (both_changed)
+    conflict(app);
+  else
+    discarded(app);
+  ImGui::End();
+}
+
+} // namespace flyball

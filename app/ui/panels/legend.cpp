@@ -1,0 +1,121 @@
+#include "app/ui/panels/legend.hpp"
+
+#include "app/ui/settings.hpp"
+#include "app/ui/studies/modes/modes_control.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+std::string motion_words(const App& app) {
+  if (moving_mode(app)) return "Swinging in mode " + std::to_string(*app.study.modes.chosen + 1);
+  return motion_words(app, shown_motion(app));
+}
+
+// A dashed frame, as the drawn pose has.
+void dashes(ImDrawList& list, ImVec2 from, ImVec2 to, ImU32 color, float scale) {
+  const float step = 5 * scale, on = 3 * scale, thick = 1.4f * scale;
+  for (float x = from.x; x < to.x; x += step)
+    for (const float y : {from.y, to.y})
+      list.AddLine({x, y}, {std::min(x + on, to.x), y}, color, thick);
+  for (float y = from.y; y < to.y; y += step)
+    for (const float x : {from.x, to.x})
+      list.AddLine({x, y}, {x, std::min(y + on, to.y)}, color, thick);
+}
+
+void draw_mark(const App& app, LegendMark mark, ImVec2 from, ImVec2 to) {
+  const Palette& colors = palette(app.theme);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const BodyHues& hues = app.document.hues();
+  const Color body = colors.bodies[hues.empty() ? 0 : hues.front() % colors.bodies.size()];
+  const auto fill = [&](Color color, float alpha) {
+    color.a = alpha;
+    list.AddRectFilled(from, to, packed(to_imgui(color)), 2 * app.scale);
+  };
+  if (mark == LegendMark::solid || mark == LegendMark::outlined) fill(body, 1);
+  if (mark == LegendMark::glass) fill(body, 0.45f);
+  if (mark == LegendMark::motion) fill(colors.motion, colors.motion.a);
+  if (mark == LegendMark::outlined || mark == LegendMark::dashed)
+    dashes(list, from, to, packed(to_imgui(colors.drawn)), app.scale);
+}
+
+} // namespace
+
+std::vector<LegendRow> legend_rows(App& app) {
+  if (app.mechanism().bodies.empty()) return {};
+  const ViewScene& scene = *shown_scene(app);
+  const bool apart = !scene.drawn.empty(); // the two poses differ
+  std::vector<LegendRow> rows;
+  if (app.mode == Mode::build) {
+    rows.push_back({apart ? LegendMark::outlined : LegendMark::solid, "Drawn pose"});
+    if (apart)
+      rows.push_back({LegendMark::glass, "Steady state"});
+    else if (converged(app) && app.view.ghost && !solving(app))
+      rows.front().words = "Drawn pose = steady state";
+    return rows;
+  }
+  if (!converged(app)) {
+    const bool moves = !view_frame(app).poses.empty();
+    rows.push_back({LegendMark::solid, moves ? motion_words(app) : std::string("Drawn pose")});
+    return rows;
+  }
+  rows.push_back({LegendMark::solid, "Steady state"});
+  if (apart) rows.push_back({LegendMark::dashed, "Drawn pose"});
+  if (!scene.motion.empty()) rows.push_back({LegendMark::motion, motion_words(app)});
+  return rows;
+}
+
+void legend(App& app, const PanelRect& view) {
+  const std::vector<LegendRow> rows = legend_rows(app);
+  if (rows.empty() || view.width < 260 * app.scale || view.height < 160 * app.scale) return;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale;
+  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(view.y + 10 * s)},
+                          ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowBgAlpha(0.88f);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 4 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {6 * s, 2 * s});
+  ImGui::Begin("legend", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  const float line = ImGui::GetTextLineHeight(), side = std::round(0.55f * line);
+  const float width = std::round(1.4f * line);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const std::vector<LegendRow> shown = app.panels.legend ? rows : std::vector<LegendRow>();
+  float room = ImGui::CalcTextSize("Shown").x + 16 * s;
+  for (const LegendRow& row : shown)
+    room = std::max(room, width + 7 * s + ImGui::CalcTextSize(row.words.c_str()).x);
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  if (ImGui::InvisibleButton("title", {room, line})) open_legend(app, !app.panels.legend);
+  note_widget(app.widgets, "legend");
+  const bool lit = ImGui::IsItemHovered();
+  help_on_hover(app.panels.legend ? "Fold the legend" : "What is drawn how");
+  const ImU32 ink = packed(lit ? colors.text : colors.dim);
+  list.AddText({from.x, from.y}, ink, "Shown");
+  const float r = 3.5f * s, cx = from.x + room - r, cy = from.y + line / 2;
+  if (app.panels.legend)
+    list.AddTriangleFilled({cx - r, cy - r / 2}, {cx + r, cy - r / 2}, {cx, cy + r / 1.5f}, ink);
+  else
+    list.AddTriangleFilled({cx + r / 2, cy - r}, {cx + r / 2, cy + r}, {cx - r / 1.5f, cy}, ink);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float top = at.y + std::round((line - side) / 2);
+    draw_mark(app, shown[i].mark, {at.x + s, top}, {at.x + width, top + side});
+    list.AddText({at.x + width + 7 * s, at.y}, packed(colors.text), shown[i].words.c_str());
+    ImGui::Dummy({room, line});
+    note_widget(app.widgets, "legend/" + std::to_string(i));
+  }
+  ImGui::End();
+  ImGui::PopStyleVar(5);
+}
+
+} // namespace flyball

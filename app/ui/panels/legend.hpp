@@ -1,0 +1,23 @@
+// What the view shows, named: which pose is drawn how.
+#pragma once
+
+#include "app/ui/layout.hpp"
+
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+enum class LegendMark { solid, outlined, dashed, glass, motion };
+
+struct LegendRow {
+  LegendMark mark = LegendMark::solid;
+  std::string words; // "Steady state"
+};
+// What is in the view now; nothing for an empty document.
+std::vector<LegendRow> legend_rows(App& app);
+
+// A small window in the view's upper right corner, which a click on its title folds.
+void legend(App& app, const PanelRect& view);
+
+} // namespace flyball

@@ -1,0 +1,116 @@
+// What the drives and joints bear.
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+std::string force_text(double value, double largest, const NumberStyle& numbers) {
+  // Digits of the largest: a component that ought to vanish is not told to twelve digits of round-off.
+  if (std::abs(value) <= 1e-12 * std::max(largest, 1.0)) return "0";
+  return value_text(value, largest * 1e-6, {6, numbers.noise, numbers.run_times});
+}
+
+// Five digits of each component; what is round-off beside the largest of all is zero.
+std::string vector_text(const Vec3& v, double largest) {
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += (i ? "  " : "") + (std::abs(v[i]) <= 1e-9 * largest ? "0" : short_text(v[i], 5));
+  return text;
+}
+
+void drive_torques(App& app) {
+  const std::vector<DriveTorque>& torques = app.answer.solution.drive_torques;
+  if (torques.empty()) return;
+  ImGui::Dummy({0, 2 * app.scale});
+  if (!section(app, "results/torques", "Drive torques", app.panels.torques)) return;
+  double largest = 0;
+  struct Row {
+    const DriveTorque* torque;
+    bool range; // least and greatest, below the mean
+  };
+  std::vector<Row> rows;
+  for (const DriveTorque& t : torques) {
+    largest = std::max({largest, std::abs(t.value), t.range ? t.range->most - t.range->least : 0});
+    rows.push_back({&t, false});
+    if (t.range) rows.push_back({&t, true});
+  }
+  visible_rows(rows.size(), [&](std::size_t i) {
+    const DriveTorque& t = *rows[i].torque;
+    const char* unit = t.angle ? "N m" : "N";
+    const auto text = [&](double value) { return force_text(value, largest, app.options.numbers); };
+    if (rows[i].range)
+      return row(app, "   least … greatest", text(t.range->least) + " … " + text(t.range->most), unit,
+                 "Over all phases of the drives.");
+    std::string help = "By the drive, positive along its coordinate.";
+    if (t.varying)
+      help += "\nChanges as the drives turn; at the drawn phase " + text(t.value) + " " + unit + ".";
+    if (t.nonunique) help += "\nThe loops share it among several drives: the smallest that do it.";
+    const std::string name = coordinate_label(t);
+    row(app,
+        !t.varying ? name
+        : t.range  ? name + " (mean)"
+                   : name + " (varies)",
+        text(t.range ? t.range->mean : t.value), unit, help.c_str());
+  });
+}
+
+// What gears do along the coordinates of their joints, whose reactions include it.
+void gear_reactions(App& app, double force, double torque) {
+  const std::vector<GearReaction>& gears = app.answer.solution.gears;
+  const NumberStyle& numbers = app.options.numbers;
+  visible_rows(2 * gears.size(), [&](std::size_t i) {
+    const GearReaction& g = gears[i / 2];
+    const bool second = i % 2 == 1, angle = second ? g.angle_b : g.angle_a;
+    row(app,
+        second      ? ""
+        : g.varying ? g.joint + " (varies)"
+                    : g.joint,
+        force_text(second ? g.b : g.a, angle ? torque : force, numbers), angle ? "N m" : "N",
+        second ? "The gear on its second joint's child, along that joint's coordinate; part of its reaction."
+               : "The gear on its first joint's child, along that joint's coordinate; part of its reaction.");
+  });
+}
+
+void reactions(App& app) {
+  const Solution& solution = app.answer.solution;
+  if (solution.reactions.empty()) return;
+  if (!section(app, "results/reactions", "Reactions", app.panels.reactions)) return;
+  paragraph(solution.reactions_nonunique ? "Parent on child: x, y, z of the world. The loops hold more than "
+                                           "they need; of those marked ≈ these are the smallest that do it."
+                                         : "Parent on child: x, y, z of the world.",
+            colors_of(app).dim);
+  double force = 0, torque = 0;
+  for (const Reaction& r : solution.reactions) {
+    force = std::max(force, r.force.lpNorm<Eigen::Infinity>());
+    torque = std::max(torque, r.torque.lpNorm<Eigen::Infinity>());
+  }
+  // Torques of a mechanism that has none are round-off of its forces.
+  const bool torques = torque > 1e-9 * force;
+  const std::size_t rows = torques ? 2 : 1;
+  visible_rows(rows * solution.reactions.size(), [&](std::size_t i) {
+    const Reaction& r = solution.reactions[i / rows];
+    if (i % rows == 1) return row(app, "", vector_text(r.torque, torque), "N m");
+    row(app, std::string(r.nonunique ? "≈ " : "") + r.joint + (r.varying ? " (varies)" : ""),
+        vector_text(r.force, force), "N",
+        r.varying     ? "Changes as the drives turn; at the drawn phase."
+        : r.nonunique ? "The loops hold more than they need; of many possible ones the smallest."
+                      : nullptr);
+  });
+  gear_reactions(app, force, torque);
+}
+
+} // namespace
+
+void load_results(App& app) {
+  drive_torques(app);
+  reactions(app);
+}
+
+} // namespace flyball

@@ -1,0 +1,63 @@
+#include "app/ui/commands.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+struct Menu {
+  const char* title;
+  std::string_view prefix; // of its commands' ids
+};
+constexpr std::array menus{Menu{"File", "file."}, Menu{"Edit", "edit."},   Menu{"Insert", "insert."},
+                           Menu{"View", "view."}, Menu{"Units", "units."}, Menu{"Study", "study."},
+                           Menu{"Help", "help."}};
+
+void recent_menu(App& app) {
+  const auto& files = recent_files(app);
+  if (files.empty() || !ImGui::BeginMenu("Open recent")) return;
+  std::filesystem::path chosen;
+  for (const std::filesystem::path& file : files) {
+    ImGui::PushID(file.c_str());
+    if (ImGui::MenuItem(file.filename().c_str(), nullptr)) chosen = file;
+    help_on_hover(file.c_str());
+    ImGui::PopID();
+  }
+  ImGui::EndMenu();
+  if (!chosen.empty()) open_file(app, chosen);
+}
+
+void items(App& app, const Menu& menu) {
+  for (const Command& command : commands()) {
+    if (!std::string_view(command.id).starts_with(menu.prefix)) continue;
+    if (command.separated) ImGui::Separator();
+    const bool on = command.checked && command.checked(app);
+    ImGui::PushID(command.id);
+    if (ImGui::MenuItem(label_of(app, command).c_str(), key_text(command.key).c_str(), on,
+                        is_enabled(app, command)))
+      command.run(app);
+    ImGui::PopID();
+    note_widget(app.widgets, std::string("menu/") + command.id);
+    help_on_hover(command.help);
+    if (command.id == std::string_view("file.open")) recent_menu(app);
+  }
+}
+
+} // namespace
+
+void menu_bar(App& app) {
+  if (!ImGui::BeginMenuBar()) return;
+  for (const Menu& menu : menus) {
+    const bool open = ImGui::BeginMenu(menu.title);
+    note_widget(app.widgets, std::string("menu/") + menu.title);
+    if (!open) continue;
+    items(app, menu);
+    ImGui::EndMenu();
+  }
+  ImGui::EndMenuBar();
+}
+
+} // namespace flyball

@@ -1,0 +1,345 @@
+// The parts of the mechanism as a list in three sections, in step with what is selected in the view.
+#include "app/render/icons.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/mistake_list.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "app/viewport/body_form.hpp"
+
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <string_view>
+
+namespace flyball {
+
+namespace {
+
+constexpr std::size_t searchable = 15; // parts, from which on there is a field to search them
+constexpr std::size_t most_mistakes = 4;
+
+struct SectionWords {
+  PartKind kind;
+  const char *list, *title;
+};
+constexpr std::array sections{SectionWords{PartKind::body, "bodies", "Bodies"},
+                              SectionWords{PartKind::joint, "joints", "Joints"},
+                              SectionWords{PartKind::force, "forces", "Forces"}};
+
+std::string widget_of(const Part& part) {
+  const auto* words = std::ranges::find(sections, part.kind, &SectionWords::kind);
+  return words == sections.end() ? "" : std::string("outline/") + words->list + "/" + part.name;
+}
+
+bool matches(std::string_view name, std::string_view search) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  };
+  return std::search(name.begin(), name.end(), search.begin(), search.end(), same) != name.end();
+}
+
+struct PartOrder {
+  bool operator()(const Part& a, const Part& b) const {
+    return a.kind != b.kind ? a.kind < b.kind : a.name < b.name;
+  }
+};
+
+// What all rows of a frame share.
+struct Outline {
+  App& app;
+  std::array<bool, 3> open{}; // sections
+  std::map<Part, std::size_t, PartOrder> mistakes;
+  float height = 0;
+
+  const Mechanism& mechanism() const { return app.mechanism(); }
+  const OutlineRows& kept() const { return app.inspector.rows; }
+};
+
+std::size_t count_of(const Mechanism& mechanism, PartKind kind) {
+  if (kind == PartKind::body) return mechanism.bodies.size();
+  return kind == PartKind::joint ? mechanism.joints.size() : mechanism.forces.size();
+}
+
+const std::string& name_of(const Mechanism& mechanism, PartId id) {
+  const auto i = static_cast<std::size_t>(id.index);
+  if (id.kind == PartKind::body) return mechanism.bodies[i].name;
+  return id.kind == PartKind::joint ? mechanism.joints[i].name : mechanism.forces[i].name;
+}
+
+// "revolute", "1 kg"
+std::string kind_words(const Mechanism& mechanism, PartId id) {
+  const auto i = static_cast<std::size_t>(id.index);
+  if (id.kind == PartKind::joint) return std::string(type_name(mechanism.joints[i].type));
+  if (id.kind == PartKind::body) return short_text(mechanism.bodies[i].mass, 4) + " kg";
+  const Force& force = mechanism.forces[i];
+  const bool damper = force.type == ForceType::spring && force.stiffness == 0 && force.damping != 0;
+  return damper ? "damper" : std::string(type_name(force.type));
+}
+
+// In order, those of closed sections left out.
+std::vector<PartId> open_rows(const Outline& outline) {
+  std::vector<PartId> rows;
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    if (const std::vector<PartId>& listed = outline.kept().listed[i]; outline.open[i])
+      rows.insert(rows.end(), listed.begin(), listed.end());
+  return rows;
+}
+
+void keep_rows(App& app) {
+  OutlineRows& kept = app.inspector.rows;
+  const std::string& search = app.inspector.search;
+  if (kept.revision == app.document.revision() && kept.theme == app.theme && kept.search == search) return;
+  kept.revision = app.document.revision();
+  kept.theme = app.theme;
+  kept.search = search;
+  kept.colours = body_colors(app.document.hues(), app.theme);
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    kept.listed[i].clear();
+    const int count = static_cast<int>(count_of(app.mechanism(), sections[i].kind));
+    for (int k = 0; k < count; ++k)
+      if (const PartId id{sections[i].kind, k};
+          search.empty() || matches(name_of(app.mechanism(), id), search))
+        kept.listed[i].push_back(id);
+  }
+}
+
+void choose(Outline& outline, const Part& part) {
+  App& app = outline.app;
+  const ImGuiIO& io = ImGui::GetIO();
+  Selection selection = app.selection();
+  InspectorState& state = app.inspector;
+  if (io.KeyShift && state.anchor.kind != PartKind::none) {
+    const PartId anchor = find_part(outline.mechanism(), state.anchor);
+    const std::vector<PartId> rows = open_rows(outline);
+    const auto row = [&](PartId id) { return std::ranges::find(rows, id); };
+    auto from = row(anchor), to = row(find_part(outline.mechanism(), part));
+    if (from != rows.end() && to != rows.end()) {
+      if (to < from) std::swap(from, to);
+      if (!io.KeyCtrl) selection = {};
+      // By hand, as asking for each whether it is there would take too long for thousands.
+      for (; from <= to; ++from) {
+        Part chosen{from->kind, name_of(outline.mechanism(), *from)};
+        if (!io.KeyCtrl)
+          selection.parts.push_back(std::move(chosen));
+        else
+          selection.add(std::move(chosen));
+      }
+    }
+  } else {
+    if (io.KeyCtrl)
+      selection.toggle(part);
+    else
+      selection.set(part);
+    state.anchor = part;
+  }
+  state.revealed = part; // it is under the hand
+  later(app, [selection](App& changed) { select(changed, selection); });
+}
+
+void row_menu(App& app, const Part& part) {
+  if (!ImGui::BeginPopupContextItem()) return;
+  if (ImGui::IsWindowAppearing() && !app.selection().has(part))
+    later(app, [part](App& changed) { select(changed, {{part}}); });
+  for (const char* id : {"edit.rename", "edit.duplicate", "edit.mirror", "edit.circular", "edit.delete"}) {
+    const Command& wanted = command(id);
+    const std::string keys = key_text(wanted.key);
+    if (ImGui::MenuItem(wanted.title, keys.c_str(), false, is_enabled(app, wanted)))
+      later(app, [id](App& changed) { run_command(changed, id); });
+    note_widget(app.widgets, std::string("outline/menu/") + id);
+    help_on_hover(wanted.help);
+  }
+  ImGui::EndPopup();
+}
+
+// The body's colour, or what kind of part it is.
+void draw_sign(const Outline& outline, PartId id, ImVec2 at) {
+  const App& app = outline.app;
+  const UiColors& colors = colors_of(app);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float r = 5 * app.scale;
+  const ImVec2 middle(at.x + r, at.y);
+  const auto i = static_cast<std::size_t>(id.index);
+  if (id.kind == PartKind::body) {
+    Color color = outline.kept().colours[i];
+    const Body& body = outline.mechanism().bodies[i];
+    if (!body.shapes.empty() && body.shapes.front().color) {
+      const auto& own = *body.shapes.front().color;
+      color = {static_cast<float>(own[0]), static_cast<float>(own[1]), static_cast<float>(own[2])};
+    }
+    list.AddCircleFilled(middle, r, packed(to_imgui(color)));
+  } else if (id.kind == PartKind::joint) {
+    const Joint& joint = outline.mechanism().joints[i];
+    const bool driven =
+        std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.drive.has_value(); });
+    list.AddCircle(middle, r - app.scale, packed(driven ? colors.accent : colors.dim), 0, 2 * app.scale);
+    if (driven) list.AddCircleFilled(middle, 2 * app.scale, packed(colors.accent));
+  } else {
+    const float h = 4 * app.scale;
+    list.AddLine({middle.x - r, middle.y + h}, {middle.x + r, middle.y - h}, packed(colors.dim),
+                 2 * app.scale);
+    list.AddTriangleFilled({middle.x + r, middle.y - h}, {middle.x + r - 5 * app.scale, middle.y - h},
+                           {middle.x + r, middle.y - h + 5 * app.scale}, packed(colors.dim));
+  }
+}
+
+void draw_row(const Outline& outline, PartId id, const Part& part, ImVec2 from, float width, bool hovered) {
+  App& app = outline.app;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, height = outline.height;
+  const ImVec2 to(from.x + width, from.y + height);
+  const bool selected = app.selection().has(part), pointed = app.view.hovered == id;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImVec4 back = colors.accent;
+  back.w = selected ? 0.22f : 0;
+  if (selected) list.AddRectFilled(from, to, packed(back), ImGui::GetStyle().FrameRounding);
+  if (hovered || pointed)
+    list.AddRectFilled(from, to, packed(selected ? back : colors.raised), ImGui::GetStyle().FrameRounding);
+  draw_sign(outline, id, {from.x + 10 * s, from.y + height / 2});
+
+  float right = to.x - 6 * s;
+  const float y = from.y + (height - ImGui::GetTextLineHeight()) / 2;
+  if (const auto mistake = outline.mistakes.find(part); mistake != outline.mistakes.end()) {
+    right -= ImGui::CalcTextSize(icon::warning).x;
+    list.AddText({right, y}, packed(colors.warn), icon::warning);
+    if (hovered) ImGui::SetTooltip("%s", words_for(app.mistakes[mistake->second]).c_str());
+    right -= 6 * s;
+  }
+  const std::string words = kind_words(outline.mechanism(), id);
+  const float name_width = ImGui::CalcTextSize(part.name.c_str()).x, left = from.x + 28 * s;
+  const float words_width = ImGui::CalcTextSize(words.c_str()).x;
+  // Where there is no room for both, the name goes first.
+  if (left + name_width + 10 * s + words_width < right) {
+    right -= words_width;
+    list.AddText({right, y}, packed(colors.dim), words.c_str());
+    right -= 10 * s;
+  }
+  ImGui::SetCursorScreenPos({left, y});
+  clipped_text(part.name, right - left);
+}
+
+void part_row(Outline& outline, PartId id) {
+  App& app = outline.app;
+  const Part part{id.kind, name_of(outline.mechanism(), id)};
+  const std::string widget = widget_of(part), field = widget + "/name";
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
+  if (typing_in(app, field)) {
+    draw_sign(outline, id, {from.x + 10 * app.scale, from.y + outline.height / 2});
+    ImGui::SetCursorScreenPos({from.x + 22 * app.scale, from.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        {6 * app.scale, (outline.height - ImGui::GetFontSize()) / 2});
+    name_field(app, field, part, width - 22 * app.scale);
+    ImGui::PopStyleVar();
+    ImGui::SetCursorScreenPos({from.x, from.y + outline.height});
+    return;
+  }
+  ImGui::PushID(id.index);
+  if (ImGui::InvisibleButton("row", {width, outline.height})) choose(outline, part);
+  note_widget(app.widgets, widget);
+  const bool hovered = ImGui::IsItemHovered();
+  if (hovered) app.view.hovered = id;
+  if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !ImGui::GetIO().KeyCtrl)
+    later(app, [field, name = part.name](App& changed) { start_typing(changed, field, name); });
+  row_menu(app, part);
+  ImGui::PopID();
+  draw_row(outline, id, part, from, width, hovered);
+  ImGui::SetCursorScreenPos({from.x, from.y + outline.height});
+}
+
+void part_section(Outline& outline, std::size_t section) {
+  App& app = outline.app;
+  const SectionWords& words = sections[section];
+  const std::size_t count = count_of(outline.mechanism(), words.kind);
+  if (count == 0) return;
+  const std::vector<PartId>& shown = outline.kept().listed[section];
+  const std::string title = std::string(words.title) + "   " + std::to_string(count);
+  const Part& last = app.selection().empty() ? Part{} : app.selection().parts.back();
+  const bool reveal = last.kind == words.kind && last != app.inspector.revealed;
+  if (reveal) app.inspector.open[std::string("outline/") + words.list] = true;
+  if (!inspector_section(app, std::string("outline/") + words.list, title.c_str(), true)) return;
+  outline.open[section] = true;
+  if (reveal) {
+    const auto row = std::ranges::find(shown, find_part(outline.mechanism(), last));
+    const float y = ImGui::GetCursorPosY() + static_cast<float>(row - shown.begin()) * outline.height;
+    const float top = ImGui::GetScrollY(), room = ImGui::GetWindowHeight();
+    if (row != shown.end() && (y < top || y + 2 * outline.height > top + room))
+      ImGui::SetScrollY(std::max(y - room / 2, 0.f));
+    app.inspector.revealed = last;
+  }
+  ImGui::PushID(words.list);
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(shown.size()), outline.height);
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
+      part_row(outline, shown[static_cast<std::size_t>(i)]);
+  ImGui::PopID();
+}
+
+void search_field(App& app) {
+  const Mechanism& mechanism = app.mechanism();
+  if (mechanism.bodies.size() + mechanism.joints.size() + mechanism.forces.size() < searchable) {
+    app.inspector.search.clear();
+    return;
+  }
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputTextWithHint("##search", "Search", &app.inspector.search);
+  note_widget(app.widgets, "outline/search");
+  ImGui::Dummy({0, 4 * app.scale});
+}
+
+void what_is_missing(App& app) {
+  const float top = ImGui::GetCursorPosY();
+  ImGui::Dummy({0, 6 * app.scale});
+  heading(app, "What is missing");
+  mistake_rows(app, "mistakes", 0, most_mistakes);
+  app.inspector.missing_height = ImGui::GetCursorPosY() - top;
+}
+
+} // namespace
+
+void start_rename(App& app) {
+  if (app.selection().parts.size() != 1) return;
+  const Part& part = app.selection().parts.front();
+  const bool listed = app.mode == Mode::build;
+  app.inspector.revealed = {}; // bring its row into view
+  start_typing(app, listed ? widget_of(part) + "/name" : "inspector/name", part.name);
+}
+
+void outline_panel(App& app, const PanelRect& rect) {
+  const int quiet = app.inspector.typing.name.empty() ? ImGuiWindowFlags_NoNavInputs : 0;
+  begin_panel("outline", rect, quiet);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 0});
+  search_field(app);
+  // What is missing stays in view below the list.
+  const float footer = app.mistakes.empty() ? 0 : app.inspector.missing_height;
+  const float room = ImGui::GetContentRegionAvail().y;
+  ImGui::BeginChild("parts", {0, std::max(room - footer, room / 3)}, false, quiet);
+  keep_rows(app);
+  Outline outline{app, {}, {}, 0};
+  outline.height = ImGui::GetTextLineHeight() + 8 * app.scale;
+  for (std::size_t i = 0; i < app.mistakes.size(); ++i)
+    if (Part part = part_of(app.mechanism(), app.mistakes[i]); part.kind != PartKind::none)
+      outline.mistakes.emplace(std::move(part), i);
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    part_section(outline, i);
+  const bool none = app.mechanism().bodies.empty() && app.mechanism().joints.empty();
+  if (none) paragraph("The parts of the mechanism are listed here.", colors_of(app).dim);
+  const bool found =
+      std::ranges::any_of(outline.kept().listed, [](const auto& rows) { return !rows.empty(); });
+  if (!none && !found && !app.inspector.search.empty())
+    paragraph("No part is called so.", colors_of(app).dim);
+  // A click beside the rows selects nothing.
+  if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())
+    later(app, [](App& changed) { select(changed, {}); });
+  ImGui::EndChild();
+  if (!none && !app.mistakes.empty()) what_is_missing(app);
+  ImGui::PopStyleVar();
+  ImGui::End();
+}
+
+} // namespace flyball

@@ -1,0 +1,210 @@
+// The sliders: what a person explores with.
+#include "app/render/icons.hpp"
+#include "app/session/units.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
+#include "app/ui/widgets/sensitivity_line.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+namespace {
+
+// Edits the pinned slider of this address; where its range makes no sense, nothing happens but a notice.
+void change_slider(App& app, const std::string& address, const std::function<void(Slider&)>& change) {
+  later(app, [address, change](App& changed) {
+    edit(changed, "Range of " + parameter_phrase(address), [&](Mechanism& mechanism, Selection&) {
+      for (Slider& slider : mechanism.sliders) {
+        if (slider.parameter != address) continue;
+        change(slider);
+        if (slider.from == slider.to) throw SceneError("", "A slider's ends must differ.");
+        if (slider.scale == SliderScale::log && std::min(slider.from, slider.to) <= 0)
+          throw SceneError("", "A logarithmic slider's ends must be more than zero.");
+      }
+    });
+  });
+}
+
+// From, to, scale and unpinning of a pinned slider; of another, pinning.
+void range_menu(App& app, const ParameterControl& control) {
+  if (!ImGui::BeginPopup("range")) return;
+  const std::string name = "parameters/" + control.address + "/range";
+  if (control.group == ParameterGroup::pinned) {
+    const auto end = [&](const char* label, const char* key, double value, double Slider::*which) {
+      const QuantityField field{.name = name + "/" + key,
+                                .value = value,
+                                .unit = control.unit,
+                                .help = "Where the slider ends.",
+                                .set = [address = control.address, which](App& changed, double typed) {
+                                  change_slider(changed, address, [=](Slider& s) { s.*which = typed; });
+                                }};
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextUnformatted(label);
+      ImGui::SameLine(52 * app.scale);
+      quantity_field(app, field, 150 * app.scale);
+    };
+    end("From", "from", control.from, &Slider::from);
+    end("To", "to", control.to, &Slider::to);
+    bool log = control.log;
+    if (ImGui::Checkbox("Logarithmic", &log))
+      change_slider(app, control.address, [log](Slider& slider) {
+        slider.scale = log ? SliderScale::log : SliderScale::linear;
+        // From nothing there is no way up by factors.
+        if (log && slider.from == 0) slider.from = slider.to / 1000;
+      });
+    note_widget(app.widgets, name + "/log");
+    help_on_hover("Equal steps of the hand multiply the number, rather than add to it.");
+  }
+  const bool pinned = control.group == ParameterGroup::pinned;
+  if (text_button(app, name + "/pin", pinned ? "Unpin" : "Pin")) {
+    later(app, [address = control.address, pinned](App& changed) { pin(changed, address, !pinned); });
+    ImGui::CloseCurrentPopup();
+  }
+  help_on_hover(pinned ? "Take it off the pinned sliders."
+                       : "Keep it among the pinned sliders, with a range.");
+  ImGui::EndPopup();
+}
+
+// A small button at the end of the row, shown where it is of use now.
+bool small_icon(App& app, const std::string& name, const char* icon, const char* help, bool shown,
+                float width) {
+  const UiColors& colors = colors_of(app);
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float height = ImGui::GetFrameHeight();
+  const bool pressed = ImGui::InvisibleButton(name.c_str(), {width, height});
+  note_widget(app.widgets, name);
+  const bool hovered = ImGui::IsItemHovered();
+  if (shown || hovered) {
+    const ImVec2 size = ImGui::CalcTextSize(icon);
+    ImGui::GetWindowDrawList()->AddText({from.x + (width - size.x) / 2, from.y + (height - size.y) / 2},
+                                        packed(hovered ? colors.text : colors.dim), icon);
+  }
+  help_on_hover(help);
+  return pressed;
+}
+
+// The name and what of it, as far as there is room.
+void control_label(App& app, const ParameterControl& control, float width) {
+  ImGui::AlignTextToFramePadding();
+  const float start = ImGui::GetCursorPosX();
+  clipped_text(control.name, width);
+  const float used = ImGui::GetItemRectSize().x;
+  const bool told = control.group != ParameterGroup::pinned; // by the section's title
+  if (!told && !control.what.empty() && used + 40 * app.scale < width) {
+    ImGui::SameLine(0, 6 * app.scale);
+    ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+    clipped_text(control.what, width - used - 6 * app.scale);
+    ImGui::PopStyleColor();
+  }
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(start + width);
+}
+
+// A pinned slider has a line of what it moves below it.
+float row_height(const App& app, ParameterGroup group) {
+  const float gap = ImGui::GetStyle().ItemSpacing.y;
+  return ImGui::GetFrameHeight() + 18 * app.scale + 2 * gap +
+         (group == ParameterGroup::pinned ? sensitivity_height(app) + gap : 0);
+}
+
+void parameter(App& app, const ParameterControl& control) {
+  const float s = app.scale, icon_width = 22 * s;
+  const std::string name = "parameters/" + control.address;
+  ImGui::PushID(control.address.c_str());
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float start = ImGui::GetCursorPosX(), room = ImGui::GetContentRegionAvail().x;
+  const bool pointed =
+      ImGui::IsWindowHovered() &&
+      ImGui::IsMouseHoveringRect(from, {from.x + room, from.y + row_height(app, control.group)});
+  const float value_width = std::min((room - icon_width) * 0.5f, 150 * s);
+  const float value_at = room - value_width - icon_width;
+  const bool changed = control.value != control.file_value;
+  const ShownUnit unit = shown_unit(control.unit, app.units);
+  const auto set = [address = control.address](App& app_then, double value) {
+    change_parameter(app_then, address, value);
+  };
+
+  control_label(app, control, value_at - (changed ? icon_width : 0) - 4 * s);
+  if (changed) {
+    ImGui::SetCursorPosX(start + value_at - icon_width);
+    const std::string help =
+        "Back to the stored " + short_text(unit.shown(control.file_value)) + " " + unit.text;
+    if (small_icon(app, name + "/reset", icon::undo, help.c_str(), true, icon_width))
+      later(app, [set, value = control.file_value](App& app_then) { set(app_then, value); });
+    ImGui::SameLine();
+  }
+  ImGui::SetCursorPosX(start + value_at);
+  quantity_field(app,
+                 {.name = name + "/value",
+                  .value = control.value,
+                  .unit = control.unit,
+                  .help = "Click to type a number, with a unit if you like.",
+                  .address = control.address,
+                  .set = set,
+                  .framed = false},
+                 value_width);
+  ImGui::SameLine(0, 0);
+  if (small_icon(app, name + "/gear", icon::gear, "Range of the slider, pin and unpin.", pointed, icon_width))
+    ImGui::OpenPopup("range");
+
+  double value = control.value;
+  bool type_value = false;
+  if (slider(app, name, control, value, type_value))
+    later(app, [set, value](App& app_then) { set(app_then, value); });
+  if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) ImGui::OpenPopup("range");
+  if (type_value)
+    later(app, [field = name + "/value", text = short_text(unit.shown(control.value), 12) + " " + unit.text](
+                   App& app_then) { start_typing(app_then, field, text); });
+  range_menu(app, control);
+  if (control.group == ParameterGroup::pinned) sensitivity_line(app, control);
+  ImGui::PopID();
+}
+
+bool sliders_moved(const App& app) {
+  return std::ranges::any_of(
+      app.parameters, [](const ParameterControl& control) { return control.value != control.file_value; });
+}
+
+void group(App& app, ParameterGroup which, const char* name, const char* title, bool& open) {
+  const auto [first, last] = std::ranges::equal_range(app.parameters, which, {}, &ParameterControl::group);
+  if (first == last || !section(app, name, title, open)) return;
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(last - first), row_height(app, which));
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
+      parameter(app, first[i]);
+  ImGui::Dummy({0, 4 * app.scale});
+}
+
+} // namespace
+
+void parameters_panel(App& app, const PanelRect& rect) {
+  begin_panel("parameters", rect,
+              app.inspector.typing.name.empty() ? static_cast<int>(ImGuiWindowFlags_NoNavInputs) : 0);
+  if (!app.parameters.empty()) {
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
+    group(app, ParameterGroup::pinned, "parameters/pinned", "Pinned", app.panels.pinned);
+    group(app, ParameterGroup::drives, "parameters/drives", "Drive speeds", app.panels.drives);
+    group(app, ParameterGroup::springs, "parameters/springs", "Spring constants", app.panels.springs);
+    if (app.motion.on) // dampers move no steady state
+      group(app, ParameterGroup::dampers, "parameters/dampers", "Dampers", app.panels.dampers);
+    ImGui::PopStyleVar();
+    if (text_button(app, "parameters/restart", "Restart from drawn pose")) solve_from_drawn_pose(app);
+    help_on_hover("Sliders start from the last answer; this starts from the pose in the file, which may lead "
+                  "elsewhere.");
+    if (sliders_moved(app)) {
+      ImGui::SameLine();
+      if (text_button(app, "parameters/reset", "Reset all")) later(app, drop_explored);
+    }
+    app.panels.parameters_height = (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / app.scale;
+  } else {
+    paragraph("Drive speeds and spring constants get a slider here, and every number that is pinned.",
+              colors_of(app).dim);
+  }
+  ImGui::End();
+}
+
+} // namespace flyball

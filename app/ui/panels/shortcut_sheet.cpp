@@ -1,0 +1,110 @@
+#include "app/ui/commands.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+struct Line {
+  const char* keys;
+  const char* does;
+};
+constexpr std::array mouse{
+    Line{"Drag", "Orbit"},
+    Line{"Right drag, Shift+drag", "Pan"},
+    Line{"Wheel", "Zoom"},
+    Line{"Click", "Select; Ctrl adds"},
+    Line{"Ctrl+drag", "Select a box"},
+    Line{"Double-click", "All in view"},
+    Line{"Double-click a slider", "Type its value"},
+    Line{"Shift+drag a slider", "Finer"},
+    Line{"Digits while placing", "Length or size, with unit"},
+};
+
+void line(App& app, const std::string& keys, const std::string& does) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).accent);
+  ImGui::TextUnformatted(keys.c_str());
+  ImGui::PopStyleColor();
+  ImGui::TableNextColumn();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(does.c_str());
+  ImGui::PopTextWrapPos();
+  note_widget(app.widgets, "shortcuts/" + keys);
+}
+
+// Keys as wide as they are, and the rest for the words, so that none is cut.
+bool begin_lines(const char* name) {
+  if (!ImGui::BeginTable(name, 2)) return false;
+  ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed);
+  ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch);
+  return true;
+}
+
+void lines(App& app, const char* title, std::string_view prefix) {
+  heading(app, title);
+  if (!begin_lines(title)) return;
+  for (const Command& command : commands()) {
+    if (!std::string_view(command.id).starts_with(prefix) || command.key.key == 0) continue;
+    const std::string also = key_text(command.also);
+    line(app, key_text(command.key) + (also.empty() ? "" : ", " + also), command.title);
+  }
+  ImGui::EndTable();
+}
+
+} // namespace
+
+void shortcut_sheet(App& app) {
+  constexpr const char* name = "shortcuts";
+  if (!app.commands.shortcuts) {
+    if (ImGui::IsPopupOpen(name)) ImGui::ClosePopupToLevel(0, true);
+    return;
+  }
+  if (!ImGui::IsPopupOpen(name)) ImGui::OpenPopup(name);
+  const float s = app.scale;
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(1000 * s, window.x - 20 * s), std::min(600 * s, window.y - 20 * s)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ImGui::GetStyle().PopupBorderSize);
+  const bool begun = ImGui::BeginPopupModal(name, nullptr,
+                                            ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                                                ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar(3);
+  if (!begun) return;
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {8 * s, 2 * s});
+  if (ImGui::BeginTable("columns", 3, ImGuiTableFlags_SizingStretchSame)) {
+    ImGui::TableNextColumn();
+    lines(app, "File", "file.");
+    lines(app, "Insert", "insert.");
+    ImGui::TableNextColumn();
+    lines(app, "Edit", "edit.");
+    lines(app, "Study", "study.");
+    lines(app, "Help", "help.");
+    ImGui::TableNextColumn();
+    lines(app, "View", "view.");
+    heading(app, "Mouse in the view");
+    if (begin_lines("mouse")) {
+      for (const Line& entry : mouse)
+        line(app, entry.keys, entry.does);
+      ImGui::EndTable();
+    }
+    ImGui::EndTable();
+  }
+  ImGui::PopStyleVar();
+  const bool beside =
+      ImGui::IsMouseClicked(0) && !ImGui::IsWindowHovered(ImGuiHoveredFlags_RootAndChildWindows);
+  if (text_button(app, "shortcuts/close", "Close", true) || beside) app.commands.shortcuts = false;
+  if (!app.commands.shortcuts) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+}
+
+} // namespace flyball

@@ -1,0 +1,43 @@
+// How the answer was found: as much of it as a person needs to believe the digits.
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+namespace flyball {
+
+namespace {
+
+const char* fallback_text(Fallback fallback) {
+  switch (fallback) {
+  case Fallback::damped: return "damped steps";
+  case Fallback::homotopy: return "speeding up from rest";
+  case Fallback::descent: return "descent of the potential";
+  case Fallback::search: return "search all over the ranges";
+  }
+  return "";
+}
+
+} // namespace
+
+void solver_results(App& app) {
+  const Solution& solution = app.answer.solution;
+  const NumberStyle& numbers = app.options.numbers;
+  if (solution.history.empty() && solution.iterations == 0) return;
+  heading(app, "How it was found");
+  const std::string time = duration_text(solution.run_time_s, numbers);
+  const auto space = time.find(' ');
+  row(app, "Time", time.substr(0, space), time.c_str() + space + 1,
+      "From the start to the accepted answer, its stability included.");
+  note_widget(app.widgets, "results/time");
+  row(app, "Iterations", std::to_string(solution.iterations), "");
+  row(app, "Residual", magnitude_text(solution.residual, numbers), "scaled",
+      "The largest equation of the balance, in units in which its terms are of the order of one.");
+  if (solution.condition)
+    row(app, "Condition", short_text(*solution.condition, 2), "scaled",
+        "Condition number (2-norm) of the scaled equations.");
+  if (solution.fallback)
+    row(app, "Caught by", fallback_text(*solution.fallback), "",
+        "The method that led to the answer where plain Newton-Raphson steps did not.");
+  if (solution.history.size() > 1) history_plot(app, ImGui::GetContentRegionAvail().x, 84 * app.scale);
+}
+
+} // namespace flyball

@@ -1,0 +1,70 @@
+// One line at the foot of the view: solved, solving, or what is missing.
+#include "app/render/icons.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/remedies.hpp"
+#include "app/ui/widgets/mistake_list.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr double patience = 0.15; // s: a shorter wait is not worth a word
+
+struct StatusLine {
+  std::string text;
+  ImVec4 color;
+  const char* icon = "";
+};
+
+StatusLine status_line(const App& app) {
+  const UiColors& colors = colors_of(app);
+  if (app.mechanism().bodies.empty()) return {};
+  if (!app.mistakes.empty()) {
+    const std::size_t more = app.mistakes.size() - 1;
+    return {words_for(app.mistakes.front()) + (more > 0 ? "  (and " + std::to_string(more) + " more)" : ""),
+            colors.warn, icon::warning};
+  }
+  if (solving(app) && (app.waited > patience || !app.answer.ticket))
+    return {"Solving…", colors.dim, icon::refresh};
+  if (app.answer.error) return {*app.answer.error, colors.bad, icon::warning};
+  if (!app.answer.ticket) return {};
+  const Solution& solution = app.answer.solution;
+  switch (solution.status) {
+  case Status::converged: break;
+  case Status::not_converged:
+    return {solution.unheld.empty() ? "No steady state found" : unheld_words(solution), colors.bad,
+            icon::warning};
+  case Status::no_steady_state: return {"There is no steady state", colors.bad, icon::warning};
+  case Status::infeasible: return {"The loops cannot be closed", colors.bad, icon::warning};
+  }
+  if (solution.stable == true) return {"Steady state, stable", colors.good, icon::check};
+  if (solution.stable == false) return {"Steady state, unstable", colors.warn, icon::warning};
+  return {"Steady state, " +
+              std::string(solution.stability_reason ? word(*solution.stability_reason) : "stability unknown"),
+          colors.warn, icon::info};
+}
+
+} // namespace
+
+void status_chip(App& app, const PanelRect& view) {
+  const StatusLine line = status_line(app);
+  if (line.text.empty()) return;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, pad = 8 * s, room = std::max(view.width - 100 * s, 60 * s);
+  const float icon_width = ImGui::CalcTextSize(line.icon).x + 6 * s;
+  const ImVec2 size = ImGui::CalcTextSize(line.text.c_str(), nullptr, false, room - icon_width - 2 * pad);
+  const ImVec2 to(view.x + view.width - 10 * s, view.y + view.height - 10 * s);
+  const ImVec2 from(to.x - size.x - icon_width - 2 * pad, to.y - size.y - pad);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(from, to, packed(colors.panel), 5 * s);
+  list.AddRect(from, to, packed(colors.border), 5 * s, 0, std::max(1.f, std::round(s)));
+  list.AddText({from.x + pad, from.y + pad / 2}, packed(line.color), line.icon);
+  list.AddText(app.fonts.text, ImGui::GetFontSize(), {from.x + pad + icon_width, from.y + pad / 2},
+               packed(colors.text), line.text.c_str(), nullptr, room - icon_width - 2 * pad);
+  app.widgets["status"] = {from, to};
+}
+
+} // namespace flyball

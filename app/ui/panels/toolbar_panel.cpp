@@ -1,0 +1,201 @@
+#include "app/render/icons.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+struct Direction {
+  const char* name;
+  const char* text;
+  const char* help;
+  double azimuth, elevation; // rad
+};
+
+constexpr double right_angle = std::numbers::pi / 2;
+constexpr std::array directions{
+    Direction{"toolbar/front", "Front", "Look from the front (1)", 0, 0},
+    Direction{"toolbar/side", "Side", "Look from the right (2)", right_angle, 0},
+    Direction{"toolbar/top", "Top", "Look from above (3)", 0, right_angle},
+    Direction{"toolbar/iso", "Iso", "Look from the front, right and above (4)", right_angle / 2,
+              isometric_elevation},
+};
+
+struct Factor {
+  double value;
+  const char* text;
+};
+constexpr std::array factors{Factor{10, "10×"},    Factor{5, "5×"},       Factor{2, "2×"},
+                             Factor{1, "1×"},      Factor{0.5, "0.5×"},   Factor{0.2, "0.2×"},
+                             Factor{0.1, "0.1×"},  Factor{0.05, "0.05×"}, Factor{0.02, "0.02×"},
+                             Factor{0.01, "0.01×"}};
+
+void gap(const App& app) {
+  const float s = app.scale;
+  ImGui::SameLine(0, 8 * s);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float from = at.y + 5 * s, to = at.y + ImGui::GetFrameHeight() - 3 * s;
+  ImGui::GetWindowDrawList()->AddLine({at.x, from}, {at.x, to}, packed(ui_colors(app.theme).border),
+                                      std::max(1.f, std::round(s)));
+  ImGui::SameLine(0, 9 * s);
+}
+
+void next(const App& app) {
+  ImGui::SameLine(0, 2 * app.scale);
+}
+
+// A command's button; its tooltip is the command's sentence with its key.
+void command_button(App& app, const char* id, const char* icon, bool show_state = false) {
+  const Command& wanted = command(id);
+  const std::string keys = key_text(wanted.key);
+  const std::string help =
+      (wanted.label ? label_of(app, wanted) : wanted.help) + (keys.empty() ? "" : " (" + keys + ")");
+  ImGui::BeginDisabled(!is_enabled(app, wanted));
+  const bool on = show_state && wanted.checked && wanted.checked(app);
+  if (icon_button(app, "toolbar/" + std::string(id).substr(std::string(id).find('.') + 1), icon, help.c_str(),
+                  on))
+    wanted.run(app);
+  ImGui::EndDisabled();
+  next(app);
+}
+
+void file_buttons(App& app) {
+  command_button(app, "file.new", icon::file);
+  command_button(app, "file.open", icon::folder_open);
+  command_button(app, "file.save", icon::save);
+  command_button(app, "file.export", icon::camera);
+  gap(app);
+  command_button(app, "edit.undo", icon::undo);
+  command_button(app, "edit.redo", icon::redo);
+}
+
+// Two words, of which one is lit.
+void mode_switch(App& app) {
+  const UiColors& colors = colors_of(app);
+  const auto word = [&](const char* name, const char* text, Mode mode, const char* help) {
+    const bool on = app.mode == mode;
+    ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.on_accent : colors.text);
+    ImGui::PushStyleColor(ImGuiCol_Button, on ? colors.accent : colors.raised);
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, on ? colors.accent : colors.border);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {10 * app.scale, 5 * app.scale});
+    ImGui::PushID(name);
+    if (ImGui::Button(text)) set_mode(app, mode);
+    ImGui::PopID();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor(3);
+    note_widget(app.widgets, name);
+    help_on_hover(help);
+  };
+  word("toolbar/build", "Build", Mode::build,
+       "Edit the drawn pose; the steady state is the ghost beside it (Tab)");
+  ImGui::SameLine(0, 0);
+  word("toolbar/explore", "Explore", Mode::explore, "Move sliders and see where it settles (Tab)");
+  next(app);
+}
+
+void play_buttons(App& app) {
+  const bool playing = app.playback.playing;
+  if (icon_button(app, "toolbar/play", playing ? icon::pause : icon::play,
+                  playing ? "Stop the drives (Space)" : "Turn at the drives' speed (Space)", playing))
+    play(app, !playing);
+  next(app);
+  if (icon_button(app, "toolbar/rewind", icon::step_backward, "Back to the drawn phase of the drives"))
+    rewind(app);
+  next(app);
+  factor_combo(app, "toolbar/factor", 62 * app.scale);
+}
+
+void direction_buttons(App& app) {
+  for (const Direction& direction : directions) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, 5 * app.scale});
+    ImGui::PushID(direction.name);
+    if (ImGui::Button(direction.text)) look_from(app, direction.azimuth, direction.elevation);
+    ImGui::PopID();
+    ImGui::PopStyleVar();
+    note_widget(app.widgets, direction.name);
+    help_on_hover(direction.help);
+    next(app);
+  }
+  if (icon_button(app, "toolbar/fit", icon::expand, "All in view (F)"))
+    app.view.fit = app.view.keep_direction = true;
+}
+
+void toggle(App& app, const char* name, const char* text, const char* help, bool& on) {
+  const UiColors& colors = colors_of(app);
+  ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.accent : colors.dim);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, 5 * app.scale});
+  ImGui::PushID(name);
+  if (ImGui::Button(text)) on = !on;
+  ImGui::PopID();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  note_widget(app.widgets, name);
+  help_on_hover(help);
+  next(app);
+}
+
+} // namespace
+
+void factor_combo(App& app, const char* name, float width) {
+  const auto current = std::ranges::find(factors, app.playback.factor, &Factor::value);
+  ImGui::SetNextItemWidth(width);
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
+  ImGui::PushID(name);
+  if (ImGui::BeginCombo("##factor", current == factors.end() ? "" : current->text,
+                        ImGuiComboFlags_NoArrowButton | ImGuiComboFlags_HeightLarge)) {
+    for (const Factor& factor : factors)
+      if (ImGui::Selectable(factor.text, factor.value == app.playback.factor))
+        app.playback.factor = factor.value;
+    ImGui::EndCombo();
+  }
+  ImGui::PopID();
+  note_widget(app.widgets, name);
+  help_on_hover("Speed of the picture: below 1× is slow motion");
+}
+
+void toolbar_panel(App& app, const PanelRect& rect) {
+  const float s = app.scale;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 7 * s});
+  begin_panel("toolbar", rect,
+              ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_MenuBar);
+  ImGui::PopStyleVar();
+  menu_bar(app);
+  file_buttons(app);
+  gap(app);
+  mode_switch(app);
+  gap(app);
+  if (app.mode == Mode::explore) {
+    play_buttons(app);
+    gap(app);
+  }
+  direction_buttons(app);
+  gap(app);
+  toggle(app, "toolbar/ghost", "Ghost",
+         app.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)",
+         app.view.ghost);
+  toggle(app, "toolbar/grid", "Grid", "The floor", app.view.grid);
+  toggle(app, "toolbar/shadow", "Shadow", "Shadow on the floor", app.view.shadow);
+  const float side = ImGui::GetFrameHeight() + 2 * s;
+  ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), rect.width - side - 8 * s));
+  const bool dark = app.theme == Theme::dark;
+  if (icon_button(app, "toolbar/theme", dark ? icon::sun : icon::moon,
+                  dark ? "Light colours" : "Dark colours")) {
+    app.theme = dark ? Theme::light : Theme::dark;
+    apply_style(app.theme, app.scale);
+  }
+  const float line = rect.height - std::max(1.f, std::round(s));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRectFullScreen();
+  list.AddRectFilled({0, line}, {rect.width, rect.height}, packed(colors_of(app).border));
+  list.PopClipRect();
+  ImGui::End();
+}
+
+} // namespace flyball

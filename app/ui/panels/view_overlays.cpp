@@ -1,0 +1,217 @@
+// What is written over the 3-D view: what the picture shows, what lies under the cursor, what to do next.
+#include "app/ui/panels/view_overlays.hpp"
+
+#include "app/render/icons.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/address.hpp"
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// A line on a plate of its own, above the status, in the middle of the view's width.
+void draw_line(const App& app, const PanelRect& rect, const std::string& text, ImVec4 color, float& y,
+               float strength = 1) {
+  if (text.empty()) return;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, pad = 9 * s;
+  // Clear of the axes in the corner.
+  const float margin = std::min(96 * s, rect.width / 8);
+  const float room = std::max(rect.width - 2 * margin - 2 * pad, 40 * s);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, room);
+  const float x = std::round(rect.x + (rect.width - size.x) / 2);
+  y -= size.y + 8 * s;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImVec4 plate = colors.panel;
+  plate.w = 0.9f * strength;
+  color.w *= strength;
+  list.AddRectFilled({x - pad, y - 3 * s}, {x + size.x + pad, y + size.y + 3 * s}, packed(plate), 5 * s);
+  list.AddText(app.fonts.text, ImGui::GetFontSize(), {x, y}, packed(color), text.c_str(), nullptr, room);
+  y -= 4 * s;
+}
+
+} // namespace
+
+void part_label(App& app) {
+  const PartId part = app.view.hovered;
+  if (places(app.tool.tool)) return;
+  const Mechanism& m = *view_frame(app).mechanism;
+  const auto i = static_cast<std::size_t>(part.index);
+  std::string name, what;
+  if (part.kind == PartKind::body && i < m.bodies.size()) {
+    name = m.bodies[i].name;
+    what = "body, " +
+           (m.bodies[i].mass > 0 ? short_text(m.bodies[i].mass) + " kg" : std::string("without mass"));
+  } else if (part.kind == PartKind::joint && i < m.joints.size()) {
+    name = m.joints[i].name;
+    what = std::string(type_name(m.joints[i].type)) + " joint";
+  } else if (part.kind == PartKind::force && i < m.forces.size()) {
+    name = m.forces[i].name;
+    what = type_name(m.forces[i].type);
+  } else {
+    return;
+  }
+  ImGui::BeginTooltip();
+  ImGui::PushFont(app.fonts.strong);
+  ImGui::TextUnformatted(name.c_str());
+  ImGui::PopFont();
+  ImGui::SameLine();
+  ImGui::TextDisabled("%s", what.c_str());
+  ImGui::EndTooltip();
+}
+
+void caption(App& app, const PanelRect& rect) {
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, x = rect.x + 14 * s;
+  float y = rect.y + 11 * s;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect({rect.x, rect.y}, {rect.x + rect.width - 8 * s, rect.y + rect.height}, true);
+  const float big = app.fonts.strong->FontSize;
+  list.AddText(app.fonts.strong, big, {x, y}, packed(colors.text), app.mechanism().name.c_str());
+  y += big + 4 * s;
+  const bool solved = converged(app);
+  std::string state; // which pose it is, the legend says
+  if (app.playback.time != 0 && solved)
+    state = "t = " + short_text(std::floor(app.playback.time * 100) / 100, 6) + " s after the drawn phase";
+  if (!state.empty()) {
+    const ImVec2 size = ImGui::CalcTextSize(state.c_str());
+    const ImVec2 from(x - 5 * s, y - 2 * s), to(x + size.x + 5 * s, y + size.y + 2 * s);
+    ImVec4 plate = colors.panel; // nothing of the picture crosses the words
+    plate.w = 0.9f;
+    list.AddRectFilled(from, to, packed(plate), 4 * s);
+    list.AddText({x, y}, packed(colors.dim), state.c_str());
+    app.widgets["view/time"] = {from, to};
+  }
+  list.PopClipRect();
+}
+
+void motion_caption(App& app, const PanelRect& rect) {
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, big = app.fonts.strong->FontSize;
+  const ImVec2 at(rect.x + 14 * s, rect.y + 11 * s);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddText(app.fonts.strong, big, at, packed(colors.text), "Motion");
+  const MotionRun* shown = shown_motion(app);
+  const std::string words = motion_words(app, shown), what = shown ? words.substr(6) : "Computing…";
+  list.AddText({at.x, at.y + big + 4 * s}, packed(colors.dim), what.c_str());
+}
+
+void view_lines(App& app, const PanelRect& rect) {
+  const UiColors& colors = colors_of(app);
+  float y = rect.y + rect.height - 42 * app.scale;
+  draw_line(app, rect, tool_hint(app), colors.text, y);
+  app.view.lines_top = y;
+  if (!is_error(app)) draw_line(app, rect, app.notice, colors.dim, y, notice_strength(app));
+}
+
+void error_line(App& app, const PanelRect& rect) {
+  if (!is_error(app)) return;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, width = std::min(560 * s, std::max(rect.width - 2 * 96 * s, 160 * s));
+  ImGui::SetNextWindowPos({std::round(rect.x + rect.width / 2), std::round(app.view.lines_top)},
+                          ImGuiCond_Always, {0.5f, 1});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {9 * s, 5 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::Begin("error", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleVar(3);
+  const float button = ImGui::GetFrameHeight();
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushTextWrapPos(ImGui::GetContentRegionAvail().x - button);
+  ImGui::TextColored(colors.bad, "%s", icon::warning);
+  ImGui::SameLine(0, 7 * s);
+  ImGui::TextUnformatted(app.notice.c_str());
+  ImGui::PopTextWrapPos();
+  note_widget(app.widgets, "error");
+  ImGui::SameLine(width - button - 5 * s);
+  if (text_button(app, "error/close", icon::close)) app.notice.clear();
+  ImGui::End();
+}
+
+namespace {
+
+// "speed of spin 15 rad/s is tried", or how many are.
+std::string tried_text(const App& app) {
+  const Explored& explored = app.document.explored();
+  if (explored.size() > 1) return std::to_string(explored.size()) + " explored values";
+  const ShownUnit unit =
+      shown_unit(parameter_unit(app.document.stored(), explored.front().address), app.units);
+  return "Explored: " + parameter_phrase(explored.front().address) + " " +
+         short_text(unit.shown(explored.front().value), 9) + (unit.text.empty() ? "" : " " + unit.text);
+}
+
+} // namespace
+
+void explored_chip(App& app, const PanelRect& view) {
+  if (app.document.explored().empty() || app.dialog.showing || view.width < 300 * app.scale) return;
+  const float s = app.scale;
+  const auto status = app.widgets.find("status");
+  const float bottom =
+      status == app.widgets.end() ? view.y + view.height - 10 * s : status->second.from.y - 6 * s;
+  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(bottom)}, ImGuiCond_Always,
+                          {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 4 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::Begin("explored", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleVar(4);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(tried_text(app).c_str());
+  note_widget(app.widgets, "explored");
+  std::string help = app.mode == Mode::build
+                         ? "Tried while exploring and put aside while building; saving leaves it out."
+                         : "Tried, and not part of the document: saving leaves it out.";
+  for (const std::string& each : explored_words(app))
+    help += "\n" + each;
+  help_on_hover(help.c_str());
+  ImGui::SameLine(0, 8 * s);
+  if (text_button(app, "explored/keep", "Keep")) later(app, keep_explored);
+  help_on_hover("Makes the explored values the document's; an edit that can be undone.");
+  ImGui::SameLine(0, 4 * s);
+  if (text_button(app, "explored/back", "Back")) later(app, drop_explored);
+  help_on_hover("Back to the values that are stored.");
+  ImGui::End();
+}
+
+void problem_banner(App& app, const PanelRect& rect) {
+  if (app.problem.empty()) return;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, width = std::max(rect.width - 48 * s, 40 * s);
+  ImGui::SetNextWindowPos({rect.x + 24 * s, rect.y + rect.height / 2}, ImGuiCond_Always, {0, 0.5f});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {16 * s, 14 * s});
+  ImGui::Begin("problem", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PopStyleVar(3);
+  ImGui::PushFont(app.fonts.strong);
+  ImGui::TextColored(colors.bad, "%s  The scene cannot be opened", icon::warning);
+  ImGui::PopFont();
+  paragraph(app.problem, colors.text);
+  ImGui::Dummy({0, 2 * s});
+  if (text_button(app, "problem/close", "Keep the open scene")) app.problem.clear();
+  ImGui::SameLine();
+  if (text_button(app, "problem/open", "Open another…")) {
+    app.problem.clear();
+    show_open_dialog(app);
+  }
+  ImGui::End();
+}
+
+} // namespace flyball

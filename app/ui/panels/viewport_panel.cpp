@@ -1,0 +1,81 @@
+#include "app/render/imgui_compat.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/panels/legend.hpp"
+#include "app/ui/panels/view_overlays.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+void use_tool(App& app, const ViewInput& input) {
+  switch (app.tool.tool) {
+  case Tool::select:
+  case Tool::rotate:
+  case Tool::box: return;
+  case Tool::ball:
+  case Tool::block:
+  case Tool::plate: return use_placing(app, input);
+  case Tool::rod:
+  case Tool::distance:
+  case Tool::spring:
+  case Tool::damper: return use_connecting(app, input);
+  case Tool::joint: return use_joining(app, input);
+  case Tool::force:
+  case Tool::torque:
+  case Tool::drag: return use_forces(app, input);
+  }
+}
+
+} // namespace
+
+void viewport_panel(App& app, const PanelRect& rect) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  begin_panel("view", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddImage(imgui_compat::texture_id(app.view.texture), {rect.x, rect.y},
+                {rect.x + rect.width, rect.y + rect.height}, {0, 1}, {1, 0});
+  ImGui::InvisibleButton("view", {rect.width, rect.height},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  note_widget(app.widgets, "view");
+  const ViewInput input = view_input(app, rect);
+  keep_tool_state(app);
+  use_gizmo(app, input);
+  use_selecting(app, input);
+  use_tool(app, input);
+  steer(app, input);
+  caption(app, rect);
+  view_lines(app, rect);
+  status_chip(app, rect);
+  ImGui::End();
+  part_label(app);
+  tool_strip(app, rect);
+  legend(app, rect);
+  explored_chip(app, rect);
+  error_line(app, rect);
+  joint_card(app, input);
+  problem_banner(app, rect);
+}
+
+void beside_panel(App& app, const PanelRect& rect) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  begin_panel("beside", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddImage(imgui_compat::texture_id(app.view.texture_beside), {rect.x, rect.y},
+                {rect.x + rect.width, rect.y + rect.height}, {0, 1}, {1, 0});
+  ImGui::InvisibleButton("beside", {rect.width, rect.height},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  note_widget(app.widgets, "beside");
+  steer(app, view_input(app, rect)); // one camera for both
+  motion_caption(app, rect);
+  ImGui::End();
+}
+
+} // namespace flyball

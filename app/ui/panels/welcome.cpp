@@ -1,0 +1,70 @@
+// What an empty document shows instead of nothing: the first steps.
+#include "app/ui/commands.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+struct FirstStep {
+  const char* title;
+  const char* text;
+  std::array<const char*, 3> commands;
+};
+constexpr std::array first_steps{
+    FirstStep{"1  Place bodies",
+              "Choose a form, then click in the view. Sizes and masses can be typed at the right.",
+              {"insert.rod", "insert.ball", "insert.block"}},
+    FirstStep{"2  Join them",
+              "Click the point where two bodies meet, or a body and the ground.",
+              {"insert.joint", "insert.spring", "insert.distance"}},
+    FirstStep{"3  Drive and explore",
+              "Select a joint and tick Drive; Tab goes to Explore, where sliders try other values, and back.",
+              {nullptr, nullptr, nullptr}},
+};
+
+} // namespace
+
+void welcome(App& app, const PanelRect& view) {
+  if (!app.mechanism().bodies.empty() || app.tool.tool != Tool::select || app.dialog.showing) return;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, width = std::min(430 * s, view.width - 90 * s);
+  ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + view.height / 2}, ImGuiCond_Always,
+                          {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
+  ImGui::Begin("welcome", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PopStyleVar(3);
+  heading(app, "Build a mechanism");
+  for (const FirstStep& step : first_steps) {
+    ImGui::Dummy({0, 3 * s});
+    ImGui::PushFont(app.fonts.strong);
+    ImGui::TextUnformatted(step.title);
+    ImGui::PopFont();
+    paragraph(step.text, colors.dim);
+    bool first = true;
+    for (const char* id : step.commands) {
+      if (!id) continue;
+      if (!first) ImGui::SameLine();
+      first = false;
+      if (text_button(app, std::string("welcome/") + id, command(id).title)) run_command(app, id);
+      help_on_hover(command(id).help);
+    }
+  }
+  ImGui::Dummy({0, 6 * s});
+  if (text_button(app, "welcome/examples", "Start from an example…", true)) show_gallery(app);
+  ImGui::SameLine();
+  if (text_button(app, "welcome/open", "Open…")) show_open_dialog(app);
+  paragraph("Ctrl+P finds every command, ? lists the keys.", colors.dim);
+  ImGui::End();
+}
+
+} // namespace flyball

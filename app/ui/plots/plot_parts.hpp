@@ -1,0 +1,32 @@
+// The parts of a plot on the screen: what the hand does, what is read off, the menu.
+#pragma once
+
+#include "app/ui/plots/plot_draw.hpp"
+#include "app/ui/plots/plot_view.hpp"
+
+namespace flyball {
+
+// One plot in one frame.
+struct PlotFrame {
+  App& app;
+  const std::string& name; // "plot/NAME"
+  PlotView& view;
+  const Plot& plot;
+  const PlotLayout& layout;
+  const PlotPen& pen;
+  PlotEvents& events;
+};
+
+// The pointer, in pixels from the plot's corner.
+PixelPoint pointer_in(const PlotPen& pen);
+// Zooms by the factor (above one: out) about a pixel.
+void zoom_plot(PlotView& view, const PlotLayout& layout, int axis, double pixel, double factor);
+
+// Area, axes and legend as widgets. Returns whether the pointer is in the area, with nothing else in hand.
+bool take_plot_input(const PlotFrame& frame);
+// Cross-hair and a card with x, the curves' values there and the point under the pointer.
+void show_plot_reading(const PlotFrame& frame);
+// What a right click brings.
+void plot_menu(const PlotFrame& frame);
+
+} // namespace flyball

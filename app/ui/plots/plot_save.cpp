@@ -1,0 +1,135 @@
+#include "app/ui/plots/plot_save.hpp"
+
+#include "app/plot/csv.hpp"
+#include "app/plot/svg.hpp"
+#include "app/ui/app.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/file_list.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/file.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+namespace {
+
+constexpr int smallest = 160, largest = 8192; // pixels
+
+const char* extension_of(PlotFile kind) {
+  return kind == PlotFile::png ? ".png" : kind == PlotFile::svg ? ".svg" : ".csv";
+}
+
+void number(App& app, const char* name, int& value) {
+  ImGui::SetNextItemWidth(84 * app.scale);
+  ImGui::PushID(name);
+  ImGui::InputInt("##number", &value, 0);
+  ImGui::PopID();
+  note_widget(app.widgets, name);
+}
+
+bool fits(const PlotSave& save) {
+  return save.kind == PlotFile::csv ||
+         (std::ranges::min(save.pixels) >= smallest && std::ranges::max(save.pixels) <= largest);
+}
+
+void size_fields(App& app, PlotSave& save) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("Size");
+  ImGui::SameLine(80 * app.scale);
+  number(app, "save_plot/width", save.pixels[0]);
+  ImGui::SameLine();
+  ImGui::TextUnformatted("×");
+  ImGui::SameLine();
+  number(app, "save_plot/height", save.pixels[1]);
+  ImGui::SameLine();
+  ImGui::TextDisabled("pixels");
+  if (!fits(save)) paragraph("From 160 to 8192 pixels a side.", colors_of(app).bad);
+}
+
+// Returns whether the dialog is done with.
+bool save_plot(App& app) {
+  const PlotSave& save = *app.dialog.plot;
+  const std::filesystem::path file = typed_file(app, extension_of(save.kind));
+  if (!may_replace(app, file)) return false;
+  if (save.kind == PlotFile::png) {
+    app.export_request = ExportRequest{
+        .file = file, .width = save.pixels[0], .height = save.pixels[1], .plot = app.dialog.plot};
+    return true;
+  }
+  try {
+    replace_file(file, save.kind == PlotFile::csv
+                           ? to_csv(save.plot, save.look)
+                           : to_svg(save.plot,
+                                    {.width = save.pixels[0], .height = save.pixels[1], .dark = save.dark},
+                                    save.look));
+    app.notice = "Saved " + file.string();
+    return true;
+  } catch (const SceneError& error) {
+    app.files.message = error.what();
+    app.files.replacing.clear();
+    return false;
+  }
+}
+
+void close(App& app) {
+  app.dialog.plot.reset();
+  close_dialog();
+}
+
+} // namespace
+
+void show_plot_dialog(App& app, const std::string& name, PlotSave save) {
+  app.dialog.wanted = Dialog::save_plot;
+  // Twice as fine as the screen, for print.
+  const double finer = save.kind == PlotFile::png ? 2 : 1;
+  const auto pixels = [&](double points) {
+    return std::clamp(static_cast<int>(finer * points), smallest, largest);
+  };
+  save.pixels = {pixels(save.width), pixels(save.height)};
+  show_folder(app, usual_folder(app));
+  app.files.replacing.clear();
+  const std::filesystem::path& file = app.document.file();
+  const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
+  app.dialog.path = stem + "-" + file_stem(name) + extension_of(save.kind);
+  app.dialog.plot = std::make_shared<PlotSave>(std::move(save));
+}
+
+void plot_dialog(App& app) {
+  if (!begin_dialog(app, Dialog::save_plot, "Save the plot", 560)) return;
+  if (!app.dialog.plot) { // nothing to be saved
+    close(app);
+    return end_dialog();
+  }
+  PlotSave& save = *app.dialog.plot;
+  const char* extension = extension_of(save.kind);
+  bool accepted = path_field(app, "save_plot", "Name");
+  folder_line(app, "save_plot");
+  if (const auto clicked = file_list(app, "save_plot", extension, false, 160 * app.scale))
+    app.dialog.path = clicked->filename().string();
+  if (save.kind != PlotFile::csv) size_fields(app, save);
+  const std::filesystem::path file = typed_file(app, extension);
+  const bool replaces = file == app.files.replacing;
+  if (replaces)
+    paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+  else if (!app.files.message.empty())
+    paragraph(app.files.message, colors_of(app).bad);
+  ImGui::Dummy({0, 2 * app.scale});
+  const bool usable = fits(save) && !app.dialog.path.empty();
+  ImGui::BeginDisabled(!usable);
+  accepted = text_button(app, "save_plot/save", replaces ? "Replace" : "Save", true) || accepted;
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  const bool cancelled = text_button(app, "save_plot/cancel", "Cancel") || escape_pressed();
+  std::error_code ignored;
+  if (cancelled)
+    close(app);
+  else if (accepted && usable && std::filesystem::is_directory(typed_path(app), ignored))
+    entered_file(app, false); // goes there
+  else if (accepted && usable && save_plot(app))
+    close(app);
+  end_dialog();
+}
+
+} // namespace flyball

@@ -1,0 +1,86 @@
+#include "app/ui/plots/plot_view.hpp"
+
+#include "app/ui/plots/plot_parts.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+std::shared_ptr<const PlotLayout> laid_out(const App& app, PlotView& view, const Plot& plot, ImVec2 size) {
+  PlotKept& kept = view.kept;
+  const bool same = kept.layout && plot.version != 0 && kept.version == plot.version &&
+                    kept.look == view.look && kept.width == size.x && kept.height == size.y &&
+                    kept.scale == app.scale;
+  if (!same)
+    kept = {plot.version,
+            view.look,
+            size.x,
+            size.y,
+            app.scale,
+            std::make_shared<PlotLayout>(plot_layout(plot, view.look, static_cast<double>(size.x),
+                                                     static_cast<double>(size.y),
+                                                     plot_metrics(app.fonts, app.scale)))};
+  return kept.layout;
+}
+
+void draw_box(const PlotFrame& frame) {
+  if (frame.view.drag != PlotView::Drag::box || !frame.view.dragged) return;
+  const PlotBox& a = frame.layout.area;
+  const PixelPoint to = pointer_in(frame.pen);
+  const ImVec2 from = frame.pen.at(frame.view.drag_from[0], frame.view.drag_from[1]),
+               end = frame.pen.at(std::clamp(to[0], a.left, a.right), std::clamp(to[1], a.top, a.bottom));
+  const ImVec2 low(std::min(from.x, end.x), std::min(from.y, end.y)),
+      high(std::max(from.x, end.x), std::max(from.y, end.y));
+  ImVec4 accent = colors_of(frame.app).accent;
+  frame.pen.list.AddRect(low, high, packed(accent), 0, 0, std::max(1.f, std::round(frame.app.scale)));
+  accent.w = 0.12f;
+  frame.pen.list.AddRectFilled(low, high, packed(accent));
+}
+
+} // namespace
+
+PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Plot& plot, ImVec2 size) {
+  PlotEvents events;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  size = {std::max(std::floor(size.x), 1.f), std::max(std::floor(size.y), 1.f)};
+  if (!ImGui::IsRectVisible(size)) {
+    ImGui::Dummy(size);
+    return events;
+  }
+  ImGui::PushID(name.c_str());
+  const std::shared_ptr<const PlotLayout> layout = laid_out(app, view, plot, size);
+  const PlotPen pen{*ImGui::GetWindowDrawList(),
+                    app.fonts,
+                    {std::round(at.x), std::round(at.y)},
+                    app.scale,
+                    app.theme == Theme::dark};
+  const std::string path = "plot/" + name;
+  const PlotFrame frame{app, path, view, plot, *layout, pen, events};
+  view.cursor.reset();
+  bool reading = false;
+  pen.list.PushClipRect(at, {at.x + size.x, at.y + size.y}, true);
+  if (layout->drawable()) {
+    reading = take_plot_input(frame);
+    draw_plot(pen, plot, view.look, *layout);
+    draw_box(frame);
+  }
+  const bool held = view.drag == PlotView::Drag::marker;
+  draw_marker(pen, plot, *layout, held);
+  if (reading) show_plot_reading(frame); // its card lies over everything
+  pen.list.PopClipRect();
+  plot_menu(frame);
+  ImGui::SetCursorScreenPos(at);
+  ImGui::Dummy(size);
+  ImGui::PopID();
+  return events;
+}
+
+void fit_plot(PlotView& view) {
+  view.look.range = {};
+}
+
+} // namespace flyball

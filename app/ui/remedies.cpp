@@ -1,0 +1,117 @@
+// What a person can do at once where there is no steady state.
+#include "app/ui/remedies.hpp"
+
+#include "app/document/remedies.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+#include <functional>
+
+namespace flyball {
+
+namespace {
+
+// Buttons in rows of the panel's width.
+class Buttons {
+ public:
+  explicit Buttons(App& app)
+      : app_(app), right_(ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x) {}
+
+  void add(const std::string& name, const char* text, const char* help, std::function<void(App&)> act,
+           bool primary = false) {
+    const float width = ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
+    if (!first_ && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width < right_)
+      ImGui::SameLine();
+    first_ = false;
+    if (text_button(app_, "results/remedy/" + name, text, primary)) later(app_, std::move(act));
+    help_on_hover(help);
+  }
+
+ private:
+  App& app_;
+  float right_;
+  bool first_ = true;
+};
+
+std::vector<RunawayCoordinate> holdable(const App& app) {
+  std::vector<RunawayCoordinate> found;
+  for (const UnheldCoordinate& c : app.answer.solution.unheld)
+    if (RunawayCoordinate runaway{c.joint, c.index, c.force}; can_hold(app.mechanism(), runaway))
+      found.push_back(std::move(runaway));
+  return found;
+}
+
+void show_how_it_moves(App& app) {
+  if (app.study.open == Study::motion && app.motion.on) {
+    set_mode(app, Mode::explore);
+    restart_motion(app);
+  } else {
+    if (app.study.open == Study::motion) app.study.open = Study::none; // open_study() would close it
+    open_study(app, Study::motion);
+  }
+}
+
+void set_gravity(App& app, const std::string& step, const Vec3& gravity) {
+  edit(app, step, [&](Mechanism& mechanism, Selection&) { mechanism.gravity = gravity; });
+}
+
+void holding_buttons(Buttons& buttons, const App& app) {
+  const std::vector<RunawayCoordinate> found = holdable(app);
+  if (found.empty()) return;
+  const bool one = found.size() == 1;
+  const std::string to =
+      one ? " to " + found[0].joint : "s to " + std::to_string(found.size()) + " coordinates";
+  buttons.add(
+      "spring", one ? "Add a spring" : "Add springs",
+      "A spring, slack as drawn and stiff enough to hold after about a fifth of the mechanism's size.",
+      [found, to](App& changed) {
+        edit(changed, "Add spring" + to, [&](Mechanism& mechanism, Selection&) {
+          for (const RunawayCoordinate& c : found)
+            add_holding_spring(mechanism, c);
+        });
+      },
+      true);
+  buttons.add("stop", one ? "Add a stop" : "Add stops", "A stop on the side that it moves to.",
+              [found, to](App& changed) {
+                edit(changed, "Add stop" + to, [&](Mechanism& mechanism, Selection&) {
+                  for (const RunawayCoordinate& c : found)
+                    add_holding_stop(mechanism, c);
+                });
+              });
+}
+
+} // namespace
+
+void remedies(App& app) {
+  const Solution& solution = app.answer.solution;
+  if (solution.status != Status::not_converged && solution.status != Status::no_steady_state) return;
+  ImGui::Dummy({0, 2 * app.scale});
+  Buttons buttons(app);
+  holding_buttons(buttons, app);
+  if (solution.weight_turns)
+    if (const auto along = gravity_along_drives(app.mechanism()))
+      buttons.add(
+          "gravity along", "Turn gravity along the axis",
+          "Gravity of the same size along the axis of the drive, so that the weight does not turn with it.",
+          [along = *along](App& changed) { set_gravity(changed, "Turn gravity along the axis", along); },
+          true);
+  if (solution.weight_turns || (!solution.unheld.empty() && solution.unheld_by_weight))
+    buttons.add("gravity off", "Turn gravity off", "No gravity; the scene's inspector has it back.",
+                [](App& changed) { set_gravity(changed, "Turn gravity off", Vec3::Zero()); });
+  const bool alone = solution.unheld.empty() && !solution.weight_turns;
+  buttons.add("motion", "Show the motion", "How it moves from the drawn pose, which needs no steady state.",
+              show_how_it_moves, alone);
+  ImGui::Dummy({0, 2 * app.scale});
+}
+
+std::string unheld_words(const Solution& solution) {
+  std::vector<std::string> names;
+  for (const UnheldCoordinate& c : solution.unheld)
+    if (std::ranges::find(names, c.joint) == names.end()) names.push_back(c.joint);
+  return names.empty() ? "" : "Nothing holds " + name_list(names);
+}
+
+} // namespace flyball

@@ -1,0 +1,69 @@
+#include "app/ui/scene_pictures.hpp"
+
+#include "engine/report/analysis.hpp"
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+// Where it settles; where it does not, nothing: the drawn pose.
+std::vector<Pose> equilibrium_of(const Mechanism& mechanism) {
+  try {
+    Analysis analysis(mechanism);
+    SolveOptions options;
+    options.details = false;
+    const Solution solution = analysis.solve(options);
+    if (solution.status == Status::converged) return solution.poses;
+  } catch (const SceneError&) { // not fit to be solved
+  }
+  return {};
+}
+
+Framebuffer draw(const App& app, const Mechanism& mechanism, ViewRenderer& renderer) {
+  Framebuffer target(static_cast<int>(std::lround(scene_picture_width * app.scale)),
+                     static_cast<int>(std::lround(scene_picture_height * app.scale)), app.view.samples);
+  const ViewSize size{static_cast<double>(target.width()), static_cast<double>(target.height())};
+  const std::vector<Pose> poses = equilibrium_of(mechanism);
+  ViewFrame frame;
+  frame.mechanism = &mechanism;
+  frame.poses = poses;
+  frame.theme = app.theme;
+  frame.options.triad = false;
+  frame.options.scale = app.scale;
+  frame.camera = initial_camera(mechanism, scene_of(frame).bounds, size);
+  renderer.draw(frame, target);
+  return target;
+}
+
+} // namespace
+
+const ScenePictures::Picture* ScenePictures::find(const App& app, const SceneCard& card) const {
+  for (const Picture& picture : pictures_)
+    if (picture.theme == app.theme && picture.scale == app.scale && picture.mechanism == card.mechanism)
+      return &picture;
+  return nullptr;
+}
+
+void ScenePictures::update(App& app, ViewRenderer& renderer) {
+  GalleryState& gallery = app.files.gallery;
+  gallery.drawing = false;
+  if (!gallery.showing && app.dialog.wanted != Dialog::gallery) return;
+  // Those of other colours and sizes are not wanted any more.
+  std::erase_if(pictures_,
+                [&](const Picture& one) { return one.theme != app.theme || one.scale != app.scale; });
+  bool may_draw = true;
+  for (SceneCard& card : gallery.cards) {
+    const Picture* picture = find(app, card);
+    if (!picture && may_draw) {
+      pictures_.push_back({card.mechanism, app.theme, app.scale, draw(app, card.mechanism, renderer)});
+      picture = &pictures_.back();
+      may_draw = app.options.mode == LiveSolver::Mode::immediate;
+    }
+    card.picture = picture ? picture->drawn.texture() : 0;
+    gallery.drawing = gallery.drawing || !picture;
+  }
+}
+
+} // namespace flyball

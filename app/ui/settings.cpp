@@ -1,0 +1,101 @@
+#include "app/ui/settings.hpp"
+
+#include "app/ui/app.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace flyball {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+fs::path file_in(const fs::path& state_folder) {
+  return state_folder / "settings.json";
+}
+
+template <class Value>
+using Words = std::pair<std::string_view, Value>;
+constexpr std::array<Words<AngleUnit>, 2> angles{{{"deg", AngleUnit::degree}, {"rad", AngleUnit::radian}}};
+constexpr std::array<Words<LengthUnit>, 2> lengths{
+    {{"m", LengthUnit::metre}, {"mm", LengthUnit::millimetre}}};
+constexpr std::array<Words<SpeedUnit>, 3> speeds{
+    {{"rad/s", SpeedUnit::radian}, {"deg/s", SpeedUnit::degree}, {"rpm", SpeedUnit::rpm}}};
+
+template <class Table, class Value>
+void read(const json& from, const char* key, const Table& words, Value& value) {
+  const auto found = from.find(key);
+  if (found == from.end() || !found->is_string()) return;
+  for (const auto& [word, meaning] : words)
+    if (found->template get_ref<const std::string&>() == word) value = meaning;
+}
+
+template <class Table, class Value>
+std::string word_for(const Table& words, Value value) {
+  for (const auto& [word, meaning] : words)
+    if (meaning == value) return std::string(word);
+  return {};
+}
+
+} // namespace
+
+Settings read_settings(const fs::path& state_folder) {
+  Settings settings;
+  std::error_code ignored;
+  if (state_folder.empty() || !fs::is_regular_file(file_in(state_folder), ignored)) return settings;
+  try {
+    const json file = json::parse(read_bytes(file_in(state_folder)), nullptr, false);
+    if (!file.is_object()) return settings;
+    read(file, "angle", angles, settings.units.angle);
+    read(file, "length", lengths, settings.units.length);
+    read(file, "speed", speeds, settings.units.speed);
+    if (const auto legend = file.find("legend"); legend != file.end() && legend->is_boolean())
+      settings.legend = legend->get<bool>();
+  } catch (const SceneError&) { // unreadable
+  }
+  return settings;
+}
+
+void keep_settings(const fs::path& state_folder, const Settings& settings) {
+  if (state_folder.empty()) return;
+  const json file = {{"angle", word_for(angles, settings.units.angle)},
+                     {"length", word_for(lengths, settings.units.length)},
+                     {"speed", word_for(speeds, settings.units.speed)},
+                     {"legend", settings.legend}};
+  std::error_code ignored;
+  fs::create_directories(state_folder, ignored);
+  try {
+    write_bytes(file_in(state_folder), file.dump(1) + "\n");
+  } catch (const SceneError&) { // a convenience, no reason to disturb anybody
+  }
+}
+
+void choose_units(App& app, const DisplayUnits& units) {
+  if (app.units == units) return;
+  app.units = units;
+  keep_settings(app.options.state, {app.units, app.panels.legend});
+  // Plots are in these units; how a person has looked at them was in others.
+  ++app.study.response.version;
+  fit_plot(app.study.response.view);
+  app.study.map.made = false;
+  fit_plot(app.study.map.view);
+  app.study.modes.campbell.made_result = 0;
+  fit_plot(app.study.modes.campbell.view);
+  ++app.motion.version;
+  for (MotionPlot& plot : app.motion.plots)
+    fit_plot(plot.view);
+}
+
+void open_legend(App& app, bool open) {
+  app.panels.legend = open;
+  keep_settings(app.options.state, {app.units, app.panels.legend});
+}
+
+} // namespace flyball

@@ -1,0 +1,47 @@
+#include "app/ui/shown_scene.hpp"
+
+#include "app/ui/app.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+namespace {
+
+bool same(const std::vector<Pose>& kept, std::span<const Pose> now) {
+  return std::ranges::equal(kept, now, [](const Pose& a, const Pose& b) {
+    return a.position == b.position && a.rotation.coeffs() == b.rotation.coeffs();
+  });
+}
+
+const std::shared_ptr<const ViewScene>& keep(const App& app, ShownScene& shown, const ViewFrame& frame) {
+  SceneSource& source = shown.source;
+  // While exploring, the picture waits for the answer.
+  const bool waits = app.mode == Mode::explore && app.answer.ticket != 0;
+  const std::uint64_t revision = waits ? 0 : app.document.revision();
+  if (shown.scene && source.revision == revision && source.ticket == app.answer.ticket &&
+      source.theme == frame.theme && same(source.poses, frame.poses) && same(source.ghost, frame.ghost) &&
+      same(source.motion, frame.motion))
+    return shown.scene;
+  source.revision = revision;
+  source.ticket = app.answer.ticket;
+  source.theme = frame.theme;
+  source.poses.assign(frame.poses.begin(), frame.poses.end());
+  source.ghost.assign(frame.ghost.begin(), frame.ghost.end());
+  source.motion.assign(frame.motion.begin(), frame.motion.end());
+  shown.scene = std::make_shared<const ViewScene>(view_scene(frame));
+  ++shown.made;
+  return shown.scene;
+}
+
+} // namespace
+
+const std::shared_ptr<const ViewScene>& shown_scene(App& app) {
+  return keep(app, app.view.scene, view_frame(app));
+}
+
+const std::shared_ptr<const ViewScene>& motion_scene(App& app) {
+  return keep(app, app.view.scene_beside, motion_frame(app));
+}
+
+} // namespace flyball

@@ -1,0 +1,66 @@
+#include "app/ui/snapshot.hpp"
+
+#include "app/ui/plots/plot_picture.hpp"
+#include "engine/mechanism/file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+namespace flyball {
+
+Image view_picture(App& app, PixelSize size) {
+  update(app, 0, {static_cast<double>(size.width), static_cast<double>(size.height)});
+  ViewRenderer renderer;
+  Framebuffer target(size.width, size.height, app.view.samples);
+  ViewFrame frame = view_frame(app);
+  frame.hovered = {};
+  renderer.draw(frame, target);
+  return target.read();
+}
+
+Image interface_picture(App& app, PixelSize size, float scale) {
+  const float former_scale = app.scale;
+  const UiFonts former_fonts = app.fonts;
+  const WidgetMap former_widgets = app.widgets;
+  const unsigned former_texture = app.view.texture;
+  app.view.hovered = {};
+  Image image;
+  {
+    Stage stage(app, scale);
+    // Sizes that ImGui learns from one frame settle in the next; the shade behind a dialog takes ten.
+    for (int i = 0; i < 11; ++i)
+      stage.frame(app, size, 0);
+    Framebuffer target(size.width, size.height, 1);
+    target.bind();
+    stage.render(app, size);
+    image = target.read();
+  }
+  app.scale = former_scale;
+  app.fonts = former_fonts;
+  app.widgets = former_widgets;
+  app.view.texture = former_texture;
+  return image;
+}
+
+void export_picture(App& app, PixelSize window) {
+  if (!app.export_request) return;
+  const ExportRequest request = *std::exchange(app.export_request, std::nullopt);
+  const PixelSize size{request.width, request.height};
+  app.notice.clear();
+  try {
+    // A larger picture of the panels has larger letters, not more room.
+    const float grown = std::min(static_cast<float>(size.width) / static_cast<float>(window.width),
+                                 static_cast<float>(size.height) / static_cast<float>(window.height));
+    const float scale = std::max(1.f, std::round(4 * app.scale * grown) / 4);
+    const Image image = request.plot     ? plot_picture(*request.plot, size)
+                        : request.panels ? interface_picture(app, size, scale)
+                                         : view_picture(app, size);
+    replace_file(request.file, encode_png(image));
+    app.notice = "Saved " + request.file.string();
+  } catch (const std::exception& error) {
+    show_error(app, std::string("Not saved: ") + error.what());
+  }
+}
+
+} // namespace flyball

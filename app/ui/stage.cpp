@@ -1,0 +1,139 @@
+#include "app/ui/stage.hpp"
+
+#include "app/ui/layout.hpp"
+#include "app/ui/widgets/ui_style.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flyball {
+
+namespace {
+
+constexpr float text_size = 16; // points
+constexpr int many_solids = 3000;
+constexpr std::chrono::milliseconds rest{250}; // without movement, until a draft is drawn in full
+
+ViewKey key_of(const App& app, const ViewFrame& frame, const std::shared_ptr<const ViewScene>& scene,
+               PixelSize size) {
+  ViewKey key;
+  key.size = size;
+  key.samples = app.view.samples;
+  key.grid = frame.options.grid;
+  key.shadow = frame.options.shadow;
+  key.scene = scene;
+  key.selected = frame.selected;
+  key.theme = frame.theme;
+  key.scale = frame.options.scale;
+  key.hovered = frame.hovered;
+  key.camera = frame.camera;
+  return key;
+}
+
+PixelSize pixels_of(const PanelRect& rect) {
+  return {static_cast<int>(rect.width), static_cast<int>(rect.height)};
+}
+
+ImGuiContext* new_context() {
+  ImGuiContext* context = ImGui::CreateContext();
+  ImGui::SetCurrentContext(context);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.ConfigWindowsMoveFromTitleBarOnly = true;
+  return context;
+}
+
+} // namespace
+
+Stage::Stage(App& app, float scale)
+    : former_(ImGui::GetCurrentContext()), context_(new_context(), ImGui::DestroyContext) {
+  set_scale(app, scale);
+}
+
+Stage::~Stage() {
+  ImGui::SetCurrentContext(former_);
+}
+
+void Stage::set_scale(App& app, float scale) {
+  ImGui::SetCurrentContext(context_.get());
+  app.scale = scale;
+  app.fonts = load_fonts(*ImGui::GetIO().Fonts, text_size, scale);
+  ImGui::GetIO().FontDefault = app.fonts.text;
+  renderer_.upload_fonts();
+  apply_style(app.theme, scale);
+}
+
+void Stage::frame(App& app, PixelSize size, double seconds) {
+  ImGui::SetCurrentContext(context_.get());
+  const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
+  const Layout layout = layout_of(app, width, height);
+  const PanelRect& view = layout.view;
+  update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
+  app.view.texture = draw_view(app, view_, view_frame(app), shown_scene(app), pixels_of(view));
+  if (layout.beside.width > 0)
+    app.view.texture_beside =
+        draw_view(app, beside_, motion_frame(app), motion_scene(app), pixels_of(layout.beside));
+  else
+    beside_ = {};
+  if (const bool coarse = view_.is_coarse() || beside_.is_coarse(); coarse != told_coarse_) {
+    told_coarse_ = coarse;
+    if (coarse) app.notice = "The view is too large for OpenGL here and is drawn more coarsely.";
+  }
+  scene_pictures_.update(app, view_renderer_);
+  movie_.update(app, view_renderer_);
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {width, height};
+  io.DisplayFramebufferScale = {1, 1};
+  io.UserData = &app.tooltip;
+  app.tooltip.clock += seconds;
+  app.tooltip.due = std::numeric_limits<double>::infinity();
+  io.DeltaTime = std::max(static_cast<float>(seconds), 1.f / 60); // shades behind dialogs fade in with it
+  ImGui::NewFrame();
+  build_gui(app);
+  ImGui::Render();
+}
+
+void Stage::render(const App& app, PixelSize size) {
+  ImGui::SetCurrentContext(context_.get());
+  const ImVec4 background = ui_colors(app.theme).panel;
+  glViewport(0, 0, size.width, size.height);
+  glClearColor(background.x, background.y, background.z, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  renderer_.draw(*ImGui::GetDrawData());
+}
+
+unsigned Stage::draw_view(const App& app, View& view, const ViewFrame& shown,
+                          const std::shared_ptr<const ViewScene>& scene, PixelSize size) {
+  ViewKey key = key_of(app, shown, scene, size);
+  const auto now = std::chrono::steady_clock::now();
+  if (key.samples != view.drawn.samples) {
+    view.target.reset();
+    view.quick.reset();
+  }
+  const bool changed = !view.target || !(key == view.drawn);
+  if (!changed && !view.draft) return view.target->texture();
+  if (changed) view.moved = now;
+  const bool moving = view.target && (changed || now - view.moved < rest);
+  const bool draft = drafts_ && moving && key.samples > 1 && view.solids > many_solids && draws_in_software();
+  if (!changed && draft) return view.quick->texture();
+  std::optional<Framebuffer>& target = draft ? view.quick : view.target;
+  PixelSize& made = draft ? view.quick_made_for : view.target_made_for;
+  if (!target || made != size) {
+    target.reset(); // both at once may be too much
+    target.emplace(largest_framebuffer(size.width, size.height, draft ? 1 : key.samples));
+    made = size;
+  }
+  ViewFrame frame = shown;
+  frame.options.draft = draft;
+  if (target->width() < size.width) // shown larger, with lines as thick as ever
+    frame.options.scale *= static_cast<float>(target->width()) / static_cast<float>(size.width);
+  view.solids = view_renderer_.draw(frame, scene, *target).drawn;
+  view.drawn = std::move(key);
+  view.draft = draft;
+  ++views_drawn_;
+  return target->texture();
+}
+
+} // namespace flyball

@@ -1,0 +1,126 @@
+// Error against run time: the direct solution and the motion, measured on the scene as it is now.
+#include "app/plot/comparison_plot.hpp"
+#include "app/ui/studies/map/map_control.hpp"
+#include "app/ui/studies/modes/modes_control.hpp"
+#include "app/ui/studies/response/response_control.hpp"
+#include "app/ui/studies/states/states_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/task_bar.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr float words_width = 292; // points
+
+void begin(App& app) {
+  CompareState& state = app.study.compare;
+  if (!state.task)
+    state.task = std::make_unique<Background<Comparison>>(app.options.mode, app.options.on_news);
+  state.problem.clear();
+  state.of = app.document.shared();
+  state.task->start([mechanism = app.document.shared(),
+                     repeats = state.repeats](const Background<Comparison>::Watch& watch) {
+    CompareOptions options;
+    options.repeats = repeats;
+    options.cancel = &watch.cancel;
+    options.progress = [&](std::size_t done, std::size_t all) {
+      watch.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
+    };
+    return compare(*mechanism, options);
+  });
+}
+
+void found(App& app, const Comparison& c) {
+  const UiColors& colors = colors_of(app);
+  const NumberStyle& numbers = app.options.numbers;
+  if (c.status != Status::converged) return paragraph(c.message, colors.bad);
+  row(app, "Direct solution", duration_text(c.answer.run_time_s, numbers), "",
+      "From the drawn pose to the accepted answer, existence and stability included.");
+  row(app, "its error", magnitude_text(c.answer.error, numbers), "",
+      "The largest of all coordinates, in radians "
+      "or relative to the mechanism's reach.");
+  row(app, "Reference", "± " + magnitude_text(c.reference_error, numbers), "",
+      "The reference is the direct solution iterated in extended precision; so far its last correction moved "
+      "it.");
+  if (!c.best) return paragraph("No damped motion came to an end.", colors.dim);
+  row(app, "Motion at its best", duration_text(c.best->motion_s, numbers), "",
+      "The run whose end comes nearest to the reference.");
+  row(app, "its error", magnitude_text(c.best->error, numbers), "");
+  ImGui::PushFont(app.fonts.strong);
+  paragraph("The direct solution is as near " + std::to_string(std::lround(c.best->ratio())) +
+                " times sooner.",
+            colors.good);
+  ImGui::PopFont();
+  note_widget(app.widgets, "compare/ratio");
+}
+
+void words(App& app) {
+  CompareState& state = app.study.compare;
+  const UiColors& colors = colors_of(app);
+  const bool running = state.task && state.task->running();
+  if (running) {
+    task_bar(app, "compare/progress", state.task->progress(), state.task->seconds());
+    if (text_button(app, "compare/cancel", "Cancel")) state.task->cancel();
+    return;
+  }
+  ImGui::BeginDisabled(!app.mistakes.empty() || app.mechanism().bodies.empty());
+  if (text_button(app, "compare/run", state.result ? "Measure again" : "Measure", true)) begin(app);
+  ImGui::EndDisabled();
+  if (!state.problem.empty()) paragraph(state.problem, colors.bad);
+  if (!state.result) {
+    paragraph(
+        "The direct solution, one Newton-Raphson iteration after the other, and the damped motion with every "
+        "integrator over tolerances and durations: what error is left after which time.",
+        colors.dim);
+    return;
+  }
+  ImGui::SameLine();
+  if (text_button(app, "compare/copy", "Copy the table")) {
+    ImGui::SetClipboardText(comparison_csv(*state.result).c_str());
+    app.notice = "The measurements are on the clipboard, as CSV.";
+  }
+  if (state.of != app.document.shared() && *state.of != app.mechanism())
+    paragraph("Measured before the last changes.", colors.warn);
+  found(app, *state.result);
+}
+
+} // namespace
+
+void update_studies(App& app) {
+  update_states(app);
+  update_modes(app);
+  update_map(app);
+  update_response(app);
+  CompareState& state = app.study.compare;
+  if (!state.task) return;
+  if (auto news = state.task->take()) {
+    state.problem = news->problem;
+    if (news->result) {
+      state.result = std::move(news->result);
+      state.plot = comparison_plot("", *state.result);
+      state.plot.version = ++state.plots_made;
+      fit_plot(state.view);
+    }
+  }
+}
+
+void compare_panel(App& app) {
+  const float s = app.scale;
+  ImGui::BeginChild("words", {words_width * s, 0});
+  words(app);
+  ImGui::EndChild();
+  ImGui::SameLine(0, 14 * s);
+  ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  CompareState& state = app.study.compare;
+  if (state.result) {
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    plot_view(app, "compare", state.view, state.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
+  }
+  ImGui::EndChild();
+}
+
+} // namespace flyball

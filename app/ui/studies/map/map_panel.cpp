@@ -1,0 +1,191 @@
+// The map of two parameters: what is wanted of it, and the plot.
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/studies/map/map_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/task_bar.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace flyball {
+
+namespace {
+
+constexpr float choices_width = 320; // points
+constexpr int fewest_cells = 2, most_cells = 401;
+
+// Two fields side by side after one label.
+void two_fields(App& app, const std::string& label, const char* help, QuantityField first,
+                QuantityField second) {
+  const float gap = 6 * app.scale;
+  const float width = std::floor((row_label(app, label, help) - gap) / 2);
+  quantity_field(app, first, width);
+  ImGui::SameLine(0, gap);
+  quantity_field(app, second, width);
+}
+
+void axis_choice(App& app, std::size_t which) {
+  MapState& map = app.study.map;
+  const MapAxis& axis = map.choice.axes[which];
+  const std::string name = which == 0 ? "map/x" : "map/y";
+  std::vector<std::string> phrases, addresses;
+  std::set<std::string> taken;
+  for (std::string& address : map_addresses(app)) {
+    if (address == map.choice.axes[1 - which].address) continue;
+    // Numbers that would be called the same go by their address.
+    std::string phrase = parameter_phrase(address);
+    phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : address);
+    addresses.push_back(std::move(address));
+  }
+  if (const auto chosen = name_choice_row(app, name, which == 0 ? "Across" : "Up", phrases,
+                                          parameter_phrase(axis.address), "The number along this axis.")) {
+    const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *chosen) - phrases.begin());
+    later(app, [which, address = addresses[i]](App& then) {
+      then.study.map.choice.axes[which] = map_axis(then, address);
+      fit_plot(then.study.map.view);
+    });
+  }
+  const auto end = [&](const char* key, double value, bool upper) {
+    return QuantityField{.name = name + "/" + key,
+                         .value = value,
+                         .unit = parameter_unit(app.mechanism(), axis.address),
+                         .help = upper ? "Where the axis ends." : "Where the axis begins.",
+                         .set = [which, upper](App& then, double typed) {
+                           MapAxis& changed = then.study.map.choice.axes[which];
+                           (upper ? changed.to : changed.from) = typed;
+                           if (changed.from > changed.to) std::swap(changed.from, changed.to);
+                           if (changed.from == changed.to) changed.to = changed.from + 1;
+                           fit_plot(then.study.map.view);
+                         }};
+  };
+  two_fields(app, "from, to", "The range of this axis.", end("from", axis.from, false),
+             end("to", axis.to, true));
+}
+
+void point_counts(App& app) {
+  const auto field = [&](const char* name, std::size_t which) {
+    return QuantityField{.name = name,
+                         .value = static_cast<double>(app.study.map.choice.axes[which].count),
+                         .unit = "",
+                         .help = "Values along the axis, 2 to 401. Each place is a solve of its own.",
+                         .least = Least::above_zero,
+                         .set = [which](App& then, double typed) {
+                           then.study.map.choice.axes[which].count = static_cast<int>(
+                               std::clamp(std::round(typed), double{fewest_cells}, double{most_cells}));
+                         }};
+  };
+  two_fields(app, "Points", "How many values across, and up.", field("map/x/count", 0),
+             field("map/y/count", 1));
+}
+
+void coordinate_choice(App& app) {
+  MapChoice& choice = app.study.map.choice;
+  std::vector<std::string> names;
+  for (const CoordinateSolution& c : app.answer.summary.coordinates)
+    if (!c.driven) names.push_back(coordinate_label(c));
+  if (const auto chosen = name_choice_row(app, "map/coordinate", "Colour", names, choice.coordinate,
+                                          "The coordinate that the colours tell.")) {
+    choice.coordinate = *chosen;
+    choice.level.reset();
+  }
+}
+
+void curve_choices(App& app) {
+  MapChoice& choice = app.study.map.choice;
+  if (check_row(app, "map/folds", "Folds and crossings", choice.folds,
+                "The curves on which equilibria meet and vanish, or branches cross."))
+    choice.folds = !choice.folds;
+  const CoordinateSolution* shown = map_coordinate(app);
+  if (shown && shown->dependent) return; // what follows from the others cannot be asked for
+  if (check_row(app, "map/level", "Curve of a constant value", choice.level.has_value(),
+                "The curve on which the coordinate keeps a value.")) {
+    if (choice.level)
+      choice.level.reset();
+    else
+      choice.level = shown ? shown->value : 0;
+  }
+  if (!choice.level || !shown) return;
+  double value = *choice.level;
+  if (plain_quantity_field(app, "map/level/value", "Value", shown->angle ? "rad" : "m",
+                           "What the coordinate is on the curve.", value))
+    choice.level = value;
+}
+
+void words(App& app) {
+  MapState& map = app.study.map;
+  const UiColors& colors = colors_of(app);
+  if (!map.problem.empty()) paragraph(map.problem, colors.bad);
+  if (!app.mistakes.empty())
+    paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
+  if (map.stale) paragraph("Computed before the last changes.", colors.warn);
+  if (computing_map(app)) {
+    if (text_button(app, "map/cancel", "Cancel")) cancel_map(app);
+    ImGui::SameLine();
+    task_bar(app, "map/progress", map_progress(app), map_seconds(app),
+             std::max(ImGui::GetContentRegionAvail().x - margin_width(app), 20 * app.scale));
+  } else if (map.stale || !map.problem.empty()) {
+    if (text_button(app, "map/again", "Compute again", true)) {
+      map.stale = false;
+      compute_map(app);
+    }
+  }
+  if (map.curves && map.choice.folds && map.curves->folds && map.curves->folds->curves.empty() &&
+      !computing_map(app))
+    paragraph(map.curves->folds->message, colors.dim);
+  if (!map.cells || computing_map(app)) return;
+  std::size_t unsolved = 0, unstable = 0;
+  for (const MapCell& cell : map.cells->cells) {
+    unsolved += std::isfinite(cell.value) ? 0 : 1;
+    unstable += cell.stable == false ? 1 : 0;
+  }
+  std::string text = std::to_string(map.cells->cells.size()) + " solves";
+  if (app.options.numbers.run_times)
+    text += " in " + duration_text(map.cells->run_time_s, app.options.numbers);
+  text += unsolved > 0 ? ", " + std::to_string(unsolved) + " without a steady state (left free)" : "";
+  text += unstable > 0 ? ", " + std::to_string(unstable) + " unstable (hatched)" : "";
+  paragraph(text + ". Each starts from the drawn pose. Click a place, or drag the mark, to go there.",
+            colors.dim);
+  note_widget(app.widgets, "map/words");
+}
+
+} // namespace
+
+void map_panel(App& app) {
+  const float s = app.scale;
+  MapState& map = app.study.map;
+  ImGui::BeginChild("choices", {choices_width * s, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
+  if (!map.choice.coordinate.empty() && app.mistakes.empty()) {
+    axis_choice(app, 0);
+    axis_choice(app, 1);
+    point_counts(app);
+    coordinate_choice(app);
+    curve_choices(app);
+  }
+  words(app);
+  ImGui::PopStyleVar();
+  ImGui::EndChild();
+  ImGui::SameLine(0, 14 * s);
+  ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  if (map.cells) {
+    draw_map(app);
+    const PlotEvents events = plot_view(
+        app, "map", map.view, map.plot,
+        {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
+    // What is shown may be of other numbers than are chosen by now.
+    const bool same = map.cells->choice.axes[0].address == map.choice.axes[0].address &&
+                      map.cells->choice.axes[1].address == map.choice.axes[1].address;
+    if (const auto place = events.dragged_at ? events.dragged_at : events.clicked_at; place && same)
+      later(app, [place = std::array{(*place)[0] / map.plot.x.factor, (*place)[1] / map.plot.y.factor}](
+                     App& then) { go_to_place(then, place); });
+  }
+  ImGui::EndChild();
+}
+
+} // namespace flyball

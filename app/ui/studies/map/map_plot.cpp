@@ -1,0 +1,150 @@
+// The map as a plot: colours, hatching where it is unstable, the curves in it and the present place.
+#include "app/ui/plots/shown_plot.hpp"
+#include "app/ui/studies/map/map_control.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace flyball {
+
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> values_of(const MapAxis& axis) {
+  std::vector<double> values;
+  for (int i = 0; i < axis.count; ++i)
+    values.push_back(axis.count < 2 ? axis.from : axis.from + (axis.to - axis.from) * i / (axis.count - 1));
+  return values;
+}
+
+// A slanting line through each unstable cell; those of neighbours meet.
+PlotCurve hatching(const FoundCells& found, const std::vector<double>& x, const std::vector<double>& y) {
+  PlotCurve hatch{
+      .name = "unstable", .points = {}, .color = plot_color::vermillion, .width = 1, .hatching = true};
+  if (x.size() < 2 || y.size() < 2) return hatch;
+  const double half_x = (x[1] - x[0]) / 2, half_y = (y[1] - y[0]) / 2;
+  for (std::size_t j = 0; j < y.size(); ++j)
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (found.cells[j * x.size() + i].stable != false) continue;
+      hatch.points.push_back({x[i] - half_x, y[j] - half_y});
+      hatch.points.push_back({x[i] + half_x, y[j] + half_y});
+      hatch.points.push_back({nothing, nothing});
+    }
+  return hatch;
+}
+
+std::string axis_unit(const App& app, const MapAxis& axis) {
+  return parameter_unit(app.mechanism(), axis.address);
+}
+
+void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level) {
+  for (const PlaneCurve& curve : curves.curves) {
+    PlotCurve line;
+    switch (curve.type) {
+    case PlaneCurveType::fold:
+      line.name = "folds";
+      line.color = plot_color::vermillion;
+      break;
+    case PlaneCurveType::branch_point:
+      line.name = "crossings";
+      line.color = plot_color::purple;
+      break;
+    case PlaneCurveType::coordinate:
+      line.name = level;
+      line.color = plot_color::orange;
+      break;
+    }
+    line.width = 2.2;
+    PlotCurve unstable = line;
+    unstable.line = PlotLine::dashed;
+    // The two kinds of pieces meet.
+    const std::array<double, 2>* before = nullptr;
+    bool before_unstable = false;
+    std::array<double, 2> last{};
+    for (const PlanePoint& p : curve.points) {
+      const bool dashed = curve.type == PlaneCurveType::coordinate && p.stable == false;
+      PlotCurve& mine = dashed ? unstable : line;
+      if (before && dashed != before_unstable) {
+        mine.points.push_back({nothing, nothing});
+        mine.points.push_back(*before);
+      }
+      mine.points.push_back({p.x, p.y});
+      last = {p.x, p.y};
+      before = &last;
+      before_unstable = dashed;
+    }
+    if (!line.points.empty()) plot.curves.push_back(std::move(line));
+    if (!unstable.points.empty()) plot.curves.push_back(std::move(unstable));
+    for (const PlanePoint& cusp : curve.cusps)
+      plot.marks.push_back({.at = {cusp.x, cusp.y}, .label = "cusp", .shape = PlotShape::diamond});
+  }
+}
+
+} // namespace
+
+void draw_map(App& app) {
+  MapState& map = app.study.map;
+  if (map.made && map.made_ticket == app.answer.ticket) return;
+  if (!map.cells) return;
+  const FoundCells& found = *map.cells;
+  const std::array<MapAxis, 2>& axes = found.choice.axes;
+  const bool moved_only = map.made;
+  map.made = true;
+  map.made_ticket = app.answer.ticket;
+  map.plot.marker.reset();
+  if (converged(app) && !solving(app)) {
+    const double x = get_parameter(app.mechanism(), axes[0].address);
+    const double y = get_parameter(app.mechanism(), axes[1].address);
+    if (x >= axes[0].from && x <= axes[0].to && y >= axes[1].from && y <= axes[1].to)
+      map.plot.marker = PlotMarker{x, y, ""};
+  }
+  const auto show_marker = [&] {
+    if (!map.plot.marker) return;
+    map.plot.marker->x *= map.plot.x.factor;
+    map.plot.marker->y *= map.plot.y.factor;
+  };
+  if (moved_only) return show_marker();
+  Plot plot;
+  const auto axis_for = [&](const MapAxis& axis) {
+    return PlotAxis{.label = parameter_phrase(axis.address),
+                    .unit = axis_unit(app, axis),
+                    .range = PlotRange{axis.from, axis.to},
+                    .room = 0};
+  };
+  plot.x = axis_for(axes[0]);
+  plot.y = axis_for(axes[1]);
+  const CoordinateSolution* shown = nullptr;
+  for (const CoordinateSolution& c : app.answer.summary.coordinates)
+    if (coordinate_label(c) == found.choice.coordinate) shown = &c;
+  const bool angle = shown && shown->angle;
+  const std::string coordinate = angle ? "rad" : "m";
+  const ShownUnit unit = coordinate_unit(angle, app.units);
+  PlotHeat heat{.x = values_of(axes[0]),
+                .y = values_of(axes[1]),
+                .values = {},
+                .label = found.choice.coordinate,
+                .unit = coordinate};
+  heat.values.reserve(found.cells.size());
+  for (const MapCell& cell : found.cells)
+    heat.values.push_back(cell.value);
+  if (PlotCurve hatch = hatching(found, heat.x, heat.y); !hatch.points.empty())
+    plot.curves.push_back(std::move(hatch));
+  show_heat(heat, coordinate, app.units);
+  plot.heat = std::move(heat);
+  if (map.curves && map.curves->folds) add_curves(plot, *map.curves->folds, "");
+  if (map.curves && map.curves->level && map.choice.level)
+    add_curves(plot, *map.curves->level,
+               found.choice.coordinate + " = " + short_text(unit.shown(*map.choice.level), 5) + " " +
+                   unit.text);
+  show_axis(plot, 0, axis_unit(app, axes[0]), app.units);
+  show_axis(plot, 1, axis_unit(app, axes[1]), app.units);
+  plot.marker = map.plot.marker;
+  plot.version = ++map.plots_made;
+  map.plot = std::move(plot);
+  show_marker();
+}
+
+} // namespace flyball

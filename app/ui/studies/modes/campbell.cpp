@@ -1,0 +1,196 @@
+// The Campbell diagram, followed in the background.
+#include "app/ui/studies/modes/campbell.hpp"
+
+#include "app/session/state_words.hpp"
+#include "app/ui/studies/modes/modes_control.hpp"
+#include "engine/mechanism/address.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+constexpr double no_time = 0.3; // s
+constexpr double turn = 2 * std::numbers::pi;
+
+// The mechanism but for the speed along the axis.
+Mechanism without_speed(Mechanism mechanism, const std::string& drive) {
+  set_parameter(mechanism, drive, 0);
+  return mechanism;
+}
+
+struct State {
+  double speed = 0;
+  std::vector<CoordinateSolution> coordinates;
+};
+
+// How far the branch passes by the state at its speed: the largest difference of a coordinate (rad, m).
+double distance(const ResponseBranch& branch, const State& state) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < branch.points.size(); ++i) {
+    const ResponsePoint &a = branch.points[i - 1], &b = branch.points[i];
+    const double span = b.parameter - a.parameter;
+    double part = span == 0 ? 0 : (state.speed - a.parameter) / span;
+    if (part < -1e-6 || part > 1 + 1e-6) continue;
+    part = std::clamp(part, 0., 1.);
+    double most = 0;
+    for (std::size_t c = 0; c < state.coordinates.size() && c < a.coordinates.size(); ++c) {
+      if (state.coordinates[c].driven) continue;
+      const double from = a.coordinates[c].value;
+      double apart = from + part * (b.coordinates[c].value - from) - state.coordinates[c].value;
+      if (state.coordinates[c].angle) apart = std::remainder(apart, turn);
+      most = std::max(most, std::abs(apart));
+    }
+    least = std::min(least, most);
+  }
+  return least;
+}
+
+// The branch that the state lies on, between whose points it may be off by a little.
+std::optional<std::size_t> branch_through(const std::vector<ResponseBranch>& branches, const State& state) {
+  constexpr double near = 0.03; // rad, m
+  std::optional<std::size_t> best;
+  double least = near;
+  for (std::size_t b = 0; b < branches.size(); ++b)
+    if (const double apart = distance(branches[b], state); apart < least) {
+      least = apart;
+      best = b;
+    }
+  return best;
+}
+
+FoundCampbell follow(const Mechanism& mechanism, const std::string& drive, double from, double to,
+                     const State& state, const Background<FoundCampbell>::Watch& watch) {
+  const auto begin = std::chrono::steady_clock::now();
+  FoundCampbell found{.drive = drive, .from = from, .to = to, .diagram = {}, .lines = {}};
+  BranchOptions options;
+  options.largest_step = 0.007; // lines that are smooth where they are zoomed
+  options.cancel = &watch.cancel;
+  options.progress = watch.progress;
+  found.diagram = follow_branches(mechanism, drive, from, to, options);
+  // Nothing may connect the state with what the drawn pose leads to.
+  const bool inside = state.speed >= std::min(from, to) && state.speed <= std::max(from, to);
+  if (inside && !state.coordinates.empty() && !branch_through(found.diagram.branches, state) &&
+      !watch.cancel) {
+    options.all = true;
+    options.all_at = {state.speed};
+    found.diagram = follow_branches(mechanism, drive, from, to, options);
+  }
+  for (const ResponseBranch& branch : found.diagram.branches)
+    found.lines.push_back(track_eigenvalues(branch.points));
+  found.cancelled = watch.cancel;
+  found.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return found;
+}
+
+// What is shown; without coordinates where that is no steady state, or of other numbers.
+State present(const App& app, const std::string& drive) {
+  if (!converged(app) || solving(app)) return {};
+  return {get_parameter(app.mechanism(), drive), app.answer.solution.coordinates};
+}
+
+} // namespace
+
+std::vector<std::string> drive_speeds(const Mechanism& mechanism) {
+  std::vector<std::string> speeds;
+  for (const Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
+      if (joint.coordinates[i].drive) speeds.push_back("joints." + joint.name + ".drive" + index + ".speed");
+    }
+  return speeds;
+}
+
+std::string campbell_drive(const App& app) {
+  const std::vector<std::string> speeds = drive_speeds(app.mechanism());
+  if (std::ranges::find(speeds, app.study.modes.campbell.drive) != speeds.end())
+    return app.study.modes.campbell.drive;
+  return speeds.empty() ? "" : speeds.front();
+}
+
+PlotRange campbell_range(const App& app) {
+  const CampbellState& campbell = app.study.modes.campbell;
+  if (campbell.from != campbell.to) return {campbell.from, campbell.to};
+  const std::string drive = campbell_drive(app);
+  for (const ParameterControl& control : app.parameters)
+    if (control.address == drive)
+      return {std::min(control.from, control.to), std::max(control.from, control.to)};
+  return {0, 10};
+}
+
+void follow_campbell(App& app) {
+  CampbellState& campbell = app.study.modes.campbell;
+  const std::string drive = campbell_drive(app);
+  if (drive.empty() || !app.mistakes.empty()) return;
+  if (!campbell.task)
+    campbell.task = std::make_unique<Background<FoundCampbell>>(app.options.mode, app.options.on_news);
+  const PlotRange range = campbell_range(app);
+  campbell.asked = without_speed(app.mechanism(), drive);
+  campbell.asked_drive = drive;
+  campbell.asked_from = range[0];
+  campbell.asked_to = range[1];
+  campbell.problem.clear();
+  const State state = present(app, drive);
+  campbell.asked_ticket = app.answer.ticket;
+  campbell.task->start([mechanism = app.document.shared(), drive, range,
+                        state](const Background<FoundCampbell>::Watch& watch) {
+    return follow(*mechanism, drive, range[0], range[1], state, watch);
+  });
+}
+
+void update_campbell(App& app) {
+  CampbellState& campbell = app.study.modes.campbell;
+  if (campbell.task)
+    if (auto news = campbell.task->take()) {
+      campbell.problem = news->problem;
+      if (news->result && news->result->cancelled) {
+        campbell.problem = "Following the branches was stopped.";
+      } else if (news->result) {
+        campbell.result = std::move(news->result);
+        campbell.of = campbell.asked;
+        ++campbell.results;
+        campbell.revision = 0;
+        if (campbell.result->diagram.branches.empty()) campbell.problem = campbell.result->diagram.message;
+      }
+    }
+  // The drive may have been taken away.
+  const std::vector<std::string> speeds = drive_speeds(app.mechanism());
+  if (campbell.result && std::ranges::find(speeds, campbell.result->drive) == speeds.end())
+    campbell.result.reset();
+  if (app.mode != Mode::explore || speeds.empty() || !app.mistakes.empty()) return;
+  if (!campbell.task) return follow_campbell(app);
+  const PlotRange range = campbell_range(app);
+  const bool chosen = campbell.asked_drive == campbell_drive(app) && campbell.asked_from == range[0] &&
+                      campbell.asked_to == range[1];
+  if (campbell.revision != app.document.revision() || !chosen) {
+    campbell.revision = app.document.revision();
+    campbell.current =
+        chosen && campbell.result && campbell.of == without_speed(app.mechanism(), campbell.asked_drive);
+  }
+  if (campbell.task->running()) return;
+  // The state was put on a branch that was not followed.
+  if (campbell.current && !campbell.on_branch && campbell.asked_ticket != app.answer.ticket) {
+    const State state = present(app, campbell.asked_drive);
+    const bool inside = state.speed >= range[0] && state.speed <= range[1];
+    if (inside && !state.coordinates.empty() && campbell.result->run_time_s < no_time)
+      return follow_campbell(app);
+  }
+  if (campbell.current) return;
+  const bool new_question =
+      !chosen || !(campbell.asked == without_speed(app.mechanism(), campbell.asked_drive));
+  const bool quick = !campbell.result || campbell.result->run_time_s < no_time;
+  if (new_question && (quick || !chosen)) follow_campbell(app);
+}
+
+std::optional<std::size_t> campbell_branch(const App& app) {
+  const CampbellState& campbell = app.study.modes.campbell;
+  if (!campbell.result) return std::nullopt;
+  return branch_through(campbell.result->diagram.branches, present(app, campbell.result->drive));
+}
+
+} // namespace flyball

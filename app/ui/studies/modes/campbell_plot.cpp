@@ -1,0 +1,198 @@
+// The Campbell diagram as a plot.
+#include "app/ui/plots/shown_plot.hpp"
+#include "app/ui/studies/modes/campbell.hpp"
+#include "app/ui/studies/modes/modes_control.hpp"
+#include "engine/mechanism/address.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// Eigenvalues less than this are zero (1/s).
+double rounding(const std::vector<std::vector<std::complex<double>>>& lines) {
+  double largest = 0;
+  for (const auto& point : lines)
+    for (const std::complex<double>& s : point)
+      if (std::isfinite(s.imag())) largest = std::max(largest, std::abs(s));
+  return 1e-6 * largest;
+}
+
+struct Segment {
+  std::vector<std::array<double, 2>> stable, unstable;
+};
+
+void add(Segment& segment, bool stable, const std::array<double, 2>& at) {
+  auto& mine = stable ? segment.stable : segment.unstable;
+  auto& other = stable ? segment.unstable : segment.stable;
+  // The two kinds meet.
+  if (!other.empty() && std::isfinite(other.back()[1])) {
+    mine.push_back({nothing, nothing});
+    mine.push_back(other.back());
+    other.push_back({nothing, nothing});
+  }
+  mine.push_back(at);
+}
+
+void gap(Segment& segment) {
+  for (auto* points : {&segment.stable, &segment.unstable})
+    if (!points->empty()) points->push_back({nothing, nothing});
+}
+
+void add_lines(Plot& plot, const ResponseBranch& branch,
+               const std::vector<std::vector<std::complex<double>>>& lines, double factor) {
+  if (lines.empty()) return;
+  const double zero = rounding(lines);
+  int number = 0;
+  for (std::size_t l = 0; l < lines.front().size(); ++l) {
+    const auto swings = [&](std::size_t i) { return l < lines[i].size() && lines[i][l].imag() > zero; };
+    Segment segment;
+    bool any = false;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (!swings(i)) continue;
+      any = true;
+      const bool stable = branch.points[i].stable != false;
+      // Down to zero the square of the frequency goes evenly, from there on that of the growth.
+      const auto foot = [&](std::size_t k) {
+        const std::complex<double> here = lines[i][l], there = lines[k][l];
+        const double down = here.imag() * here.imag(), up = std::norm(there.real() - here.real());
+        const double from = branch.points[i].parameter, to = branch.points[k].parameter;
+        return std::array<double, 2>{from + down / (down + up) * (to - from), 0};
+      };
+      const auto stands = [&](std::size_t k) {
+        return k < lines.size() && l < lines[k].size() && std::abs(lines[k][l].imag()) <= zero;
+      };
+      if (i > 0 && !swings(i - 1)) gap(segment);
+      if (i > 0 && stands(i - 1)) add(segment, stable, foot(i - 1));
+      add(segment, stable, {branch.points[i].parameter, lines[i][l].imag() * factor});
+      if (stands(i + 1)) add(segment, stable, foot(i + 1));
+    }
+    if (!any) continue;
+    const std::string name = "mode " + std::to_string(number + 1);
+    if (!segment.stable.empty())
+      plot.curves.push_back({.name = name, .points = std::move(segment.stable), .color = number});
+    if (!segment.unstable.empty())
+      plot.curves.push_back(
+          {.name = name, .points = std::move(segment.unstable), .line = PlotLine::dashed, .color = number});
+    ++number;
+  }
+  if (std::ranges::any_of(plot.curves, [](const PlotCurve& c) { return c.line == PlotLine::dashed; }))
+    plot.curves.push_back({.name = "unstable",
+                           .points = {{nothing, nothing}},
+                           .line = PlotLine::dashed,
+                           .color = plot_color::neutral});
+}
+
+// Lines of one and two oscillations a turn, where unbalance and the like would excite.
+void add_orders(Plot& plot, double from, double to, double factor, double highest) {
+  for (const int order : {1, 2}) {
+    PlotCurve line{.name = std::to_string(order) + "× speed",
+                   .points = {},
+                   .line = PlotLine::dotted,
+                   .color = plot_color::neutral,
+                   .width = 1.2};
+    for (int i = 0; i <= 200; ++i) {
+      const double speed = from + (to - from) * i / 200, y = order * std::abs(speed) * factor;
+      line.points.push_back({speed, y <= highest ? y : nothing});
+    }
+    // Told at its end, for the two look alike.
+    const auto last =
+        std::ranges::find_if(line.points.rbegin(), line.points.rend(),
+                             [](const std::array<double, 2>& p) { return std::isfinite(p[1]) && p[1] > 0; });
+    if (last != line.points.rend())
+      plot.marks.push_back({.at = *last, .label = std::to_string(order) + "×", .shape = PlotShape::none});
+    plot.curves.push_back(std::move(line));
+  }
+}
+
+void add_special(Plot& plot, const FoundCampbell& found, std::size_t branch, double factor) {
+  for (const SpecialPoint& point : found.diagram.special) {
+    if (point.branch != static_cast<int>(branch)) continue;
+    double y = 0;
+    // A pair at the axis, or the two that meet.
+    if (point.type == SpecialPointType::hopf || point.type == SpecialPointType::flutter) {
+      double best = std::numeric_limits<double>::infinity();
+      const auto& all = point.at.eigenvalues;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!(all[i].imag() > 0)) continue;
+        double close = std::abs(all[i].real());
+        if (point.type == SpecialPointType::flutter) {
+          close = std::numeric_limits<double>::infinity();
+          for (std::size_t k = 0; k < all.size(); ++k)
+            if (k != i) close = std::min(close, std::abs(all[k] - all[i]));
+        }
+        if (close < best) {
+          best = close;
+          y = all[i].imag();
+        }
+      }
+    }
+    std::string label(word(point.type));
+    std::ranges::replace(label, '_', ' ');
+    plot.marks.push_back({.at = {point.at.parameter, y * factor},
+                          .label = std::move(label),
+                          .shape = PlotShape::diamond,
+                          .color = plot_color::vermillion});
+  }
+}
+
+double highest_of(const Plot& plot) {
+  double highest = 0;
+  for (const PlotCurve& curve : plot.curves)
+    for (const auto& p : curve.points)
+      if (std::isfinite(p[1])) highest = std::max(highest, p[1]);
+  return highest;
+}
+
+} // namespace
+
+void draw_campbell(App& app) {
+  CampbellState& campbell = app.study.modes.campbell;
+  const std::optional<std::size_t> chosen = app.study.modes.chosen;
+  if (campbell.made_result == campbell.results && campbell.made_ticket == app.answer.ticket &&
+      campbell.made_modes == app.study.modes.of && campbell.made_hertz == campbell.hertz &&
+      campbell.made_chosen == chosen)
+    return;
+  if (!campbell.result || solving(app)) return; // the answer belongs to other numbers
+  campbell.made_result = campbell.results;
+  campbell.made_ticket = app.answer.ticket;
+  campbell.made_modes = app.study.modes.of;
+  campbell.made_hertz = campbell.hertz;
+  campbell.made_chosen = chosen;
+  Plot plot;
+  const double factor = campbell.hertz ? 1 / turn : 1;
+  const FoundCampbell& found = *campbell.result;
+  const std::string unit = parameter_unit(app.mechanism(), found.drive);
+  plot.x = {.label = parameter_phrase(found.drive),
+            .unit = unit,
+            .range = PlotRange{std::min(found.from, found.to), std::max(found.from, found.to)},
+            .room = 0};
+  plot.y = {.label = "frequency", .unit = campbell.hertz ? "Hz" : "rad/s"};
+  const std::optional<std::size_t> branch = campbell_branch(app);
+  campbell.on_branch = branch.has_value();
+  if (branch) {
+    add_lines(plot, found.diagram.branches[*branch], found.lines[*branch], factor);
+    const double highest = highest_of(plot);
+    plot.y.range = PlotRange{0, highest > 0 ? 1.1 * highest : 1};
+    if (unit == "rad/s" && highest > 0) add_orders(plot, found.from, found.to, factor, 1.1 * highest);
+    add_special(plot, found, *branch, factor);
+  }
+  if (converged(app)) {
+    const double speed = get_parameter(app.mechanism(), found.drive);
+    plot.references.push_back({.axis = 0, .at = speed, .label = "now", .color = plot_color::blue});
+    if (const VibrationMode* mode = moving_mode(app); mode && modes_are_current(app) && mode->oscillates())
+      plot.marker = PlotMarker{speed * shown_unit(unit, app.units).factor, mode->frequency * factor, ""};
+  }
+  show_axis(plot, 0, unit, app.units);
+  plot.version = ++campbell.plots_made;
+  campbell.plot = std::move(plot);
+}
+
+} // namespace flyball

@@ -1,0 +1,321 @@
+// The modes of the state that is shown: a list, what moves in the view, and the Campbell diagram beside it.
+#include "app/render/icons.hpp"
+#include "app/session/state_words.hpp"
+#include "app/session/units.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/studies/modes/campbell.hpp"
+#include "app/ui/studies/modes/modes_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/task_bar.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr float list_width = 400; // points
+constexpr double patience = 0.25; // s: a shorter wait is not worth a bar
+constexpr ImGuiTableFlags table_flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
+                                        ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;
+
+void verdict(App& app, const FoundModes& found) {
+  const UiColors& colors = colors_of(app);
+  const Solution& solution = app.answer.solution;
+  const StabilityWords words = stability_words(solution.stable, solution.stability_reason, colors);
+  ImGui::TextColored(words.color, "%s", words.icon);
+  ImGui::SameLine(0, 6 * app.scale);
+  const bool disagree = found.evidence && !found.evidence->agree;
+  std::string text = std::string("The state is ") + words.word + ". ";
+  text += found.evidence ? found.evidence->reason : words.sentence;
+  paragraph(text, disagree ? colors.warn : colors.dim);
+  note_widget(app.widgets, "modes/verdict");
+}
+
+// A number of the list: four digits of what is not rounding.
+std::string four_digits(double value, double size) {
+  return std::abs(value) < 1e-7 * size ? "0" : short_text(value, 4);
+}
+
+std::string mode_help(const VibrationMode& mode) {
+  std::string text;
+  if (mode.oscillates()) {
+    text = "Swings at " + short_text(hertz(mode.frequency), 6) + " Hz (" + short_text(mode.frequency, 6) +
+           " rad/s)";
+    if (mode.natural_frequency > mode.frequency * (1 + 1e-6))
+      text += ", undamped at " + short_text(hertz(mode.natural_frequency), 6) + " Hz";
+    text += ".";
+  } else {
+    text = "Does not swing.";
+  }
+  const double rate = std::abs(mode.eigenvalue.real());
+  if (rate > 1e-7 * std::max(1., mode.natural_frequency))
+    text += (grows(mode) ? "\nGrows to e times as much in " : "\nDies out to 1/e in ") +
+            short_text(1 / rate, 4) + " s.";
+  return text;
+}
+
+void mode_row(App& app, std::size_t index, const VibrationMode& mode, double largest) {
+  const UiColors& colors = colors_of(app);
+  const bool chosen = app.study.modes.chosen == index, bad = grows(mode);
+  ImGui::TableNextRow();
+  if (chosen) {
+    ImVec4 tint = colors.accent;
+    tint.w = 0.16f;
+    ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, packed(tint));
+  }
+  ImGui::TableNextColumn();
+  const ImVec2 at = ImGui::GetCursorPos();
+  ImGui::PushID(static_cast<int>(index));
+  if (ImGui::Selectable("##mode", false, ImGuiSelectableFlags_SpanAllColumns))
+    later(app,
+          [index, chosen](App& then) { choose_mode(then, chosen ? std::nullopt : std::optional(index)); });
+  note_widget(app.widgets, "modes/row/" + std::to_string(index + 1));
+  help_on_hover(mode_help(mode).c_str());
+  ImGui::PopID();
+  ImGui::SetCursorPos(at);
+  ImGui::TextColored(bad      ? colors.bad
+                     : chosen ? colors.accent
+                              : colors.dim,
+                     "%s",
+                     bad      ? icon::warning
+                     : chosen ? icon::eye
+                              : std::to_string(index + 1).c_str());
+  const ImVec4& color = bad ? colors.bad : colors.text;
+  const bool swings = mode.oscillates();
+  const std::array<std::string, 4> values{swings ? short_text(hertz(mode.natural_frequency), 4) : "–",
+                                          swings ? short_text(mode.natural_frequency, 4) : "–",
+                                          swings ? four_digits(mode.damping_ratio, 1) : "–",
+                                          four_digits(mode.eigenvalue.real(), largest)};
+  for (const std::string& value : values)
+    if (ImGui::TableNextColumn()) right_digits(app, value, color);
+}
+
+void list(App& app, const FoundModes& found, float height) {
+  const UiColors& colors = colors_of(app);
+  constexpr std::array titles{"", "Natural [Hz]", "[rad/s]", "Damping", "Real part [1/s]"};
+  constexpr std::array helps{
+      "", "Of the undamped motion with this shape.", "Of the undamped motion with this shape.",
+      "The damping ratio: 0 swings for ever, 1 does not swing at all, below 0 it grows.",
+      "Of the eigenvalue: disturbances go as e to this times the time. Growing ones are marked."};
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {5 * app.scale, 2 * app.scale});
+  ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors.panel);
+  ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors.border);
+  if (ImGui::BeginTable("modes", 5, table_flags, {0, height})) {
+    ImGui::TableSetupScrollFreeze(0, 1);
+    constexpr std::array widths{22.f, 88.f, 76.f, 72.f, 100.f};
+    for (std::size_t i = 0; i < titles.size(); ++i)
+      ImGui::TableSetupColumn(titles[i], ImGuiTableColumnFlags_WidthFixed, widths[i] * app.scale);
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    for (std::size_t i = 1; i < titles.size(); ++i) {
+      if (!ImGui::TableSetColumnIndex(static_cast<int>(i))) continue;
+      ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.f, ImGui::GetContentRegionAvail().x -
+                                                                      ImGui::CalcTextSize(titles[i]).x));
+      ImGui::TextColored(colors.dim, "%s", titles[i]);
+      help_on_hover(helps[i]);
+    }
+    double largest = 0;
+    for (const VibrationMode& mode : found.modes)
+      largest = std::max(largest, mode.natural_frequency);
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(found.modes.size()));
+    while (clipper.Step())
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
+        mode_row(app, static_cast<std::size_t>(i), found.modes[static_cast<std::size_t>(i)], largest);
+    ImGui::EndTable();
+  }
+  ImGui::PopStyleColor(2);
+  ImGui::PopStyleVar();
+}
+
+// "swing ± 8.6°": the coordinate that moves most.
+std::string largest_movement(const App& app, const VibrationMode& mode) {
+  const ModeAmplitude* angle = nullptr;
+  const ModeAmplitude* slide = nullptr;
+  for (const ModeAmplitude& a : mode.amplitudes) {
+    const ModeAmplitude*& most = a.angle ? angle : slide;
+    if (!most || std::abs(a.value) > std::abs(most->value)) most = &a;
+  }
+  // An angle of 1 is as much as a slide can be, for the largest is 1 in radians or reaches.
+  const ModeAmplitude* most = angle && (std::abs(angle->value) > 0.5 || !slide) ? angle : slide;
+  if (!most) return {};
+  const double movement = app.study.modes.amplitude * std::abs(most->value);
+  const ShownUnit unit = coordinate_unit(most->angle, app.units);
+  return coordinate_label(*most) + " ± " + short_text(unit.shown(movement), 3) +
+         (unit.text == "°" ? "" : " ") + unit.text;
+}
+
+std::string speed_words(const VibrationMode& mode) {
+  const std::optional<double> slower = shown_slower(mode);
+  if (!slower) return "Does not swing: shown swaying.";
+  if (*slower == 1) return "Shown as fast as it is.";
+  if (*slower > 1) return "Shown " + short_text(*slower, 3) + " times slower than it is.";
+  return "Shown " + short_text(1 / *slower, 3) + " times faster than it is.";
+}
+
+void transport(App& app) {
+  ModesState& modes = app.study.modes;
+  const UiColors& colors = colors_of(app);
+  const VibrationMode* mode = moving_mode(app);
+  if (!mode) {
+    ImGui::AlignTextToFramePadding();
+    paragraph(modes.result && modes.result->modes.empty() ? "" : "Click a mode to see it move.", colors.dim);
+    return;
+  }
+  if (icon_button(app, "modes/play", modes.playing ? icon::pause : icon::play,
+                  modes.playing ? "Pause (Space)" : "Play (Space)", modes.playing))
+    modes.playing = !modes.playing;
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(110 * app.scale);
+  constexpr double least = 0.01, most = 0.6;
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
+  ImGui::SliderScalar("##amplitude", ImGuiDataType_Double, &modes.amplitude, &least, &most, "");
+  note_widget(app.widgets, "modes/amplitude");
+  help_on_hover("How far it is shown swinging; the linearised motion is for small swings.");
+  ImGui::SameLine();
+  ImGui::BeginGroup();
+  clipped_text(largest_movement(app, *mode), ImGui::GetContentRegionAvail().x);
+  ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
+  clipped_text(speed_words(*mode), ImGui::GetContentRegionAvail().x);
+  ImGui::PopStyleColor();
+  ImGui::EndGroup();
+  note_widget(app.widgets, "modes/speed");
+}
+
+void modes_list(App& app) {
+  ModesState& modes = app.study.modes;
+  const UiColors& colors = colors_of(app);
+  if (!modes.problem.empty()) return paragraph(modes.problem, colors.bad);
+  if (!converged(app)) return paragraph("Modes are of a steady state, and there is none now.", colors.dim);
+  const bool finding = modes.task && modes.task->running();
+  if (finding && (!modes.result || modes.task->seconds() > patience)) {
+    if (text_button(app, "modes/cancel", "Cancel")) modes.task->cancel();
+    ImGui::SameLine();
+    task_bar(app, "modes/progress", modes.task->progress(), modes.task->seconds());
+  }
+  if (!modes.result) return;
+  if (!modes_are_current(app) && !finding) {
+    paragraph("Of the state before the last changes.", colors.warn);
+    if (text_button(app, "modes/again", "Find again", true)) find_modes_again(app);
+  }
+  verdict(app, *modes.result);
+  if (modes.result->modes.empty()) return paragraph("No coordinate is free to swing.", colors.dim);
+  const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * app.scale;
+  list(app, *modes.result, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * app.scale));
+  transport(app);
+}
+
+// Drive, range and unit, in one line.
+void campbell_choices(App& app, const std::string& drive) {
+  CampbellState& campbell = app.study.modes.campbell;
+  const float s = app.scale;
+  const std::vector<std::string> speeds = drive_speeds(app.mechanism());
+  ImGui::SetNextItemWidth(140 * s);
+  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
+  if (ImGui::BeginCombo("##drive", parameter_phrase(drive).c_str())) {
+    for (const std::string& speed : speeds) {
+      if (ImGui::Selectable(parameter_phrase(speed).c_str(), speed == drive) && speed != drive) {
+        campbell.drive = speed;
+        campbell.from = campbell.to = 0;
+        fit_plot(campbell.view);
+      }
+      note_widget(app.widgets, "campbell/drive/" + speed);
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::PopStyleColor();
+  note_widget(app.widgets, "campbell/drive");
+  help_on_hover("The drive whose speed is along the axis.");
+  PlotRange range = campbell_range(app);
+  const std::string unit = parameter_unit(app.mechanism(), drive);
+  const auto end = [&](const char* name, const char* word, std::size_t which) {
+    ImGui::SameLine(0, 10 * s);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextColored(colors_of(app).dim, "%s", word);
+    ImGui::SameLine(0, 6 * s);
+    quantity_field(app,
+                   {.name = name,
+                    .value = range[which],
+                    .unit = unit,
+                    .help = "The end of the axis.",
+                    .set =
+                        [range, which](App& then, double typed) {
+                          PlotRange ends = range;
+                          ends[which] = typed;
+                          if (ends[0] == ends[1]) return;
+                          CampbellState& changed = then.study.modes.campbell;
+                          changed.from = std::min(ends[0], ends[1]);
+                          changed.to = std::max(ends[0], ends[1]);
+                          fit_plot(changed.view);
+                        }},
+                   84 * s);
+  };
+  end("campbell/from", "from", 0);
+  end("campbell/to", "to", 1);
+  for (const bool hertz : {true, false}) {
+    ImGui::SameLine(0, hertz ? 14 * s : 2 * s);
+    if (text_button(app, hertz ? "campbell/hertz" : "campbell/radians", hertz ? "Hz" : "rad/s",
+                    campbell.hertz == hertz)) {
+      campbell.hertz = hertz;
+      campbell.view.look.range[1].reset();
+    }
+  }
+  if (campbell.task && campbell.task->running()) {
+    ImGui::SameLine(0, 14 * s);
+    if (text_button(app, "campbell/cancel", "Cancel")) campbell.task->cancel();
+    ImGui::SameLine();
+    task_bar(app, "campbell/progress", campbell.task->progress(), campbell.task->seconds(),
+             std::max(ImGui::GetContentRegionAvail().x, 30 * s));
+  } else if (!campbell.current || !campbell.on_branch) {
+    ImGui::SameLine(0, 14 * s);
+    if (text_button(app, "campbell/again", "Follow again", true)) follow_campbell(app);
+  }
+}
+
+void campbell_diagram(App& app) {
+  CampbellState& campbell = app.study.modes.campbell;
+  const UiColors& colors = colors_of(app);
+  const std::string drive = campbell_drive(app);
+  if (drive.empty())
+    return paragraph("A Campbell diagram is over the speed of a drive, and there is none here.", colors.dim);
+  campbell_choices(app, drive);
+  if (!campbell.problem.empty()) paragraph(campbell.problem, colors.bad);
+  if (!campbell.result) return;
+  draw_campbell(app);
+  if (!campbell.on_branch && converged(app) && !solving(app) && !campbell.task->running())
+    paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
+  const PlotEvents events = plot_view(
+      app, "campbell", campbell.view, campbell.plot,
+      {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
+  const auto set = [&](double speed) {
+    later(app, [drive, speed](App& then) { change_parameter(then, drive, speed); });
+  };
+  if (campbell.result->drive != drive) return;
+  if (events.clicked_at) set((*events.clicked_at)[0]);
+  if (events.dragged_at) set((*events.dragged_at)[0]);
+}
+
+} // namespace
+
+void modes_panel(App& app) {
+  const float s = app.scale;
+  const float width = std::min(list_width * s, std::floor(0.48f * ImGui::GetContentRegionAvail().x));
+  ImGui::BeginChild("modes", {width, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
+  modes_list(app);
+  ImGui::PopStyleVar();
+  ImGui::EndChild();
+  ImGui::SameLine(0, 14 * s);
+  ImGui::BeginChild("campbell", {0, 0}, false,
+                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  campbell_diagram(app);
+  ImGui::EndChild();
+}
+
+} // namespace flyball

@@ -1,0 +1,359 @@
+// The motion's choices, its transport and its plots.
+#include "app/render/icons.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr float choices_width = 292; // points
+
+constexpr std::array<std::string_view, 4> start_names{"Drawn, carried along", "Drawn, standing still",
+                                                      "Steady, with a kick", "The kept state"};
+constexpr std::array<std::string_view, 4> method_names{"Automatic", "BDF (implicit)", "Adams",
+                                                       "Runge-Kutta 8"};
+constexpr std::array<std::string_view, 2> change_names{"Begins anew", "Goes on"};
+
+// Changes of choices begin a new run, after this frame.
+void anew(App& app) {
+  later(app, [](App& then) { restart_motion(then); });
+}
+
+void start_choice(App& app) {
+  MotionState& motion = app.motion;
+  const bool kept = !motion.saved.coordinates.empty();
+  const std::span<const std::string_view> offered(start_names.data(), kept ? 4 : 3);
+  if (const auto chosen =
+          choice_row(app, "motion/start", "Start", offered, static_cast<std::size_t>(motion.start),
+                     "Where the motion begins: the drawn pose carried along by the drives, the drawn "
+                     "pose at rest in the world, the steady state pushed, or a state kept before.")) {
+    motion.start = static_cast<Start>(*chosen);
+    anew(app);
+  }
+  if (motion.start != Start::equilibrium) return;
+  const std::vector<std::string> names = free_coordinates(app);
+  if (names.empty()) return;
+  const bool known = std::ranges::find(names, motion.kicked) != names.end();
+  const std::string& kicked = known ? motion.kicked : names.front();
+  if (const auto chosen =
+          name_choice_row(app, "motion/kicked", "Kick", names, kicked, "The coordinate that gets a speed.")) {
+    motion.kicked = *chosen;
+    anew(app);
+  }
+  bool angle = true;
+  for (const CoordinateSolution& c : app.answer.summary.coordinates)
+    if (coordinate_label(c) == kicked) angle = c.angle;
+  if (plain_quantity_field(app, "motion/kick", "Speed", angle ? "rad/s" : "m/s", "The speed it gets.",
+                           motion.kick))
+    anew(app);
+}
+
+void integration_choices(App& app) {
+  MotionState& motion = app.motion;
+  if (plain_quantity_field(app, "motion/duration", "Duration", "s", "How long a motion is computed.",
+                           motion.duration, Least::above_zero))
+    anew(app);
+  if (const auto chosen = choice_row(
+          app, "motion/method", "Integrator", method_names, static_cast<std::size_t>(motion.method),
+          "Implicit steps where fast motions die out early, explicit ones for gentle "
+          "scenes; automatic judges by the linearised motion.")) {
+    motion.method = static_cast<Integrator>(*chosen);
+    anew(app);
+  }
+  double tolerance = motion.tolerance;
+  if (plain_quantity_field(
+          app, "motion/tolerance", "Tolerance", "",
+          "Of the error of a step, relative to a radian and the mechanism's reach: 1e-3 to 1e-14.", tolerance,
+          Least::above_zero)) {
+    motion.tolerance = std::clamp(tolerance, 1e-14, 1e-3);
+    anew(app);
+  }
+  if (const auto chosen =
+          choice_row(app, "motion/on_change", "On a change", change_names, motion.go_on ? 1 : 0,
+                     "Whether a change of a number begins the motion anew or goes on from the "
+                     "moment that is shown."))
+    motion.go_on = *chosen == 1;
+}
+
+// A tick and its word; returns whether it was clicked.
+bool tick(App& app, const char* name, const char* text, bool on, const char* help) {
+  ImGui::PushID(name);
+  const bool clicked = ImGui::Checkbox(text, &on);
+  ImGui::PopID();
+  note_widget(app.widgets, name);
+  help_on_hover(help);
+  return clicked;
+}
+
+void run_choices(App& app) {
+  MotionState& motion = app.motion;
+  if (has_dampers(app.mechanism())) {
+    const std::array<const char*, 2> names{"motion/damped", "motion/undamped"}, labels{"Damped", "Undamped"};
+    const std::array<const char*, 2> help{"The motion with the dampers.", "The motion with all dampers off."};
+    for (std::size_t i = 0; i < 2; ++i) {
+      // One of the two has to be shown.
+      const bool last = motion.runs[i].wanted && !motion.runs[1 - i].wanted;
+      ImGui::BeginDisabled(last);
+      if (tick(app, names[i], labels[i], motion.runs[i].wanted, help[i])) {
+        motion.runs[i].wanted = !motion.runs[i].wanted;
+        anew(app);
+      }
+      ImGui::EndDisabled();
+      ImGui::SameLine();
+    }
+  }
+  if (tick(app, "motion/beside", "Beside", motion.beside,
+           "The motion in a view of its own beside the steady state; or else in the same, in amber."))
+    motion.beside = !motion.beside;
+}
+
+double greatest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double v : values)
+    most = std::max(most, std::abs(v));
+  return most;
+}
+
+// Whether it has settled, or why it ended.
+void outcome(App& app) {
+  const UiColors& colors = colors_of(app);
+  for (const MotionRun& motion : app.motion.runs)
+    if (motion.wanted && !motion.problem.empty()) paragraph(motion.problem, colors.bad);
+  if (!shown_motion(app)) return;
+  if (app.motion.settled) {
+    paragraph(app.motion.settled->message, app.motion.settled->time ? colors.good : colors.text);
+    note_widget(app.widgets, "motion/settled");
+  } else if (!converged(app) && !solving(app)) {
+    paragraph("There is no steady state to settle in.", colors.dim);
+  }
+}
+
+// What the run's numbers are worth and what they cost.
+void accuracy(App& app) {
+  const UiColors& colors = colors_of(app);
+  const NumberStyle& numbers = app.options.numbers;
+  const MotionRun* shown = shown_motion(app);
+  if (!shown) return;
+  const Run& run = *shown->run;
+  heading(app, "Accuracy");
+  const EnergyTracks& e = run.energy;
+  row(app, "Energy balance", "± " + magnitude_text(greatest(e.balance), numbers), "J",
+      "Stored and dissipated energy less what the drives delivered: what the integrator has lost or made.");
+  row(app, "Energy at play", magnitude_text(std::max(greatest(e.kinetic), greatest(e.delivered)), numbers),
+      "J", "The largest kinetic or delivered energy, beside which the balance is to be seen.");
+  for (const MotionRun& motion : app.motion.runs)
+    if (motion.wanted && motion.run && !motion.run->damped && !motion.run->energy.jacobi.empty()) {
+      const auto [least, most] = std::ranges::minmax(motion.run->energy.jacobi);
+      row(app, "Jacobi integral", "± " + magnitude_text(most - least, numbers), "J",
+          "How far T₂ + V - T₀ of the undamped motion has drifted; it is conserved.");
+    }
+  const RunStatistics& s = run.statistics;
+  if (s.position_drift > 0)
+    row(app, "Loops open by", magnitude_text(s.position_drift, numbers), "m or rad",
+        "At most, over all samples.");
+  paragraph(run.method_reason, colors.dim);
+  for (const std::string& note : run.notes)
+    paragraph(note, colors.dim);
+  row(app, "Steps", std::to_string(s.steps), "");
+  if (numbers.run_times) row(app, "Run time", duration_text(s.run_time_s, numbers), "");
+}
+
+// "0.12 of 5 s", in the room beside the buttons.
+void progress_bar(App& app) {
+  const double whole = app.motion.duration, done = computed_motion(app).value_or(0);
+  const std::string words = short_text(done, 2) + " of " + short_text(whole, 4) + " s";
+  ImGui::ProgressBar(static_cast<float>(std::clamp(done / whole, 0., 1.)),
+                     {std::max(ImGui::GetContentRegionAvail().x, 1.f), 0}, words.c_str());
+  note_widget(app.widgets, "motion/progress");
+  help_on_hover(("Computed so far: " + words + ".").c_str());
+}
+
+void choices(App& app) {
+  const bool computing = computing_motion(app);
+  if (text_button(app, "motion/run", computing ? "Restart" : "Run again", true)) anew(app);
+  if (computing) {
+    ImGui::SameLine();
+    if (text_button(app, "motion/stop", "Stop")) stop_motion(app);
+    ImGui::SameLine();
+    progress_bar(app);
+  } else if (shown_motion(app)) {
+    ImGui::SameLine();
+    if (text_button(app, "motion/keep", "Keep state")) keep_motion_state(app);
+    help_on_hover("Keeps the state that is shown, to start from.");
+    ImGui::SameLine();
+    if (text_button(app, "motion/export", "Export…")) show_movie_dialog(app);
+    help_on_hover("Saves the run as MP4, GIF or numbered pictures.");
+  }
+  outcome(app);
+  run_choices(app);
+  start_choice(app);
+  integration_choices(app);
+  accuracy(app);
+}
+
+// The combo above a plot.
+void quantity_choice(App& app, MotionPlot& plot, const std::vector<MotionQuantity>& all,
+                     const std::string& name, float width) {
+  const auto chosen = std::ranges::find(all, plot.quantity, &MotionQuantity::key);
+  ImGui::SetNextItemWidth(std::min(width, 220 * app.scale));
+  ImGui::PushID(name.c_str());
+  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
+  const bool open = ImGui::BeginCombo("##quantity", chosen == all.end() ? "" : chosen->title.c_str(),
+                                      ImGuiComboFlags_HeightLarge);
+  ImGui::PopStyleColor();
+  if (open) {
+    std::string group;
+    for (const MotionQuantity& each : all) {
+      if (each.group != group) ImGui::TextDisabled("%s", (group = each.group).c_str());
+      ImGui::PushID(each.key.c_str());
+      if (ImGui::Selectable(each.title.c_str(), each.key == plot.quantity)) {
+        plot.quantity = each.key;
+        fit_plot(plot.view);
+      }
+      ImGui::PopID();
+      note_widget(app.widgets, name + "/" + each.key);
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::PopID();
+  note_widget(app.widgets, name);
+}
+
+// Where the play head stands on the first curve that is shown.
+std::optional<PlotMarker> play_head(const App& app, const Plot& plot, const PlotLook& look) {
+  const PlotCurve* shown = nullptr;
+  for (const PlotCurve& curve : plot.curves)
+    if (is_shown(curve, look) && curve.points.size() > 1) shown = &curve; // the last lies on top
+  if (!shown) return std::nullopt;
+  const double time = std::clamp(app.playback.time, shown->points.front()[0], shown->points.back()[0]);
+  auto after = std::ranges::lower_bound(shown->points, time, {}, [](const auto& p) { return p[0]; });
+  if (after == shown->points.begin()) ++after;
+  const auto &b = *after, &a = *(after - 1);
+  const double part = (time - a[0]) / (b[0] - a[0]);
+  return PlotMarker{time, a[1] + part * (b[1] - a[1]), ""};
+}
+
+// What a plot shows at first: the first coordinate, and the last, for those between are often its like; where
+// there is but one, its speed.
+std::string first_shown(const std::vector<MotionQuantity>& all, std::size_t plot) {
+  const auto count =
+      static_cast<std::size_t>(std::ranges::count(all, std::string("Coordinates"), &MotionQuantity::group));
+  const std::size_t chosen = plot == 0 ? 0 : count > 1 ? count - 1 : 1;
+  return chosen < all.size() ? all[chosen].key : "";
+}
+
+void plots(App& app) {
+  const MotionRun* shown = shown_motion(app);
+  if (!shown) {
+    paragraph(computing_motion(app) ? "Computing…" : "No motion.", colors_of(app).dim);
+    return;
+  }
+  const std::vector<MotionQuantity> all = motion_quantities(*shown->run);
+  auto& shown_plots = app.motion.plots;
+  for (std::size_t i = 0; i < shown_plots.size(); ++i) {
+    const bool known = std::ranges::find(all, shown_plots[i].quantity, &MotionQuantity::key) != all.end();
+    if (!known) shown_plots[i].quantity = first_shown(all, i);
+  }
+  const float gap = 10 * app.scale, whole = ImGui::GetContentRegionAvail().x;
+  const bool narrow = whole < 520 * app.scale;
+  const std::size_t count = narrow ? 1 : shown_plots.size();
+  const float width = std::floor((whole - gap * static_cast<float>(count - 1)) / static_cast<float>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    MotionPlot& each = shown_plots[i];
+    if (i > 0) ImGui::SameLine(0, gap);
+    ImGui::BeginGroup();
+    const std::string name = "motion/plot" + std::to_string(i + 1);
+    quantity_choice(app, each, all, name, width);
+    if (each.made != app.motion.version || each.made_for != each.quantity ||
+        each.ticket != app.answer.ticket) {
+      each.plot = motion_plot(app, each.quantity);
+      each.plot.version = ++app.motion.plots_made;
+      each.made = app.motion.version;
+      each.made_for = each.quantity;
+      each.ticket = app.answer.ticket;
+    }
+    each.plot.marker = play_head(app, each.plot, each.view.look);
+    const PlotEvents events =
+        plot_view(app, name, each.view, each.plot, {width, std::max(ImGui::GetContentRegionAvail().y, 40.f)});
+    if (events.dragged_to) {
+      app.playback.playing = false;
+      seek_motion(app, events.dragged_to->x);
+    }
+    ImGui::EndGroup();
+  }
+}
+
+} // namespace
+
+void motion_transport(App& app, float width) {
+  const float right = ImGui::GetCursorPosX() + width;
+  const MotionRun* shown = shown_motion(app);
+  ImGui::BeginDisabled(!shown);
+  const bool playing = app.playback.playing;
+  const auto next = [&] { ImGui::SameLine(0, 2 * app.scale); };
+  const double from = shown ? shown->run->time.front() : 0, last = shown ? shown->run->time.back() : 1;
+  if (icon_button(app, "motion/first", icon::step_backward, "Back to the beginning")) seek_motion(app, from);
+  next();
+  if (icon_button(app, "motion/back", icon::chevron_left, "One sample back")) step_motion(app, -1);
+  next();
+  if (icon_button(app, "motion/play", playing ? icon::pause : icon::play,
+                  playing ? "Pause (Space)" : "Play (Space)", playing))
+    play(app, !playing);
+  next();
+  if (icon_button(app, "motion/forward", icon::chevron_right, "One sample on")) step_motion(app, 1);
+  next();
+  if (icon_button(app, "motion/loop", icon::refresh, "Begin again at the end", app.motion.loop))
+    app.motion.loop = !app.motion.loop;
+  ImGui::SameLine();
+  factor_combo(app, "motion/factor", 58 * app.scale);
+  ImGui::SameLine();
+  double time = app.playback.time;
+  const double end = std::max(last, from + app.motion.duration);
+  const std::string text = short_text(std::round(time * 1000) / 1000, 6) + " s";
+  const float room = ImGui::CalcTextSize("0000.000 s").x + 8 * app.scale;
+  ImGui::SetNextItemWidth(std::max(right - ImGui::GetCursorPosX() - room, 40.f));
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
+  if (ImGui::SliderScalar("##scrub", ImGuiDataType_Double, &time, &from, &end, "")) {
+    app.playback.playing = false;
+    seek_motion(app, time);
+  }
+  note_widget(app.widgets, "motion/scrub");
+  ImGui::SameLine();
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + ImGui::GetStyle().FramePadding.y + digits_drop(app) -
+                       app.scale);
+  ImGui::PushFont(app.fonts.digits);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopFont();
+  ImGui::EndDisabled();
+}
+
+void motion_panel(App& app) {
+  const float s = app.scale;
+  ImGui::BeginChild("choices", {choices_width * s, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
+  choices(app);
+  ImGui::PopStyleVar();
+  ImGui::EndChild();
+  ImGui::SameLine(0, 14 * s);
+  ImGui::BeginChild("plots", {0, 0}, false,
+                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  if (app.motion.on) {
+    plots(app);
+  } else {
+    paragraph("Run again shows the motion.", colors_of(app).dim);
+  }
+  ImGui::EndChild();
+}
+
+} // namespace flyball

@@ -1,0 +1,189 @@
+// What a film of the run is to be, and how far it is.
+#include "app/ui/file_commands.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/motion/movie_export.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/file_list.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
+#include "app/ui/widgets/size_fields.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+constexpr int smallest = 16;  // pixels
+constexpr float column = 148; // points, where the fields of quantity rows begin, too
+
+constexpr std::array sizes{PictureSize{"360p", "640 × 360", 640, 360},
+                           PictureSize{"720p", "1280 × 720", 1280, 720},
+                           PictureSize{"1080p", "1920 × 1080", 1920, 1080}};
+
+struct Ending {
+  const char* name;
+  const char* text;
+  const char* ending;
+};
+constexpr std::array endings{Ending{"movie/mp4", "MP4", ".mp4"}, Ending{"movie/gif", "GIF", ".gif"},
+                             Ending{"movie/png", "Numbered PNG", ".png"}};
+
+MovieRequest request_of(const App& app) {
+  const MovieState& movie = app.movie;
+  MovieRequest request{typed_path(app), movie.width, movie.height, movie.rate,
+                       movie.factor,    movie.from,  movie.to};
+  if (const MotionRun* shown = shown_motion(app); shown && movie.whole) {
+    request.from = shown->run->time.front();
+    request.to = shown->run->time.back();
+  }
+  return request;
+}
+
+// What may be there already and would be replaced.
+std::filesystem::path first_file(const std::filesystem::path& file, std::size_t frames) {
+  return movie_kind(file) == MovieKind::frames ? frame_file(file, 0, frames) : file;
+}
+
+// Buttons that change the name's ending. Those that need ffmpeg are there without it, too, as it can be
+// installed.
+void ending_buttons(App& app) {
+  const std::filesystem::path file = typed_path(app);
+  const bool able = ffmpeg_available();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("As");
+  ImGui::SameLine(column * app.scale);
+  for (const Ending& each : endings) {
+    const bool now = movie_kind(file) == movie_kind("film" + std::string(each.ending));
+    const bool possible = able || movie_kind("film" + std::string(each.ending)) == MovieKind::frames;
+    ImGui::BeginDisabled(!possible);
+    if (text_button(app, each.name, each.text, now)) {
+      std::filesystem::path typed = app.dialog.path;
+      if (movie_kind(typed)) typed.replace_extension();
+      app.dialog.path = typed.string() + each.ending;
+    }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+  }
+  ImGui::NewLine();
+  if (!able)
+    paragraph("MP4 and GIF need ffmpeg, which is not installed (package ffmpeg). Numbered PNG pictures do "
+              "without it.",
+              colors_of(app).dim);
+}
+
+void time_fields(App& app, const Run& run) {
+  MovieState& movie = app.movie;
+  plain_quantity_field(app, "movie/rate", "Frames a second", "",
+                       "Of the film: 25 to 60 look smooth, a GIF has at most 50.", movie.rate,
+                       Least::above_zero);
+  plain_quantity_field(app, "movie/factor", "Speed factor", "",
+                       "Seconds of the run that a second of the film shows: below 1 is slow motion.",
+                       movie.factor, Least::above_zero);
+  if (check_row(app, "movie/whole", "Whole run", movie.whole,
+                "From the beginning to the end, or a part of it.")) {
+    movie.whole = !movie.whole;
+    movie.from = run.time.front();
+    movie.to = run.time.back();
+  }
+  if (movie.whole) return;
+  plain_quantity_field(app, "movie/from", "From", "s", "The first moment shown.", movie.from);
+  plain_quantity_field(app, "movie/to", "To", "s", "The last moment shown.", movie.to);
+}
+
+// Why it cannot be made, or "".
+std::string problem_of(const App& app, const MotionRun& shown, const MovieRequest& request,
+                       std::size_t frames) {
+  if (!shown.finished) return "The run is still being computed.";
+  if (!(request.from < request.to) && !app.movie.whole) return "It ends before it begins.";
+  if (std::min(request.width, request.height) < smallest) return "At least 16 pixels a side.";
+  return movie_problem(request.file, {request.width, request.height, request.rate, frames});
+}
+
+void progress(App& app, const MovieState::Progress& at) {
+  const std::string text =
+      at.drawn < at.frames
+          ? "Frame " + std::to_string(at.drawn) + " of " + std::to_string(at.frames)
+          : "All " + std::to_string(at.frames) + " frames are drawn; ffmpeg is finishing the file";
+  paragraph(text, colors_of(app).text);
+  const float s = app.scale, width = ImGui::GetContentRegionAvail().x, height = 6 * s;
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float share = static_cast<float>(at.drawn) / static_cast<float>(std::max<std::size_t>(at.frames, 1));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(from, {from.x + width, from.y + height}, packed(colors_of(app).raised), height / 2);
+  list.AddRectFilled(from, {from.x + std::max(width * share, height), from.y + height},
+                     packed(colors_of(app).accent), height / 2);
+  ImGui::Dummy({width, height});
+  note_widget(app.widgets, "movie/progress");
+  ImGui::Dummy({0, 2 * s});
+  if (text_button(app, "movie/cancel", "Cancel") || escape_pressed()) app.movie.cancel = true;
+}
+
+void choices(App& app, const MotionRun& shown) {
+  MovieState& movie = app.movie;
+  bool accepted = path_field(app, "movie", "Name");
+  ending_buttons(app);
+  size_fields(app, "movie", sizes, column, movie.width, movie.height);
+  time_fields(app, *shown.run);
+
+  const MovieRequest request = request_of(app);
+  const std::size_t frames = requested_times(app, request).size();
+  const std::string problem = problem_of(app, shown, request, frames);
+  const std::filesystem::path first = first_file(request.file, frames);
+  const bool replaces = first == app.files.replacing;
+  ImGui::Dummy({0, 2 * app.scale});
+  if (!problem.empty())
+    paragraph(problem, shown.finished ? colors_of(app).bad : colors_of(app).dim);
+  else
+    paragraph(std::to_string(frames) + " frames, " +
+                  short_text(static_cast<double>(frames) / request.rate, 4) + " s long: from " +
+                  short_text(request.from) + " s to " + short_text(request.to) + " s of the run",
+              colors_of(app).dim);
+  if (!movie.problem.empty()) paragraph("Not saved: " + movie.problem, colors_of(app).bad);
+  if (replaces) paragraph(first.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+  ImGui::Dummy({0, 2 * app.scale});
+  ImGui::BeginDisabled(!problem.empty());
+  accepted = text_button(app, "movie/save", replaces ? "Replace" : "Export", true) || accepted;
+  ImGui::EndDisabled();
+  if (accepted && problem.empty() && may_replace(app, first)) {
+    play(app, false); // all the time there is goes into the film
+    movie.request = request;
+    movie.problem.clear();
+  }
+  ImGui::SameLine();
+  if (text_button(app, "movie/cancel", "Cancel") || escape_pressed()) close_dialog();
+}
+
+} // namespace
+
+void show_movie_dialog(App& app) {
+  if (!shown_motion(app)) return;
+  app.dialog.wanted = Dialog::export_run;
+  std::error_code ignored;
+  show_folder(app, std::filesystem::current_path(ignored));
+  app.files.replacing.clear();
+  app.movie.problem.clear();
+  app.movie.done = false;
+  const std::filesystem::path& file = app.document.file();
+  const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
+  const char* const ending = ffmpeg_available() ? ".mp4" : ".png";
+  app.dialog.path = (app.files.list.shown / ("flyball-" + stem + ending)).string();
+}
+
+void movie_dialog(App& app) {
+  if (!begin_dialog(app, Dialog::export_run, "Export the run", 480)) return;
+  MovieState& movie = app.movie;
+  const MotionRun* shown = shown_motion(app);
+  if (movie.request || movie.progress)
+    progress(app, movie.progress.value_or(MovieState::Progress{}));
+  else if (movie.done || !shown) // without a run: another document
+    close_dialog();
+  else
+    choices(app, *shown);
+  end_dialog();
+}
+
+} // namespace flyball

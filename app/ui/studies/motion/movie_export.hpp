@@ -1,0 +1,25 @@
+// Makes the film that app.movie asks for, one of its frames between two of the window's, so that the window
+// goes on. Needs a current OpenGL context for its whole life.
+#pragma once
+
+#include "app/ui/app.hpp"
+#include "app/ui/studies/motion/run_movie.hpp"
+
+namespace flyball {
+
+// The run's moments that a film of the request shows; none where no run is shown.
+std::vector<double> requested_times(const App& app, const MovieRequest& request);
+
+class MovieExport {
+ public:
+  // Begins, draws the next frame, or gives up, and tells app.movie. The end is a notice.
+  void update(App& app, ViewRenderer& renderer);
+
+ private:
+  void begin(App& app, const MovieRequest& request);
+
+  std::optional<RunMovie> movie_;
+  std::filesystem::path file_;
+};
+
+} // namespace flyball

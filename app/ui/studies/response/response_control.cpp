@@ -1,0 +1,428 @@
+#include "app/ui/studies/response/response_control.hpp"
+
+#include "app/ui/plots/shown_plot.hpp"
+
+#include "app/plot/axis.hpp"
+#include "engine/mechanism/address.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+// A curve stays quick to follow and to draw; what is longer says that it ended there.
+constexpr int most_points = 1500, most_branches = 16;
+constexpr int many_coordinates = 60; // from which on steps are longer and eigenvalues left out
+
+// Scaled. Low on a logarithmic axis a small part of the range is a long way.
+double largest_step(const ResponseRequest& of) {
+  return of.logarithmic ? 0.005 : 0.02;
+}
+
+BranchOptions follow_options(const ResponseRequest& of, double present) {
+  BranchOptions options;
+  options.largest_step = largest_step(of);
+  options.max_points = most_points;
+  options.max_branches = most_branches;
+  options.all = of.all;
+  if (of.all) options.all_at = {of.from, of.to};
+  if (of.all && (present - of.from) * (present - of.to) < 0) options.all_at.push_back(present);
+  options.reactions = of.reactions;
+  std::size_t coordinates = 0;
+  for (const Joint& joint : of.mechanism->joints)
+    coordinates += joint.coordinates.size();
+  if (coordinates > many_coordinates) {
+    options.largest_step = 0.05;
+    options.eigenvalues = false;
+  }
+  return options;
+}
+
+// What the present choices ask for; none where there is nothing to follow.
+std::optional<ResponseRequest> wanted_now(const App& app) {
+  const ResponseState& state = app.study.response;
+  if (app.mechanism().bodies.empty() || !app.mistakes.empty() || !response_control(app)) return std::nullopt;
+  ResponseRequest of;
+  of.address = state.address;
+  of.from = state.from;
+  of.to = state.to;
+  of.logarithmic = state.logarithmic;
+  of.all = state.all;
+  of.reactions = needs_reactions(state.quantity);
+  Mechanism followed = app.mechanism();
+  set_parameter(followed, of.address, of.from);
+  // What moves no equilibrium begins no new curve.
+  followed.sliders.clear();
+  followed.view.camera.reset();
+  followed.simulation = {};
+  of.mechanism = std::make_shared<const Mechanism>(std::move(followed));
+  return of;
+}
+
+// The answer as a point of a curve; none where its mechanism has no such number.
+std::optional<ResponsePoint> present_point(const App& app, const std::string& address) {
+  try {
+    return response_point(app.answer.solution, get_parameter(*app.answer.mechanism, address));
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
+void follow(App& app, ResponseRequest of) {
+  ResponseState& state = app.study.response;
+  if (!state.task)
+    state.task = std::make_unique<Background<ResponseResult>>(app.options.mode, app.options.on_news);
+  // While a hand drags one slider every curve that was begun is worth seeing; another question is not.
+  const bool after = state.asked && state.asked->address == of.address && state.asked->from == of.from &&
+                     state.asked->to == of.to && state.asked->all == of.all;
+  state.asked = of;
+  std::optional<ResponsePoint> through;
+  if (converged(app)) through = present_point(app, of.address);
+  state.through = app.answer.ticket;
+  const double present = get_parameter(app.mechanism(), of.address);
+  state.task->start(
+      [of = std::move(of), through = std::move(through),
+       present](const Background<ResponseResult>::Watch& watch) {
+        BranchOptions options = follow_options(of, present);
+        options.cancel = &watch.cancel;
+        options.progress = watch.progress;
+        ResponseResult result;
+        std::optional<ResponseDiagram> diagram;
+        if (through && !of.all)
+          diagram = follow_branches_through(*of.mechanism, of.address, of.from, of.to, *through, options);
+        // Without a state to go through, as the command line: from the drawn pose at the range's beginning.
+        result.diagram = diagram ? std::move(*diagram)
+                                 : follow_branches(*of.mechanism, of.address, of.from, of.to, options);
+        result.lines = response_lines(result.diagram);
+        result.of = of;
+        return result;
+      },
+      after);
+}
+
+void take_result(ResponseState& state) {
+  auto news = state.task ? state.task->take() : std::nullopt;
+  if (!news) return;
+  state.problem = news->problem;
+  state.result = std::move(news->result);
+  if (state.result && state.result->diagram.status != Status::converged) {
+    state.problem = state.result->diagram.message;
+    state.result.reset();
+  }
+  ++state.version;
+}
+
+// How far a state is from the present one (rad and m, added up).
+double away(const App& app, const ResponsePoint& point) {
+  const std::vector<CoordinateSolution>& now = app.answer.solution.coordinates;
+  double sum = 0;
+  for (std::size_t i = 0; i < now.size() && i < point.coordinates.size(); ++i) {
+    const double apart = point.coordinates[i].value - now[i].value;
+    if (!now[i].driven) sum += std::abs(now[i].angle ? std::remainder(apart, 2 * std::numbers::pi) : apart);
+  }
+  return sum;
+}
+
+// Stable states first, then those that are like the present one.
+void take_design(App& app) {
+  ResponseState& state = app.study.response;
+  auto news = state.design.task ? state.design.task->take() : std::nullopt;
+  if (!news) return;
+  state.design.problem = news->problem;
+  state.design.answer = std::move(news->result);
+  if (state.design.answer)
+    std::ranges::stable_sort(state.design.answer->found.solutions, {}, [&](const DesignSolution& s) {
+      return std::pair(s.at.stable != true, away(app, s.at));
+    });
+  ++state.version;
+}
+
+// First the parameter that is likely meant: a drive's speed.
+void choose_first(App& app) {
+  if (response_control(app)) return;
+  if (app.parameters.empty()) {
+    app.study.response.address.clear();
+    return;
+  }
+  const auto drive = std::ranges::find_if(app.parameters, [](const ParameterControl& control) {
+    return control.address.find(".drive") != std::string::npos;
+  });
+  choose_response(app, (drive == app.parameters.end() ? app.parameters.front() : *drive).address);
+}
+
+// At first a length, as of a collar, for what moves it; else the first coordinate.
+void choose_first_quantity(App& app) {
+  ResponseState& state = app.study.response;
+  const std::vector<ResponseQuantity> all = offered_quantities(app);
+  if (const auto found = std::ranges::find(all, state.quantity, &ResponseQuantity::key); found != all.end()) {
+    state.shown = *found;
+    return;
+  }
+  // Without an answer not everything is offered that may be so again.
+  if (all.empty() || (!state.quantity.empty() && !converged(app))) return;
+  const auto length = std::ranges::find_if(
+      all, [](const ResponseQuantity& each) { return each.unit == "m" && each.key.starts_with("value "); });
+  state.shown = length == all.end() ? all.front() : *length;
+  state.quantity = state.shown.key;
+  ++state.version;
+}
+
+// Whether coordinates are the same but for the straight lines that join a curve's points.
+bool near(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b) {
+  constexpr double tolerance = 2e-3; // rad, m
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].driven) continue;
+    double apart = a[i].value - b[i].value;
+    if (a[i].angle) apart = std::remainder(apart, 2 * std::numbers::pi);
+    if (std::abs(apart) > tolerance) return false;
+  }
+  return true;
+}
+
+// Between two points of a line; angles by the short way.
+ResponsePoint between(const ResponsePoint& a, const ResponsePoint& b, double part) {
+  ResponsePoint out = part < 0.5 ? a : b;
+  out.parameter = a.parameter + part * (b.parameter - a.parameter);
+  for (std::size_t i = 0; i < out.coordinates.size() && i < a.coordinates.size() && i < b.coordinates.size();
+       ++i) {
+    double step = b.coordinates[i].value - a.coordinates[i].value;
+    if (a.coordinates[i].angle && std::abs(step) > std::numbers::pi)
+      step = std::remainder(step, 2 * std::numbers::pi);
+    out.coordinates[i].value = a.coordinates[i].value + part * step;
+  }
+  return out;
+}
+
+// Whether the present state has come to stand beside all branches that were followed: past a fold, or where a
+// hand has put it.
+bool left_curves(const App& app) {
+  const ResponseState& state = app.study.response;
+  if (!state.result || state.task->running() || !converged(app) || solving(app)) return false;
+  if (app.answer.ticket == state.through) return false;
+  const ResponseRequest& of = state.result->of;
+  const std::optional<ResponsePoint> now = present_point(app, of.address);
+  if (!now || (now->parameter - of.from) * (now->parameter - of.to) > 0) return false;
+  for (const ResponseLine& line : state.result->lines)
+    for (std::size_t i = 1; i < line.points.size(); ++i) {
+      const ResponsePoint &a = line.points[i - 1], &b = line.points[i];
+      if ((now->parameter - a.parameter) * (now->parameter - b.parameter) > 0) continue;
+      const double step = b.parameter - a.parameter;
+      const double part = step == 0 ? 0.5 : (now->parameter - a.parameter) / step;
+      if (near(between(a, b, part).coordinates, now->coordinates)) return false;
+    }
+  return true;
+}
+
+// The point of a line at `at` (an index with a fraction), at a parameter with no more digits than a hand can
+// mean, where that lies on the line as well: beyond a fold there is nothing.
+ResponsePoint rounded_point(const ResponseLine& line, double at, double step) {
+  const auto last = static_cast<double>(line.points.size() - 1);
+  at = std::clamp(at, 0.0, last);
+  const auto i = static_cast<std::size_t>(std::min(std::floor(at), last - 1));
+  const ResponsePoint exact = between(line.points[i], line.points[i + 1], at - static_cast<double>(i));
+  const double wanted = std::round(exact.parameter / step) * step;
+  const auto in = [&](std::size_t k) -> std::optional<ResponsePoint> {
+    if (k + 1 >= line.points.size()) return std::nullopt;
+    const double from = line.points[k].parameter, to = line.points[k + 1].parameter;
+    if (from == to || (wanted - from) * (wanted - to) > 0) return std::nullopt;
+    return between(line.points[k], line.points[k + 1], (wanted - from) / (to - from));
+  };
+  for (const std::size_t k : {i, i + 1, i - 1}) // i - 1 may wrap around, and is then refused
+    if (auto found = in(k)) {
+      found->parameter = wanted;
+      return *found;
+    }
+  return exact;
+}
+
+} // namespace
+
+void update_response(App& app) {
+  ResponseState& state = app.study.response;
+  take_result(state);
+  take_design(app);
+  if (app.study.open != Study::response || app.mode != Mode::explore) return;
+  choose_first(app);
+  choose_first_quantity(app);
+  if (state.asked && state.asked_revision == app.document.revision() &&
+      state.asked->address == state.address && state.asked->from == state.from &&
+      state.asked->to == state.to && state.asked->all == state.all &&
+      state.asked->reactions == needs_reactions(state.quantity)) {
+    if (!left_curves(app)) return;
+    follow(app, ResponseRequest(*state.asked));
+    take_result(state);
+    return;
+  }
+  std::optional<ResponseRequest> wanted = wanted_now(app);
+  state.asked_revision = app.document.revision();
+  if (!wanted) {
+    const bool had = state.asked || state.result;
+    state.asked.reset();
+    state.result.reset();
+    state.task.reset();
+    state.problem.clear();
+    if (had) ++state.version;
+    return;
+  }
+  if (state.asked == wanted) return;
+  follow(app, std::move(*wanted));
+  if (state.design.answer) find_design(app);
+  take_result(state); // in immediate mode it is there
+}
+
+void close_response(App& app) {
+  ResponseState& state = app.study.response;
+  ResponseState fresh;
+  fresh.address = state.address;
+  fresh.from = state.from;
+  fresh.to = state.to;
+  fresh.logarithmic = state.logarithmic;
+  fresh.quantity = state.quantity;
+  fresh.all = state.all;
+  fresh.design.coordinate = state.design.coordinate;
+  fresh.design.value = state.design.value;
+  state = std::move(fresh);
+}
+
+bool computing_response(const App& app) {
+  const ResponseState& state = app.study.response;
+  return (state.task && state.task->running()) || (state.design.task && state.design.task->running());
+}
+
+const ParameterControl* response_control(const App& app) {
+  const auto found =
+      std::ranges::find(app.parameters, app.study.response.address, &ParameterControl::address);
+  return found == app.parameters.end() ? nullptr : &*found;
+}
+
+void choose_response(App& app, const std::string& address) {
+  const auto found = std::ranges::find(app.parameters, address, &ParameterControl::address);
+  if (found == app.parameters.end()) return;
+  ResponseState& state = app.study.response;
+  state.address = address;
+  state.from = found->from;
+  state.to = found->to;
+  state.logarithmic = found->log;
+  state.design.answer.reset();
+  fit_plot(state.view);
+  ++state.version;
+}
+
+std::string response_refusal(const App& app) {
+  if (!app.study.response.problem.empty()) return app.study.response.problem;
+  // Where the balance turns with the drives, what is followed from their standing still is no steady state.
+  const Solution& solution = app.answer.solution;
+  const bool told = app.answer.ticket && !app.answer.error && app.mistakes.empty();
+  return told && solution.status == Status::no_steady_state ? solution.message : "";
+}
+
+void choose_quantity(App& app, const ResponseQuantity& quantity) {
+  ResponseState& state = app.study.response;
+  state.quantity = quantity.key;
+  state.shown = quantity;
+  ++state.version;
+  fit_plot(state.view);
+}
+
+std::vector<ResponseQuantity> offered_quantities(const App& app) {
+  if (converged(app)) return response_quantities(response_point(app.answer.solution, 0));
+  const auto& result = app.study.response.result;
+  if (result && !result->lines.empty() && !result->lines.front().points.empty())
+    return response_quantities(result->lines.front().points.front());
+  return {};
+}
+
+void go_to_response(App& app, const PlotHit& hit, bool dragged) {
+  ResponseState& state = app.study.response;
+  if (!state.result || hit.curve >= state.pieces.size()) return;
+  const ResponsePiece& piece = state.pieces[hit.curve];
+  const ResponseLine& line = state.result->lines[piece.line];
+  if (line.points.size() < 2) return;
+  const double span = std::abs(state.to - state.from);
+  double step = std::pow(10, std::floor(std::log10(span)) - 4);
+  // A logarithmic range needs more digits at its lower end.
+  if (const double x = hit.x / state.plot.x.factor; state.logarithmic && x > 0)
+    step = std::pow(10, std::floor(std::log10(x)) - 4);
+  const ResponsePoint point = rounded_point(line, static_cast<double>(piece.first) + hit.index, step);
+  // A hand that rests on the marker asks for nothing new.
+  const bool there =
+      app.on_branch && point.parameter == get_parameter(app.mechanism(), state.result->of.address);
+  if (dragged && there && (solving(app) || near(app.answer.solution.coordinates, point.coordinates))) return;
+  go_to_state(app, state.result->of.address, point.parameter, start_values(point.coordinates));
+}
+
+void find_design(App& app) {
+  ResponseState& state = app.study.response;
+  ResponseDesign& wanted = state.design;
+  std::optional<ResponseRequest> of = wanted_now(app);
+  if (!of || wanted.coordinate.empty()) return;
+  if (!wanted.task)
+    wanted.task = std::make_unique<Background<ResponseDesign::Answer>>(app.options.mode, app.options.on_news);
+  wanted.problem.clear();
+  // The same question about a mechanism that is being changed: every answer is worth seeing.
+  const bool after =
+      wanted.answer && wanted.answer->coordinate == wanted.coordinate && wanted.answer->value == wanted.value;
+  wanted.task->start(
+      [of = std::move(*of), coordinate = wanted.coordinate,
+       value = wanted.value](const Background<ResponseDesign::Answer>::Watch& watch) {
+        DesignOptions options;
+        options.largest_step = largest_step(of);
+        options.cancel = &watch.cancel;
+        options.progress = watch.progress;
+        return ResponseDesign::Answer{
+            of, coordinate, value,
+            design(*of.mechanism, of.address, of.from, of.to, coordinate, value, options)};
+      },
+      after);
+  take_design(app);
+}
+
+void go_to_design(App& app, const DesignSolution& solution) {
+  const auto& answer = app.study.response.design.answer;
+  if (answer) go_to_state(app, answer->of.address, solution.parameter, start_values(solution.at.coordinates));
+}
+
+void draw_response(App& app) {
+  ResponseState& state = app.study.response;
+  const ResponseQuantity& quantity = state.shown;
+  // Until a curve with reactions is there the one before stays.
+  const bool told = state.result && (state.result->of.reactions || !needs_reactions(state.quantity));
+  if (state.plotted != state.version && told) {
+    const std::optional<PlotRange> before = state.plot.y.range;
+    const bool same = state.plot.y.label == quantity.title;
+    state.plot = response_plot(*state.result, quantity, app.units, state.pieces);
+    if (const auto& answer = state.design.answer; answer && "value " + answer->coordinate == state.quantity &&
+                                                  answer->of.address == state.result->of.address) {
+      state.plot.references.push_back(
+          {.axis = 1, .at = answer->value * quantity.factor, .label = "wanted", .color = plot_color::green});
+      for (const DesignSolution& s : answer->found.solutions)
+        state.plot.marks.push_back({.at = {s.parameter, answer->value * quantity.factor},
+                                    .label = "",
+                                    .shape = PlotShape::diamond,
+                                    .color = plot_color::green});
+    }
+    show_axis(state.plot, 0, state.plot.x.unit, app.units);
+    show_axis(state.plot, 1, quantity.unit, app.units);
+    // While one slider is dragged the axis only grows: a curve that moves is seen against it.
+    PlotRange range = axis_range(state.plot, {}, 1);
+    if (before && same && state.plot_gesture == app.gesture)
+      range = {std::min(range[0], (*before)[0]), std::max(range[1], (*before)[1])};
+    state.plot.y.range = range;
+    state.plot_gesture = app.gesture;
+    state.plot.version = ++state.plots_made;
+    state.plotted = state.version;
+  }
+  state.plot.marker.reset();
+  if (!state.result || !converged(app)) return;
+  const std::optional<ResponsePoint> now = present_point(app, state.result->of.address);
+  if (!now) return;
+  if (const auto y = quantity_mark(*now, state.quantity))
+    state.plot.marker =
+        PlotMarker{now->parameter * state.plot.x.factor, *y * quantity.factor * state.plot.y.factor, ""};
+}
+
+} // namespace flyball

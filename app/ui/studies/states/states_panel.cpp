@@ -1,0 +1,254 @@
+// All equilibria: how they were searched, and a table of them.
+#include "app/render/icons.hpp"
+#include "app/session/state_words.hpp"
+#include "app/session/units.hpp"
+#include "app/ui/studies/states/states_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/task_bar.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace flyball {
+
+namespace {
+
+constexpr float words_width = 292;           // points
+constexpr std::size_t most_coordinates = 48; // columns; Dear ImGui takes 64
+constexpr ImGuiTableFlags table_flags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
+                                        ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings |
+                                        ImGuiTableFlags_SizingFixedFit;
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+// "4 equilibria", "2 stable, 2 unstable".
+void summary(App& app, const std::vector<Solution>& all) {
+  const UiColors& colors = colors_of(app);
+  ImGui::PushFont(app.fonts.strong);
+  paragraph(all.empty() ? "No equilibrium was found" : counted(all.size(), "equilibrium", "equilibria"),
+            colors.text);
+  ImGui::PopFont();
+  note_widget(app.widgets, "states/count");
+  const auto stable = static_cast<std::size_t>(std::ranges::count(all, true, [](const Solution& s) {
+    return s.stable == true || s.stability_reason == StabilityReason::neutral;
+  }));
+  const auto unstable = static_cast<std::size_t>(
+      std::ranges::count(all, true, [](const Solution& s) { return s.stable == false; }));
+  std::string words;
+  const auto add = [&](std::size_t count, const char* word) {
+    if (count > 0) words += (words.empty() ? "" : ", ") + std::to_string(count) + " " + word;
+  };
+  add(stable, "stable");
+  add(unstable, "unstable");
+  add(all.size() - stable - unstable, "undecided");
+  if (!words.empty()) paragraph(words + ". Click one to see it.", colors.dim);
+  if (states_are_current(app) && converged(app) && !solving(app) && !shown_state(app))
+    paragraph("The state that is shown was not found by this search.", colors.warn);
+}
+
+// Where it was looked, and from how many starts.
+void search_bounds(App& app, const FoundStates& found) {
+  const UiColors& colors = colors_of(app);
+  heading(app, "How it was searched");
+  paragraph(counted(static_cast<std::size_t>(found.all.starts), "run", "runs") +
+                " of Newton-Raphson, from starts spread over these ranges and deflated at what was found. No "
+                "such search is complete.",
+            colors.dim);
+  note_widget(app.widgets, "states/search");
+  for (const AllSolutions::Bound& b : found.all.bounds) {
+    const ShownUnit unit = coordinate_unit(b.angle, app.units);
+    row(app, coordinate_label(b),
+        short_text(unit.shown(b.lower), 5) + " … " + short_text(unit.shown(b.upper), 5), unit.text.c_str(),
+        "Where starts lay. What was found a range's width further out was kept, too.");
+  }
+  if (app.options.numbers.run_times)
+    row(app, "Run time", duration_text(found.run_time_s, app.options.numbers), "");
+}
+
+void words(App& app) {
+  StatesState& states = app.study.states;
+  const UiColors& colors = colors_of(app);
+  if (states.task && states.task->running()) {
+    task_bar(app, "states/progress", states.task->progress(), states.task->seconds());
+    if (text_button(app, "states/cancel", "Cancel")) states.task->cancel();
+  } else {
+    const bool refused = !app.mistakes.empty() || app.mechanism().bodies.empty();
+    ImGui::BeginDisabled(refused);
+    if (text_button(app, "states/search_again", "Search again", !states_are_current(app))) search_states(app);
+    ImGui::EndDisabled();
+    if (refused) paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
+  }
+  if (!states.problem.empty()) paragraph(states.problem, colors.bad);
+  if (!states.result) return;
+  if (!states_are_current(app))
+    paragraph("Found before the last changes: search again to choose one.", colors.warn);
+  summary(app, states.result->all.equilibria);
+  search_bounds(app, *states.result);
+}
+
+struct Column {
+  std::string title, help;
+  float width = 0; // pixels
+};
+
+float digits_width(const App& app, const std::string& text) {
+  const ImFont* font = app.fonts.digits;
+  return font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x;
+}
+
+// One equilibrium as it is written into the table.
+struct Line {
+  std::string potential;
+  std::vector<std::string> values, details; // of the free coordinates; details: in SI with the error
+};
+
+Line line_of(const Solution& solution, const NumberStyle& numbers, const DisplayUnits& units) {
+  Line line;
+  line.potential = solution.potential ? short_text(*solution.potential, 8) : "–";
+  for (const CoordinateSolution& c : solution.coordinates) {
+    if (c.driven || line.values.size() == most_coordinates) continue;
+    const ShownUnit shown = coordinate_unit(c.angle, units);
+    line.values.push_back(value_text(shown.shown(c.value), c.error * shown.factor, numbers));
+    const std::string unit = c.angle ? " rad" : " m";
+    std::string detail = coordinate_label(c) + ": " + value_text(c.value, c.error, numbers) + unit;
+    if (c.error > 0) detail += " ± " + magnitude_text(std::max(c.error, numbers.noise), numbers) + unit;
+    line.details.push_back(std::move(detail));
+  }
+  return line;
+}
+
+void header(App& app, const std::vector<Column>& columns) {
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (!ImGui::TableSetColumnIndex(static_cast<int>(i))) continue;
+    // Numbers stand at the right, and so does what they are.
+    if (i >= 2)
+      ImGui::SetCursorPosX(
+          ImGui::GetCursorPosX() +
+          std::max(0.f, ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(columns[i].title.c_str()).x));
+    ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+    ImGui::TextUnformatted(columns[i].title.c_str());
+    ImGui::PopStyleColor();
+    if (!columns[i].help.empty()) help_on_hover(columns[i].help.c_str());
+  }
+}
+
+void state_row(App& app, std::size_t index, const Solution& solution, const Line& line, bool shown) {
+  const UiColors& colors = colors_of(app);
+  ImGui::TableNextRow();
+  if (shown) {
+    ImVec4 tint = colors.accent;
+    tint.w = 0.16f;
+    ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, packed(tint));
+  }
+  ImGui::TableNextColumn();
+  const std::string name = "states/row/" + std::to_string(index + 1);
+  ImGui::PushID(static_cast<int>(index));
+  const ImVec2 at = ImGui::GetCursorPos();
+  if (ImGui::Selectable("##row", false, ImGuiSelectableFlags_SpanAllColumns))
+    later(app, [index](App& then) { show_state(then, index); });
+  note_widget(app.widgets, name);
+  ImGui::PopID();
+  ImGui::SetCursorPos(at);
+  if (shown) {
+    ImGui::TextColored(colors.accent, "%s", icon::eye);
+    note_widget(app.widgets, "states/shown");
+  } else {
+    ImGui::TextColored(colors.dim, "%s", std::to_string(index + 1).c_str());
+  }
+  ImGui::TableNextColumn();
+  const StabilityWords words = stability_words(solution.stable, solution.stability_reason, colors);
+  ImGui::TextColored(words.color, "%s", words.icon);
+  ImGui::SameLine(0, 6 * app.scale);
+  ImGui::TextColored(words.color, "%s", words.word);
+  help_on_hover(words.sentence);
+  if (ImGui::TableNextColumn()) right_digits(app, line.potential, colors.text);
+  for (std::size_t c = 0; c < line.values.size(); ++c) {
+    if (!ImGui::TableNextColumn()) continue;
+    right_digits(app, line.values[c], colors.text);
+    help_on_hover(line.details[c].c_str());
+  }
+}
+
+std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
+                               const std::vector<Line>& lines) {
+  const float s = app.scale;
+  std::vector<Column> columns{
+      {"", "", 24 * s},
+      {"Stability", "", 112 * s},
+      {"Potential [J]",
+       "The amended potential: of weight, springs and constant forces, less the kinetic "
+       "energy of the drives' motion. Where it is least a state is stable.",
+       0}};
+  for (const CoordinateSolution& c : all.front().coordinates)
+    if (!c.driven && columns.size() < 3 + most_coordinates)
+      columns.push_back({coordinate_label(c) + " [" + coordinate_unit(c.angle, app.units).text + "]", "", 0});
+  for (std::size_t i = 2; i < columns.size(); ++i) {
+    float& width = columns[i].width;
+    width = ImGui::CalcTextSize(columns[i].title.c_str()).x;
+    for (const Line& line : lines)
+      if (i == 2 || i - 3 < line.values.size())
+        width = std::max(width, digits_width(app, i == 2 ? line.potential : line.values[i - 3]));
+    width += 14 * s;
+  }
+  return columns;
+}
+
+void table(App& app) {
+  const StatesState& states = app.study.states;
+  if (!states.result || states.result->all.equilibria.empty()) return;
+  const std::vector<Solution>& all = states.result->all.equilibria;
+  std::vector<Line> lines;
+  lines.reserve(all.size());
+  for (const Solution& solution : all)
+    lines.push_back(line_of(solution, app.options.numbers, app.units));
+  const std::vector<Column> columns = columns_of(app, all, lines);
+  ImGui::PushID(static_cast<int>(states.lists)); // new widths with every list
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {6 * app.scale, 3 * app.scale});
+  ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors_of(app).panel);
+  ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors_of(app).border);
+  if (ImGui::BeginTable("states", static_cast<int>(columns.size()), table_flags,
+                        ImGui::GetContentRegionAvail())) {
+    ImGui::TableSetupScrollFreeze(2, 1);
+    for (const Column& column : columns)
+      ImGui::TableSetupColumn(column.title.c_str(), ImGuiTableColumnFlags_WidthFixed, column.width);
+    header(app, columns);
+    const std::optional<std::size_t> shown = shown_state(app);
+    ImGui::BeginDisabled(!states_are_current(app));
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(all.size()));
+    while (clipper.Step())
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+        const auto index = static_cast<std::size_t>(i);
+        state_row(app, index, all[index], lines[index], shown == index);
+      }
+    ImGui::EndDisabled();
+    ImGui::EndTable();
+  }
+  ImGui::PopStyleColor(2);
+  ImGui::PopStyleVar();
+  ImGui::PopID();
+}
+
+} // namespace
+
+void states_panel(App& app) {
+  const float s = app.scale;
+  ImGui::BeginChild("words", {words_width * s, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
+  words(app);
+  ImGui::PopStyleVar();
+  ImGui::EndChild();
+  ImGui::SameLine(0, 14 * s);
+  ImGui::BeginChild("table", {0, 0}, false,
+                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  table(app);
+  ImGui::EndChild();
+}
+
+} // namespace flyball

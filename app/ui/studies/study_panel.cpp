@@ -1,0 +1,111 @@
+#include "app/render/icons.hpp"
+#include "app/ui/studies/map/map_control.hpp"
+#include "app/ui/studies/modes/modes_control.hpp"
+#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/studies/response/response_control.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+struct Tab {
+  Study study;
+  const char* name;
+  const char* title;
+  const char* help;
+};
+constexpr std::array tabs{
+    Tab{Study::motion, "study/motion", "Motion", "The damped motion beside the steady state"},
+    Tab{Study::response, "study/response", "Response",
+        "The steady states over one parameter: branches, folds and crossings"},
+    Tab{Study::states, "study/states", "States", "Every equilibrium that a bounded search finds"},
+    Tab{Study::modes, "study/modes", "Modes", "How the steady state swings, and at which speeds"},
+    Tab{Study::map, "study/map", "Map", "A coordinate over the plane of two parameters, with its folds"},
+    Tab{Study::compare, "study/compare", "Compare", "Error against run time: direct solution and motion"},
+};
+
+// A word with a line below it where it is the one that shows.
+bool tab(App& app, const Tab& wanted) {
+  const UiColors& colors = colors_of(app);
+  const bool on = app.study.open == wanted.study;
+  const float s = app.scale;
+  const ImVec2 text = ImGui::CalcTextSize(wanted.title), from = ImGui::GetCursorScreenPos();
+  const ImVec2 size(text.x + 16 * s, text.y + 10 * s);
+  const bool pressed = ImGui::InvisibleButton(wanted.name, size);
+  note_widget(app.widgets, wanted.name);
+  help_on_hover(wanted.help);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddText({from.x + 8 * s, from.y + 4 * s},
+               packed(on                       ? colors.text
+                      : ImGui::IsItemHovered() ? colors.accent
+                                               : colors.dim),
+               wanted.title);
+  if (on)
+    list.AddRectFilled({from.x + 8 * s, from.y + size.y - 3 * s},
+                       {from.x + size.x - 8 * s, from.y + size.y - s}, packed(colors.accent));
+  ImGui::SameLine(0, 0);
+  return pressed;
+}
+
+} // namespace
+
+void open_study(App& app, Study study) {
+  if (study == app.study.open) study = Study::none;
+  if (study != Study::none) set_mode(app, Mode::explore);
+  // The motion goes with its panel.
+  if (app.study.open == Study::motion && study != Study::motion) show_motion(app, false);
+  if (study != Study::states) app.study.states = {};
+  if (study != Study::modes) close_modes(app);
+  if (study != Study::map) close_map(app);
+  if (study != Study::response) close_response(app);
+  app.study.open = study;
+  if (study == Study::motion) show_motion(app, true);
+}
+
+void study_panel(App& app, const PanelRect& rect) {
+  const float s = app.scale;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 4 * s});
+  begin_panel("study", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  ImGui::GetWindowDrawList()->AddLine({rect.x, rect.y}, {rect.x + rect.width, rect.y},
+                                      packed(colors_of(app).border), std::max(1.f, std::round(s)));
+  Study wanted = Study::none;
+  for (const Tab& each : tabs)
+    if (tab(app, each) && each.study != app.study.open) wanted = each.study;
+  const float side = ImGui::GetFrameHeight() + 2 * s;
+  if (app.study.open == Study::motion && app.motion.on) {
+    const float from = std::max(314 * s, ImGui::GetCursorPosX() + 12 * s);
+    ImGui::SetCursorPosX(from);
+    motion_transport(app, rect.width - side - 24 * s - from);
+    ImGui::SameLine();
+  }
+  ImGui::SetCursorPosX(rect.width - side - 8 * s);
+  const bool closed = icon_button(app, "study/close", icon::close, "Close");
+  switch (app.study.open) {
+  case Study::none: break;
+  case Study::motion: motion_panel(app); break;
+  case Study::compare: compare_panel(app); break;
+  case Study::response: response_panel(app); break;
+  case Study::states: states_panel(app); break;
+  case Study::modes: modes_panel(app); break;
+  case Study::map: map_panel(app); break;
+  }
+  ImGui::End();
+  if (closed) open_study(app, Study::none);
+  if (wanted != Study::none) open_study(app, wanted);
+}
+
+bool studying(const App& app) {
+  return computing_motion(app) || computing_response(app) ||
+         (app.study.compare.task && app.study.compare.task->running()) ||
+         (app.study.states.task && app.study.states.task->running()) || finding_modes(app) ||
+         computing_map(app);
+}
+
+} // namespace flyball

@@ -1,0 +1,35 @@
+// The studies below the view, one file each. They show what was asked for, and nothing is made before.
+#pragma once
+
+#include "app/ui/app.hpp"
+#include "app/ui/layout.hpp"
+
+namespace flyball {
+
+// Shows a study, in the explore mode; the same again, or none, closes it.
+void open_study(App& app, Study study);
+void study_panel(App& app, const PanelRect& rect);
+// Takes what studies have found in the background.
+void update_studies(App& app);
+// Whether one computes: then frames go on, for its progress.
+bool studying(const App& app);
+
+void motion_panel(App& app);
+void motion_transport(App& app, float width); // play, scrub; in the present line, pixels
+void compare_panel(App& app);
+void response_panel(App& app);
+void states_panel(App& app);
+void modes_panel(App& app);
+void map_panel(App& app);
+
+// The name and the unit of what a plot over time can show.
+struct MotionQuantity {
+  std::string key;   // "value theta"
+  std::string title; // "theta"
+  std::string group; // "Coordinates"
+};
+std::vector<MotionQuantity> motion_quantities(const Run& run);
+// The quantity over the runs there are, with the steady value.
+Plot motion_plot(const App& app, const std::string& quantity);
+
+} // namespace flyball

@@ -1,0 +1,279 @@
+// The card beside the point of a joint to be made: which bodies, which type, which axis.
+#include "app/render/icons.hpp"
+#include "app/session/joint_guess.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "app/viewport/work_plane.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace flyball {
+
+namespace {
+
+struct TypeChoice {
+  JointType type;
+  const char* title;
+  const char* help;
+};
+constexpr std::array types{
+    TypeChoice{JointType::revolute, "Revolute", "Turns about the axis, as a hinge."},
+    TypeChoice{JointType::prismatic, "Prismatic", "Slides along the axis."},
+    TypeChoice{JointType::cylindrical, "Cylindrical", "Turns about the axis and slides along it."},
+    TypeChoice{JointType::universal, "Universal", "Turns about two axes, as a Cardan joint."},
+    TypeChoice{JointType::spherical, "Spherical", "Turns freely about the point, as a ball in a socket."},
+    TypeChoice{JointType::planar, "Planar", "Slides and turns in the plane across the axis."},
+    TypeChoice{JointType::fixed, "Fixed", "Holds the two bodies together."},
+    TypeChoice{JointType::free, "Free", "Holds nothing: places the child beside the parent."},
+};
+
+// A word of several, of which one is lit.
+bool choice(App& app, const std::string& name, const char* text, bool on, const char* help, float width = 0) {
+  const UiColors& colors = colors_of(app);
+  ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.on_accent : colors.text);
+  ImGui::PushStyleColor(ImGuiCol_Button, on ? colors.accent : colors.raised);
+  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, on ? colors.accent : colors.border);
+  ImGui::PushID(name.c_str());
+  const bool pressed = ImGui::Button(text, {width, 0});
+  ImGui::PopID();
+  ImGui::PopStyleColor(3);
+  note_widget(app.widgets, name);
+  help_on_hover(help);
+  return pressed;
+}
+
+// The next button beside the last one, or below it where there is no room.
+void wrap(float width) {
+  const float room = ImGui::GetWindowContentRegionMax().x + ImGui::GetWindowPos().x;
+  const float gap = 4;
+  if (ImGui::GetItemRectMax().x + gap + width <= room) ImGui::SameLine(0, gap);
+}
+
+float button_width(const char* text) {
+  return ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
+}
+
+bool same_direction(const Vec3& a, const Vec3& b) {
+  return (a.normalized() - b.normalized()).norm() < 1e-9;
+}
+
+void set_axis(App& app, const Vec3& axis) {
+  JointDraft& draft = *app.tool.joint;
+  draft.axis = axis;
+  draft.axis_chosen = true;
+  draft.picking_axis = false;
+  if (!draft.axis2_chosen || axis.cross(draft.axis2).norm() < 1e-6) {
+    draft.axis2 = axis_across(axis);
+    draft.axis2_chosen = false;
+  }
+}
+
+void set_bodies(App& app, const std::array<std::string, 2>& bodies) {
+  JointDraft& draft = *app.tool.joint;
+  draft.bodies = bodies;
+  Selection selection;
+  for (const std::string& body : bodies)
+    if (body != ground_name) selection.add({PartKind::body, body});
+  select(app, std::move(selection));
+}
+
+void body_rows(App& app) {
+  const std::vector<std::string> choices = body_choices(app.mechanism(), true);
+  const std::array<std::string, 2> bodies = app.tool.joint->bodies;
+  const auto take = [&](std::size_t end, const std::string& name) {
+    std::array<std::string, 2> next = bodies;
+    if (name == bodies[1 - end]) next[1 - end] = bodies[end];
+    next[end] = name;
+    set_bodies(app, next);
+  };
+  if (const auto name = name_choice_row(app, "tools/parent", "Parent", choices, bodies[0],
+                                        "The body that coordinates are counted from."))
+    take(0, *name);
+  if (const auto name = name_choice_row(app, "tools/child", "Child", choices, bodies[1],
+                                        "The body that a positive coordinate moves."))
+    take(1, *name);
+  ImGui::SameLine(0, 0);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+  if (ImGui::Button(icon::swap, {ImGui::GetContentRegionAvail().x, 0}))
+    set_bodies(app, {bodies[1], bodies[0]});
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
+  note_widget(app.widgets, "tools/swap");
+  help_on_hover("Swap the two.");
+}
+
+void type_rows(App& app, const ViewInput& input) {
+  JointDraft& draft = *app.tool.joint;
+  const float gap = 4 * app.scale, width = (ImGui::GetContentRegionAvail().x - gap) / 2;
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    if (i % 2) ImGui::SameLine(0, gap);
+    const TypeChoice& type = types[i];
+    const std::string name = "tools/type/" + std::string(type_name(type.type));
+    if (!choice(app, name, type.title, app.tool.joint_type == type.type, type.help, width)) continue;
+    app.tool.joint_type = type.type;
+    if (!draft.axis_chosen) {
+      draft.axis = guess_axis(app.mechanism(), type.type, draft.bodies, axis_in_view(input.camera));
+      draft.axis2 = axis_across(draft.axis);
+    }
+  }
+  ImGui::PopStyleVar();
+}
+
+void axis_rows(App& app, const ViewInput& input) {
+  JointDraft& draft = *app.tool.joint;
+  const auto offer = [&](const std::string& id, const std::string& label, const Vec3& axis,
+                         const char* help) {
+    const bool on = !draft.picking_axis && same_direction(axis, draft.axis);
+    if (choice(app, "tools/axis/" + id, label.c_str(), on, help)) set_axis(app, axis);
+  };
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * app.scale, 4 * app.scale});
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", app.tool.joint_type == JointType::planar ? "Normal" : "Axis");
+  ImGui::SameLine();
+  const std::array<const char*, 3> letters{"X", "Y", "Z"}, ids{"x", "y", "z"};
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    offer(ids[k], letters[k], Vec3::Unit(i), "Along a world axis.");
+    ImGui::SameLine(0, 4 * app.scale);
+  }
+  const Vec3 sight = input.camera.backward();
+  if (sight.cwiseAbs().maxCoeff() < 1 - 1e-9) {
+    offer("view", "View", sight, "Along the line of sight, towards the eye.");
+    ImGui::SameLine(0, 4 * app.scale);
+  }
+  if (choice(app, "tools/axis/points", "Two points…", draft.picking_axis,
+             "Click two points that it goes through.")) {
+    draft.picking_axis = !draft.picking_axis;
+    draft.axis_from.reset();
+  }
+  for (const BodyAxis& axis : body_axes(app.mechanism(), draft.bodies)) {
+    wrap(button_width(axis.label.c_str()));
+    offer(axis.label, axis.label, axis.axis, "An axis of the body.");
+  }
+  ImGui::PopStyleVar();
+}
+
+void second_axis_row(App& app) {
+  JointDraft& draft = *app.tool.joint;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", app.tool.joint_type == JointType::planar ? "First slide" : "Second axis");
+  const std::array<const char*, 3> letters{"X", "Y", "Z"}, ids{"x", "y", "z"};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 unit = Vec3::Unit(i);
+    if (draft.axis.cross(unit).norm() < 1e-6) continue;
+    // At right angles to the first: what slides and crosses are made of.
+    const Vec3 across = (unit - draft.axis * draft.axis.dot(unit) / draft.axis.squaredNorm()).normalized();
+    const auto k = static_cast<std::size_t>(i);
+    ImGui::SameLine(0, 4 * app.scale);
+    if (!choice(app, std::string("tools/axis2/") + ids[k], letters[k], same_direction(across, draft.axis2),
+                "As near to the world axis as it can be, across the first."))
+      continue;
+    draft.axis2 = across;
+    draft.axis2_chosen = true;
+  }
+}
+
+// What the solids of the two bodies cover of the window, a rectangle each.
+std::vector<PanelRect> covered_by_bodies(App& app, const ViewInput& input) {
+  std::vector<PanelRect> covered;
+  const std::array<std::string, 2>& names = app.tool.joint->bodies;
+  for (const Instance& solid : cached_scene(app).instances) {
+    if (solid.part.kind != PartKind::body) continue;
+    const std::string& name = app.mechanism().bodies[static_cast<std::size_t>(solid.part.index)].name;
+    if (name != names[0] && name != names[1]) continue;
+    const Bounds box = instance_bounds(solid);
+    ImVec2 low(1e9f, 1e9f), high(-1e9f, -1e9f);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 at(corner & 1 ? box.upper.x() : box.lower.x(), corner & 2 ? box.upper.y() : box.lower.y(),
+                    corner & 4 ? box.upper.z() : box.lower.z());
+      const auto pixel = input.on_screen(at);
+      if (!pixel) continue;
+      low = {std::min(low.x, pixel->x), std::min(low.y, pixel->y)};
+      high = {std::max(high.x, pixel->x), std::max(high.y, pixel->y)};
+    }
+    if (low.x < high.x) covered.push_back({low.x, low.y, high.x - low.x, high.y - low.y});
+  }
+  return covered;
+}
+
+float common_area(const PanelRect& a, ImVec2 from, ImVec2 size) {
+  const float width = std::min(a.x + a.width, from.x + size.x) - std::max(a.x, from.x);
+  const float height = std::min(a.y + a.height, from.y + size.y) - std::max(a.y, from.y);
+  return std::max(width, 0.f) * std::max(height, 0.f);
+}
+
+// Beside the point, rather on the side where less of the mechanism is, and within the view; in a corner of it
+// where the card would lie on the bodies that are joined.
+void place_card(App& app, const ViewInput& input, ImVec2 size) {
+  const float s = app.scale, gap = 28 * s, edge = 8 * s;
+  const PanelRect& rect = input.rect;
+  const ImVec2 corner(rect.x, rect.y);
+  const ImVec2 at = input.on_screen(app.tool.joint->at).value_or(corner);
+  const ImVec2 middle = input.on_screen(cached_scene(app).bounds.center()).value_or(corner);
+  const float right = at.x + gap, left = at.x - gap - size.x;
+  const float most = rect.x + rect.width - size.x - edge, least = rect.x + edge;
+  const bool to_left = left >= least && (at.x < middle.x || right > most);
+  ImVec2 from(to_left || (right > most && at.x > rect.x + rect.width / 2) ? left : right, at.y - 100 * s);
+  const float top = rect.y + edge, foot = std::max(top, rect.y + rect.height - size.y - edge);
+  from.x = std::clamp(from.x, least, std::max(least, most));
+  from.y = std::clamp(from.y, top, foot);
+  const std::vector<PanelRect> covered = covered_by_bodies(app, input);
+  const auto hidden = [&](ImVec2 place) {
+    float area = 0;
+    for (const PanelRect& each : covered)
+      area += common_area(each, place, size);
+    return area;
+  };
+  const float strip = 52 * s; // the tools
+  const float other = std::clamp(to_left ? right : left, least, std::max(least, most));
+  for (const ImVec2 place :
+       {ImVec2(other, from.y), ImVec2(std::max(least, most), foot), ImVec2(std::max(least, most), top),
+        ImVec2(least + strip, foot), ImVec2(least + strip, top)})
+    if (hidden(place) < 0.8f * hidden(from)) from = place;
+  ImGui::SetNextWindowPos({std::round(from.x), std::round(from.y)});
+}
+
+} // namespace
+
+void joint_card(App& app, const ViewInput& input) {
+  if (!app.tool.joint) return;
+  const float s = app.scale;
+  const ImVec2 size(264 * s, app.tool.card_height);
+  place_card(app, input, size);
+  ImGui::SetNextWindowSize({size.x, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::Begin("joint", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
+                   ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PopStyleVar(2);
+  heading(app, "Join");
+  body_rows(app);
+  ImGui::Dummy({0, s});
+  type_rows(app, input);
+  if (has_axis(app.tool.joint_type)) axis_rows(app, input);
+  if (has_axis2(app.tool.joint_type)) second_axis_row(app);
+  ImGui::Dummy({0, 2 * s});
+  if (text_button(app, "tools/join", "Join", true)) {
+    make_joint(app);
+  } else {
+    ImGui::SameLine();
+    if (text_button(app, "tools/cancel", "Cancel")) {
+      select(app, app.tool.joint->before);
+      app.tool.joint.reset();
+    }
+  }
+  // Its place is chosen for the tallest it was: a type with fewer rows does not move what is clicked next.
+  app.tool.card_height = std::max(app.tool.card_height, ImGui::GetWindowHeight());
+  ImGui::End();
+}
+
+} // namespace flyball

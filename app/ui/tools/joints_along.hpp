@@ -1,0 +1,15 @@
+// Whether a body that is moved takes its joints along, and what is said about it.
+#pragma once
+
+#include "app/document/transform.hpp"
+#include "app/ui/app.hpp"
+
+namespace flyball {
+
+// As chosen in the inspector; `opposite` while Shift is held in the view.
+OuterJoints joints_of_moved(const App& app, bool opposite);
+// Tells which joints went along with the selected bodies and what they are joined to that stays, or which
+// joints were left. After the edit; nothing where they have none to what stays.
+void tell_joints(App& app, const Selection& moved, bool opposite);
+
+} // namespace flyball

@@ -1,0 +1,124 @@
+// The tools, as a strip of buttons at the left edge of the view.
+#include "app/ui/commands.hpp"
+#include "app/ui/tools/tool_glyphs.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/tooltip.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+struct ToolButton {
+  Tool tool;
+  const char* name;
+  const char* command;
+  bool separated = false; // begins a group
+};
+constexpr std::array buttons{
+    ToolButton{Tool::select, "tools/select", "view.select"},
+    ToolButton{Tool::rotate, "tools/rotate", "view.rotate"},
+    ToolButton{Tool::box, "tools/box", "view.box"},
+    ToolButton{Tool::ball, "tools/ball", "insert.ball", true},
+    ToolButton{Tool::block, "tools/block", "insert.block"},
+    ToolButton{Tool::rod, "tools/rod", "insert.rod"},
+    ToolButton{Tool::plate, "tools/plate", "insert.plate"},
+    ToolButton{Tool::joint, "tools/joint", "insert.joint", true},
+    ToolButton{Tool::distance, "tools/distance", "insert.distance"},
+    ToolButton{Tool::spring, "tools/spring", "insert.spring"},
+    ToolButton{Tool::damper, "tools/damper", "insert.damper"},
+    ToolButton{Tool::force, "tools/force", "insert.force", true},
+    ToolButton{Tool::torque, "tools/torque", "insert.torque"},
+    ToolButton{Tool::drag, "tools/drag", "insert.drag"},
+};
+
+constexpr float top = 56, bottom = 92; // points of the view that the caption and the axes need
+constexpr float side = 26, pad = 4, group_gap = 7;
+
+// What it is and how to call it, beside the strip.
+void tell(const App& app, const char* id) {
+  if (!ImGui::IsItemHovered() || !pointed_long()) return;
+  const Command& wanted = command(id);
+  ImGui::BeginTooltip();
+  ImGui::PushFont(app.fonts.strong);
+  ImGui::TextUnformatted(wanted.title);
+  ImGui::PopFont();
+  if (const std::string key = key_text(wanted.key); !key.empty()) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", key.c_str());
+  }
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 18);
+  ImGui::TextUnformatted(wanted.help);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+// A square with a glyph; returns whether it was pressed.
+template <class Draw>
+bool glyph_button(App& app, const char* name, bool on, const Draw& draw) {
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, width = side * s;
+  const ImVec2 from = ImGui::GetCursorScreenPos(), to(from.x + width, from.y + width);
+  const bool pressed = ImGui::InvisibleButton(name, {width, width});
+  note_widget(app.widgets, name);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (on || ImGui::IsItemHovered())
+    list.AddRectFilled(from, to, packed(on ? colors.accent : colors.raised), 4 * s);
+  draw(list, ImVec2(from.x + width / 2, from.y + width / 2), 8.5f * s,
+       packed(on ? colors.on_accent : colors.text));
+  return pressed;
+}
+
+} // namespace
+
+void tool_strip(App& app, const PanelRect& view) {
+  if (app.mode != Mode::build) return;
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale;
+  // In a low view the groups stand in as many columns as they need.
+  const float room = std::max(view.height / s - top - bottom, 4 * side + 2 * pad);
+  ImGui::SetNextWindowPos({std::round(view.x + 10 * s), std::round(view.y + top * s)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {pad * s, pad * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::Begin("tools", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleVar(4);
+  const ImVec2 origin = ImGui::GetCursorScreenPos();
+  float x = 0, y = 0;
+  const auto place = [&](bool separated) {
+    if (y + side + 2 * pad > room) {
+      x += side + pad;
+      y = 0;
+    } else if (separated && y > 0) {
+      const float line = origin.y + s * (y + group_gap / 2);
+      ImGui::GetWindowDrawList()->AddLine({origin.x + s * (x + 3), line},
+                                          {origin.x + s * (x + side - 3), line}, packed(colors.border),
+                                          std::max(1.f, std::round(s)));
+      y += group_gap;
+    }
+    ImGui::SetCursorScreenPos({origin.x + x * s, origin.y + y * s});
+    y += side;
+  };
+  for (const ToolButton& button : buttons) {
+    place(button.separated);
+    const bool on = app.tool.tool == button.tool;
+    if (glyph_button(app, button.name, on, [&](ImDrawList& list, ImVec2 center, float half, ImU32 ink) {
+          draw_tool_glyph(list, button.tool, center, half, ink);
+        }))
+      set_tool(app, button.tool);
+    tell(app, button.command);
+  }
+  place(true);
+  if (glyph_button(app, "tools/snap", app.tool.snap, draw_magnet_glyph)) app.tool.snap = !app.tool.snap;
+  tell(app, "view.snap");
+  ImGui::End();
+}
+
+} // namespace flyball

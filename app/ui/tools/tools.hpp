@@ -1,0 +1,50 @@
+// The tools of the view, one file each. Every frame each of them draws over the picture what it is about to
+// do, and then does what the hand asks for.
+#pragma once
+
+#include "app/document/create.hpp"
+#include "app/ui/panels/view_input.hpp"
+#include "app/viewport/picking.hpp"
+
+namespace flyball {
+
+// Drops what was begun of a tool that is no longer chosen, or with parts that are gone.
+void keep_tool_state(App& app);
+// Whether dragging with the left button is the tool's business and does not turn the view.
+bool takes_left_drag(const App& app, const ViewInput& input);
+// Escape: takes back a drag, or else what was begun of the tool, or else ends the tool. False where there is
+// nothing of the kind.
+bool step_back(App& app);
+// Takes the keys that the tools have a use for out of app.keys; before the shortcuts.
+void take_tool_keys(App& app);
+// What to do next, in a line; empty where there is nothing to say.
+std::string tool_hint(const App& app);
+
+// Moving and turning with the gizmo, and moving the ends of the selected spring or link.
+void use_gizmo(App& app, const ViewInput& input);
+void let_go(App& app, bool keep); // of what is held; otherwise everything is where it was
+// Clicking and framing parts.
+std::optional<Hit> part_under_cursor(App& app, const ViewInput& input);
+void use_selecting(App& app, const ViewInput& input);
+void use_placing(App& app, const ViewInput& input);    // ball, block, plate
+void use_connecting(App& app, const ViewInput& input); // rod, link, spring, damper
+void use_forces(App& app, const ViewInput& input);     // force, torque, drag
+void use_joining(App& app, const ViewInput& input);
+bool make_joint(App& app); // of app.tool.joint, and ends it; false where it cannot be made as it is
+
+void tool_strip(App& app, const PanelRect& view);
+void joint_card(App& app, const ViewInput& input); // what a joint will be, beside its point
+
+// After a tool has made something: chosen again while Shift is held, else it is time to select.
+void end_tool(App& app, const ViewInput& input);
+// Whether the tool places something with a click.
+bool places(Tool tool);
+
+// Cached until the mechanism changes.
+const std::vector<SnapPoint>& cached_snap_points(App& app);
+const SceneList& cached_scene(App& app);     // of the drawn pose
+std::optional<Vec3> cached_centre(App& app); // of the selection
+// Of the selected spring or link, where it alone is selected; else none. Their indices are those of PointId.
+const std::vector<Vec3>& cached_ends(App& app);
+
+} // namespace flyball

@@ -1,0 +1,162 @@
+// What has two ends: rods, links, springs and dampers. Two clicks, or a drag from one end to the other.
+#include "app/session/typed_size.hpp"
+#include "app/ui/inspector/body_preview.hpp"
+#include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "app/viewport/snapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flyball {
+
+namespace {
+
+constexpr double rod_radius = 5;                 // points of the picture
+constexpr double stiffness = 1000, damping = 10; // N/m, N s/m
+
+std::string word_of(Tool tool) {
+  switch (tool) {
+  case Tool::rod: return "rod";
+  case Tool::distance: return "link";
+  case Tool::spring: return "spring";
+  case Tool::damper: return "damper";
+  default: return "";
+  }
+}
+
+NewBody rod_between(const ViewInput& input, const Vec3& from, const Vec3& to) {
+  NewBody rod;
+  rod.form = BodyForm::rod;
+  rod.from = from;
+  rod.to = to;
+  const double thick = nearest_step(rod_radius * input.point * input.metres_per_pixel());
+  rod.radius = std::min(thick, nearest_step((to - from).norm() / 8));
+  return rod;
+}
+
+void add(App& app, const ViewInput& input, const Aim& from, const Aim& to) {
+  const std::array<std::string, 2> bodies{from.body, to.body};
+  const std::array<Vec3, 2> points{from.point, to.point};
+  const Tool tool = app.tool.tool;
+  edit(app, "Add " + word_of(tool), [&](Mechanism& mechanism, Selection& selection) {
+    switch (tool) {
+    case Tool::rod:
+      return selection.set({PartKind::body, add_body(mechanism, rod_between(input, points[0], points[1]))});
+    case Tool::distance: return selection.set({PartKind::joint, add_distance(mechanism, bodies, points)});
+    case Tool::spring:
+      return selection.set({PartKind::force, add_spring(mechanism, bodies, points, stiffness, 0)});
+    default: return selection.set({PartKind::force, add_spring(mechanism, bodies, points, 0, damping)});
+    }
+  });
+}
+
+// Why the two ends cannot be joined; empty where they can.
+std::string obstacle(Tool tool, const Aim& from, const Aim& to) {
+  if (tool != Tool::rod && from.body == to.body)
+    return from.body == ground_name ? "Both ends are on the ground: one has to be on a body."
+                                    : "Both ends are on " + from.body + ": click a point of something else.";
+  const bool together = (from.point - to.point).norm() == 0;
+  if (together && tool != Tool::spring && tool != Tool::damper) return "The ends have to be apart.";
+  return "";
+}
+
+// The direction from one end to where the cursor is. On nothing in particular it snaps to round angles, as a
+// grid point far away would not.
+Vec3 direction(const App& app, const ViewInput& input, const Aim& from, const Aim& to) {
+  const int n = to.plane.normal, a = (n + 1) % 3, b = (n + 2) % 3;
+  const Vec3 by = to.point - from.point;
+  const bool in_plane = std::abs(by[n]) <= 1e-9 * by.norm();
+  if (!(by.norm() > 0)) { // to the right, as it is seen
+    int along = a;
+    if (std::abs(input.camera.right()[b]) > std::abs(input.camera.right()[a])) along = b;
+    return std::copysign(1.0, input.camera.right()[along]) * Vec3::Unit(along);
+  }
+  if (!in_plane || !to.what.empty() || !snaps(app, input)) return by.normalized();
+  const double angle = round_angle(std::atan2(by[b], by[a]));
+  Vec3 unit = Vec3::Zero();
+  unit[a] = std::cos(angle);
+  unit[b] = std::sin(angle);
+  for (double& x : unit)
+    if (std::abs(x) < 1e-15) x = 0;
+  return unit;
+}
+
+// Where the cursor is, or as far away from the first end as is typed.
+Aim second_end(const App& app, const ViewInput& input, const Aim& from, const Aim& seen,
+               std::string& mistake) {
+  if (app.tool.typed.empty()) return seen;
+  const auto length = typed_length(app.tool.typed, app.units, &mistake);
+  if (!length) return seen;
+  Aim end = seen;
+  end.point = from.point + *length * direction(app, input, from, seen);
+  return end;
+}
+
+void draw_end(const App& app, const ViewInput& input, const Vec3& at) {
+  if (const auto pixel = input.on_screen(at)) draw_dot(app, *pixel, 4);
+}
+
+void draw_between(const App& app, const ViewInput& input, const Vec3& from, const Vec3& to) {
+  if (app.tool.tool == Tool::rod) {
+    draw_body_outline(app, input, rod_between(input, from, to));
+  } else {
+    const auto p = input.on_screen(from), q = input.on_screen(to);
+    if (p && q) draw_line(app, *p, *q, palette(app.theme).accent, 2);
+  }
+  draw_end(app, input, from);
+}
+
+} // namespace
+
+void use_connecting(App& app, const ViewInput& input) {
+  ToolState& tool = app.tool;
+  const bool entered = std::exchange(tool.place_now, false);
+  if (!input.hovered && !tool.first) return;
+  Aim aim = aim_at(app, input);
+  std::string mistake;
+  if (tool.first) {
+    const Aim& from = *tool.first;
+    aim = second_end(app, input, from, aim, mistake);
+    draw_between(app, input, from.point, aim.point);
+    const ShownUnit unit = shown_unit("m", app.units);
+    std::string head =
+        "length " + (tool.typed.empty()
+                         ? short_text(unit.shown((aim.point - from.point).norm()), 4) + " " + unit.text
+                         : typed_text(tool.typed, unit.text));
+    if (!aim.what.empty())
+      head += ", " + aim.what;
+    else if (tool.tool != Tool::rod && aim.body != ground_name)
+      head += ", on " + aim.body;
+    draw_aim(app, input, aim, head);
+  } else {
+    draw_aim(app, input, aim);
+  }
+  if (tool.spent) return;
+  if (input.pressed && !tool.first) tool.first = aim;
+  if ((!input.released && !entered) || !tool.first) return;
+  const Aim from = *tool.first;
+  if (!entered && !tool.first_clicked && !input.moved) {
+    tool.first_clicked = true;
+    tool.last_point = from.point;
+    return;
+  }
+  if (!mistake.empty()) {
+    app.notice = "“" + tool.typed + "” is no length. " + mistake;
+    return;
+  }
+  if (const std::string reason = obstacle(tool.tool, from, aim); !reason.empty()) {
+    app.notice = reason;
+    if (!tool.first_clicked && !entered) tool.first.reset();
+    return;
+  }
+  add(app, input, from, aim);
+  tool.last_point = aim.point;
+  tool.spent = input.held; // Enter, while the button is down
+  end_tool(app, input);
+}
+
+} // namespace flyball

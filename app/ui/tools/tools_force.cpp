@@ -1,0 +1,51 @@
+// Forces, torques and drag: one click on a body.
+#include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/tools.hpp"
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+ForceType type_of(Tool tool) {
+  return tool == Tool::force ? ForceType::force : tool == Tool::torque ? ForceType::torque : ForceType::drag;
+}
+
+// 1 N downwards, 1 N m about the world axis that points at the viewer.
+Vec3 first_vector(const App& app, const ViewInput& input, const Aim& aim) {
+  if (app.tool.tool == Tool::force) return -up_axis(app.mechanism()).array() + 0.0;
+  const int n = aim.plane.normal;
+  return std::copysign(1.0, input.camera.backward()[n]) * Vec3::Unit(n);
+}
+
+} // namespace
+
+void use_forces(App& app, const ViewInput& input) {
+  ToolState& tool = app.tool;
+  if (!input.hovered) return;
+  const Aim aim = aim_at(app, input);
+  const bool on_body = aim.body != ground_name;
+  if (on_body && tool.tool == Tool::force) {
+    const double length = 40 * input.point * metres_per_pixel(input.camera, aim.point, input.size);
+    const auto from = input.on_screen(aim.point);
+    const auto to = input.on_screen(Vec3(aim.point + length * first_vector(app, input, aim)));
+    if (from && to) draw_line(app, *from, *to, palette(app.theme).accent, 2.5f);
+  }
+  draw_aim(app, input, aim, on_body && aim.what.empty() ? "on " + aim.body : aim.what);
+  if (!input.clicked() || tool.spent) return;
+  if (!on_body) {
+    app.notice = "There is no body here: click one.";
+    return;
+  }
+  const ForceType type = type_of(tool.tool);
+  edit(app, "Add " + std::string(type_name(type)), [&](Mechanism& mechanism, Selection& selection) {
+    selection.set(
+        {PartKind::force, add_force(mechanism, type, aim.body, aim.point, first_vector(app, input, aim))});
+  });
+  tool.last_point = aim.point;
+  end_tool(app, input);
+}
+
+} // namespace flyball

@@ -1,0 +1,239 @@
+// Moving and turning the selected parts by handles in the view. A drag is one step of the history, made of
+// the state it began with at every movement.
+#include "app/session/quantity.hpp"
+#include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/gizmo_drawing.hpp"
+#include "app/ui/tools/joints_along.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/viewport/snapping.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace flyball {
+
+namespace {
+
+// The whole of the selection where it is one point.
+std::optional<PointId> only_point(const Mechanism& mechanism, const Selection& selection) {
+  if (selection.parts.size() != 1) return std::nullopt;
+  const PointId first{selection.parts[0], 0};
+  if (!point_position(mechanism, first) || point_position(mechanism, {first.part, 1})) return std::nullopt;
+  return first;
+}
+
+void move_grabbed(Mechanism& mechanism, const Grab& grab, const Vec3& target, OuterJoints joints) {
+  if (const auto point = grab.point ? grab.point : only_point(mechanism, grab.selection))
+    set_point(mechanism, *point, target, joints);
+  else
+    move_parts(mechanism, grab.selection, target - grab.centre, joints);
+}
+
+// The other end of what has two and is dragged by one of them.
+std::optional<Vec3> other_end(const Grab& grab) {
+  if (!grab.point) return std::nullopt;
+  return point_position(*grab.before, {grab.point->part, 1 - grab.point->end});
+}
+
+// Points to snap to: those that stay where they are when the grabbed ones go far away.
+std::vector<SnapPoint> targets_of(const Grab& grab) {
+  Mechanism moved = *grab.before;
+  move_grabbed(moved, grab, grab.centre + Vec3(1.2345e3, 2.3456e3, 3.4567e3), OuterJoints::follow);
+  std::vector<SnapPoint> stayed = snap_points(moved), before = snap_points(*grab.before);
+  const auto place = [](const SnapPoint& p) { return std::array{p.point.x(), p.point.y(), p.point.z()}; };
+  std::ranges::sort(before, {}, place);
+  std::erase_if(stayed,
+                [&](const SnapPoint& p) { return !std::ranges::binary_search(before, place(p), {}, place); });
+  return stayed;
+}
+
+std::string step_name(const Grab& grab) {
+  const std::vector<Part>& parts = grab.selection.parts;
+  const std::string what = parts.size() == 1 ? parts[0].name : std::to_string(parts.size()) + " parts";
+  if (grab.point) return "Move end of " + what;
+  return (is_ring(grab.handle) ? "Rotate " : "Move ") + what;
+}
+
+void take_hold(App& app, const ViewInput& input, const Gizmo& gizmo, Handle handle,
+               std::optional<PointId> point) {
+  Grab grab;
+  grab.handle = handle;
+  grab.point = std::move(point);
+  grab.normal = gizmo.normal;
+  grab.before = app.document.steps()[app.document.position()].mechanism;
+  grab.selection = app.selection();
+  grab.centre = gizmo.centre;
+  grab.from = input.ray();
+  grab.gesture = app.gesture;
+  grab.name = step_name(grab);
+  if (!is_ring(handle)) grab.targets = targets_of(grab);
+  app.tool.grab = std::move(grab);
+}
+
+// An edit of the drag, whatever was pressed meanwhile.
+void edit_grabbed(App& app, const std::function<void(Mechanism&)>& change) {
+  const Grab& grab = *app.tool.grab;
+  const std::uint64_t gesture = std::exchange(app.gesture, grab.gesture);
+  edit(app, grab.name, [&](Mechanism& mechanism, Selection& selection) {
+    mechanism = *grab.before;
+    selection = grab.selection;
+    change(mechanism);
+  });
+  app.gesture = gesture;
+}
+
+void turn(App& app, const ViewInput& input, const Gizmo& gizmo) {
+  Grab& grab = *app.tool.grab;
+  const auto turned_by = turned(gizmo, grab.handle, grab.from, input.ray());
+  if (turned_by) grab.swept += std::remainder(*turned_by - grab.swept, 2 * std::numbers::pi);
+  double angle = snaps(app, input) ? round_angle(grab.swept) : grab.swept;
+  if (const Quantity typed = parse_quantity(grab.typed, "rad", shown_unit("rad", app.units).text);
+      !grab.typed.empty() && typed)
+    angle = typed.value;
+  if (angle == grab.angle && grab.shift == input.shift) return;
+  grab.angle = angle;
+  grab.shift = input.shift;
+  const Quat rotation(Eigen::AngleAxisd(angle, Vec3::Unit(axis_of(grab.handle))));
+  edit_grabbed(app, [&](Mechanism& mechanism) {
+    if (angle != 0)
+      rotate_parts(mechanism, grab.selection, grab.centre, rotation, joints_of_moved(app, input.shift));
+  });
+  tell_joints(app, grab.selection, input.shift);
+}
+
+void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
+  Grab& grab = *app.tool.grab;
+  const auto by = dragged(gizmo, grab.handle, grab.from, input.ray());
+  if (!by) return;
+  const std::array<bool, 3> free = free_coordinates(grab.handle, grab.normal);
+  Vec3 target = grab.centre + *by;
+  grab.what.clear();
+  const Quantity typed = parse_quantity(grab.typed, "m", shown_unit("m", app.units).text);
+  const bool arrow = std::ranges::count(free, true) == 1;
+  // Along the arrow; else as far from the other end, or from where it was, on the line to where the hand is.
+  const Vec3 origin = other_end(grab).value_or(grab.centre);
+  const Vec3 along = arrow ? Vec3::Unit(axis_of(grab.handle)) : Vec3((target - origin).stableNormalized());
+  if (!grab.typed.empty() && typed && along.norm() > 0) {
+    target = origin + typed.value * along;
+  } else if (input.moved && snaps(app, input)) {
+    const SnapPoint* point =
+        snap_point(grab.targets, input.camera, input.size, input.cursor, snap_reach * input.point);
+    target = on_grid(target, free, grid_step(input));
+    if (point) {
+      grab.what = point->what;
+      for (int i = 0; i < 3; ++i)
+        if (free[static_cast<std::size_t>(i)]) target[i] = point->point[i];
+    }
+  } else if (!input.moved) {
+    return; // a press does not move anything
+  }
+  const Vec3 moved = target - grab.centre;
+  if (moved == grab.by && grab.shift == input.shift) return;
+  grab.by = moved;
+  grab.shift = input.shift;
+  edit_grabbed(app, [&](Mechanism& mechanism) {
+    move_grabbed(mechanism, grab, target, joints_of_moved(app, input.shift));
+  });
+  tell_joints(app, grab.selection, input.shift);
+}
+
+void hold(App& app, const ViewInput& input, const Gizmo& gizmo) {
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
+    step_back(app);
+    return;
+  }
+  if (is_ring(app.tool.grab->handle))
+    turn(app, input, gizmo);
+  else
+    move(app, input, gizmo);
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    let_go(app, true);
+    // Letting go is no click; but a click on a handle means the part behind it, if there is any.
+    app.tool.spent = input.moved || !part_under_cursor(app, input);
+  }
+}
+
+void draw_ends(App& app, const ViewInput& input) {
+  app.tool.hovered_point.reset();
+  const std::vector<Vec3>& ends = cached_ends(app);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const auto at = input.on_screen(ends[i]);
+    if (!at) continue;
+    const PointId end{app.selection().parts[0], static_cast<int>(i)};
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const float reach = 8 * app.scale;
+    const bool held = app.tool.grab && app.tool.grab->point == end;
+    const bool lit = held || (!app.tool.grab && input.hovered && (!input.active || input.pressed) &&
+                              std::max(std::abs(mouse.x - at->x), std::abs(mouse.y - at->y)) < reach);
+    if (lit) app.tool.hovered_point = end;
+    draw_square(app, *at, 4, lit);
+    app.widgets["gizmo/end" + std::to_string(i)] = {{at->x - reach / 2, at->y - reach / 2},
+                                                    {at->x + reach / 2, at->y + reach / 2}};
+  }
+}
+
+void note_handles(App& app, const ViewInput& input, const std::vector<HandleShape>& shapes) {
+  const float half = 3 * app.scale;
+  for (const HandleShape& shape : shapes) {
+    const ImVec2 at = input.on_screen(shape.grip);
+    app.widgets["gizmo/" + std::string(handle_name(shape.handle))] = {{at.x - half, at.y - half},
+                                                                      {at.x + half, at.y + half}};
+  }
+}
+
+} // namespace
+
+void let_go(App& app, bool keep) {
+  if (!keep) edit_grabbed(app, [](Mechanism&) {});
+  app.tool.grab.reset();
+}
+
+void use_gizmo(App& app, const ViewInput& input) {
+  ToolState& tool = app.tool;
+  const bool wanted = app.mode == Mode::build && (tool.tool == Tool::select || tool.tool == Tool::rotate);
+  const auto centre = wanted ? cached_centre(app) : std::nullopt;
+  const Handle before = std::exchange(tool.hovered, Handle::none);
+  if (!centre) {
+    tool.hovered_point.reset();
+    return;
+  }
+  Gizmo gizmo{tool.tool == Tool::rotate ? GizmoKind::rings : GizmoKind::arrows,
+              *centre,
+              axis_in_view(input.camera),
+              input.camera,
+              input.size,
+              input.point};
+  if (tool.grab) {
+    draw_grabbed(app, input);
+    draw_ends(app, input);
+    gizmo.centre = tool.grab->centre;
+    gizmo.normal = tool.grab->normal;
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+    hold(app, input, gizmo);
+    return;
+  }
+  const std::vector<HandleShape> shapes = handle_shapes(gizmo);
+  if (input.hovered && (!input.active || input.pressed))
+    tool.hovered = handle_at(shapes, input.cursor, input.point);
+  // A click on a handle neither picks nor drops anything behind it.
+  if (input.active && !input.pressed && before != Handle::none) tool.hovered = before;
+  if (tool.frame) tool.hovered = Handle::none;
+  draw_handles(app, input, shapes, tool.hovered);
+  draw_ends(app, input);
+  note_handles(app, input, shapes);
+  if (tool.hovered_point) tool.hovered = Handle::none;
+  if (tool.hovered_point || tool.hovered != Handle::none) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+  if (!input.pressed) return;
+  if (tool.hovered_point) {
+    gizmo.centre = cached_ends(app)[static_cast<std::size_t>(tool.hovered_point->end)];
+    take_hold(app, input, gizmo, Handle::plane, tool.hovered_point);
+  } else if (tool.hovered != Handle::none) {
+    take_hold(app, input, gizmo, tool.hovered, std::nullopt);
+  }
+}
+
+} // namespace flyball

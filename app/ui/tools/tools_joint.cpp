@@ -1,0 +1,121 @@
+// Joining two bodies: a click says where, the card beside the point how.
+#include "app/session/joint_guess.hpp"
+#include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "app/viewport/snapping.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+void show_bodies(App& app) {
+  Selection selection;
+  for (const std::string& body : app.tool.joint->bodies)
+    if (body != ground_name) selection.add({PartKind::body, body});
+  select(app, std::move(selection));
+}
+
+void begin_joint(App& app, const ViewInput& input, const Aim& aim) {
+  JointDraft draft;
+  draft.before = app.tool.joint ? app.tool.joint->before : app.selection();
+  const double reach = snap_reach * input.point * input.metres_per_pixel();
+  draft.at = aim.point;
+  draft.bodies = guess_bodies(app.mechanism(), cached_scene(app).instances, draft.before, draft.at, reach);
+  if (draft.bodies[1].empty()) {
+    app.notice = "There is nothing to join yet: place a body first.";
+    return;
+  }
+  draft.axis = guess_axis(app.mechanism(), app.tool.joint_type, draft.bodies, aim.plane.normal);
+  draft.axis2 = axis_across(draft.axis);
+  app.tool.joint = std::move(draft);
+  app.tool.last_point = aim.point;
+  show_bodies(app);
+}
+
+void pick_axis(App& app, const Aim& aim) {
+  JointDraft& draft = *app.tool.joint;
+  if (!draft.axis_from) {
+    draft.axis_from = aim.point;
+    return;
+  }
+  const Vec3 axis = (aim.point - *draft.axis_from).stableNormalized();
+  if (!(axis.norm() > 0)) {
+    app.notice = "The two points of an axis have to be apart.";
+    return;
+  }
+  draft.axis = axis;
+  draft.axis_chosen = true;
+  draft.axis2 = axis_across(axis);
+  draft.picking_axis = false;
+  draft.axis_from.reset();
+}
+
+void draw_axis(const App& app, const ViewInput& input, const Vec3& at, const Vec3& axis, bool main) {
+  const double length = (main ? 64 : 40) * input.point * metres_per_pixel(input.camera, at, input.size);
+  const Vec3 unit = axis.normalized();
+  const auto from = input.on_screen(Vec3(at - length * unit)), to = input.on_screen(Vec3(at + length * unit));
+  if (!from || !to) return;
+  const Color& accent = palette(app.theme).accent;
+  draw_line(app, *from, *to, accent, main ? 2.4f : 1.4f, main ? 1.f : 0.8f);
+  const float dx = to->x - from->x, dy = to->y - from->y, pixels = std::hypot(dx, dy);
+  if (!main || pixels < 12 * app.scale) return;
+  // The head tells which way is positive.
+  const ImVec2 along(dx / pixels, dy / pixels);
+  const float head = 11 * app.scale, half = 4.5f * app.scale;
+  ImGui::GetWindowDrawList()->AddTriangleFilled(
+      {to->x - head * along.x - half * along.y, to->y - head * along.y + half * along.x},
+      {to->x + 3 * along.x, to->y + 3 * along.y},
+      {to->x - head * along.x + half * along.y, to->y - head * along.y - half * along.x}, packed(accent));
+}
+
+void draw_draft(const App& app, const ViewInput& input) {
+  const JointDraft& draft = *app.tool.joint;
+  const JointType type = app.tool.joint_type;
+  if (has_axis(type)) draw_axis(app, input, draft.at, draft.axis, true);
+  if (has_axis2(type)) draw_axis(app, input, draft.at, draft.axis2, false);
+  if (const auto at = input.on_screen(draft.at)) {
+    draw_dot(app, *at, 4);
+    draw_dot(app, *at, 9, true);
+  }
+}
+
+} // namespace
+
+void use_joining(App& app, const ViewInput& input) {
+  ToolState& tool = app.tool;
+  if (tool.joint) draw_draft(app, input);
+  if (!input.hovered) return;
+  const Aim aim = aim_at(app, input);
+  const bool picking = tool.joint && tool.joint->picking_axis;
+  if (picking && tool.joint->axis_from) {
+    const auto p = input.on_screen(*tool.joint->axis_from), q = input.on_screen(aim.point);
+    if (p && q) draw_line(app, *p, *q, palette(app.theme).accent, 2);
+    if (p) draw_dot(app, *p, 4);
+  }
+  if (!tool.joint || picking || input.active) draw_aim(app, input, aim);
+  if (!input.clicked() || tool.spent) return;
+  if (picking)
+    pick_axis(app, aim);
+  else
+    begin_joint(app, input, aim);
+}
+
+bool make_joint(App& app) {
+  const std::optional<JointDraft> draft = app.tool.joint;
+  if (!draft || draft->picking_axis || draft->bodies[0] == draft->bodies[1]) return false;
+  edit(app, "Join " + draft->bodies[0] + " and " + draft->bodies[1],
+       [&](Mechanism& mechanism, Selection& selection) {
+         selection.set({PartKind::joint, add_joint(mechanism, app.tool.joint_type, draft->bodies, draft->at,
+                                                   draft->axis, draft->axis2)});
+       });
+  app.tool.joint.reset();
+  if (!ImGui::GetIO().KeyShift) app.tool.tool = Tool::select;
+  return true;
+}
+
+} // namespace flyball

@@ -1,0 +1,124 @@
+// Placing balls, blocks and plates: a click takes a size that suits the view, a drag draws it out.
+#include "app/session/typed_size.hpp"
+#include "app/ui/inspector/body_preview.hpp"
+#include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/viewport/snapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flyball {
+
+namespace {
+
+// Points of the picture that a size given by a click is near to.
+constexpr double ball_size = 22, block_size = 56, plate_size = 110;
+
+std::string form_name(BodyForm form) {
+  switch (form) {
+  case BodyForm::ball: return "ball";
+  case BodyForm::block: return "block";
+  case BodyForm::rod: return "rod";
+  case BodyForm::plate: return "plate";
+  }
+  return "";
+}
+
+NewBody of_round_size(const ViewInput& input, BodyForm form, const Aim& at) {
+  const double point = input.point * input.metres_per_pixel();
+  NewBody body;
+  body.form = form;
+  body.at = at.point;
+  body.radius = nearest_step(ball_size * point);
+  body.size = Vec3::Constant(nearest_step((form == BodyForm::plate ? plate_size : block_size) * point));
+  if (form == BodyForm::plate) body.size[at.plane.normal] = round_to(body.size.x() / 10, body.size.x() / 100);
+  return body;
+}
+
+// From its centre to where the cursor is, in the plane across the view.
+NewBody drawn_out(const ViewInput& input, BodyForm form, const Aim& from, const Aim& to) {
+  NewBody body = of_round_size(input, form, from);
+  const double least = from.step > 0 ? from.step : 4 * input.point * input.metres_per_pixel();
+  const int normal = from.plane.normal;
+  Vec3 corner = to.point;
+  if (to.what.empty()) {
+    // Whatever the cursor passes over, the hand stays in its plane.
+    corner = meet({from.point, normal}, input.ray()).value_or(to.point);
+  }
+  Vec3 reach = corner - from.point;
+  reach[normal] = 0;
+  const auto rounded = [&](double x) { return from.step > 0 ? round_to(x, from.step) : x; };
+  if (form == BodyForm::ball) {
+    body.radius = std::max(to.what.empty() ? rounded(reach.norm()) : reach.norm(), least);
+    return body;
+  }
+  double smaller = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (i == normal) continue;
+    body.size[i] = std::max(2 * rounded(std::abs(reach[i])), least);
+    smaller = smaller > 0 ? std::min(smaller, body.size[i]) : body.size[i];
+  }
+  body.size[normal] = form == BodyForm::block ? smaller : nearest_step(smaller / 10);
+  return body;
+}
+
+// The radius, or the edges of a block; a plate is as thin as ever.
+void take_typed_size(NewBody& body, double size, int normal) {
+  body.radius = size;
+  body.size = Vec3::Constant(size);
+  if (body.form == BodyForm::plate) body.size[normal] = round_to(size / 10, size / 100);
+}
+
+std::string size_text(const NewBody& body, double step, const DisplayUnits& units) {
+  const ShownUnit unit = shown_unit("m", units);
+  if (body.form == BodyForm::ball) return "radius " + length_text(body.radius, step, units) + " " + unit.text;
+  const auto edge = [&](double length) { return short_text(unit.shown(length), 4); };
+  return edge(body.size.x()) + " × " + edge(body.size.y()) + " × " + edge(body.size.z()) + " " + unit.text;
+}
+
+} // namespace
+
+void use_placing(App& app, const ViewInput& input) {
+  ToolState& tool = app.tool;
+  const BodyForm form = tool.tool == Tool::ball    ? BodyForm::ball
+                        : tool.tool == Tool::block ? BodyForm::block
+                                                   : BodyForm::plate;
+  const bool entered = std::exchange(tool.place_now, false);
+  if (!input.hovered && !tool.first) return;
+  const Aim& aim = aim_at(app, input);
+  const Aim from = tool.first.value_or(aim);
+  const bool drawing = tool.first && input.moved;
+  NewBody body = drawing ? drawn_out(input, form, from, aim) : of_round_size(input, form, from);
+  std::string mistake;
+  const bool typing = !tool.typed.empty();
+  if (const auto size = typing ? typed_length(tool.typed, app.units, &mistake) : std::nullopt)
+    take_typed_size(body, *size, from.plane.normal);
+  draw_body_outline(app, input, body);
+  if (typing)
+    draw_tag(app, input, input.cursor, from.what,
+             (form == BodyForm::ball ? "radius " : "edge ") +
+                 typed_text(tool.typed, shown_unit("m", app.units).text));
+  else if (drawing)
+    draw_tag(app, input, input.cursor, aim.what, size_text(body, from.step, app.units));
+  else
+    draw_aim(app, input, from);
+  if (tool.spent) return;
+  if (input.pressed) tool.first = aim;
+  if (!entered && (!input.released || !tool.first)) return;
+  if (typing && !mistake.empty()) {
+    app.notice = "“" + tool.typed + "” is no size. " + mistake;
+    tool.first.reset();
+    return;
+  }
+  edit(app, "Add " + form_name(form), [&](Mechanism& mechanism, Selection& selection) {
+    selection.set({PartKind::body, add_body(mechanism, body)});
+  });
+  tool.last_point = from.point;
+  tool.spent = input.held; // Enter, while the button is down
+  end_tool(app, input);
+}
+
+} // namespace flyball

@@ -1,0 +1,106 @@
+// Pointing at parts, picking them, and framing them.
+#include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "app/viewport/box_select.hpp"
+#include "app/viewport/picking.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace flyball {
+
+std::optional<Hit> part_under_cursor(App& app, const ViewInput& input) {
+  const double slack = 4 * input.point;
+  return pick(shown_scene(app)->solid.instances, input.ray(), slack);
+}
+
+namespace {
+
+// Looking along a ray takes longest in a mechanism of thousands of bodies: only where the hand moves, or the
+// mechanism under it.
+void point_at_parts(App& app, const ViewInput& input) {
+  const bool steering = input.active && (input.moved || !input.held);
+  const bool handle = app.tool.hovered != Handle::none || app.tool.hovered_point || app.tool.grab;
+  if ((!input.hovered && !input.released) || steering || handle) {
+    app.view.hovered = {};
+    app.view.pointed_at = Vec2::Constant(-1);
+    return;
+  }
+  std::uint64_t& revision = app.tool.caches.hover_revision;
+  if (input.cursor == app.view.pointed_at && revision == app.document.revision()) return;
+  app.view.pointed_at = input.cursor;
+  revision = app.document.revision();
+  const auto hit = part_under_cursor(app, input);
+  app.view.hovered = hit ? hit->part : PartId{};
+}
+
+// A tool that attaches something shows to which body it would.
+void point_at_body(App& app, const ViewInput& input) {
+  const Tool tool = app.tool.tool;
+  const bool attaches = tool != Tool::ball && tool != Tool::block && tool != Tool::rod && tool != Tool::plate;
+  app.view.hovered = {};
+  app.view.pointed_at = Vec2::Constant(-1);
+  if (attaches && input.hovered)
+    app.view.hovered = find_part(app.mechanism(), {PartKind::body, aim_at(app, input).body});
+}
+
+void click_part(App& app, const ViewInput& input) {
+  const Part part = part_of(*view_frame(app).mechanism, app.view.hovered);
+  Selection selection = app.selection();
+  if (!input.ctrl && !input.shift)
+    selection.set(part);
+  else
+    selection.toggle(part);
+  select(app, std::move(selection));
+}
+
+void select_framed(App& app, const ViewInput& input) {
+  const ViewFrame frame = view_frame(app);
+  Selection selection;
+  if (input.shift) selection = app.selection();
+  std::vector<Part> parts = selection.parts;
+  for (const PartId id : parts_in_frame(part_anchors(*frame.mechanism, frame.poses), input.camera, input.size,
+                                        {*app.tool.frame, input.cursor})) {
+    Part part = part_of(*frame.mechanism, id);
+    if (!input.shift || !selection.has(part)) parts.push_back(std::move(part));
+  }
+  selection.parts = std::move(parts);
+  select(app, std::move(selection));
+}
+
+void draw_frame(const App& app, const ViewInput& input) {
+  const ImVec2 a = input.on_screen(*app.tool.frame), b = input.on_screen(input.cursor);
+  const ImVec2 from(std::min(a.x, b.x), std::min(a.y, b.y)), to(std::max(a.x, b.x), std::max(a.y, b.y));
+  const Color& accent = palette(app.theme).accent;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(from, to, packed(accent, 0.12f));
+  list.AddRect(from, to, packed(accent), 0, 0, std::max(1.f, std::round(app.scale)));
+}
+
+} // namespace
+
+void use_selecting(App& app, const ViewInput& input) {
+  ToolState& tool = app.tool;
+  if (places(tool.tool)) {
+    point_at_body(app, input);
+    return;
+  }
+  if (tool.frame && input.moved) draw_frame(app, input);
+  point_at_parts(app, input);
+  if (tool.grab || tool.spent) return;
+  const bool handle = tool.hovered != Handle::none || tool.hovered_point;
+  if (input.pressed && !handle && (tool.tool == Tool::box || input.ctrl)) tool.frame = input.cursor;
+  if (!input.released) return;
+  if (tool.frame && input.moved) {
+    select_framed(app, input);
+    tool.frame.reset();
+    if (tool.tool == Tool::box && !input.shift) tool.tool = Tool::select;
+  } else if (input.clicked() && !handle) {
+    tool.frame.reset();
+    click_part(app, input);
+  }
+}
+
+} // namespace flyball

@@ -1,0 +1,74 @@
+#include "app/ui/widgets/dialog.hpp"
+
+#include "app/render/imgui_compat.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+namespace {
+
+// A key that brought the dialog answers nothing in it.
+bool key_pressed(ImGuiKey key) {
+  return !ImGui::IsWindowAppearing() && imgui_compat::key_pressed(key, false);
+}
+
+} // namespace
+
+bool begin_dialog(App& app, Dialog which, const char* title, float width) {
+  const float s = app.scale;
+  if (app.dialog.wanted == which) {
+    ImGui::OpenPopup(title);
+    app.dialog.wanted = Dialog::none;
+  }
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(width * s, window.x - 20 * s), 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {18 * s, 16 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ImGui::GetStyle().PopupBorderSize);
+  const bool begun =
+      ImGui::BeginPopupModal(title, nullptr,
+                             ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
+                                 ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PopStyleVar(3);
+  if (!begun) return false;
+  app.dialog.showing = true;
+  heading(app, title);
+  return true;
+}
+
+void end_dialog() {
+  ImGui::EndPopup();
+}
+
+void close_dialog() {
+  ImGui::CloseCurrentPopup();
+}
+
+bool escape_pressed() {
+  return key_pressed(ImGuiKey_Escape);
+}
+
+bool enter_pressed() {
+  return key_pressed(ImGuiKey_Enter) || key_pressed(imgui_compat::keypad_enter);
+}
+
+int choice_buttons(App& app, std::span<const Choice> choices, int& marked) {
+  const int count = static_cast<int>(choices.size());
+  if (ImGui::IsWindowAppearing()) marked = 0;
+  const bool back = key_pressed(ImGuiKey_LeftArrow) || (ImGui::GetIO().KeyShift && key_pressed(ImGuiKey_Tab));
+  const bool on = !back && (key_pressed(ImGuiKey_RightArrow) || key_pressed(ImGuiKey_Tab));
+  marked = (marked + (on ? 1 : 0) + (back ? count - 1 : 0)) % count;
+  int pressed = enter_pressed() ? marked : -1;
+  ImGui::Dummy({0, 4 * app.scale});
+  for (int i = 0; i < count; ++i) {
+    const Choice& choice = choices[static_cast<std::size_t>(i)];
+    if (i > 0) ImGui::SameLine();
+    if (text_button(app, choice.name, choice.text, i == marked)) pressed = i;
+  }
+  return pressed;
+}
+
+} // namespace flyball

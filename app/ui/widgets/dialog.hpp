@@ -1,0 +1,27 @@
+// A question in the middle of the window; what lies behind waits.
+#pragma once
+
+#include "app/ui/app.hpp"
+
+#include <span>
+
+namespace flyball {
+
+// Opens the dialog if it was asked for and begins it; where it returns true, end_dialog ends it.
+bool begin_dialog(App& app, Dialog which, const char* title, float width);
+void end_dialog();
+void close_dialog();
+// Escape, where no field swallows it.
+bool escape_pressed();
+// Enter, where no field swallows it; not the one that brought the dialog.
+bool enter_pressed();
+
+struct Choice {
+  const char* name; // for the widget map
+  const char* text;
+};
+// A row of buttons of which `marked` is the one that Enter means; the arrow keys and Tab mark another.
+// Returns the one pressed, or -1.
+int choice_buttons(App& app, std::span<const Choice> choices, int& marked);
+
+} // namespace flyball

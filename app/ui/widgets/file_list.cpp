@@ -1,0 +1,216 @@
+#include "app/ui/widgets/file_list.hpp"
+
+#include "app/render/icons.hpp"
+#include "app/render/imgui_compat.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <unistd.h>
+
+namespace flyball {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+bool may_write(const fs::path& folder) {
+  return is_folder(folder) && ::access(folder.c_str(), W_OK) == 0;
+}
+
+fs::path home_folder() {
+  const char* home = std::getenv("HOME");
+  return home ? fs::path(home) : fs::path("/");
+}
+
+std::string lower(std::string text) {
+  for (char& c : text)
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// Its folders and files of the extension, by name.
+std::vector<FolderEntry> entries_of(const fs::path& folder, const std::string& extension) {
+  std::vector<FolderEntry> entries;
+  std::error_code failed;
+  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
+    std::error_code ignored;
+    const bool inner = it->is_directory(ignored);
+    if (it->path().filename().string().starts_with('.')) continue;
+    if (inner || it->path().extension() == extension) entries.push_back({it->path(), inner});
+  }
+  std::ranges::sort(entries, [](const FolderEntry& a, const FolderEntry& b) {
+    return a.folder != b.folder ? a.folder : a.path.filename() < b.path.filename();
+  });
+  return entries;
+}
+
+// Of a typed path the folder that is to be listed, and the rest, which filters.
+struct Place {
+  fs::path folder;
+  std::string filter;
+};
+Place place_of(const App& app) {
+  const fs::path path = typed_path(app);
+  const bool ends_in_folder = app.dialog.path.ends_with('/') || app.dialog.path.ends_with("..");
+  if (ends_in_folder && is_folder(path)) return {path, {}};
+  const bool elsewhere = app.dialog.path.find('/') != std::string::npos;
+  if (elsewhere && is_folder(path.parent_path())) return {path.parent_path(), path.filename().string()};
+  return {app.files.list.shown, app.dialog.path};
+}
+
+std::vector<FolderEntry> shown_entries(const App& app, bool filtered) {
+  std::vector<FolderEntry> shown = app.files.list.entries;
+  const std::string filter = filtered ? lower(place_of(app).filter) : std::string();
+  std::erase_if(shown, [&](const FolderEntry& entry) {
+    return lower(entry.path.filename().string()).find(filter) == std::string::npos;
+  });
+  return shown;
+}
+
+} // namespace
+
+fs::path typed_path(const App& app) {
+  std::string typed = app.dialog.path;
+  if (typed == "~" || typed.starts_with("~/")) typed = home_folder().string() + typed.substr(1);
+  return resolved(app.files.list.shown / typed);
+}
+
+fs::path typed_file(const App& app, const std::string& extension) {
+  fs::path path = typed_path(app);
+  if (path.has_filename() && !is_folder(path) && path.extension() != extension) path += extension;
+  return path;
+}
+
+void show_folder(App& app, const fs::path& folder) {
+  app.files.list = {};
+  app.files.list.shown = resolved(folder.empty() ? fs::path(".") : folder / ""); // where a link leads
+  app.files.message.clear();
+}
+
+bool path_field(App& app, const std::string& name, const char* hint) {
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(-1);
+  const std::string before = app.dialog.path;
+  const bool entered =
+      ImGui::InputTextWithHint("##path", hint, &app.dialog.path,
+                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  if (entered) ImGui::SetKeyboardFocusHere(-1);
+  note_widget(app.widgets, name + "/path");
+  if (app.dialog.path != before) {
+    app.files.message.clear();
+    app.files.list.chosen = -1;
+  }
+  return entered;
+}
+
+void folder_line(App& app, const std::string& name) {
+  const fs::path folder = place_of(app).folder;
+  const fs::path here = folder.has_filename() ? folder : folder.parent_path();
+  ImGui::BeginDisabled(!here.has_relative_path());
+  if (icon_button(app, name + "/up", icon::folder_up, "The folder above")) {
+    show_folder(app, here.parent_path());
+    app.dialog.path = fs::path(app.dialog.path).filename().string();
+  }
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+  clipped_text(here.string(), ImGui::GetContentRegionAvail().x);
+  ImGui::PopStyleColor();
+}
+
+std::optional<fs::path> file_list(App& app, const std::string& name, const std::string& extension,
+                                  bool filtered, float height) {
+  FolderList& list = app.files.list;
+  const fs::path folder = place_of(app).folder;
+  if (ImGui::IsWindowAppearing() || list.read != folder) {
+    list.entries = entries_of(folder, extension);
+    list.read = folder;
+  }
+  const std::vector<FolderEntry> shown = shown_entries(app, filtered);
+  const int count = static_cast<int>(shown.size());
+  bool moved = false;
+  if (filtered && count > 0) {
+    const auto pressed = [](ImGuiKey key) { return imgui_compat::key_pressed(key); };
+    const int step = pressed(ImGuiKey_DownArrow) - pressed(ImGuiKey_UpArrow);
+    moved = step != 0;
+    list.chosen = std::min(list.chosen, count - 1);
+    if (moved) list.chosen = list.chosen < 0 ? 0 : (list.chosen + step + count) % count;
+  }
+
+  std::optional<fs::path> clicked;
+  ImGui::PushStyleColor(ImGuiCol_Header, colors_of(app).raised);
+  ImGui::BeginChild((name + "/files").c_str(), {0, height});
+  for (int i = 0; i < count; ++i) {
+    const FolderEntry& entry = shown[static_cast<std::size_t>(i)];
+    const std::string file = entry.path.filename().string();
+    const std::string text = std::string(entry.folder ? icon::folder : icon::file) + "  " + file;
+    const bool chosen = filtered ? i == list.chosen : entry.path == typed_path(app);
+    if (ImGui::Selectable(text.c_str(), chosen, ImGuiSelectableFlags_DontClosePopups)) clicked = entry.path;
+    if (chosen && moved) ImGui::SetScrollHereY();
+    note_widget(app.widgets, name + "/" + file);
+  }
+  if (shown.empty())
+    paragraph(list.entries.empty() ? "Nothing to open here." : "Nothing of that name here.",
+              colors_of(app).dim);
+  ImGui::EndChild();
+  ImGui::PopStyleColor();
+  if (!clicked || !is_folder(*clicked)) return clicked;
+  const std::string kept = filtered ? std::string() : fs::path(app.dialog.path).filename().string();
+  show_folder(app, *clicked);
+  app.dialog.path = kept;
+  return std::nullopt;
+}
+
+std::optional<fs::path> entered_file(App& app, bool filtered) {
+  const std::vector<FolderEntry> shown = shown_entries(app, filtered);
+  const auto chosen = static_cast<std::size_t>(std::max(app.files.list.chosen, 0));
+  std::error_code ignored;
+  fs::path path = typed_path(app);
+  if (filtered && app.files.list.chosen >= 0 && chosen < shown.size())
+    path = shown[chosen].path;
+  else if (app.dialog.path.empty())
+    return std::nullopt;
+  else if (filtered && !fs::exists(path, ignored) && !shown.empty())
+    path = shown.front().path;
+  if (!is_folder(path)) return path;
+  show_folder(app, path);
+  app.dialog.path.clear();
+  return std::nullopt;
+}
+
+bool may_replace(App& app, const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored) || file == app.files.replacing || file == app.document.file()) return true;
+  app.files.replacing = file;
+  return false;
+}
+
+fs::path usual_folder(const App& app) {
+  std::error_code ignored;
+  std::vector<fs::path> folders{app.document.file().parent_path()};
+  for (const fs::path& recent : app.files.recent)
+    if (recent.parent_path() != app.options.scenes) folders.push_back(recent.parent_path());
+  folders.push_back(fs::current_path(ignored));
+  for (const fs::path& folder : folders)
+    if (may_write(folder)) return folder;
+  return home_folder();
+}
+
+std::string file_stem(const std::string& words) {
+  std::string stem;
+  for (const char c : lower(words))
+    stem += c == ' ' || c == '/' ? '_' : c;
+  return stem.empty() ? "untitled" : stem;
+}
+
+} // namespace flyball

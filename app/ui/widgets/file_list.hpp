@@ -1,0 +1,43 @@
+// What dialogs that open and save share: a field for a name or path, and the folder's entries to choose from.
+#pragma once
+
+#include "app/ui/app.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace flyball {
+
+// What was typed, as a path: from the home folder after "~", otherwise from the folder that is shown.
+std::filesystem::path typed_path(const App& app);
+// The same with an extension, unless it is a folder or has it.
+std::filesystem::path typed_file(const App& app, const std::string& extension);
+
+// Shows a folder next, from its beginning.
+void show_folder(App& app, const std::filesystem::path& folder);
+// The field; returns whether Enter was pressed in it. It has the keyboard when the dialog appears and after
+// Enter.
+bool path_field(App& app, const std::string& name, const char* hint);
+// Where the dialog looks, and a way up.
+void folder_line(App& app, const std::string& name);
+
+// The folders and files of the extension. `filtered`: those that what was typed is part of, and the arrow
+// keys choose among them; otherwise all. A folder that is clicked is shown next; returns the file that was
+// clicked.
+std::optional<std::filesystem::path> file_list(App& app, const std::string& name,
+                                               const std::string& extension, bool filtered, float height);
+// What Enter means: the entry that the arrow keys have chosen, else what was typed, else the first of the
+// filtered ones. A folder is shown next; returns a file.
+std::optional<std::filesystem::path> entered_file(App& app, bool filtered);
+
+// Whether writing there may go ahead: nothing is there, or it is the document's own file, or the person was
+// told so and pressed again.
+bool may_replace(App& app, const std::filesystem::path& file);
+
+// Where a file that has no place yet may be put: what was used lately, the current folder, the home folder.
+std::filesystem::path usual_folder(const App& app);
+// A name for a file from words: "Swing pendulum" is swing_pendulum.
+std::string file_stem(const std::string& words);
+
+} // namespace flyball

@@ -1,0 +1,367 @@
+#include "app/ui/widgets/quantity_field.hpp"
+
+#include "app/render/icons.hpp"
+#include "app/session/parameter_list.hpp"
+#include "app/session/quantity.hpp"
+#include "app/session/units.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+constexpr float pixels_a_step = 4; // points the hand travels
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+  return unit.empty() ? number : number + " " + unit;
+}
+
+std::string too_small(double value, Least least) {
+  if (least == Least::zero && value < 0) return "Expected zero or more.";
+  if (least == Least::above_zero && !(value > 0)) return "Expected more than zero.";
+  return {};
+}
+
+// The field's number as it is shown and typed, in the unit that the person has chosen.
+struct Shown {
+  ShownUnit unit;
+  double value = 0;
+
+  Shown(const App& app, const QuantityField& field)
+      : unit(shown_unit(field.unit, app.units)), value(unit.shown(field.value)) {}
+};
+
+// A double click selects the number alone, and whoever types another with its unit over it leaves the former
+// unit behind that: "1 kg kg". Then it gives way.
+Quantity typed_quantity(std::string_view text, const std::string& unit, const std::string& shown) {
+  const Quantity typed = parse_quantity(text, unit, shown);
+  if (typed || shown.empty() || !text.ends_with(" " + shown)) return typed;
+  const Quantity without = parse_quantity(text.substr(0, text.size() - shown.size()), unit, shown);
+  return without ? without : typed;
+}
+
+Quantity typed_quantity(const App& app, const std::string& text, const QuantityField& field) {
+  return typed_quantity(text, field.unit, shown_unit(field.unit, app.units).text);
+}
+
+std::string mistake_in(const App& app, const std::string& text, const QuantityField& field) {
+  const Quantity typed = typed_quantity(app, text, field);
+  return typed ? too_small(typed.value, field.least) : typed.mistake;
+}
+
+// A number without the dust of binary arithmetic.
+double rounded(double value) {
+  return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr);
+}
+
+void set(App& app, const QuantityField& field, double value) {
+  if (field.at_once) return field.set(app, value);
+  later(app, [set = field.set, address = field.address, value](App& changed) {
+    if (set)
+      set(changed, value);
+    else
+      set_number(changed, address, value);
+  });
+}
+
+struct Stepping {
+  const QuantityField& field;
+  const Shown& shown;
+  Typing& typing;
+  bool stepped = false;
+};
+
+// A double click selects the number, which is typed over then, and not the word under the cursor, which may
+// be its unit.
+void select_number(ImGuiInputTextCallbackData* data, Typing& typing) {
+  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) typing.by_number = true;
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) typing.by_number = false;
+  if (!typing.by_number) return;
+  const auto [from, to] = number_at({data->Buf, static_cast<std::size_t>(data->BufTextLen)},
+                                    static_cast<std::size_t>(std::max(data->CursorPos, 0)));
+  data->SelectionStart = static_cast<int>(from);
+  data->SelectionEnd = data->CursorPos = static_cast<int>(to);
+}
+
+// The arrow keys and the mouse, while the number is typed in.
+int step_typed(ImGuiInputTextCallbackData* data) {
+  auto& stepping = *static_cast<Stepping*>(data->UserData);
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackAlways) {
+    select_number(data, stepping.typing);
+    return 0;
+  }
+  const QuantityField& field = stepping.field;
+  const ShownUnit& unit = stepping.shown.unit;
+  const Quantity typed =
+      typed_quantity({data->Buf, static_cast<std::size_t>(data->BufTextLen)}, unit.text, unit.text);
+  if (!typed) return 0;
+  const double step = hand_step(stepping.shown.value, unit.text);
+  const double next = rounded(typed.value + (data->EventKey == ImGuiKey_UpArrow ? step : -step));
+  if (!too_small(next, field.least).empty()) return 0;
+  const std::string text = with_unit(number_text(next), unit.text);
+  data->DeleteChars(0, data->BufTextLen);
+  data->InsertChars(0, text.c_str());
+  data->SelectAll();
+  stepping.stepped = true;
+  return 0;
+}
+
+float digits_width(const App& app, const std::string& text) {
+  const ImFont* digits = app.fonts.digits;
+  return digits->CalcTextSizeA(digits->FontSize, 1e9f, 0, text.c_str()).x;
+}
+
+// As many digits as there is room for, nine at most.
+std::string fitting_text(const App& app, double value, float room) {
+  std::string text;
+  for (int digits = 9; digits >= 3; --digits) {
+    text = short_text(value, digits);
+    if (digits_width(app, text) <= room) break;
+  }
+  return text;
+}
+
+// The number over the field at rest.
+void draw_resting(const App& app, const QuantityField& field, const Shown& shown, float padding) {
+  const UiColors& colors = colors_of(app);
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+  const float right = to.x - padding, gap = 5 * app.scale;
+  const float unit_width = shown.unit.text.empty() ? 0 : ImGui::CalcTextSize(shown.unit.text.c_str()).x + gap;
+  const float room = right - from.x - padding - unit_width;
+  const std::string text = field.various.empty() ? fitting_text(app, shown.value, room) : std::string();
+  const float y = from.y + (to.y - from.y - ImGui::GetFontSize()) / 2;
+  const float x = field.framed ? from.x + padding : right - unit_width - digits_width(app, text);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect(from, to, true);
+  const ImVec4& color = field.standard ? colors.dim : colors.text;
+  if (!field.various.empty())
+    list.AddText({x, y}, packed(colors.dim), field.various.c_str());
+  else
+    list.AddText(app.fonts.digits, app.fonts.digits->FontSize, {x, y + digits_drop(app)}, packed(color),
+                 text.c_str());
+  if (unit_width > 0 && (!field.framed || digits_width(app, text) <= room))
+    list.AddText({right - unit_width + gap, y}, packed(colors.dim), shown.unit.text.c_str());
+  list.PopClipRect();
+}
+
+std::string tooltip(const QuantityField& field, const Shown& shown) {
+  std::string text = field.help;
+  const auto line = [&](const std::string& more) { text += (text.empty() ? "" : "\n") + more; };
+  if (field.various.empty()) {
+    constexpr double degrees = 180 / std::numbers::pi;
+    std::string exact = with_unit(number_text(shown.value), shown.unit.text);
+    if (const std::string own = written_unit(field.unit); shown.unit.text != own)
+      exact += " = " + with_unit(number_text(field.value), own);
+    else if (field.unit == "rad")
+      exact += " = " + short_text(field.value * degrees, 9) + "°";
+    else if (field.unit == "rad/s")
+      exact += " = " + short_text(field.value * degrees / 6, 9) + " rpm";
+    line(exact + (field.standard ? ", as the scene does not say otherwise" : ""));
+  }
+  if (!field.address.empty()) line(field.address);
+  return text;
+}
+
+void pin_button(App& app, const QuantityField& field, bool row_hovered) {
+  if (field.address.empty()) return;
+  const bool pinned = is_pinned(app.mechanism(), field.address);
+  const UiColors& colors = colors_of(app);
+  const float side = ImGui::GetFrameHeight(), width = margin_width(app);
+  const std::string name = "inspector/pin/" + field.address;
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  ImGui::PushID(name.c_str());
+  const bool pressed = ImGui::InvisibleButton("pin", {width, side});
+  ImGui::PopID();
+  note_widget(app.widgets, name);
+  const bool hovered = ImGui::IsItemHovered();
+  help_on_hover(pinned ? "Pinned as a slider; click to take it off the sliders."
+                       : "Pin this number as a slider.");
+  if (pressed)
+    later(app, [address = field.address, pinned](App& changed) { pin(changed, address, !pinned); });
+  if (!pinned && !hovered && !row_hovered) return;
+  const ImVec2 size = ImGui::CalcTextSize(icon::pin);
+  const ImVec4& color = pinned ? colors.accent : hovered ? colors.text : colors.dim;
+  ImGui::GetWindowDrawList()->AddText({from.x + (width - size.x) / 2, from.y + (side - size.y) / 2},
+                                      packed(color), icon::pin);
+}
+
+// The label, by which the number can be dragged.
+void scrub_label(App& app, const std::string& label, const QuantityField& field, float width) {
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float height = ImGui::GetFrameHeight();
+  const std::string name = field.name + "/label";
+  ImGui::InvisibleButton(name.c_str(), {std::max(width, 1.f), height});
+  note_widget(app.widgets, name);
+  const bool active = ImGui::IsItemActive(), draggable = field.various.empty();
+  const bool lit = draggable && (active || ImGui::IsItemHovered());
+  if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  const Shown shown(app, field);
+  if (!active) help_on_hover(tooltip(field, shown).c_str());
+  Scrub& scrub = app.inspector.scrub;
+  if (ImGui::IsItemActivated()) scrub = {name, shown.value, hand_step(shown.value, shown.unit.text), 0};
+  if (active && draggable && scrub.name == name && ImGui::GetIO().MouseDelta.x != 0) {
+    scrub.travelled += ImGui::GetIO().MouseDelta.x;
+    const double steps = std::round(static_cast<double>(scrub.travelled / (pixels_a_step * app.scale)));
+    const double next = shown.unit.si(
+        rounded(scrub.start + steps * (ImGui::GetIO().KeyShift ? scrub.step / 10 : scrub.step)));
+    if (next != field.value && too_small(next, field.least).empty()) set(app, field, next);
+  }
+  const UiColors& colors = colors_of(app);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect(from, {from.x + width - 3 * app.scale, from.y + height}, true);
+  list.AddText({from.x, from.y + ImGui::GetStyle().FramePadding.y}, packed(lit ? colors.text : colors.dim),
+               label.c_str());
+  list.PopClipRect();
+}
+
+void draw_letter(const App& app, int axis, const ImVec2& at) {
+  const Palette& colors = palette(app.theme);
+  const std::array letters{colors.axis_x, colors.axis_y, colors.axis_z};
+  constexpr std::array names{"x", "y", "z"};
+  const auto i = static_cast<std::size_t>(axis);
+  ImGui::GetWindowDrawList()->AddText({at.x, at.y + ImGui::GetStyle().FramePadding.y},
+                                      packed(to_imgui(letters[i])), names[i]);
+}
+
+} // namespace
+
+double hand_step(double value, const std::string& unit) {
+  if (value != 0) return std::pow(10, std::floor(std::log10(std::abs(value)) + 1e-9) - 2);
+  if (unit == "m") return 1e-3;
+  if (unit == "rad/s" || unit == "m/s²" || unit == "rad") return 0.1;
+  constexpr std::array<std::string_view, 8> by_one{"deg", "°", "°/s", "rpm", "mm", "mm/s", "N/m", "N"};
+  if (std::ranges::find(by_one, unit) != by_one.end()) return 1;
+  return 0.01;
+}
+
+float margin_width(const App& app) {
+  return 20 * app.scale;
+}
+
+bool margin_button(App& app, const std::string& name, const char* icon, const char* help) {
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+  ImGui::PushID(name.c_str());
+  const bool pressed = ImGui::Button(icon, {margin_width(app), 0});
+  ImGui::PopID();
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
+  note_widget(app.widgets, name);
+  help_on_hover(help);
+  return pressed;
+}
+
+float label_width(const App& app) {
+  return std::clamp(0.34f * ImGui::GetContentRegionAvail().x, 76 * app.scale, 130 * app.scale);
+}
+
+void quantity_field(App& app, const QuantityField& field, float width) {
+  const UiColors& colors = colors_of(app);
+  const float height = ImGui::GetFrameHeight(), padding = 6 * app.scale;
+  const Shown shown(app, field);
+  Stepping stepping{field, shown, app.inspector.typing};
+  TextField text{.name = field.name,
+                 .text = field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text) : "",
+                 .check = [&app, field](const std::string& typed) { return mistake_in(app, typed, field); },
+                 .take =
+                     [field](App& changed, const std::string& typed) {
+                       const double value = typed_quantity(changed, typed, field).value;
+                       if (field.set)
+                         field.set(changed, value);
+                       else
+                         set_number(changed, field.address, value);
+                     },
+                 .at_once = field.at_once,
+                 .drawn_here = false,
+                 .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
+                 .callback = step_typed,
+                 .callback_data = &stepping};
+  const bool bare = !field.framed && !typing_in(app, field.name);
+  if (bare) ImGui::PushStyleColor(ImGuiCol_FrameBg, ImVec4(0, 0, 0, 0));
+  if (bare) ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, colors.raised);
+  ImGui::PushFont(app.fonts.digits);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {padding, (height - app.fonts.digits->FontSize) / 2});
+  const bool typing = text_field(app, text, width);
+  ImGui::PopStyleVar();
+  ImGui::PopFont();
+  if (bare) ImGui::PopStyleColor(2);
+  if (!typing) {
+    draw_resting(app, field, shown, padding);
+    help_on_hover(tooltip(field, shown).c_str());
+  } else if (stepping.stepped) {
+    if (const Quantity typed = typed_quantity(app, app.inspector.typing.text, field))
+      set(app, field, typed.value);
+  }
+}
+
+void quantity_row(App& app, const std::string& label, const QuantityField& field,
+                  const std::function<void(App&)>& reset) {
+  const float labels = label_width(app), margin = margin_width(app);
+  const float width = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const bool hovered = ImGui::IsWindowHovered() &&
+                       ImGui::IsMouseHoveringRect(from, {from.x + width, from.y + ImGui::GetFrameHeight()});
+  const float letter = field.axis < 0 ? 0 : 14 * app.scale;
+  scrub_label(app, label, field, labels - letter - (reset ? margin : 0));
+  if (reset) {
+    ImGui::SameLine(0, 0);
+    if (margin_button(app, field.name + "/reset", icon::undo, "Leave it to the drawn pose."))
+      later(app, reset);
+  }
+  if (field.axis >= 0) draw_letter(app, field.axis, {from.x + labels - letter, from.y});
+  ImGui::SameLine(0, 0);
+  ImGui::SetCursorPosX(start + labels);
+  quantity_field(app, field, std::max(width - labels - margin, 20 * app.scale));
+  if (!field.address.empty()) {
+    ImGui::SameLine(0, 0);
+    pin_button(app, field, hovered);
+  }
+}
+
+bool plain_quantity_field(App& app, const std::string& name, const char* label, const char* unit,
+                          const char* help, double& value, Least least) {
+  app.inspector.plain.reset();
+  quantity_row(app, label,
+               {.name = name,
+                .value = value,
+                .unit = unit,
+                .help = help,
+                .least = least,
+                .set = [](App& changed, double typed) { changed.inspector.plain = typed; },
+                .at_once = true});
+  if (!app.inspector.plain || *app.inspector.plain == value) return false;
+  value = *app.inspector.plain;
+  return true;
+}
+
+void set_number(App& app, const std::string& address, double value) {
+  edit_parameter(app, address, value);
+}
+
+bool is_pinned(const Mechanism& mechanism, const std::string& address) {
+  return std::ranges::find(mechanism.sliders, address, &Slider::parameter) != mechanism.sliders.end();
+}
+
+void pin(App& app, const std::string& address, bool pinned) {
+  if (pinned == is_pinned(app.mechanism(), address)) return;
+  edit(app, (pinned ? "Pin " : "Unpin ") + parameter_phrase(address), [&](Mechanism& mechanism, Selection&) {
+    if (pinned)
+      mechanism.sliders.push_back(slider_for(mechanism, address));
+    else
+      std::erase_if(mechanism.sliders, [&](const Slider& slider) { return slider.parameter == address; });
+  });
+}
+
+} // namespace flyball

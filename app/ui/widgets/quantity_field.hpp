@@ -1,0 +1,54 @@
+// A number with its unit that can be typed (see quantity.hpp), stepped with the arrow keys, dragged by its
+// label, and, where it has an address, pinned as a slider.
+#pragma once
+
+#include "app/ui/app.hpp"
+
+#include <functional>
+#include <string>
+
+namespace flyball {
+
+enum class Least { any, zero, above_zero }; // what a number may be
+
+struct QuantityField {
+  std::string name; // of the widget
+  double value = 0; // in `unit`; shown and typed in what the person has chosen for that
+  std::string unit; // "" where it has none
+  std::string help; // one sentence
+  Least least = Least::any;
+  std::string address{};                   // "" where it has none
+  std::function<void(App&, double)> set{}; // an edit; if empty, of the number at the address
+  std::string various{};                   // shown instead of the value: several parts differ
+  bool standard = false;                   // the value stands for an absent one: shown faintly
+  int axis = -1;                           // 0 to 2: its label ends in x, y or z
+  bool framed = true;                      // or plain digits to the right until it is pointed at
+  bool at_once = false;                    // `set` is called while drawing: for a number outside the document
+};
+
+// Without a label.
+void quantity_field(App& app, const QuantityField& field, float width);
+// With its label, the pin, and for an optional number that is given a way back: `reset` then makes it absent.
+void quantity_row(App& app, const std::string& label, const QuantityField& field,
+                  const std::function<void(App&)>& reset = {});
+// A number outside the document, in a dialog; returns whether it was changed.
+bool plain_quantity_field(App& app, const std::string& name, const char* label, const char* unit,
+                          const char* help, double& value, Least least = Least::any);
+
+// Edits the number at the address, see edit_parameter(): what is typed or dragged in the inspector is meant.
+void set_number(App& app, const std::string& address, double value);
+// Makes the number a slider, or none.
+void pin(App& app, const std::string& address, bool pinned);
+bool is_pinned(const Mechanism& mechanism, const std::string& address);
+
+// What one step of the hand changes a number by: about a hundredth of it, a power of ten.
+double hand_step(double value, const std::string& unit);
+
+// Pixels that labels take in rows of the present width.
+float label_width(const App& app);
+// Pixels at the right end of rows, for pins and small buttons.
+float margin_width(const App& app);
+// A small button of an icon as wide as the margin.
+bool margin_button(App& app, const std::string& name, const char* icon, const char* help);
+
+} // namespace flyball

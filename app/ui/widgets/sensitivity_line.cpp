@@ -1,0 +1,135 @@
+#include "app/ui/widgets/sensitivity_line.hpp"
+
+#include "app/session/units.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr double patience = 0.15;   // s: what was told a moment ago stays while the next is solved
+constexpr float small_text = 0.87f; // of the panel's
+// Round-off: of the rate that moves most, and over a change of the number by as much as itself (rad or parts
+// of the reach).
+constexpr double nothing = 1e-9;
+
+// The size (m) of the mechanism as drawn.
+double reach(const Mechanism& mechanism) {
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  const auto add = [&](const Vec3& at) {
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+  };
+  for (const Body& body : mechanism.bodies)
+    add(body.position);
+  for (const Joint& joint : mechanism.joints)
+    add(joint.at);
+  const double size = (high - low).norm();
+  return size > 0 && std::isfinite(size) ? size : 1;
+}
+
+std::string per(const std::string& of, const std::string& unit) {
+  if (unit.empty()) return of;
+  const bool compound = unit.find_first_of(" /") != std::string::npos;
+  return of + (compound ? "/(" + unit + ")" : "/" + unit);
+}
+
+// "−0.42": a sign always, for it is what one wants to know first.
+std::string signed_text(double value) {
+  return (value > 0 ? "+" : "") + short_text(value, 3);
+}
+
+bool has_rates(const App& app) {
+  return converged(app) && (!solving(app) || app.waited <= patience);
+}
+
+const std::vector<ShownRate>& kept_rates(App& app, const ParameterControl& control) {
+  KeptRates& kept = app.panels.rates[control.address];
+  if (kept.ticket != app.answer.ticket || kept.value != control.value || kept.from != control.from ||
+      kept.to != control.to || kept.units != app.units)
+    kept = {app.answer.ticket, control.value, control.from,
+            control.to,        app.units,     shown_rates(app, control.address)};
+  return kept.rates;
+}
+
+} // namespace
+
+std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
+  std::vector<ShownRate> out;
+  if (!has_rates(app)) return out;
+  const Solution& solution = app.answer.solution;
+  const auto found = std::ranges::find(solution.sensitivities, address, &Sensitivity::address);
+  const auto control = std::ranges::find(app.parameters, address, &ParameterControl::address);
+  if (found == solution.sensitivities.end() || control == app.parameters.end()) return out;
+  const double size = reach(*app.answer.mechanism);
+  // Rates come in the order of the coordinates: each is looked for from where the last was found.
+  auto from = solution.coordinates.begin();
+  for (const Sensitivity::Rate& rate : found->rates) {
+    const auto same = [&](const CoordinateSolution& each) {
+      return each.joint == rate.joint && each.index == rate.index;
+    };
+    auto c = std::find_if(from, solution.coordinates.end(), same);
+    if (c == solution.coordinates.end()) c = std::find_if(solution.coordinates.begin(), from, same);
+    if (c == solution.coordinates.end() || c->driven) continue;
+    from = c;
+    ShownRate shown;
+    shown.name = coordinate_label(rate);
+    const ShownUnit of = coordinate_unit(c->angle, app.units), by = shown_unit(control->unit, app.units);
+    shown.value = rate.value * of.factor / by.factor;
+    shown.unit = per(of.text, by.text);
+    shown.share = std::abs(rate.value) / (c->angle ? 1 : size);
+    out.push_back(std::move(shown));
+  }
+  std::ranges::stable_sort(out, std::greater<>(), &ShownRate::share);
+  const double size_of_number = std::max(std::abs(control->value), std::abs(control->to - control->from));
+  for (ShownRate& rate : out)
+    if (rate.share <= nothing * out.front().share || rate.share * size_of_number <= nothing) rate.value = 0;
+  return out;
+}
+
+float sensitivity_height(const App& app) {
+  return std::round(small_text * app.fonts.text->FontSize);
+}
+
+void sensitivity_line(App& app, const ParameterControl& control) {
+  const float width = ImGui::GetContentRegionAvail().x, height = sensitivity_height(app);
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  ImGui::Dummy({std::max(width, 1.f), height});
+  if (!has_rates(app)) return;
+  const std::vector<ShownRate>& rates = kept_rates(app, control);
+  if (rates.empty()) return;
+  const std::string name = "parameters/" + control.address + "/rate";
+  note_widget(app.widgets, name);
+  const UiColors& colors = colors_of(app);
+  const ShownRate& most = rates.front();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImFont *text = app.fonts.text, *digits = app.fonts.digits;
+  const float size = small_text * text->FontSize, digit_size = small_text * digits->FontSize;
+  const std::string number = signed_text(most.value), unit = " " + most.unit;
+  const float unit_width = text->CalcTextSizeA(size, 1e9f, 0, unit.c_str()).x;
+  const float number_width = digits->CalcTextSizeA(digit_size, 1e9f, 0, number.c_str()).x;
+  const float margin = 28 * app.scale; // in line with the value above
+  float x = from.x + width - margin - unit_width;
+  list.PushClipRect(from, {from.x + width, from.y + height}, true);
+  list.AddText(text, size, {x, from.y}, packed(colors.dim), unit.c_str());
+  x -= number_width;
+  list.AddText(digits, digit_size, {x, from.y + digits_drop(app) * small_text}, packed(colors.dim),
+               number.c_str());
+  const float label_width = text->CalcTextSizeA(size, 1e9f, 0, most.name.c_str()).x;
+  x = std::max(from.x, x - 6 * app.scale - label_width);
+  list.AddText(text, size, {x, from.y}, packed(colors.dim), most.name.c_str());
+  list.PopClipRect();
+  if (!ImGui::IsItemHovered()) return;
+  constexpr std::size_t most_lines = 12;
+  std::string help = "What moves with it, at this steady state:";
+  for (std::size_t i = 0; i < rates.size() && i < most_lines; ++i)
+    help += "\n" + rates[i].name + "  " + signed_text(rates[i].value) + " " + rates[i].unit;
+  if (rates.size() > most_lines) help += "\nand " + std::to_string(rates.size() - most_lines) + " more";
+  help_on_hover(help.c_str());
+}
+
+} // namespace flyball

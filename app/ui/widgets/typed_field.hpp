@@ -1,0 +1,36 @@
+// A field for text, in which one types at once after a click or Tab. Enter takes it and so does leaving;
+// Escape puts the old text back. Text that cannot be taken turns red and says why; Enter then stays in the
+// field.
+#pragma once
+
+#include "app/ui/app.hpp"
+
+#include <string>
+
+namespace flyball {
+
+struct TextField {
+  std::string name;       // of the widget
+  std::string text;       // that typing starts from
+  TextCheck check;        // may be empty
+  TextTaker take;         // called after the panels are drawn, if the text was changed
+  bool at_once = false;   // `take` is called while drawing instead
+  bool drawn_here = true; // the text at rest; otherwise the caller draws something in its place
+  const char* hint = "";  // shown while there is no text
+  int flags = 0;          // of ImGui's InputText
+  int (*callback)(ImGuiInputTextCallbackData*) = nullptr;
+  void* callback_data = nullptr;
+};
+
+// Whether it is being typed in. In the present font.
+bool text_field(App& app, const TextField& field, float width);
+bool typing_in(const App& app, const std::string& name);
+// As if it had been clicked; for a field that is drawn only while it is typed in.
+void start_typing(App& app, const std::string& name, const std::string& text);
+
+// To be done after the panels are drawn.
+void later(App& app, std::function<void(App&)> edit);
+// After the panels: leaves a field that is not shown any more and does what was put off.
+void settle_fields(App& app);
+
+} // namespace flyball

@@ -1,0 +1,251 @@
+#include "app/ui/widgets/widgets.hpp"
+
+#include "app/session/units.hpp"
+#include "app/ui/widgets/tooltip.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace flyball {
+
+namespace {
+
+// Text in a font, whatever is current.
+void text_in(ImFont* font, const ImVec4& color, const std::string& text) {
+  ImGui::PushFont(font);
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+}
+
+} // namespace
+
+void help_on_hover(const char* help) {
+  if (help && *help && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && pointed_long()) {
+    place_beside_window();
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
+    ImGui::TextUnformatted(help);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+  }
+}
+
+bool icon_button(App& app, const std::string& name, const char* icon, const char* help, bool on) {
+  const UiColors& colors = colors_of(app);
+  const float side = ImGui::GetFrameHeight() + 2 * app.scale;
+  ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.accent : colors.text);
+  if (on) ImGui::PushStyleColor(ImGuiCol_Button, colors.raised);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
+  ImGui::PushID(name.c_str());
+  const bool pressed = ImGui::Button(icon, {side, side});
+  ImGui::PopID();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor(on ? 2 : 1);
+  note_widget(app.widgets, name);
+  help_on_hover(help);
+  return pressed;
+}
+
+bool text_button(App& app, const std::string& name, const char* text, bool primary) {
+  const UiColors& colors = colors_of(app);
+  ImGui::PushStyleColor(ImGuiCol_Button, primary ? colors.accent : colors.raised);
+  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, primary ? colors.accent : colors.border);
+  ImGui::PushStyleColor(ImGuiCol_ButtonActive, primary ? colors.accent : colors.faint);
+  ImGui::PushStyleColor(ImGuiCol_Text, primary ? colors.on_accent : colors.text);
+  ImGui::PushID(name.c_str());
+  const bool pressed = ImGui::Button(text);
+  ImGui::PopID();
+  ImGui::PopStyleColor(4);
+  note_widget(app.widgets, name);
+  return pressed;
+}
+
+void heading(App& app, const char* text) {
+  ImGui::Dummy({0, 2 * app.scale});
+  text_in(app.fonts.strong, colors_of(app).text, text);
+}
+
+bool section(App& app, const std::string& name, const char* text, bool& open) {
+  const UiColors& colors = colors_of(app);
+  const float height = ImGui::GetTextLineHeight() + 6 * app.scale;
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
+  if (ImGui::InvisibleButton(name.c_str(), {width, height})) open = !open;
+  note_widget(app.widgets, name);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (ImGui::IsItemHovered())
+    list.AddRectFilled({from.x - 4 * app.scale, from.y}, {from.x + width, from.y + height},
+                       packed(colors.raised), ImGui::GetStyle().FrameRounding);
+  const float r = 3.5f * app.scale, cx = from.x + r, cy = from.y + height / 2;
+  if (open)
+    list.AddTriangleFilled({cx - r, cy - r / 2}, {cx + r, cy - r / 2}, {cx, cy + r / 1.5f},
+                           packed(colors.dim));
+  else
+    list.AddTriangleFilled({cx - r / 2, cy - r}, {cx + r / 1.5f, cy}, {cx - r / 2, cy + r},
+                           packed(colors.dim));
+  list.AddText(app.fonts.strong, ImGui::GetFontSize(), {from.x + 14 * app.scale, from.y + 3 * app.scale},
+               packed(colors.text), text);
+  return open;
+}
+
+float digits_drop(const App& app) {
+  return std::round(app.fonts.text->Ascent - app.fonts.digits->Ascent);
+}
+
+void right_digits(App& app, const std::string& text, const ImVec4& color) {
+  ImFont* font = app.fonts.digits;
+  const float width = font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.f, ImGui::GetContentRegionAvail().x - width));
+  text_in(font, color, text);
+}
+
+void row(App& app, const std::string& label, const std::string& value, const char* unit, const char* help) {
+  const UiColors& colors = colors_of(app);
+  ImGui::BeginGroup();
+  const float room = ImGui::GetContentRegionAvail().x;
+  const float start = ImGui::GetCursorPosX();
+  const float unit_width = unit && *unit ? ImGui::CalcTextSize(unit).x + 5 * app.scale : 0;
+  const ImFont* digits = app.fonts.digits;
+  const float value_width = digits->CalcTextSizeA(digits->FontSize, 1e9f, 0, value.c_str()).x;
+  ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
+  clipped_text(label, room - unit_width - value_width - 8 * app.scale);
+  ImGui::PopStyleColor();
+  ImGui::SameLine();
+  const ImVec2 at(start + std::max(0.f, room - unit_width - value_width), ImGui::GetCursorPosY());
+  ImGui::SetCursorPos({at.x, at.y + digits_drop(app)});
+  text_in(app.fonts.digits, colors.text, value);
+  if (unit_width > 0) {
+    ImGui::SameLine();
+    ImGui::SetCursorPos({at.x + value_width + 5 * app.scale, at.y});
+    text_in(app.fonts.text, colors.dim, unit);
+  }
+  ImGui::EndGroup();
+  help_on_hover(help);
+}
+
+std::string name_list(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 100;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i)
+    text += (i ? ", " : "") + names[i];
+  return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
+}
+
+void paragraph(const std::string& text, const ImVec4& color) {
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+void clipped_text(const std::string& text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) {
+    ImGui::TextUnformatted(text.c_str());
+    return;
+  }
+  std::string cut = text;
+  while (!cut.empty() && ImGui::CalcTextSize((cut + "…").c_str()).x > width) {
+    // Whole characters: bytes of the form 10xxxxxx continue one.
+    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0) == 0x80)
+      cut.pop_back();
+    if (!cut.empty()) cut.pop_back();
+  }
+  ImGui::TextUnformatted((cut + "…").c_str());
+  help_on_hover(text.c_str());
+}
+
+namespace {
+
+constexpr float slack = 3; // points that the hand may move in a click
+
+// What the button on a slider does in this frame; `knob` and `left` are pixels of the window. Returns the
+// place on the track that the knob is to go to.
+std::optional<double> slider_place_wanted(App& app, const std::string& name, double now, float left,
+                                          float span, float radius, bool& type_value) {
+  const ImGuiIO& io = ImGui::GetIO();
+  SliderPress& press = app.panels.slider_press;
+  const float at = io.MousePos.x, knob = left + span * static_cast<float>(now);
+  if (ImGui::IsItemActivated()) {
+    type_value = io.KeyCtrl || (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && press.name == name);
+    press = {.name = name,
+             .from = at,
+             .grip = at - knob,
+             .on_knob = std::abs(at - knob) <= radius,
+             .typing = type_value};
+  }
+  if (press.name != name || press.typing) return std::nullopt;
+  if (ImGui::IsItemActive()) {
+    if (!press.on_knob) press.grip = 0;
+    press.dragging = press.dragging || std::abs(at - press.from) > slack * app.scale;
+    if (!press.dragging || io.MouseDelta.x == 0) return std::nullopt;
+    // With Shift the knob follows at a tenth of the hand's speed.
+    if (io.KeyShift) return now + static_cast<double>(io.MouseDelta.x / span) / 10;
+    return static_cast<double>((at - press.grip - left) / span);
+  }
+  if (ImGui::IsItemDeactivated() && !press.dragging && !press.on_knob) {
+    press.place = static_cast<double>((press.from - left) / span);
+    press.since = ImGui::GetTime();
+  }
+  if (!press.place || ImGui::GetTime() - *press.since < static_cast<double>(io.MouseDoubleClickTime))
+    return std::nullopt;
+  return std::exchange(press.place, std::nullopt);
+}
+
+// In the unit it is shown in, where the hand's steps are to be round.
+ParameterControl shown_control(ParameterControl control, const ShownUnit& unit) {
+  if (unit.factor == 1) return control;
+  for (double* number : {&control.value, &control.file_value, &control.from, &control.to})
+    *number = unit.shown(*number);
+  const double span = std::abs(control.to - control.from);
+  if (control.step > 0 && span > 0) control.step = slider_step(span);
+  return control;
+}
+
+} // namespace
+
+bool slider(App& app, const std::string& name, const ParameterControl& si_control, double& si_value,
+            bool& type_value) {
+  const ShownUnit unit = shown_unit(si_control.unit, app.units);
+  const ParameterControl control = shown_control(si_control, unit);
+  double value = unit.shown(si_value);
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, height = 18 * s, radius = 6.5f * s;
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 4 * radius);
+  ImGui::InvisibleButton(name.c_str(), {width, height});
+  note_widget(app.widgets, name);
+  const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
+  const float left = from.x + radius, span = width - 2 * radius, middle = from.y + height / 2;
+
+  bool moved = false;
+  if (const auto place =
+          slider_place_wanted(app, name, slider_place(control, value), left, span, radius, type_value)) {
+    const double next = slider_value(control, *place, ImGui::GetIO().KeyShift);
+    moved = next != value;
+    value = next;
+    if (moved) si_value = unit.si(next);
+  }
+
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float line = 1.5f * s;
+  const float knob = left + span * static_cast<float>(slider_place(control, value));
+  // Filled from zero where the range holds it, else from the lower end.
+  const float zero = left + span * static_cast<float>(control.log ? 0 : slider_place(control, 0));
+  list.AddRectFilled({left - line, middle - line}, {left + span + line, middle + line}, packed(colors.faint),
+                     line);
+  list.AddRectFilled({std::min(zero, knob), middle - line}, {std::max(zero, knob), middle + line},
+                     packed(colors.accent), line);
+  const float mark = std::round(left + span * static_cast<float>(slider_place(control, control.file_value)));
+  list.AddLine({mark, middle + 4 * s}, {mark, middle + 8 * s}, packed(colors.dim), std::max(1.f, s));
+  list.AddCircleFilled({knob, middle}, radius, packed(colors.accent), 32);
+  if (!active)
+    list.AddCircleFilled({knob, middle}, radius - 2 * s, packed(hovered ? colors.raised : colors.panel), 32);
+  return moved;
+}
+
+} // namespace flyball

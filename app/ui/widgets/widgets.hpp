@@ -1,0 +1,59 @@
+// The few kinds of widget that the panels are made of. Names are for the widget map and unique in the window.
+#pragma once
+
+#include "app/ui/app.hpp"
+#include "app/ui/widgets/ui_style.hpp"
+
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+inline const UiColors& colors_of(const App& app) {
+  return ui_colors(app.theme);
+}
+inline ImU32 packed(const ImVec4& color) {
+  return ImGui::ColorConvertFloat4ToU32(color);
+}
+
+// A button of one icon; `on` shows it pressed in.
+bool icon_button(App& app, const std::string& name, const char* icon, const char* help, bool on = false);
+// A button of words; `primary` is the one that Enter means.
+bool text_button(App& app, const std::string& name, const char* text, bool primary = false);
+
+// What a panel's part is called.
+void heading(App& app, const char* text);
+// The same, that opens and closes; returns whether it is open.
+bool section(App& app, const std::string& name, const char* text, bool& open);
+
+// Digits from here to the right edge, ending there.
+void right_digits(App& app, const std::string& text, const ImVec4& color);
+// How much lower digits must begin than words to stand on the same line (pixels).
+float digits_drop(const App& app);
+// "label            value unit": the value in digits. Help appears over the row.
+void row(App& app, const std::string& label, const std::string& value, const char* unit,
+         const char* help = nullptr);
+// Draws those of so many rows of one height that are in sight.
+template <class Draw>
+void visible_rows(std::size_t count, const Draw& draw) {
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(count));
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
+      draw(static_cast<std::size_t>(i));
+}
+// "a, b, c": the first of the names, and how many more there are.
+std::string name_list(const std::vector<std::string>& names);
+// Words that may take several lines.
+void paragraph(const std::string& text, const ImVec4& color);
+// Text cut to the width with "..." where it is longer; the whole of it appears over it.
+void clipped_text(const std::string& text, float width);
+
+// A slim slider over the control's range; returns whether the value was moved. A double click, or one with
+// Ctrl, asks for typing and moves nothing.
+bool slider(App& app, const std::string& name, const ParameterControl& control, double& value,
+            bool& type_value);
+
+void help_on_hover(const char* help);
+
+} // namespace flyball
