@@ -1,8 +1,8 @@
 #include "app/ui/tools/gizmo_drawing.hpp"
 
-#include "app/session/typed_size.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/typed_size.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // The card beside the point of a joint to be made: which bodies, which type, which axis.
 #include "app/render/icons.hpp"
-#include "app/session/joint_guess.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/joint_guess.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/work_plane.hpp"

@@ -1,7 +1,7 @@
 #include "app/ui/tools/tools.hpp"
 
-#include "app/session/typed_size.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/tools/typed_size.hpp"
 
 namespace flyball {
 

@@ -1,9 +1,9 @@
 // What has two ends: rods, links, springs and dampers. Two clicks, or a drag from one end to the other.
-#include "app/session/typed_size.hpp"
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/tools/typed_size.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/snapping.hpp"
 

@@ -1,7 +1,7 @@
 // Joining two bodies: a click says where, the card beside the point how.
-#include "app/session/joint_guess.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/joint_guess.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/snapping.hpp"

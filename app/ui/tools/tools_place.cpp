@@ -1,9 +1,9 @@
 // Placing balls, blocks and plates: a click takes a size that suits the view, a drag draws it out.
-#include "app/session/typed_size.hpp"
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/tools/typed_size.hpp"
 #include "app/viewport/snapping.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "app/session/joint_guess.hpp"
+#include "app/ui/tools/joint_guess.hpp"
 
 #include "app/viewport/assembly.hpp"
 #include "app/viewport/bodies_near.hpp"

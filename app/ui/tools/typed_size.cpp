@@ -1,4 +1,4 @@
-#include "app/session/typed_size.hpp"
+#include "app/ui/tools/typed_size.hpp"
 
 #include "app/session/quantity.hpp"
 #include "app/session/units.hpp"
