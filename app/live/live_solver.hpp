@@ -10,6 +10,7 @@
 #include "app/live/worker.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/report/grip.hpp"
 
 #include <atomic>
 #include <condition_variable>
@@ -36,6 +37,7 @@ struct LiveRequest {
   // "joint" or "joint.index" and rad or m: starts there, rather than from the last answer.
   std::vector<std::pair<std::string, double>> start{};
   std::vector<BodyPoint> points{}; // of its bodies, to be told with the solution
+  std::optional<BodyPoint> grip{}; // that a hand would take hold of, see LiveAnswer::grip
 };
 
 struct LiveAnswer {
@@ -47,6 +49,7 @@ struct LiveAnswer {
   double time = 0;                  // s
   std::optional<std::string> error; // why the mechanism cannot be compiled; then there is no solution
   bool left_branch = false;         // asked for the nearest, but nothing was near
+  std::optional<Grip> grip;         // where it was asked for and there is a steady state
 };
 
 // Where the last answer's mechanism is at another time.

@@ -77,9 +77,10 @@ inline bool key_is_down(int code) {
   return key_of(code) != ImGuiKey_None && ImGui::IsKeyDown(key_of(code));
 }
 inline void map_key(ImGuiKey, int) {}
-inline void set_modifiers(bool ctrl, bool shift) {
+inline void set_modifiers(bool ctrl, bool shift, bool alt = false) {
   ImGui::GetIO().AddKeyEvent(ImGuiMod_Ctrl, ctrl);
   ImGui::GetIO().AddKeyEvent(ImGuiMod_Shift, shift);
+  ImGui::GetIO().AddKeyEvent(ImGuiMod_Alt, alt);
 }
 #else
 inline void set_key(int code, bool down) {
@@ -91,9 +92,10 @@ inline bool key_is_down(int code) {
 inline void map_key(ImGuiKey key, int code) {
   ImGui::GetIO().KeyMap[key] = code;
 }
-inline void set_modifiers(bool ctrl, bool shift) {
+inline void set_modifiers(bool ctrl, bool shift, bool alt = false) {
   ImGui::GetIO().KeyCtrl = ctrl;
   ImGui::GetIO().KeyShift = shift;
+  ImGui::GetIO().KeyAlt = alt;
 }
 #endif
 

@@ -335,13 +335,13 @@ void set_mode(App& app, Mode mode) {
     show_motion(app, false);
     play(app, false);
     rewind(app);
-  } else {
+  } else if (app.tool.tool != Tool::pull) {
     app.tool.tool = Tool::select;
   }
 }
 
 void set_tool(App& app, Tool tool) {
-  if (tool != Tool::select && tool != Tool::box) set_mode(app, Mode::build);
+  if (tool != Tool::select && tool != Tool::box && tool != Tool::pull) set_mode(app, Mode::build);
   app.tool.tool = tool;
 }
 
@@ -396,12 +396,15 @@ ViewFrame view_frame(const App& app) {
   if (app.mode == Mode::build) {
     frame.mechanism = &app.mechanism();
     // The answer may still be that to an earlier edit.
-    if (solved && app.view.ghost && app.poses.size() == app.mechanism().bodies.size()) {
+    if (app.tool.assembly) {
+      frame.ghost = app.tool.assembly->start;
+    } else if (solved && app.view.ghost && app.poses.size() == app.mechanism().bodies.size()) {
       frame.ghost = app.poses;
       frame.ghost_pose = GhostPose::steady;
     }
   } else {
     frame.mechanism = app.answer.ticket ? app.answer.mechanism.get() : &app.mechanism();
+    if (app.tool.pull) frame.mechanism = app.tool.pull->mechanism.get(); // the tool draws the hand's spring
     const bool moves = app.motion.poses.size() == frame.mechanism->bodies.size();
     if (solved) {
       frame.poses = app.poses;

@@ -1,5 +1,6 @@
 #include "app/ui/commands.hpp"
 
+#include "app/ui/assembly_edits.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/key_focus.hpp"
@@ -190,6 +191,11 @@ const std::array table{
             .help = "Couple the two selected joints: the second turns as the first does.",
             .run = gear_selected,
             .enabled = [](const App& app) { return app.selection().names(PartKind::joint).size() == 2; }},
+    Command{.id = "edit.settle",
+            .title = "Draw as it settles",
+            .help = "The steady state becomes the drawn pose; the mechanism stays the same.",
+            .run = draw_settled,
+            .enabled = can_draw_settled},
     Command{.id = "edit.rename",
             .title = "Rename",
             .help = "Another name for the selected part; every reference follows.",
@@ -311,6 +317,14 @@ const std::array table{
             .key = plain('R'),
             .run = choose_tool<Tool::rotate>,
             .checked = tool_chosen<Tool::rotate>},
+    Command{.id = "view.pull",
+            .title = "Pull",
+            .help =
+                "Drag a body: along its joints while building, by a spring while exploring (or hold Alt).",
+            .key = plain('H'),
+            .run = choose_tool<Tool::pull>,
+            .enabled = holds_parts,
+            .checked = tool_chosen<Tool::pull>},
     Command{.id = "view.box",
             .title = "Select a box",
             .help = "Drag a frame round the parts to select (or hold Ctrl).",

@@ -31,6 +31,7 @@ void file_banner(App& app, const PanelRect& view); // over the view: what happen
 // Sections of the results.
 void coordinate_results(App& app);
 void solver_results(App& app);
+void pull_results(App& app); // while a hand pulls
 void body_results(App& app); // position, speed and acceleration of the selected bodies
 void load_results(App& app); // drive torques, reactions
 void eigenvalue_results(App& app);

@@ -3,6 +3,7 @@
 
 #include "app/document/snap_points.hpp"
 #include "app/document/transform.hpp"
+#include "app/ui/tools/hand_state.hpp"
 #include "app/viewport/gizmo.hpp"
 #include "app/viewport/scene_list.hpp"
 #include "app/viewport/work_plane.hpp"
@@ -16,6 +17,7 @@ namespace flyball {
 enum class Tool {
   select, // and move with the gizmo
   rotate, // select, and turn with the gizmo
+  pull,   // bodies, along their joints or by a spring
   box,    // select what a dragged frame holds
   ball,
   block,
@@ -98,6 +100,8 @@ struct ToolState {
   Handle hovered = Handle::none;
   std::optional<PointId> hovered_point{};
   std::optional<Grab> grab{};
+  std::optional<AssemblyGrab> assembly{};
+  std::optional<PullGrab> pull{};
   std::optional<Vec2> frame{}; // pixel of the view where a selecting frame began
   std::optional<Aim> first{};  // where the button went down, or the first of two clicks
   bool first_clicked = false;  // the latter

@@ -105,10 +105,10 @@ void Robot::key(int code, bool ctrl, bool shift) {
   frames(2);
 }
 
-void Robot::hold(bool ctrl, bool shift) {
+void Robot::hold(bool ctrl, bool shift, bool alt) {
   ctrl_ = ctrl;
   shift_ = shift;
-  imgui_compat::set_modifiers(ctrl, shift);
+  imgui_compat::set_modifiers(ctrl, shift, alt);
 }
 
 ImVec2 Robot::pixel(const Vec3& world) {

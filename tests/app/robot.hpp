@@ -33,7 +33,7 @@ class Robot {
   void wheel(const std::string& name, float notches);
   // A key by its GLFW code, which for letters is ASCII.
   void key(int code, bool ctrl = false, bool shift = false);
-  void hold(bool ctrl, bool shift); // from now on
+  void hold(bool ctrl, bool shift, bool alt = false); // from now on
 
   // Places of the mechanism, in the 3-D view as its camera stands.
   ImVec2 pixel(const Vec3& world);

@@ -1,14 +1,19 @@
 // How smoothly the window goes on while the governor's stiffness slider is dragged with its response curve
 // open: the interface and everything in the background, without the drawing of pixels, which is the graphics
-// card's. And what a slider's move costs beside the solve in a net of 10 000 point masses.
+// card's. What a slider's move costs beside the solve in a net of 10 000 point masses. And what a mouse event
+// costs while a body is pulled by hand.
+#include "app/render/imgui_compat.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "engine/solve/assembly_drag.hpp"
 #include "tests/bench/large_scenes.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <thread>
 
 using namespace flyball;
@@ -57,6 +62,97 @@ void move_in_large_net() {
   std::printf("\nNet of %d springs, speed moved\n%-34s %8.2f ms\n%-34s %8.2f ms\n", 2 * side * (side + 1),
               "on the window's thread", window[window.size() / 2], "beside the solve, in all",
               beside[beside.size() / 2]);
+}
+
+double median(std::vector<double> all) {
+  std::ranges::sort(all);
+  return all[all.size() / 2];
+}
+
+using Frame = std::function<void(double)>;
+
+// The body's mass centre is pulled round a circle on the screen, a mouse event a frame.
+void pull_by_hand(App& app, const Frame& frame, const char* title, const Mechanism& m,
+                  const std::string& body, ::flyball::Mode mode) {
+  constexpr int events = 60;
+  constexpr float radius = 40; // pixels
+  const auto b = static_cast<std::size_t>(body_index(m, body));
+  open_document(app, Document(m));
+  set_mode(app, mode);
+  look_from(app, 0, 0);
+  const auto settle = [&] {
+    frame(1 / wanted);
+    while (solving(app)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      update(app, 0, {600, 400});
+    }
+    frame(1 / wanted);
+  };
+  settle();
+  settle();
+  ImGuiIO& io = ImGui::GetIO();
+  const WidgetRect view = app.widgets.at("view");
+  const Vec3 at = mode == ::flyball::Mode::build ? m.bodies[b].position : app.poses.at(b).position;
+  const auto pixel = app.view.camera.project(
+      at, {static_cast<double>(view.to.x - view.from.x), static_cast<double>(view.to.y - view.from.y)});
+  const ImVec2 from(view.from.x + static_cast<float>(pixel->x()),
+                    view.from.y + static_cast<float>(pixel->y()));
+  io.MousePos = from;
+  imgui_compat::set_modifiers(false, false, true);
+  settle();
+  io.MouseDown[0] = true;
+  settle();
+  std::vector<double> event, shown;
+  for (int i = 1; i <= events; ++i) {
+    const float angle = 0.1f * static_cast<float>(i);
+    io.MousePos = {from.x + radius * std::sin(angle), from.y + radius * (1 - std::cos(angle))};
+    const auto begin = Clock::now();
+    frame(1 / wanted);
+    event.push_back(1e3 * seconds_since(begin));
+    while (solving(app)) {
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+      update(app, 0, {600, 400});
+    }
+    shown.push_back(1e3 * seconds_since(begin));
+  }
+  const bool held = app.tool.assembly || app.tool.pull;
+  io.MouseDown[0] = false;
+  imgui_compat::set_modifiers(false, false);
+  settle();
+  settle();
+  std::printf("%-34s %8.2f ms, until it is solved %.2f ms%s\n", title, median(event), median(shown),
+              held ? "" : " (nothing was held)");
+}
+
+// The same movement without an interface.
+void drag_alone(const char* title, const Mechanism& m, const std::string& body) {
+  constexpr int events = 60;
+  AssemblyDrag drag(m);
+  const BodyPoint grabbed{body};
+  const Vec3 from = drag.position(grabbed);
+  const double radius = 0.05; // m
+  std::vector<double> spent;
+  for (int i = 1; i <= events; ++i) {
+    const Vec3 target = from + radius * Vec3(std::sin(0.1 * i), 1 - std::cos(0.1 * i), 0);
+    const auto begin = Clock::now();
+    drag.pull(grabbed, {.at = target, .sight = Vec3::UnitZ()});
+    spent.push_back(1e3 * seconds_since(begin));
+  }
+  std::printf("%-34s %8.3f ms\n", title, median(spent));
+}
+
+void pull_all(App& app, const Frame& frame) {
+  constexpr int links = 100;
+  const Mechanism chain = bench::springy_chain(links, 1, 1, 0.1);
+  const Mechanism governor = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const std::string tip = chain.bodies.back().name;
+  std::printf("\nPulled by hand, a mouse event\n");
+  drag_alone("governor, along its joints alone", governor, "ball1");
+  drag_alone("chain of 100, likewise", chain, tip);
+  pull_by_hand(app, frame, "governor while building", governor, "ball1", ::flyball::Mode::build);
+  pull_by_hand(app, frame, "chain of 100 while building", chain, tip, ::flyball::Mode::build);
+  pull_by_hand(app, frame, "governor while exploring", governor, "ball1", ::flyball::Mode::explore);
+  pull_by_hand(app, frame, "chain of 100 while exploring", chain, tip, ::flyball::Mode::explore);
 }
 
 } // namespace
@@ -119,6 +215,7 @@ int main() {
               "frames", static_cast<double>(spent.size()) / duration, wanted, late, "interface, a frame",
               at(0.5), at(0.99), "curves shown anew", static_cast<double>(curves) / duration,
               "solutions shown anew", static_cast<double>(answers) / duration);
+  pull_all(app, frame);
   move_in_large_net();
   ImGui::DestroyContext();
 }

@@ -1,5 +1,6 @@
 // What acts on each coordinate of a joint: drive, spring, damper, stop; and where it settles.
 #include "app/session/units.hpp"
+#include "app/ui/assembly_edits.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -108,6 +109,20 @@ struct CoordinateRows {
     ImGui::BeginDisabled();
     row(app, "Settles at", word, "", help);
     ImGui::EndDisabled();
+  }
+
+  // The drawn pose in which the coordinate has another value; the mechanism stays the same.
+  void move_to() const {
+    quantity_row(app, "Move to",
+                 {.name = widget(key("move")),
+                  .value = coordinate().drawn,
+                  .unit = value_unit(),
+                  .help =
+                      "Moves the mechanism along its joints until the coordinate has this value, as far as "
+                      "loops and stops let it.",
+                  .set = [name = joint.name, i = i](App& moved, double value) {
+                    move_coordinate(moved, name, i, value);
+                  }});
   }
 
   void drive() const {
@@ -225,6 +240,7 @@ struct CoordinateRows {
     settled();
     number("Drawn as", key("coordinate"), coordinate().drawn, value_unit(),
            "What the coordinate is called in the drawn pose; a label, it moves nothing.");
+    move_to();
     // All that can act in one line, which stays where it is; below it the numbers of what does act.
     drive();
     beside_last("Spring");

@@ -132,6 +132,7 @@ void results_panel(App& app, const PanelRect& rect) {
     verdict(app);
     remedies(app);
     warning_rows(app, "results/warnings", 3);
+    pull_results(app);
     neutral_joints(app);
     coordinate_results(app);
     body_results(app);

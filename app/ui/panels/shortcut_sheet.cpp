@@ -20,6 +20,7 @@ constexpr std::array mouse{
     Line{"Wheel", "Zoom"},
     Line{"Click", "Select; Ctrl adds"},
     Line{"Ctrl+drag", "Select a box"},
+    Line{"Alt+drag", "Pull a body"},
     Line{"Double-click", "All in view"},
     Line{"Double-click a slider", "Type its value"},
     Line{"Shift+drag a slider", "Finer"},

@@ -30,6 +30,7 @@ ViewInput view_input(const App& app, const PanelRect& rect) {
   input.moved = io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] >= slack * slack;
   input.ctrl = io.KeyCtrl;
   input.shift = io.KeyShift;
+  input.alt = io.KeyAlt;
   return input;
 }
 
@@ -53,7 +54,7 @@ void steer(App& app, const ViewInput& input) {
     }
   }
   if (!input.hovered) return;
-  if (io.MouseWheel != 0) {
+  if (io.MouseWheel != 0 && !app.tool.pull) {
     app.view.fit = false;
     app.view.camera.zoom(std::pow(zoom_step, static_cast<double>(io.MouseWheel)), input.cursor, input.size);
   }

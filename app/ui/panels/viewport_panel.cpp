@@ -3,6 +3,7 @@
 #include "app/ui/panels/legend.hpp"
 #include "app/ui/panels/view_overlays.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/tools/tools_hand.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <cmath>
@@ -15,6 +16,7 @@ void use_tool(App& app, const ViewInput& input) {
   switch (app.tool.tool) {
   case Tool::select:
   case Tool::rotate:
+  case Tool::pull:
   case Tool::box: return;
   case Tool::ball:
   case Tool::block:
@@ -43,8 +45,9 @@ void viewport_panel(App& app, const PanelRect& rect) {
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   note_widget(app.widgets, "view");
-  const ViewInput input = view_input(app, rect);
+  ViewInput input = view_input(app, rect);
   keep_tool_state(app);
+  if (use_hand(app, input)) input.pressed = input.released = false;
   use_gizmo(app, input);
   use_selecting(app, input);
   use_tool(app, input);

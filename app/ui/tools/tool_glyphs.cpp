@@ -97,6 +97,28 @@ void draw_rod(const GlyphPen& pen) {
   pen.line({{-0.92f, 0.6f}, {0.6f, -0.92f}, {0.92f, -0.6f}, {-0.6f, 0.92f}}, true);
 }
 
+// A hand that closes, seen from its back.
+void draw_hand(const GlyphPen& pen) {
+  pen.line({{-0.5f, 0.3f},
+            {-0.9f, -0.15f},
+            {-0.75f, -0.3f},
+            {-0.45f, -0.05f},
+            {-0.45f, -0.7f},
+            {-0.15f, -0.7f},
+            {-0.15f, -0.85f},
+            {0.15f, -0.85f},
+            {0.15f, -0.7f},
+            {0.45f, -0.7f},
+            {0.45f, -0.45f},
+            {0.75f, -0.45f},
+            {0.75f, 0.3f},
+            {0.5f, 0.9f},
+            {-0.25f, 0.9f}},
+           true);
+  for (const float x : {-0.15f, 0.15f, 0.45f})
+    pen.line({{x, -0.7f}, {x, -0.1f}});
+}
+
 void draw_plate(const GlyphPen& pen) {
   pen.fill({{-0.95f, 0.1f}, {0, -0.45f}, {0.95f, 0.1f}, {0, 0.65f}}, 0.25f);
   pen.line({{-0.95f, 0.1f}, {0, -0.45f}, {0.95f, 0.1f}, {0, 0.65f}}, true);
@@ -163,6 +185,7 @@ void draw_tool_glyph(ImDrawList& list, Tool tool, ImVec2 center, float half, ImU
   switch (tool) {
   case Tool::select: return draw_pointer(pen);
   case Tool::rotate: return draw_turning(pen);
+  case Tool::pull: return draw_hand(pen);
   case Tool::box: return draw_frame(pen);
   case Tool::ball: return draw_ball(pen);
   case Tool::block: return draw_block(pen);

@@ -21,6 +21,7 @@ struct ToolButton {
 constexpr std::array buttons{
     ToolButton{Tool::select, "tools/select", "view.select"},
     ToolButton{Tool::rotate, "tools/rotate", "view.rotate"},
+    ToolButton{Tool::pull, "tools/pull", "view.pull"},
     ToolButton{Tool::box, "tools/box", "view.box"},
     ToolButton{Tool::ball, "tools/ball", "insert.ball", true},
     ToolButton{Tool::block, "tools/block", "insert.block"},

@@ -1,6 +1,7 @@
 #include "app/ui/tools/tools.hpp"
 
 #include "app/ui/commands.hpp"
+#include "app/ui/tools/tools_hand.hpp"
 #include "app/ui/tools/typed_size.hpp"
 
 namespace flyball {
@@ -26,9 +27,9 @@ void take_key_while_holding(App& app, const KeyPress& key) {
   if (key.key == keys::escape) {
     step_back(app);
   } else if (key.key == keys::enter) {
-    let_go(app, true);
+    if (!let_go_hand(app, true)) let_go(app, true);
     app.tool.spent = true;
-  } else {
+  } else if (app.tool.grab) {
     take_typed_key(app.tool.grab->typed, key);
   }
 }
@@ -61,7 +62,7 @@ bool take_size_key(App& app, const KeyPress& key) {
 
 bool take_key(App& app, const KeyPress& key) {
   // What is held is not to be deleted or turned into something else by a shortcut.
-  if (app.tool.grab) {
+  if (app.tool.grab || app.tool.assembly || app.tool.pull) {
     take_key_while_holding(app, key);
     return true;
   }
@@ -93,7 +94,7 @@ bool drags(Tool tool) {
 } // namespace
 
 bool places(Tool tool) {
-  return tool != Tool::select && tool != Tool::rotate && tool != Tool::box;
+  return tool != Tool::select && tool != Tool::rotate && tool != Tool::pull && tool != Tool::box;
 }
 
 void keep_tool_state(App& app) {
@@ -111,13 +112,15 @@ void keep_tool_state(App& app) {
 
 bool takes_left_drag(const App& app, const ViewInput& input) {
   const ToolState& tool = app.tool;
-  if (tool.grab || tool.frame || tool.spent) return true;
+  if (tool.grab || tool.assembly || tool.pull || tool.frame || tool.spent) return true;
   return drags(tool.tool) || (input.ctrl && !places(tool.tool));
 }
 
 bool step_back(App& app) {
   ToolState& tool = app.tool;
-  if (tool.grab) {
+  if (let_go_hand(app, false)) {
+    // It was the hand's.
+  } else if (tool.grab) {
     let_go(app, false);
   } else if (tool.frame || tool.first) {
     drop_begun(tool);
@@ -157,10 +160,14 @@ std::string tool_hint(const App& app) {
             : app.inspector.leave_joints                                   ? " Shift takes joints along."
                                                                            : " Shift leaves joints behind.") +
            " A number can be typed. Esc takes it back.";
+  if (const std::string hint = hand_hint(app); !hint.empty()) return hint;
   switch (tool.tool) {
   case Tool::select: return "";
   case Tool::rotate:
     return app.selection().empty() ? "Select what is to be turned." : "Drag a ring. Esc ends.";
+  case Tool::pull:
+    return app.mode == Mode::build ? "Drag a body: it moves along its joints. Esc ends."
+                                   : "Drag a body: a spring pulls it. Esc ends.";
   case Tool::box: return "Drag a frame round the parts; Shift adds. Esc ends.";
   case Tool::ball:
     return "Click where the centre is, or drag from there to the radius; it can be typed. Esc ends.";

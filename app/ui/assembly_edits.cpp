@@ -1,0 +1,59 @@
+#include "app/ui/assembly_edits.hpp"
+
+#include "app/document/redraw.hpp"
+#include "app/session/settled_pose.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/solve/assembly_drag.hpp"
+
+#include <cmath>
+
+namespace flyball {
+
+void redraw(App& app, const std::string& step, const Mechanism& before, const MechanismPose& pose,
+            const Selection& selection) {
+  Redrawn next = redrawn(before, pose);
+  edit(app, step, [&](Mechanism& mechanism, Selection& selected) {
+    mechanism = std::move(next.mechanism);
+    selected = selection;
+  });
+  if (next.along_other_axes.empty()) return;
+  app.notice = "What acts along single axes of " + name_list(next.along_other_axes) +
+               " acts along the world's now, as its parent has turned.";
+}
+
+void move_coordinate(App& app, const std::string& joint, int index, double value) {
+  constexpr double there = 1e-9; // rad or m
+  if (!std::isfinite(value)) return;
+  const auto before = app.document.steps()[app.document.position()].mechanism;
+  try {
+    AssemblyDrag drag(*before);
+    if (!drag.assembled()) return show_error(app, "The loops cannot be closed, so nothing can be moved.");
+    DragOutcome out = drag.move(joint, index, value);
+    // As long as it takes, but not for ever.
+    for (int i = 0; i < 20 && !out.settled; ++i)
+      out = drag.move(joint, index, value);
+    redraw(app, "Move " + joint, *before, drag.pose(), app.selection());
+    if (out.away > there)
+      app.notice =
+          joint + (out.at_stop ? " is kept from there by a stop." : " is kept from there by its loops.");
+  } catch (const SceneError& error) {
+    show_error(app, error.what());
+  }
+}
+
+bool can_draw_settled(const App& app) {
+  return converged(app) && !solving(app) && !app.tool.pull &&
+         app.answer.solution.poses.size() == app.document.stored().bodies.size();
+}
+
+void draw_settled(App& app) {
+  const Mechanism before = app.document.stored();
+  const MechanismPose pose = settled_pose(before, app.answer.solution);
+  if (is_drawn_in(before, pose)) {
+    app.notice = "It is drawn as it settles already.";
+    return;
+  }
+  redraw(app, "Draw as it settles", before, pose, app.selection());
+}
+
+} // namespace flyball

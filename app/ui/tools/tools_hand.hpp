@@ -1,0 +1,39 @@
+// Pulling at a body: along its joints while building (tools_assembly.cpp), by a spring while exploring
+// (tools_pull.cpp).
+#pragma once
+
+#include "app/ui/panels/view_input.hpp"
+#include "app/viewport/picking.hpp"
+
+namespace flyball {
+
+// Before the other tools. Whether the hand has hold of something, so that the button is not theirs.
+bool use_hand(App& app, const ViewInput& input);
+// Lets go of what it has hold of; `keep`: otherwise everything is where it was. False where it had nothing.
+bool let_go_hand(App& app, bool keep);
+// What to do next while it has hold of something, in a line; else empty.
+std::string hand_hint(const App& app);
+
+// The body under the cursor in what is shown, and where it is met.
+struct HandHit {
+  std::string body;
+  Vec3 point = Vec3::Zero(); // m, world
+};
+std::optional<HandHit> body_under_cursor(App& app, const ViewInput& input);
+// Where the cursor is on the plane; nothing where one looks along it.
+std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray);
+
+// One each of the two.
+void take_assembly(App& app, const ViewInput& input, const HandHit& hit);
+void hold_assembly(App& app, const ViewInput& input);
+void let_go_assembly(App& app, bool keep);
+void take_pull(App& app, const ViewInput& input, const HandHit& hit);
+void hold_pull(App& app, const ViewInput& input);
+void let_go_pull(App& app, bool keep);
+// Takes what has been found since: how to take hold, and what it settles in once it is let go.
+void follow_pull(App& app);
+
+// N, with which the hand pulls now; nothing where it does not.
+std::optional<double> hand_force(const App& app);
+
+} // namespace flyball

@@ -1,0 +1,224 @@
+// A body of the steady state pulled by a spring, which is solved with like any other; no edit. Time stands
+// meanwhile.
+#include "app/session/units.hpp"
+#include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/tools_hand.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr double stiffer = 1.25; // a notch of the wheel
+constexpr double strongest = 1e4;
+
+const Mechanism& mechanism_of(const PullGrab& grab) {
+  return *grab.mechanism;
+}
+
+bool fits(const App& app, const PullGrab& grab) {
+  return app.poses.size() == mechanism_of(grab).bodies.size();
+}
+
+// Where what is pulled at is now (m, world, at the phase shown).
+std::optional<Vec3> pulled_point(const App& app, const PullGrab& grab) {
+  if (!fits(app, grab)) return {};
+  const int body = body_index(mechanism_of(grab), grab.grabbed.body);
+  return carried_point(mechanism_of(grab), app.poses, body, *grab.grabbed.at);
+}
+
+// Asks for the steady state of this mechanism, from where the last one is.
+void ask_pulled(App& app, const PullGrab& grab, std::shared_ptr<const Mechanism> mechanism,
+                std::optional<BodyPoint> grip, bool nearest = false) {
+  const bool found = converged(app) && app.answer.ticket >= app.opened;
+  app.awaited = app.asked =
+      app.live.ask({.mechanism = std::move(mechanism),
+                    .time = app.playback.time,
+                    .another = false,
+                    .warm = true,
+                    .nearest = nearest,
+                    .start = found && !nearest ? start_values(app.answer.solution.coordinates) : grab.start,
+                    .points = told_points(app),
+                    .grip = std::move(grip)});
+}
+
+// The spring as the hand stands now; nothing before it is known how to take hold.
+std::optional<Pull> wanted_pull(const App& app, const PullGrab& grab) {
+  if (!grab.grip || !fits(app, grab)) return {};
+  const Mechanism& m = mechanism_of(grab);
+  return Pull{.body = grab.grabbed.body,
+              .at = *grab.grabbed.at,
+              .holder = grab.grip->holder,
+              .hand = drawn_point(m, app.poses, body_index(m, grab.grip->holder), grab.hand),
+              .stiffness = grab.grip->stiffness * grab.strength};
+}
+
+void move_pull(App& app) {
+  PullGrab& grab = *app.tool.pull;
+  std::optional<Pull> next = wanted_pull(app, grab);
+  if (!next || next == grab.pull) return;
+  // Nothing to solve for while the hand has not moved.
+  if (!grab.pull && (next->hand - next->at).norm() == 0) return;
+  grab.pull = std::move(next);
+  ask_pulled(app, grab, pulled(mechanism_of(grab), *grab.pull), {});
+}
+
+// Largest distance of a body from where it was, as a part of the mechanism's size.
+double moved_since(const Mechanism& mechanism, const std::vector<Pose>& before,
+                   const std::vector<Pose>& after) {
+  Eigen::AlignedBox3d box;
+  double most = 0;
+  for (std::size_t i = 0; i < before.size() && i < after.size(); ++i) {
+    box.extend(before[i].position);
+    most = std::max(most, (after[i].position - before[i].position).norm());
+  }
+  for (const Joint& joint : mechanism.joints)
+    if (has_at(joint.type)) box.extend(joint.at);
+  const double size = box.isEmpty() ? 0 : box.diagonal().norm();
+  double turned = 0;
+  for (std::size_t i = 0; i < before.size() && i < after.size(); ++i)
+    turned = std::max(turned, before[i].rotation.angularDistance(after[i].rotation));
+  return std::max(turned, size > 0 ? most / size : 0);
+}
+
+// Where it went once the hand was gone.
+void tell_where(App& app, const PullGrab& grab) {
+  constexpr double same = 1e-6;
+  if (!converged(app)) {
+    app.notice = "Where it was let go nothing settles.";
+    return;
+  }
+  const Solution& found = app.answer.solution;
+  if (moved_since(mechanism_of(grab), grab.stood, found.poses) < same) {
+    app.notice.clear();
+  } else if (found.stability_reason == StabilityReason::neutral) {
+    app.notice = "Nothing pulls it back: it stays where it was let go.";
+  } else {
+    app.notice =
+        "It has gone over to another steady state, and stays there. \"Restart from drawn pose\" goes back.";
+  }
+}
+
+// A zigzag between two pixels with straight ends.
+void draw_coil(const App& app, ImVec2 from, ImVec2 to) {
+  constexpr int turns = 8;
+  const float dx = to.x - from.x, dy = to.y - from.y, length = std::hypot(dx, dy), s = app.scale;
+  if (length < 12 * s) return draw_line(app, from, to, palette(app.theme).accent, 2);
+  const float half = std::min(6 * s, length / 6), end = std::min(10 * s, length / 6);
+  const float ux = dx / length, uy = dy / length, step = (length - 2 * end) / (2 * turns);
+  std::array<ImVec2, 2 * turns + 4> points;
+  std::size_t n = 0;
+  const auto add = [&](float along, float across) {
+    points[n++] = {from.x + along * ux - across * uy, from.y + along * uy + across * ux};
+  };
+  add(0, 0);
+  add(end, 0);
+  for (int i = 0; i < 2 * turns; ++i)
+    add(end + step * (static_cast<float>(i) + 0.5f), i % 2 == 0 ? half : -half);
+  add(length - end, 0);
+  add(length, 0);
+  draw_lines(app, points, palette(app.theme).accent, 2);
+}
+
+void draw_pull(const App& app, const ViewInput& input) {
+  const PullGrab& grab = *app.tool.pull;
+  const auto point = pulled_point(app, grab);
+  if (!point) return;
+  const auto from = input.on_screen(*point), to = input.on_screen(grab.hand);
+  if (!from || !to) return;
+  if (grab.pull) draw_coil(app, *from, *to);
+  draw_dot(app, *from, 4);
+  draw_dot(app, *to, 6, true);
+  const auto force = hand_force(app);
+  if (!force) return;
+  const ShownUnit unit = shown_unit("N/m", app.units);
+  draw_tag(app, input, input.cursor, short_text(*force, 3) + " N",
+           short_text(unit.shown(grab.pull->stiffness), 3) + " " + unit.text);
+}
+
+} // namespace
+
+std::optional<double> hand_force(const App& app) {
+  const std::optional<PullGrab>& grab = app.tool.pull;
+  if (!grab || grab->released || !grab->pull || !converged(app) ||
+      app.answer.solution.poses.size() != grab->mechanism->bodies.size())
+    return {};
+  return pulling_force(*grab->mechanism, app.answer.solution.poses, *grab->pull).norm();
+}
+
+void take_pull(App& app, const ViewInput& input, const HandHit& hit) {
+  app.tool.spent = true;
+  const Mechanism& m = app.mechanism();
+  if (!converged(app) || app.poses.size() != m.bodies.size() || solving(app)) {
+    if (!solving(app)) app.notice = "There is no steady state to pull out of.";
+    return;
+  }
+  app.tool.spent = false;
+  PullGrab grab;
+  grab.mechanism = app.document.shared();
+  grab.revision = app.document.revision();
+  grab.start = start_values(app.answer.solution.coordinates);
+  grab.stood = app.answer.solution.poses;
+  grab.on_branch = app.on_branch;
+  grab.playing = app.playback.playing;
+  grab.grabbed = {hit.body, drawn_point(m, app.poses, body_index(m, hit.body), hit.point)};
+  grab.plane = {.through = hit.point, .normal = input.camera.backward()};
+  grab.hand = hit.point;
+  app.playback.playing = false;
+  app.notice.clear();
+  app.tool.pull = std::move(grab);
+  ask_pulled(app, *app.tool.pull, app.tool.pull->mechanism, app.tool.pull->grabbed, app.on_branch);
+}
+
+void hold_pull(App& app, const ViewInput& input) {
+  PullGrab& grab = *app.tool.pull;
+  if (input.moved)
+    if (const auto at = on_plane(grab.plane, input.ray())) grab.hand = *at;
+  if (const auto wheel = static_cast<double>(ImGui::GetIO().MouseWheel); wheel != 0)
+    grab.strength = std::clamp(grab.strength * std::pow(stiffer, wheel), 1 / strongest, strongest);
+  if (input.moved || grab.pull) move_pull(app);
+  draw_pull(app, input);
+}
+
+void let_go_pull(App& app, bool keep) {
+  PullGrab& grab = *app.tool.pull;
+  if (grab.released) return;
+  grab.released = true;
+  if (!grab.pull) { // nothing has been pulled yet
+    app.playback.playing = grab.playing;
+    app.tool.pull.reset();
+    return;
+  }
+  // What is followed by hand is left where it was pulled out of it, unless all is taken back.
+  app.on_branch = !keep && grab.on_branch;
+  ask_pulled(app, grab, grab.mechanism, {}, !keep);
+  grab.ticket = app.awaited;
+}
+
+void follow_pull(App& app) {
+  std::optional<PullGrab>& pull = app.tool.pull;
+  if (!pull) return;
+  if (pull->revision != app.document.revision()) { // another mechanism, which was asked for without the hand
+    pull.reset();
+    return;
+  }
+  if (!pull->grip && app.answer.grip && app.answer.ticket == app.awaited) {
+    pull->grip = app.answer.grip;
+    if (pull->grip->holder.empty()) {
+      app.notice = "The drives turn " + pull->grabbed.body + ", and nothing gives way.";
+      app.playback.playing = pull->playing;
+      app.tool.spent = true;
+      pull.reset();
+      return;
+    }
+  }
+  if (!pull->released || app.answer.ticket < pull->ticket) return;
+  tell_where(app, *pull);
+  app.playback.playing = pull->playing;
+  pull.reset();
+}
+
+} // namespace flyball
