@@ -20,13 +20,15 @@ std::vector<std::size_t> triples(JointType type) {
 }
 
 void add_triple(std::vector<CoordinateImage>& all, const Mat3& change) {
-  constexpr double along = 1 - 1e-12;
+  // By the sine of the angle between: what is off by a little is mixed by as little.
+  constexpr double along = 1e-11;
   const std::size_t first = all.size();
   std::array<bool, 3> taken{};
   std::array<int, 3> targets{-1, -1, -1};
   for (int from = 0; from < 3; ++from)
     for (int to = 0; to < 3; ++to)
-      if (std::abs(change(to, from)) > along && !taken[static_cast<std::size_t>(to)]) {
+      if ((change.col(from).cwiseAbs() - Vec3::Unit(to)).norm() < along &&
+          !taken[static_cast<std::size_t>(to)]) {
         targets[static_cast<std::size_t>(from)] = to;
         taken[static_cast<std::size_t>(to)] = true;
       }

@@ -10,7 +10,7 @@ namespace flyball {
 namespace {
 
 // What rounding leaves of no motion, in radians and in parts of the mechanism's size.
-constexpr double no_motion = 1e-13;
+constexpr double no_motion = 1e-11;
 
 // Half the diagonal of what holds all bodies.
 double size_of(const Mechanism& mechanism) {

@@ -20,7 +20,7 @@ constexpr double farthest_pull = 0.5; // of the reach: of a target farther away 
 constexpr double along_sight = 0.1;   // share with which a distance along the line of sight counts
 constexpr double first_damping = 1e-3, least_damping = 1e-7, most_damping = 1e9;
 constexpr double shortest_step = 1e-12; // scaled
-constexpr double least_gain = 1e-12;    // of the squared distance
+constexpr double least_gain = 1e-14;    // of the squared distance
 constexpr double on_target = 1e-14;     // of the reach
 constexpr double stop_rounding = 1e-12; // scaled
 constexpr double price_of_stop = 1e4;   // of the square of what a stop is passed by

@@ -94,7 +94,9 @@ void check_same_mechanism(const Mechanism& m, const MechanismPose& pose) {
   const Solution b = second.solve(there);
   INFO(a.message << "\n" << b.message);
   REQUIRE(b.status == Status::converged);
+  if (a.stability_reason == StabilityReason::neutral) return; // it may stand anywhere
   const Coordinates found(other, b, nullptr);
+  int drives = 0;
   double phase = 0; // s, by which the drives are further on than the first's
   for (const CoordinateSolution& c : a.coordinates) {
     const double is = found.values.at({c.joint, c.index}), was = wanted.values.at({c.joint, c.index});
@@ -102,13 +104,14 @@ void check_same_mechanism(const Mechanism& m, const MechanismPose& pose) {
       const int j = joint_index(m, c.joint);
       const auto& drive =
           m.joints[static_cast<std::size_t>(j)].coordinates[static_cast<std::size_t>(c.index)].drive;
+      drives += drive.has_value();
       if (drive) phase = (is - was) / drive->speed;
       continue;
     }
-    INFO(c.joint << "." << c.index);
+    INFO(c.joint << "." << c.index << ", error " << c.error);
     CHECK(std::abs(c.angle ? std::remainder(is - was, 2 * std::numbers::pi) : is - was) < 1e-8);
   }
-  if (a.stability_reason == StabilityReason::neutral) return;
+  if (drives > 1) return; // they need not have come to one phase
   const std::vector<Pose> expected = first.poses_at(phase);
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
     INFO(m.bodies[i].name);
@@ -140,7 +143,9 @@ TEST_CASE("so is a shipped scene") {
 }
 
 TEST_CASE("what a pull does not move keeps its digits, and a pull back takes everything back") {
-  const Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism shipped = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  // Its links are given with five digits, so that it is not drawn quite closed.
+  const Mechanism m = redrawn(shipped, AssemblyDrag(shipped).pose()).mechanism;
   AssemblyDrag drag(m);
   CHECK(is_drawn_in(m, drag.pose()));
   CHECK(redrawn(m, drag.pose()).mechanism == m);

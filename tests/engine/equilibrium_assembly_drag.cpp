@@ -146,12 +146,12 @@ TEST_CASE("stops hold, and let go") {
   DragOutcome out = drag.pull({"crank"}, {.at = {0, 1, 0}});
   CHECK(out.settled);
   CHECK(out.at_stop);
-  CHECK(label(m, drag.pose(), "hinge") == Approx(0.5).epsilon(1e-12));
+  CHECK(label(m, drag.pose(), "hinge") == Approx(0.5).epsilon(1e-9));
   out = drag.pull({"crank"}, {.at = {std::cos(0.3), std::sin(0.3), 0}});
   CHECK_FALSE(out.at_stop);
   CHECK(label(m, drag.pose(), "hinge") == Approx(0.3).epsilon(1e-9));
   out = drag.pull({"crank"}, {.at = {0, -1, 0}});
-  CHECK(label(m, drag.pose(), "hinge") == Approx(-0.2).epsilon(1e-12));
+  CHECK(label(m, drag.pose(), "hinge") == Approx(-0.2).epsilon(1e-9));
   SECTION("what is drawn beyond one goes no farther") {
     m.joints[0].coordinates[0].stop = Stop{{}, -0.1, 1000};
     AssemblyDrag beyond(m);
@@ -181,11 +181,29 @@ TEST_CASE("a stop of a joint that closes a loop holds, too") {
 }
 
 TEST_CASE("a chain follows its end, and the far links stay") {
-  const Mechanism m = bench::chain(20, 0);
+  // Half a circle of hinged links.
+  constexpr int links = 20;
+  Mechanism m;
+  const auto knot = [](int i) {
+    const double angle = std::numbers::pi * i / links;
+    return Vec3(1 - std::cos(angle), -std::sin(angle), 0);
+  };
+  for (int i = 0; i < links; ++i) {
+    Body body;
+    body.name = std::string("link") + static_cast<char>('a' + i);
+    body.mass = 1;
+    body.position = (knot(i) + knot(i + 1)) / 2;
+    Joint joint;
+    joint.name = body.name;
+    joint.bodies = {i == 0 ? std::string(ground_name) : m.bodies.back().name, body.name};
+    joint.at = knot(i);
+    joint.coordinates.resize(1);
+    m.bodies.push_back(body);
+    m.joints.push_back(joint);
+  }
   const std::string last = m.bodies.back().name;
   AssemblyDrag drag(m);
-  const Vec3 from = drag.position({last});
-  const Vec3 target = from + Vec3(0.02, 0.01, 0);
+  const Vec3 target = drag.position({last}) + Vec3(0.02, 0.01, 0);
   const DragOutcome out = drag.pull({last}, {.at = target});
   CHECK(out.settled);
   CHECK(out.away < 1e-12);
@@ -193,21 +211,22 @@ TEST_CASE("a chain follows its end, and the far links stay") {
   const auto moved = [&](std::size_t body) {
     return (pose.bodies[body].position - m.bodies[body].position).norm();
   };
-  CHECK(moved(m.bodies.size() / 2) < 0.3 * moved(m.bodies.size() - 1));
+  CHECK(moved(links / 2) < 0.3 * moved(links - 1));
   SECTION("and where it is straight nothing is thrown away") {
     // To the foot of the chain: no link can give way to first order.
-    Mechanism straight = bench::chain(20, 0, 0);
+    const Mechanism straight = bench::chain(20, 0, 0);
+    const std::string end = straight.bodies.back().name;
     AssemblyDrag stiff(straight);
-    const Vec3 tip = stiff.position({last});
+    const Vec3 tip = stiff.position({end});
     for (int i = 1; i <= 10; ++i) {
-      stiff.pull({last}, {.at = tip + Vec3(0, 0.05 * i, 0)});
+      stiff.pull({end}, {.at = tip + Vec3(0, 0.05 * i, 0)});
       for (const Pose& each : stiff.pose().bodies) {
         CHECK(each.position.allFinite());
         CHECK(each.position.norm() < 2);
       }
     }
-    stiff.pull({last}, {.at = tip - Vec3(0, 100, 0)});
-    CHECK((stiff.position({last}) - tip).norm() < 1.5);
+    stiff.pull({end}, {.at = tip - Vec3(0, 100, 0)});
+    CHECK((stiff.position({end}) - tip).norm() < 1.5);
   }
 }
 

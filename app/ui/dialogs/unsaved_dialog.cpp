@@ -9,7 +9,7 @@ namespace flyball {
 
 namespace {
 
-constexpr std::array answers{Choice{"unsaved/save", "Save"}, Choice{"unsaved/discard", "Don't save"},
+constexpr std::array unsaved_answers{Choice{"unsaved/save", "Save"}, Choice{"unsaved/discard", "Don't save"},
                              Choice{"unsaved/cancel", "Cancel"}};
 
 std::string question(const App& app) {
@@ -18,7 +18,7 @@ std::string question(const App& app) {
   return name + " has changes that are not saved.";
 }
 
-void save(App& app) {
+void save_first(App& app) {
   if (app.document.file().empty() || is_example(app)) return ask_where_to_save(app, {});
   if (std::string why = save_to(app, app.document.file()); !why.empty())
     return ask_where_to_save(app, std::move(why));
@@ -34,10 +34,10 @@ void unsaved_dialog(App& app) {
   paragraph(question(app), colors.text);
   if (app.files.conflict)
     paragraph("The file has changed on disk meanwhile; saving replaces what is there.", colors.warn);
-  const int answer = choice_buttons(app, answers, app.files.choice);
+  const int answer = choice_buttons(app, unsaved_answers, app.files.choice);
   if (answer >= 0 || escape_pressed()) close_dialog();
   if (answer == 0)
-    save(app);
+    save_first(app);
   else if (answer == 1)
     leave_now(app);
   else if (answer == 2 || escape_pressed())

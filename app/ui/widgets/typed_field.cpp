@@ -11,7 +11,7 @@ namespace flyball {
 
 namespace {
 
-constexpr int patience = 3; // frames in which a field may be without the keyboard before it counts as left
+constexpr int idle_frames = 3; // frames in which a field may be without the keyboard before it counts as left
 
 void check(Typing& typing) {
   if (!typing.check || typing.text == typing.checked) return;
@@ -118,7 +118,7 @@ void later(App& app, std::function<void(App&)> edit) {
 }
 
 void settle_fields(App& app) {
-  if (Typing& typing = app.inspector.typing; !typing.name.empty() && ++typing.idle > patience)
+  if (Typing& typing = app.inspector.typing; !typing.name.empty() && ++typing.idle > idle_frames)
     leave(app, false);
   while (!app.inspector.later.empty()) // an edit may put off another
     for (const auto& edit : std::exchange(app.inspector.later, {}))

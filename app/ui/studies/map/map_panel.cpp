@@ -17,7 +17,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float choices_width = 320; // points
+constexpr float map_choices_width = 320; // points
 constexpr int fewest_cells = 2, most_cells = 401;
 
 // Two fields side by side after one label.
@@ -159,7 +159,7 @@ void words(App& app) {
 void map_panel(App& app) {
   const float s = app.scale;
   MapState& map = app.study.map;
-  ImGui::BeginChild("choices", {choices_width * s, 0});
+  ImGui::BeginChild("choices", {map_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
   if (!map.choice.coordinate.empty() && app.mistakes.empty()) {
     axis_choice(app, 0);

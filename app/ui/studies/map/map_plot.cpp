@@ -11,7 +11,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value_here = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> values_of(const MapAxis& axis) {
   std::vector<double> values;
@@ -31,7 +31,7 @@ PlotCurve hatching(const FoundCells& found, const std::vector<double>& x, const 
       if (found.cells[j * x.size() + i].stable != false) continue;
       hatch.points.push_back({x[i] - half_x, y[j] - half_y});
       hatch.points.push_back({x[i] + half_x, y[j] + half_y});
-      hatch.points.push_back({nothing, nothing});
+      hatch.points.push_back({no_value_here, no_value_here});
     }
   return hatch;
 }
@@ -68,7 +68,7 @@ void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level)
       const bool dashed = curve.type == PlaneCurveType::coordinate && p.stable == false;
       PlotCurve& mine = dashed ? unstable : line;
       if (before && dashed != before_unstable) {
-        mine.points.push_back({nothing, nothing});
+        mine.points.push_back({no_value_here, no_value_here});
         mine.points.push_back(*before);
       }
       mine.points.push_back({p.x, p.y});

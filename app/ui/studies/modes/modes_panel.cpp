@@ -21,7 +21,7 @@ namespace flyball {
 namespace {
 
 constexpr float list_width = 400; // points
-constexpr double patience = 0.25; // s: a shorter wait is not worth a bar
+constexpr double modes_patience = 0.25; // s: a shorter wait is not worth a bar
 constexpr ImGuiTableFlags table_flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                                         ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;
 
@@ -194,7 +194,7 @@ void modes_list(App& app) {
   if (!modes.problem.empty()) return paragraph(modes.problem, colors.bad);
   if (!converged(app)) return paragraph("Modes are of a steady state, and there is none now.", colors.dim);
   const bool finding = modes.task && modes.task->running();
-  if (finding && (!modes.result || modes.task->seconds() > patience)) {
+  if (finding && (!modes.result || modes.task->seconds() > modes_patience)) {
     if (text_button(app, "modes/cancel", "Cancel")) modes.task->cancel();
     ImGui::SameLine();
     task_bar(app, "modes/progress", modes.task->progress(), modes.task->seconds());

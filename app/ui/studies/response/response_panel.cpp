@@ -16,8 +16,8 @@ namespace flyball {
 
 namespace {
 
-constexpr float choices_width = 300; // points
-constexpr double patience = 0.25;    // s: a shorter wait is not worth a bar
+constexpr float response_choices_width = 300; // points
+constexpr double curve_patience = 0.25;    // s: a shorter wait is not worth a bar
 
 void parameter_choice(App& app) {
   std::vector<std::string> phrases;
@@ -127,7 +127,7 @@ void progress(App& app) {
     return;
   }
   if (state.waiting_since < 0) state.waiting_since = ImGui::GetTime();
-  if (ImGui::GetTime() - state.waiting_since < patience) return;
+  if (ImGui::GetTime() - state.waiting_since < curve_patience) return;
   task_bar(app, "response/progress", curve ? state.task->progress() : state.design.task->progress(),
            curve ? state.task->seconds() : state.design.task->seconds(),
            ImGui::GetContentRegionAvail().x - 70 * app.scale);
@@ -301,7 +301,7 @@ void choices(App& app) {
 
 void response_panel(App& app) {
   const float s = app.scale;
-  ImGui::BeginChild("choices", {choices_width * s, 0});
+  ImGui::BeginChild("choices", {response_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
   choices(app);
   ImGui::PopStyleVar();
