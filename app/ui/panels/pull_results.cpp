@@ -8,7 +8,7 @@ namespace flyball {
 void pull_results(App& app) {
   const auto force = hand_force(app);
   if (!force) return;
-  row(app, "A hand pulls " + app.tool.pull->grabbed.body, magnitude_text(*force, app.options.numbers), "N",
+  row(app, "A hand pulls " + app.tool.pull->grabbed.body, short_text(*force, 3), "N",
       "With this force, while it is held: the steady state is the one with the hand.");
   note_widget(app.widgets, "results/pull");
 }
