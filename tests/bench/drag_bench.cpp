@@ -88,8 +88,8 @@ void pull_by_hand(App& app, const Frame& frame, const char* title, const Mechani
     }
     frame(1 / wanted);
   };
-  settle();
-  settle();
+  for (int i = 0; i < 5; ++i) // until the camera has all in view
+    settle();
   ImGuiIO& io = ImGui::GetIO();
   const WidgetRect view = app.widgets.at("view");
   const Vec3 at = mode == ::flyball::Mode::build ? m.bodies[b].position : app.poses.at(b).position;
@@ -149,7 +149,7 @@ void pull_all(App& app, const Frame& frame) {
   std::printf("\nPulled by hand, a mouse event\n");
   drag_alone("governor, along its joints alone", governor, "ball1");
   drag_alone("chain of 100, likewise", chain, tip);
-  pull_by_hand(app, frame, "governor while building", governor, "ball1", ::flyball::Mode::build);
+  pull_by_hand(app, frame, "governor while building", governor, "ball2", ::flyball::Mode::build);
   pull_by_hand(app, frame, "chain of 100 while building", chain, tip, ::flyball::Mode::build);
   pull_by_hand(app, frame, "governor while exploring", governor, "ball1", ::flyball::Mode::explore);
   pull_by_hand(app, frame, "chain of 100 while exploring", chain, tip, ::flyball::Mode::explore);
