@@ -221,8 +221,8 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
       export_picture(app, size);
       settling = settling_frames;
     }
-    if (ImGui::IsAnyItemActive() || app.files.gallery.drawing || app.movie.progress || stage.resting() ||
-        app.panels.slider_press.place)
+    if (ImGui::IsAnyItemActive() || app.file_dialogs.gallery.drawing || app.movie.progress ||
+        stage.resting() || app.panels.slider_press.place)
       settling = std::max(settling, 1);
     if (title_of(app) != title) window.set_title(title = title_of(app));
     shown.tell(app);

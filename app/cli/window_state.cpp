@@ -1,6 +1,6 @@
 #include "app/cli/window_state.hpp"
 
-#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/session/motion.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 

@@ -1,23 +1,13 @@
 // A steady state in words.
 #pragma once
 
-#include "app/ui/widgets/ui_style.hpp"
 #include "engine/solve/solution.hpp"
 
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace flyball {
 
-struct StabilityWords {
-  const char* icon;
-  const char* word;     // "stable"
-  const char* sentence; // why; empty where nothing is known
-  ImVec4 color;
-};
-StabilityWords stability_words(std::optional<bool> stable, std::optional<StabilityReason> reason,
-                               const UiColors& colors);
 // "A minimum of the amended potential."
 const char* reason_text(StabilityReason reason);
 

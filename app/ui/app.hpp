@@ -1,20 +1,15 @@
-// What the program has open and how it is shown: a plain state that update() moves on and build_gui()
-// draws and edits. Neither needs OpenGL; see stage.hpp for what turns it into a picture.
+// A session shown in a window: how it is looked at, and what a hand is about to do. update() moves it on,
+// build_gui() draws and edits it. Neither needs OpenGL; see stage.hpp for what turns it into a picture.
 #pragma once
 
-#include "app/document/document.hpp"
-#include "app/live/live_solver.hpp"
 #include "app/render/fonts.hpp"
-#include "app/session/number_text.hpp"
-#include "app/session/parameter_list.hpp"
-#include "app/session/units.hpp"
+#include "app/session/session.hpp"
 #include "app/ui/command_state.hpp"
-#include "app/ui/file_state.hpp"
+#include "app/ui/file_dialog_state.hpp"
 #include "app/ui/inspector_state.hpp"
 #include "app/ui/shown_scene.hpp"
-#include "app/ui/studies/motion/motion_state.hpp"
 #include "app/ui/studies/motion/movie_state.hpp"
-#include "app/ui/studies/study_state.hpp"
+#include "app/ui/studies/study_views.hpp"
 #include "app/ui/tool_state.hpp"
 #include "app/ui/widgets/notice.hpp"
 #include "app/ui/widgets/shown_rate.hpp"
@@ -23,11 +18,9 @@
 #include "app/viewport/camera.hpp"
 #include "app/viewport/scene_list.hpp"
 #include "app/viewport/view_renderer.hpp"
-#include "engine/mechanism/error.hpp"
 
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -43,12 +36,6 @@ struct AppOptions {
   Theme theme = Theme::light;
   NumberStyle numbers;
   std::filesystem::path state{}; // folder for recent files and autosaves; empty: nothing is kept anywhere
-};
-
-struct Playback {
-  bool playing = false;
-  double time = 0;   // s after the drawn drive phase
-  double factor = 1; // seconds shown a second; below one is slow motion
 };
 
 struct ViewState {
@@ -133,46 +120,19 @@ struct ExportRequest {
   std::shared_ptr<const PlotSave> plot{}; // this instead of the window or the view
 };
 
-// Building shows the drawn pose, which is what is edited, with the equilibrium beside it as a ghost;
-// exploring shows the equilibrium, which is what sliders move.
-enum class Mode { explore, build };
-
-struct App {
+struct App : Session {
   explicit App(AppOptions options);
 
-  AppOptions options;
-  Document document;
-  std::string problem; // why the file last asked for could not be opened
-  std::vector<ParameterControl> parameters;
-  std::vector<SceneError> mistakes; // of the document; while there are any it is not solved
-  std::vector<SceneError> warnings; // of the document; where there are no mistakes
-
-  LiveSolver live;
-  LiveAnswer answer;
-  std::vector<Pose> drawn, poses; // drawn: of the document; poses: of the answer at playback.time; empty
-                                  // where there is none
-  bool moved_time = false;        // playback.time changed: poses are to be asked for
-  // Tickets: of the newest request (the largest number where the document is not fit to be solved), of the
-  // last that was asked, and of the first since the document was opened.
-  std::uint64_t awaited = std::numeric_limits<std::uint64_t>::max(), asked = 0, opened = 0;
-  double waited = 0;         // s for an answer to it; 0 where there is one
-  bool on_branch = false;    // a hand has chosen the equilibrium: sliders follow its branch, stable or not
-  std::uint64_t gesture = 1; // of the hand: rises with every press of a button or key
-
-  Mode mode = Mode::explore;
   ToolState tool;
-  FileState files;
   InspectorState inspector;
   CommandState commands;
-  Playback playback;
-  StudyState study;
-  MotionState motion;
+  FileDialogState file_dialogs;
+  StudyViews plots;
   MovieState movie;
   ViewState view;
   PanelState panels;
   DialogState dialog;
   Theme theme = Theme::light;
-  DisplayUnits units;
   float scale = 1; // pixels a point has
   UiFonts fonts;
   WidgetMap widgets;
@@ -181,74 +141,26 @@ struct App {
   // Told to whoever runs the loop, who clears them.
   bool quit = false;
   std::optional<ExportRequest> export_request;
-  std::string notice; // what was last done, in words: shown in the view for a while, see notice.hpp
-  NoticeAge notice_age;
+  NoticeAge notice_age; // of `notice`, which is shown in the view for a while, see notice.hpp
   TooltipState tooltip;
 
-  const Mechanism& mechanism() const { return document.mechanism(); }
-  const Selection& selection() const { return document.selection(); }
+ protected:
+  void document_opened(bool same_file) override;
+  void mode_chosen() override;
 };
 
-// Takes a document's place; what was open is gone (see file_commands.hpp for asking first).
-void open_document(App& app, Document document);
-// Reads and opens a scene, finished or not; where it cannot be read, says so in `problem` and leaves the open
-// one as it is.
-void open_scene(App& app, const std::filesystem::path& file);
-
-// An edit: a step that can be undone, solved at once. `change` gets the mechanism as it is stored and the
-// selection, and may throw SceneError: then nothing has changed and the notice says why. Edits of the same
-// name while a button is held (app.gesture) are one step.
-void edit(App& app, const std::string& name, const std::function<void(Mechanism&, Selection&)>& change);
-void undo(App& app);
-void redo(App& app);
-void go_to_step(App& app, std::size_t step);
-void select(App& app, Selection selection);
-// An edit of one number at an address as in a scene file; while exploring, solved from the last answer.
-void edit_parameter(App& app, const std::string& address, double value);
-// Tries a number while exploring, which changes nothing of what is stored; solves at once from the last
-// answer. While building it is an edit. Not finite values and unknown addresses are ignored.
-void change_parameter(App& app, const std::string& address, double value);
-// The same of several, as one step of this name.
-void change_parameters(App& app, const std::string& step, const Explored& values);
-// What is explored becomes the document's, or goes back to what is stored. Both can be undone.
-void keep_explored(App& app);
-void drop_explored(App& app);
-// "speed of spin 15 rad/s": each value that is explored, and what is stored of it.
-std::vector<std::string> explored_words(const App& app);
-// The same with the mechanism in the equilibrium nearest to these coordinates ("joint" or "joint.index" and
-// rad or m), on whatever branch, stable or not. Sliders then follow that branch, until it ends, the drawn
-// pose is started from again or something else is edited. Without an address no number is changed.
-void go_to_state(App& app, const std::string& address, double value,
-                 std::vector<std::pair<std::string, double>> start);
-void solve_from_drawn_pose(App& app);
-// A point of the body that is told of beside its mass centre, in the results and in the motion (see
-// ToldPoints); none: its mass centre alone. No edit.
-void tell_point(App& app, const std::string& body, const std::optional<Vec3>& at);
-// Those of the bodies that there are.
-std::vector<BodyPoint> told_points(const App& app);
-
-void set_mode(App& app, Mode mode);
 void set_tool(App& app, Tool tool);
 // The direction the view looks in, from azimuth and elevation (rad), with all in view.
 void look_from(App& app, double azimuth, double elevation);
-void play(App& app, bool playing);
-void rewind(App& app);
 
-// Takes what the background has found and moves the time on by `seconds`. `view` is the size of the 3-D view.
+// The session's update(), and the camera follows. `view` is the size of the 3-D view.
 void update(App& app, double seconds, ViewSize view);
 // The whole interface, between ImGui::NewFrame and ImGui::Render.
 void build_gui(App& app);
 
-// Whether the last answer is a steady state; whether the one to the newest request is still to come.
-bool converged(const App& app);
-bool solving(const App& app);
 // What the 3-D view shows. Refers to the app: use before it changes.
 ViewFrame view_frame(const App& app);
 // What the view beside it shows: the motion alone.
 ViewFrame motion_frame(const App& app);
-// Whether the motion has a view of its own.
-bool motion_beside(const App& app);
-// Whether anything moves by itself.
-bool in_motion(const App& app);
 
 } // namespace flyball

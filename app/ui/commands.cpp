@@ -1,13 +1,11 @@
 #include "app/ui/commands.hpp"
 
 #include "app/ui/assembly_edits.hpp"
+#include "app/ui/choices.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/key_focus.hpp"
 #include "app/ui/panels.hpp"
-#include "app/ui/settings.hpp"
-#include "app/ui/studies/modes/modes_control.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
@@ -61,6 +59,12 @@ bool shown_in(const App& app) {
   return app.units.*which == unit;
 }
 
+// A command of the session.
+template <void (*command)(Session&)>
+void run_session(App& app) {
+  command(app);
+}
+
 std::string undo_label(const App& app) {
   const Document& document = app.document;
   return document.can_undo() ? "Undo " + document.steps()[document.position()].name : "Undo";
@@ -106,7 +110,7 @@ const std::array table{
             .title = "Reload",
             .help = "Read the file again, as it is on disk now.",
             .key = ctrl('R'),
-            .run = reload_document,
+            .run = run_session<reload_document>,
             .enabled = [](const App& app) { return !app.document.file().empty(); }},
     Command{.id = "file.export",
             .title = "Export a picture…",
@@ -125,7 +129,7 @@ const std::array table{
             .title = "Undo",
             .help = "Take the last edit back.",
             .key = ctrl('Z'),
-            .run = undo,
+            .run = run_session<undo>,
             .enabled = [](const App& app) { return app.document.can_undo(); },
             .label = undo_label},
     Command{.id = "edit.redo",
@@ -133,7 +137,7 @@ const std::array table{
             .help = "Do again what was taken back.",
             .key = ctrl_shift('Z'),
             .also = ctrl('Y'),
-            .run = redo,
+            .run = run_session<redo>,
             .enabled = [](const App& app) { return app.document.can_redo(); },
             .label = redo_label},
     Command{.id = "edit.history",

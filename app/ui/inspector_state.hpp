@@ -55,10 +55,6 @@ struct GivenMass {
   double density = 0; // kg/m^3
 };
 
-// Points of bodies that are told of beside the mass centres, one a body, by its name: in world coordinates of
-// the drawn pose (m).
-using ToldPoints = std::map<std::string, Vec3, std::less<>>;
-
 struct InspectorState {
   bool history = false;   // the list of steps is shown
   int history_shown = -1; // the step last brought into view there
@@ -78,8 +74,7 @@ struct InspectorState {
   Part anchor, revealed;     // where a range of rows begins; the last one brought into view
   Part independent;          // a body whose mass does not follow its shapes, though it could
   std::map<std::string, GivenMass, std::less<>> given_masses; // by body
-  ToldPoints points;
-  bool mass_alone = false;   // a typed position moves the mass centre alone
+  bool mass_alone = false;                                    // a typed position moves the mass centre alone
   bool leave_joints = false; // a body that is moved leaves its joints where they are
   Part turned;               // whose rotation the angles below are
   Quat turned_to = Quat::Identity();

@@ -2,7 +2,6 @@
 #include "app/ui/remedies.hpp"
 
 #include "app/document/remedies.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"

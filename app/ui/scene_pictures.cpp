@@ -47,7 +47,7 @@ const ScenePictures::Picture* ScenePictures::find(const App& app, const SceneCar
 }
 
 void ScenePictures::update(App& app, ViewRenderer& renderer) {
-  GalleryState& gallery = app.files.gallery;
+  GalleryState& gallery = app.file_dialogs.gallery;
   gallery.drawing = false;
   if (!gallery.showing && app.dialog.wanted != Dialog::gallery) return;
   // Those of other colours and sizes are not wanted any more.

@@ -31,7 +31,7 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
   // Unfinished as it is: the ball hangs on nothing.
   CHECK(parse_scene(read_bytes(file)) == app.mechanism());
   CHECK_FALSE(app.mistakes.empty());
-  CHECK(recent_files(app).front() == file);
+  CHECK(app.files.recent.front() == file);
 
   edit(app, "Mass", [](Mechanism& m, Selection&) { m.bodies[0].mass = 2; });
   robot.key('S', true);
@@ -90,7 +90,7 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
     robot.type((folder / "no such folder/x").string());
     robot.key(key_enter);
     CHECK(app.dialog.showing);
-    CHECK_THAT(app.files.message, ContainsSubstring("x.json was not saved"));
+    CHECK_THAT(app.file_dialogs.message, ContainsSubstring("x.json was not saved"));
     CHECK(app.document.file() == file);
     CHECK(robot.speed_now() == 5);
     CHECK(app.document.unsaved());
@@ -120,7 +120,7 @@ TEST_CASE("a file that cannot be written any more asks for another place") {
   fs::remove_all(folder / "gone");
   robot.key('S', true);
   REQUIRE(robot.app.dialog.showing);
-  CHECK_THAT(robot.app.files.message, ContainsSubstring("governor.json was not saved"));
+  CHECK_THAT(robot.app.file_dialogs.message, ContainsSubstring("governor.json was not saved"));
   CHECK(robot.app.document.unsaved());
 }
 

@@ -1,6 +1,6 @@
 // The view tells which pose is drawn how.
+#include "app/session/motion.hpp"
 #include "app/ui/panels/legend.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"

@@ -2,7 +2,7 @@
 #include "robot.hpp"
 
 #include "app/plot/csv.hpp"
-#include "app/ui/studies/map/map_control.hpp"
+#include "app/session/map.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -62,7 +62,7 @@ TEST_CASE("every place of the map is what a solve of its own gives") {
   CHECK(choice.axes[0].address == "joints.spin.drive.speed");
   const auto columns = static_cast<std::size_t>(choice.axes[0].count);
   REQUIRE(found.cells.size() == columns * static_cast<std::size_t>(choice.axes[1].count));
-  const Plot& plot = robot.map().plot;
+  const Plot& plot = robot.app.plots.map.plot;
   REQUIRE(plot.heat);
   for (std::size_t i = 7; i < found.cells.size(); i += 173) {
     CAPTURE(i);
@@ -101,7 +101,7 @@ TEST_CASE("unstable places are hatched, which is neither read off nor written to
   const FoundCells& found = *map.cells;
   const auto unstable = std::ranges::count(found.cells, std::optional(false), &MapCell::stable);
   REQUIRE(unstable > 0);
-  const Plot& plot = map.plot;
+  const Plot& plot = plain.app.plots.map.plot;
   const auto hatch = std::ranges::find(plot.curves, std::string("unstable"), &PlotCurve::name);
   REQUIRE(hatch != plot.curves.end());
   CHECK(static_cast<std::ptrdiff_t>(hatch->points.size()) == 3 * unstable);
@@ -126,9 +126,9 @@ TEST_CASE("a click in the map sets both numbers as one step, and the answer is t
     const double share = k == 0 ? 0.7 : 0.6;
     CHECK(place[k] == Approx(axis.from + share * (axis.to - axis.from)).margin(0.01 * (axis.to - axis.from)));
   }
-  REQUIRE(robot.map().plot.marker);
-  CHECK(robot.map().plot.marker->x == place[0]);
-  CHECK(robot.map().plot.marker->y == place[1]);
+  REQUIRE(robot.app.plots.map.plot.marker);
+  CHECK(robot.app.plots.map.plot.marker->x == place[0]);
+  CHECK(robot.app.plots.map.plot.marker->y == place[1]);
   const CoordinateSolution* shown = map_coordinate(app);
   REQUIRE(shown);
   CHECK(shown->value == Approx(solved(app.mechanism(), choice, place[0], place[1])).epsilon(1e-9));
@@ -179,8 +179,8 @@ TEST_CASE("the curve on which the conical pendulum lifts is where speed^2 length
       ++points;
     }
   CHECK(points > 10);
-  CHECK(
-      std::ranges::any_of(robot.map().plot.curves, [](const PlotCurve& c) { return c.name == "crossings"; }));
+  CHECK(std::ranges::any_of(robot.app.plots.map.plot.curves,
+                            [](const PlotCurve& c) { return c.name == "crossings"; }));
 }
 
 TEST_CASE("on the curve of a constant value the coordinate has it") {
@@ -202,7 +202,7 @@ TEST_CASE("on the curve of a constant value the coordinate has it") {
         }
   CHECK(points > 5);
   // It is drawn, with its value and unit in the legend.
-  CHECK(std::ranges::any_of(robot.map().plot.curves,
+  CHECK(std::ranges::any_of(robot.app.plots.map.plot.curves,
                             [&](const PlotCurve& c) { return c.name.starts_with("arm1 = 45.012"); }));
   CHECK(app.widgets.count("map/level/value") == 1);
 }

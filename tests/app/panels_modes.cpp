@@ -1,8 +1,8 @@
 // The modes of the state that is shown, moving in the view, and the Campbell diagram.
 #include "robot.hpp"
 
-#include "app/ui/studies/modes/campbell.hpp"
-#include "app/ui/studies/modes/modes_control.hpp"
+#include "app/session/campbell.hpp"
+#include "app/session/modes.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -170,14 +170,15 @@ TEST_CASE("Campbell lines are continuous, and agree with the modes where the mec
   ModesRobot robot("rate_gyro");
   App& app = robot.app;
   const CampbellState& campbell = app.study.modes.campbell;
+  const CampbellView& drawn = app.plots.campbell;
   REQUIRE(campbell.result);
-  REQUIRE_FALSE(campbell.plot.curves.empty());
+  REQUIRE_FALSE(drawn.plot.curves.empty());
   double highest = 0;
-  for (const PlotCurve& curve : campbell.plot.curves)
+  for (const PlotCurve& curve : drawn.plot.curves)
     for (const auto& p : curve.points)
       if (std::isfinite(p[1])) highest = std::max(highest, p[1]);
   int lines = 0;
-  for (const PlotCurve& curve : campbell.plot.curves) {
+  for (const PlotCurve& curve : drawn.plot.curves) {
     if (!curve.name.starts_with("mode")) continue;
     ++lines;
     for (std::size_t i = 1; i < curve.points.size(); ++i)
@@ -190,7 +191,7 @@ TEST_CASE("Campbell lines are continuous, and agree with the modes where the mec
   for (const VibrationMode& mode : robot.modes()) {
     if (!mode.oscillates()) continue;
     double nearest = 1e300;
-    for (const PlotCurve& curve : campbell.plot.curves)
+    for (const PlotCurve& curve : drawn.plot.curves)
       for (std::size_t i = 1; i < curve.points.size(); ++i) {
         const auto &a = curve.points[i - 1], &b = curve.points[i];
         if (!(std::min(a[0], b[0]) <= speed && speed <= std::max(a[0], b[0])) || a[0] == b[0]) continue;
@@ -202,9 +203,9 @@ TEST_CASE("Campbell lines are continuous, and agree with the modes where the mec
   // In rad/s the same lines are 2 pi times as high.
   robot.click("campbell/radians");
   robot.frames(2);
-  CHECK(campbell.plot.y.unit == "rad/s");
+  CHECK(drawn.plot.y.unit == "rad/s");
   double angular = 0;
-  for (const PlotCurve& curve : campbell.plot.curves)
+  for (const PlotCurve& curve : drawn.plot.curves)
     for (const auto& p : curve.points)
       if (std::isfinite(p[1])) angular = std::max(angular, p[1]);
   CHECK(angular == Approx(2 * std::numbers::pi * highest));
@@ -224,8 +225,8 @@ TEST_CASE("a click in the Campbell diagram sets the speed") {
   // The diagram still holds: only the speed has changed.
   CHECK(app.study.modes.campbell.current);
   CHECK(app.study.modes.campbell.results == 1);
-  REQUIRE_FALSE(app.study.modes.campbell.plot.references.empty());
-  CHECK(app.study.modes.campbell.plot.references[0].at == get_parameter(app.mechanism(), speed));
+  REQUIRE_FALSE(app.plots.campbell.plot.references.empty());
+  CHECK(app.plots.campbell.plot.references[0].at == get_parameter(app.mechanism(), speed));
   // Another number changes it.
   app.study.modes.campbell.result->run_time_s = 0; // whatever it took on a busy machine
   change_parameter(app, "joints.slide.spring.stiffness", 1500);

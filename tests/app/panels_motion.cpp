@@ -1,7 +1,7 @@
 // The damped motion beside the steady state, as a person uses it.
 #include "robot.hpp"
 
-#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/session/motion.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
@@ -323,7 +323,7 @@ TEST_CASE("the comparison is measured and drawn") {
   CHECK(c.status == Status::converged);
   REQUIRE(c.best);
   CHECK(c.best->ratio() > 1);
-  CHECK(app.study.compare.plot.curves.size() > 3);
+  CHECK(app.plots.compare.plot.curves.size() > 3);
   CHECK(app.widgets.count("compare/ratio") == 1);
   // Its table has a line for each mark and run, below the heading.
   std::ptrdiff_t lines = 2 + std::ssize(c.direct);

@@ -3,8 +3,8 @@
 #include "fake_ffmpeg.hpp"
 #include "robot.hpp"
 
+#include "app/session/motion.hpp"
 #include "app/ui/commands.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 #include "app/ui/studies/motion/movie_export.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/scene.hpp"

@@ -13,18 +13,18 @@ TEST_CASE("recent files are offered by the open dialog and survive the program")
   const fs::path first = governor_in(folder, "first.json"), second = governor_in(folder, "second.json");
   {
     FileRobot robot(folder);
-    CHECK(recent_files(robot.app).empty()); // what the program opens by itself does not count
+    CHECK(robot.app.files.recent.empty()); // what the program opens by itself does not count
     robot.open(first);
     robot.open(second);
   }
   FileRobot robot(folder);
-  CHECK(recent_files(robot.app) == std::vector<fs::path>{second, first});
+  CHECK(robot.app.files.recent == std::vector<fs::path>{second, first});
   robot.key('O', true);
   robot.frames(2);
   robot.click("open/recent/1");
   CHECK_FALSE(robot.app.dialog.showing);
   CHECK(robot.app.document.file() == first);
-  CHECK(recent_files(robot.app).front() == first);
+  CHECK(robot.app.files.recent.front() == first);
 }
 
 TEST_CASE("the open dialog finds files by part of a name and by path") {
@@ -73,7 +73,7 @@ TEST_CASE("the open dialog finds files by part of a name and by path") {
     robot.type((folder / "inner/none.json").string());
     robot.key(key_enter);
     CHECK(app.dialog.showing);
-    CHECK_THAT(app.files.message, ContainsSubstring("There is no"));
+    CHECK_THAT(app.file_dialogs.message, ContainsSubstring("There is no"));
     CHECK(app.document.file() == here);
   }
   SECTION("Escape") {
@@ -90,7 +90,7 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
   show_gallery(app);
   robot.frames(2);
   REQUIRE(app.dialog.showing);
-  const auto& cards = app.files.gallery.cards;
+  const auto& cards = app.file_dialogs.gallery.cards;
   std::size_t shipped = 0;
   for (const auto& entry : fs::directory_iterator(app.options.scenes))
     shipped += entry.path().extension() == ".json" ? 1 : 0;
@@ -102,12 +102,12 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
   }
   CHECK(pictures.size() == shipped);
   CHECK_FALSE(pictures.contains(0));
-  CHECK_FALSE(app.files.gallery.drawing);
+  CHECK_FALSE(app.file_dialogs.gallery.drawing);
 
   SECTION("with the mouse") {
     robot.click("gallery/" + cards[1].file.filename().string());
     CHECK_FALSE(app.dialog.showing);
-    CHECK(app.document.file() == app.files.gallery.cards[1].file);
+    CHECK(app.document.file() == app.file_dialogs.gallery.cards[1].file);
     CHECK(app.answer.solution.status == Status::converged);
   }
   SECTION("with the keys") {
@@ -115,7 +115,7 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
     robot.key(key_right);
     robot.key(key_enter);
     CHECK_FALSE(app.dialog.showing);
-    CHECK(app.document.file() == app.files.gallery.cards[2].file);
+    CHECK(app.document.file() == app.file_dialogs.gallery.cards[2].file);
   }
   SECTION("asking first") {
     robot.key(key_escape);
@@ -127,7 +127,7 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
     REQUIRE(robot.shows("unsaved/discard"));
     CHECK(robot.speed_now() == 5);
     robot.click("unsaved/discard");
-    CHECK(app.document.file() == app.files.gallery.cards[0].file);
+    CHECK(app.document.file() == app.file_dialogs.gallery.cards[0].file);
   }
 }
 
@@ -138,14 +138,14 @@ TEST_CASE("the gallery opens at once, its pictures come one a frame and again in
   app.options.mode = LiveSolver::Mode::background; // a person's window
   show_gallery(app);
   const auto drawn = [&] {
-    return std::ranges::count_if(app.files.gallery.cards,
+    return std::ranges::count_if(app.file_dialogs.gallery.cards,
                                  [](const SceneCard& card) { return card.picture != 0; });
   };
-  const auto count = static_cast<std::ptrdiff_t>(app.files.gallery.cards.size());
+  const auto count = static_cast<std::ptrdiff_t>(app.file_dialogs.gallery.cards.size());
   for (std::ptrdiff_t i = 1; i <= count; ++i) {
     robot.frames(1);
     CHECK(drawn() == i);
-    CHECK(app.files.gallery.drawing == (i < count));
+    CHECK(app.file_dialogs.gallery.drawing == (i < count));
   }
   app.theme = Theme::dark;
   robot.frames(1);

@@ -2,7 +2,7 @@
 #include "robot.hpp"
 
 #include "app/document/remove.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/session/motion.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "tests/catch.hpp"
 
@@ -56,7 +56,7 @@ TEST_CASE("a point of the selected body is told of beside its mass centre once i
   hand.fill("results/point/x", "0 mm"); // of the drawn pose: on the axis, from which the arm swings away
   hand.fill("results/point/y", "0.3 m");
   REQUIRE(hand.told());
-  const Vec3 at = app.inspector.points.at(body);
+  const Vec3 at = app.points.at(body);
   CHECK(at.x() == 0);
   CHECK(at.y() == 0.3);
   CHECK(hand.told()->point.at == at);
@@ -81,15 +81,15 @@ TEST_CASE("a point of the selected body is told of beside its mass centre once i
     CHECK(app.widgets.contains("results/point/x"));
     hand.fill("inspector/name", "weight");
     hand.frames(2);
-    CHECK(app.inspector.points.contains("weight"));
+    CHECK(app.points.contains("weight"));
     CHECK(app.answer.solution.points.size() == 1);
     open_scene(app, FLYBALL_ASSETS "/scenes/pendulum.json");
-    CHECK(app.inspector.points.empty());
+    CHECK(app.points.empty());
   }
   SECTION("until it is taken away") {
     hand.click("results/point/on");
     hand.frames(2);
-    CHECK(app.inspector.points.empty());
+    CHECK(app.points.empty());
     CHECK(app.answer.solution.points.empty());
     CHECK_FALSE(app.widgets.contains("results/point/x"));
   }

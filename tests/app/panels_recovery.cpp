@@ -45,7 +45,7 @@ TEST_CASE_METHOD(OpenGovernor, "an opening that fails keeps the work and its aut
   CHECK(robot.app.document.file() == file);
   CHECK(robot.speed_now() == 5);
   CHECK(hidden(folder, "-autosave") == 1);
-  CHECK(recent_files(robot.app).front() == file);
+  CHECK(robot.app.files.recent.front() == file);
 }
 
 TEST_CASE("work that a crash has left is offered when its file is opened") {

@@ -2,7 +2,7 @@
 // for a parameter, and sensitivities stand below pinned sliders.
 #include "robot.hpp"
 
-#include "app/ui/studies/response/response_control.hpp"
+#include "app/session/response.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/sensitivity_line.hpp"
 #include "engine/mechanism/address.hpp"
@@ -44,9 +44,10 @@ struct ResponseRobot : Robot {
   }
 
   ResponseState& state() { return app.study.response; }
+  ResponseView& drawn() { return app.plots.response; }
   const PlotLayout& layout() {
-    REQUIRE(state().view.kept.layout);
-    return *state().view.kept.layout;
+    REQUIRE(drawn().view.kept.layout);
+    return *drawn().view.kept.layout;
   }
   // A place of the plot, in pixels of the window.
   ImVec2 place(double x, double y) {
@@ -56,8 +57,8 @@ struct ResponseRobot : Robot {
             area.from.y + static_cast<float>(l.y.pixel(y) - l.area.top)};
   }
   ImVec2 marker() {
-    REQUIRE(state().plot.marker);
-    return place(state().plot.marker->x, state().plot.marker->y);
+    REQUIRE(drawn().plot.marker);
+    return place(drawn().plot.marker->x, drawn().plot.marker->y);
   }
 };
 
@@ -89,10 +90,11 @@ TEST_CASE("without being asked for there is no response curve") {
 TEST_CASE("the curve of the governor goes through what solves find at several speeds") {
   ResponseRobot robot;
   ResponseState& state = robot.state();
+  const ResponseView& drawn = robot.drawn();
   REQUIRE(state.result);
   CHECK(state.address == speed);
   CHECK(state.quantity == "value slide");
-  CHECK(state.plot.y.unit == "m");
+  CHECK(drawn.plot.y.unit == "m");
   Analysis analysis(robot.app.mechanism());
   for (const double at : {2.0, 9.0, 11.0174, 16.0, 25.0}) {
     Mechanism mechanism = robot.app.mechanism();
@@ -101,7 +103,7 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
     const Solution solution = analysis.solve({});
     REQUIRE(solution.status == Status::converged);
     const std::vector<double> found =
-        crossings(state.plot, solution.stable == true ? "stable" : "unstable", at);
+        crossings(drawn.plot, solution.stable == true ? "stable" : "unstable", at);
     REQUIRE(found.size() == 1);
     CHECK(found[0] == Approx(coordinate(solution.coordinates, "slide")).margin(5e-4));
   }
@@ -118,22 +120,22 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
 
 TEST_CASE("everything that is offered is drawn, and the marker lies on it") {
   ResponseRobot robot;
-  ResponseState& state = robot.state();
+  const ResponseView& drawn = robot.drawn();
   const std::vector<ResponseQuantity> offered = offered_quantities(robot.app);
   CHECK(offered.size() > 10);
   for (const ResponseQuantity& quantity : offered) {
     CAPTURE(quantity.key);
     choose_quantity(robot.app, quantity);
     robot.frames(2);
-    CHECK(state.plot.y.label == quantity.title);
-    CHECK((state.plot.y.si_unit.empty() ? state.plot.y.unit : state.plot.y.si_unit) == quantity.unit);
+    CHECK(drawn.plot.y.label == quantity.title);
+    CHECK((drawn.plot.y.si_unit.empty() ? drawn.plot.y.unit : drawn.plot.y.si_unit) == quantity.unit);
     CHECK_FALSE(quantity.unit.empty());
-    REQUIRE(state.plot.marker);
-    const double x = state.plot.marker->x, y = state.plot.marker->y;
+    REQUIRE(drawn.plot.marker);
+    const double x = drawn.plot.marker->x, y = drawn.plot.marker->y;
     CHECK(x == 11.0174);
     double nearest = 1e300, lowest = 1e300, highest = -1e300;
-    for (const PlotCurve& curve : state.plot.curves) {
-      for (const double value : crossings(state.plot, curve.name, x))
+    for (const PlotCurve& curve : drawn.plot.curves) {
+      for (const double value : crossings(drawn.plot, curve.name, x))
         nearest = std::min(nearest, std::abs(value - y));
       for (const auto& point : curve.points) {
         lowest = std::min(lowest, point[1]);
@@ -148,39 +150,40 @@ TEST_CASE("the varied slider moves the marker alone, another one the curve") {
   ResponseRobot robot;
   App& app = robot.app;
   ResponseState& state = robot.state();
-  const double x = state.plot.marker->x;
-  const std::uint64_t version = state.version, made = state.plots_made;
+  const ResponseView& drawn = robot.drawn();
+  const double x = drawn.plot.marker->x;
+  const std::uint64_t version = state.version, made = drawn.plots_made;
   robot.drag("parameters/" + speed, {0.37f, 0.5f}, {0.6f, 0.5f});
   CHECK(state.version == version);
-  CHECK(state.plots_made == made);
-  CHECK(state.plot.marker->x > x + 2);
-  CHECK(state.plot.marker->y == Approx(present(app, "slide")));
+  CHECK(drawn.plots_made == made);
+  CHECK(drawn.plot.marker->x > x + 2);
+  CHECK(drawn.plot.marker->y == Approx(present(app, "slide")));
 
-  const double before = crossings(state.plot, "stable", 20).at(0);
+  const double before = crossings(drawn.plot, "stable", 20).at(0);
   robot.drag("parameters/" + stiffness, {0.5f, 0.5f}, {0.7f, 0.5f});
   CHECK(state.version > version);
-  CHECK(std::abs(crossings(state.plot, "stable", 20).at(0) - before) > 1e-3);
-  CHECK(crossings(state.plot, "stable", state.plot.marker->x).at(0) ==
-        Approx(state.plot.marker->y).margin(5e-4));
+  CHECK(std::abs(crossings(drawn.plot, "stable", 20).at(0) - before) > 1e-3);
+  CHECK(crossings(drawn.plot, "stable", drawn.plot.marker->x).at(0) ==
+        Approx(drawn.plot.marker->y).margin(5e-4));
   // Back with undo.
   undo(app);
   robot.frames(2);
-  CHECK(crossings(state.plot, "stable", 20).at(0) == Approx(before).margin(1e-4));
+  CHECK(crossings(drawn.plot, "stable", 20).at(0) == Approx(before).margin(1e-4));
 }
 
 TEST_CASE("the marker dragged along the curve moves parameter and mechanism as one step") {
   ResponseRobot robot;
   App& app = robot.app;
-  ResponseState& state = robot.state();
+  const ResponseView& drawn = robot.drawn();
   const std::size_t steps = app.document.position();
   const double before = present(app, "slide");
-  const double y = crossings(state.plot, "stable", 18).at(0);
+  const double y = crossings(drawn.plot, "stable", 18).at(0);
   robot.drag(robot.marker(), robot.place(18, y));
   CHECK(app.document.position() == steps + 1);
   const double now = get_parameter(app.mechanism(), speed);
   CHECK(now == Approx(18).margin(0.3));
   CHECK(std::abs(present(app, "slide") - before) > 0.002);
-  CHECK(present(app, "slide") == Approx(crossings(state.plot, "stable", now).at(0)).margin(5e-4));
+  CHECK(present(app, "slide") == Approx(crossings(drawn.plot, "stable", now).at(0)).margin(5e-4));
   // What the hand sets has digits that a hand can mean.
   CHECK(now * 1000 == Approx(std::round(now * 1000)).margin(1e-9));
   undo(app);
@@ -193,14 +196,15 @@ TEST_CASE("the conical pendulum: drawn as a fork, and dragged onto the unstable 
   ResponseRobot robot("conical_pendulum");
   App& app = robot.app;
   ResponseState& state = robot.state();
+  const ResponseView& drawn = robot.drawn();
   REQUIRE(state.result);
-  REQUIRE(state.plot.marks.size() == 1);
-  CHECK_THAT(state.plot.marks[0].label, ContainsSubstring("branch point 3.742"));
-  CHECK_THAT(state.plot.marks[0].label, ContainsSubstring("rad/s"));
-  CHECK(crossings(state.plot, "stable", 2).size() == 1);
-  CHECK(crossings(state.plot, "stable", 6).size() == 2);
-  REQUIRE(crossings(state.plot, "unstable", 6).size() == 1);
-  CHECK(crossings(state.plot, "undecided", 6).empty());
+  REQUIRE(drawn.plot.marks.size() == 1);
+  CHECK_THAT(drawn.plot.marks[0].label, ContainsSubstring("branch point 3.742"));
+  CHECK_THAT(drawn.plot.marks[0].label, ContainsSubstring("rad/s"));
+  CHECK(crossings(drawn.plot, "stable", 2).size() == 1);
+  CHECK(crossings(drawn.plot, "stable", 6).size() == 2);
+  REQUIRE(crossings(drawn.plot, "unstable", 6).size() == 1);
+  CHECK(crossings(drawn.plot, "undecided", 6).empty());
   // Stable as solved at first; dragged along to the straight state above the branch point.
   CHECK(app.answer.solution.stable == true);
   robot.drag(robot.marker(), robot.place(6, 0));
@@ -223,7 +227,7 @@ TEST_CASE("the conical pendulum: drawn as a fork, and dragged onto the unstable 
     CHECK(app.answer.solution.stable == true);
   }
   SECTION("a click jumps to another branch") {
-    const std::vector<double> bent = crossings(state.plot, "stable", 8);
+    const std::vector<double> bent = crossings(drawn.plot, "stable", 8);
     REQUIRE(bent.size() == 2);
     for (const double y : bent) {
       robot.click(robot.place(8, y));
@@ -243,7 +247,7 @@ TEST_CASE("the conical pendulum: drawn as a fork, and dragged onto the unstable 
 TEST_CASE("where a branch ends an ordinary state is shown, and told") {
   ResponseRobot robot("conical_pendulum");
   App& app = robot.app;
-  const double y = crossings(robot.state().plot, "stable", 8).at(0);
+  const double y = crossings(robot.drawn().plot, "stable", 8).at(0);
   robot.click(robot.place(8, y));
   REQUIRE(app.on_branch);
   // Below the branch point there is no bent state.
@@ -257,16 +261,17 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
   ResponseRobot robot;
   App& app = robot.app;
   ResponseState& state = robot.state();
+  const ResponseView& drawn = robot.drawn();
   robot.click("response/parameter");
   robot.click("response/parameter/stiffness of slide");
   CHECK(state.address == stiffness);
-  CHECK(state.plot.x.logarithmic);
-  CHECK(state.plot.x.unit == "N/m");
+  CHECK(drawn.plot.x.logarithmic);
+  CHECK(drawn.plot.x.unit == "N/m");
   CHECK(state.from == 50);
   CHECK(state.to == 20000);
-  CHECK(state.plot.marker->x == 1000);
+  CHECK(drawn.plot.marker->x == 1000);
   // A click between two points of the curve is one on the curve.
-  const double y = crossings(state.plot, "stable", 3000).at(0);
+  const double y = crossings(drawn.plot, "stable", 3000).at(0);
   robot.click(robot.place(3000, y));
   CHECK(get_parameter(app.mechanism(), stiffness) == Approx(3000).epsilon(0.05));
   // A narrower range is typed.
@@ -276,7 +281,7 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
   robot.key(key_enter);
   robot.frames(2);
   CHECK(state.to == 5000);
-  for (const PlotCurve& curve : state.plot.curves)
+  for (const PlotCurve& curve : drawn.plot.curves)
     for (const auto& point : curve.points)
       CHECK(point[0] <= 5000 * (1 + 1e-12));
 }
@@ -298,6 +303,7 @@ TEST_CASE("a mechanism without a steady state says why there is no curve") {
 TEST_CASE("a closed response takes everything with it but what was chosen") {
   ResponseRobot robot;
   ResponseState& state = robot.state();
+  const ResponseView& drawn = robot.drawn();
   robot.click("response/quantity");
   robot.click("response/quantity/value arm1");
   robot.click("study/close");
@@ -305,15 +311,15 @@ TEST_CASE("a closed response takes everything with it but what was chosen") {
   CHECK_FALSE(state.task);
   CHECK_FALSE(state.result);
   CHECK_FALSE(state.asked);
-  CHECK(state.plot.curves.empty());
-  CHECK(state.pieces.empty());
+  CHECK(drawn.plot.curves.empty());
+  CHECK(drawn.pieces.empty());
   change_parameter(robot.app, stiffness, 900);
   robot.frames(2);
   CHECK_FALSE(state.task);
   robot.key('C');
   robot.frames(2);
   CHECK(state.quantity == "value arm1");
-  CHECK_FALSE(state.plot.curves.empty());
+  CHECK_FALSE(drawn.plot.curves.empty());
 }
 
 TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {

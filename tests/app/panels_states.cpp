@@ -1,7 +1,7 @@
 // All equilibria of a mechanism in the window, as a person uses the list.
 #include "robot.hpp"
 
-#include "app/ui/studies/states/states_control.hpp"
+#include "app/session/states.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"

@@ -2,9 +2,9 @@
 #include "building.hpp"
 #include "stored_picture.hpp"
 
+#include "app/session/motion.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/file_commands.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "tests/catch.hpp"
 

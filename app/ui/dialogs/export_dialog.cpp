@@ -33,10 +33,10 @@ void show_export_dialog(App& app) {
   app.dialog.wanted = Dialog::export_picture;
   std::error_code ignored;
   show_folder(app, std::filesystem::current_path(ignored));
-  app.files.replacing.clear();
+  app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
   const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
-  app.dialog.path = (app.files.list.shown / ("flyball-" + stem + ".png")).string();
+  app.dialog.path = (app.file_dialogs.list.shown / ("flyball-" + stem + ".png")).string();
 }
 
 void export_dialog(App& app) {
@@ -53,7 +53,7 @@ void export_dialog(App& app) {
       std::min(dialog.width, dialog.height) >= smallest && std::max(dialog.width, dialog.height) <= largest;
   if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app).bad);
   const std::filesystem::path file = typed_file(app, ".png");
-  const bool replaces = file == app.files.replacing;
+  const bool replaces = file == app.file_dialogs.replacing;
   if (replaces) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
   ImGui::Dummy({0, 2 * app.scale});
   ImGui::BeginDisabled(!fits || dialog.path.empty());

@@ -69,7 +69,7 @@ std::string fitting(const App& app, const std::string& text, float size, float w
 
 // Returns whether it was clicked.
 bool show_card(App& app, int i, float width) {
-  GalleryState& gallery = app.files.gallery;
+  GalleryState& gallery = app.file_dialogs.gallery;
   const SceneCard& card = gallery.cards[static_cast<std::size_t>(i)];
   const UiColors& colors = colors_of(app);
   const float s = app.scale;
@@ -107,26 +107,26 @@ bool show_card(App& app, int i, float width) {
 
 // The arrow keys move from card to card; returns whether they did.
 bool move_by_keys(App& app, int columns) {
-  const int count = static_cast<int>(app.files.gallery.cards.size());
+  const int count = static_cast<int>(app.file_dialogs.gallery.cards.size());
   const auto pressed = [](ImGuiKey key) { return imgui_compat::key_pressed(key); };
   const int step = pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow) +
                    columns * (pressed(ImGuiKey_DownArrow) - pressed(ImGuiKey_UpArrow));
-  const int wanted = app.files.gallery.chosen + step;
+  const int wanted = app.file_dialogs.gallery.chosen + step;
   if (step == 0 || wanted < 0 || wanted >= count) return false;
-  app.files.gallery.chosen = wanted;
+  app.file_dialogs.gallery.chosen = wanted;
   return true;
 }
 
 } // namespace
 
 void show_gallery(App& app) {
-  app.files.gallery.cards = read_cards(app.options.scenes);
-  app.files.gallery.chosen = 0;
+  app.file_dialogs.gallery.cards = read_cards(app.options.scenes);
+  app.file_dialogs.gallery.chosen = 0;
   app.dialog.wanted = Dialog::gallery;
 }
 
 void gallery_dialog(App& app) {
-  GalleryState& gallery = app.files.gallery;
+  GalleryState& gallery = app.file_dialogs.gallery;
   const float s = app.scale;
   gallery.showing = false;
   if (!begin_dialog(app, Dialog::gallery, "Examples", 3 * scene_picture_width + 2 * gap + 47)) return;

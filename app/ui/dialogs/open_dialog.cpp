@@ -18,7 +18,7 @@ constexpr float list_height = 250, recent_width = 210; // points
 void choose(App& app, const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) {
-    app.files.message = "There is no " + file.string() + ".";
+    app.file_dialogs.message = "There is no " + file.string() + ".";
     return;
   }
   close_dialog();
@@ -67,7 +67,7 @@ void open_dialog(App& app) {
   const float line = ImGui::GetFrameHeightWithSpacing() + 2 * app.scale;
   if (auto clicked = file_list(app, "open", ".json", true, list_height * app.scale - line)) file = clicked;
   if (with_recent) ImGui::EndGroup();
-  if (!app.files.message.empty()) paragraph(app.files.message, colors_of(app).bad);
+  if (!app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
   const bool pressed = text_button(app, "open/open", "Open", true);
   if (entered || pressed)

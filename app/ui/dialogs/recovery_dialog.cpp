@@ -35,9 +35,9 @@ void row(App& app, int i) {
   const UiColors& colors = colors_of(app);
   ImGui::PushID(i);
   const float left = ImGui::GetCursorPosX();
-  if (ImGui::Selectable("##leftover", app.files.chosen_leftover == i, ImGuiSelectableFlags_DontClosePopups,
-                        {0, ImGui::GetTextLineHeight()}))
-    app.files.chosen_leftover = i;
+  if (ImGui::Selectable("##leftover", app.file_dialogs.chosen_leftover == i,
+                        ImGuiSelectableFlags_DontClosePopups, {0, ImGui::GetTextLineHeight()}))
+    app.file_dialogs.chosen_leftover = i;
   note_widget(app.widgets, "recover/" + std::to_string(i));
   help_on_hover(leftover.autosave.file.c_str());
   ImGui::SameLine(left + 4 * app.scale);
@@ -54,18 +54,18 @@ void recovery_dialog(App& app) {
   FileState& files = app.files;
   const UiColors& colors = colors_of(app);
   const int count = static_cast<int>(files.leftovers.size());
-  if (ImGui::IsWindowAppearing()) files.chosen_leftover = 0;
+  if (ImGui::IsWindowAppearing()) app.file_dialogs.chosen_leftover = 0;
   paragraph("The program ended before this was saved:", colors.dim);
   ImGui::PushStyleColor(ImGuiCol_Header, colors.raised);
   for (int i = 0; i < count; ++i)
     row(app, i);
   ImGui::PopStyleColor();
-  const auto chosen = static_cast<std::size_t>(files.chosen_leftover);
+  const auto chosen = static_cast<std::size_t>(app.file_dialogs.chosen_leftover);
   if (chosen < files.leftovers.size() && files.leftovers[chosen].outdated)
     paragraph("Its file has changed since. Recovering does not touch the file, and Undo goes back to what it "
               "says.",
               colors.warn);
-  const int answer = choice_buttons(app, answers, files.choice);
+  const int answer = choice_buttons(app, answers, app.file_dialogs.choice);
   const bool escaped = escape_pressed();
   if (chosen < files.leftovers.size() && (answer == 0 || answer == 1)) {
     const Leftover leftover = files.leftovers[chosen];
@@ -74,7 +74,7 @@ void recovery_dialog(App& app) {
       recover(app, leftover);
     } else {
       discard(app, leftover);
-      files.chosen_leftover = 0;
+      app.file_dialogs.chosen_leftover = 0;
     }
   }
   if (answer == 2 || escaped || files.leftovers.empty()) close_dialog();

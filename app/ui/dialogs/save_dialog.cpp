@@ -24,9 +24,9 @@ void save(App& app) {
   // A mechanism that nobody has named is called as its file is.
   if (app.document.file().empty() && app.mechanism().name == Document::empty_mechanism().name)
     edit(app, "Name", [&](Mechanism& m, Selection&) { m.name = words_of(file.stem().string()); });
-  app.files.message = save_to(app, file);
-  app.files.replacing.clear();
-  if (!app.files.message.empty()) return;
+  app.file_dialogs.message = save_to(app, file);
+  app.file_dialogs.replacing.clear();
+  if (!app.file_dialogs.message.empty()) return;
   close_dialog();
   leave_now(app);
 }
@@ -37,8 +37,8 @@ void ask_where_to_save(App& app, std::string why) {
   const fs::path& file = app.document.file();
   std::error_code ignored;
   show_folder(app, is_example(app) ? fs::current_path(ignored) : usual_folder(app));
-  app.files.message = std::move(why);
-  app.files.replacing.clear();
+  app.file_dialogs.message = std::move(why);
+  app.file_dialogs.replacing.clear();
   app.dialog.wanted = Dialog::save;
   app.dialog.path = file.empty() ? file_stem(app.mechanism().name) + ".json" : file.filename().string();
 }
@@ -50,11 +50,11 @@ void save_dialog(App& app) {
   if (const auto clicked = file_list(app, "save", ".json", false, 220 * app.scale))
     app.dialog.path = clicked->filename().string();
   const fs::path file = typed_file(app, ".json");
-  const bool replaces = file == app.files.replacing;
+  const bool replaces = file == app.file_dialogs.replacing;
   if (replaces)
     paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
-  else if (!app.files.message.empty())
-    paragraph(app.files.message, colors_of(app).bad);
+  else if (!app.file_dialogs.message.empty())
+    paragraph(app.file_dialogs.message, colors_of(app).bad);
   else if (is_example(app))
     paragraph("Examples stay as they are; this will be a file of your own.", colors_of(app).dim);
   ImGui::Dummy({0, 2 * app.scale});
@@ -65,7 +65,7 @@ void save_dialog(App& app) {
   ImGui::SameLine();
   if (text_button(app, "save/cancel", "Cancel") || escape_pressed()) {
     close_dialog();
-    app.files.then = {};
+    app.file_dialogs.then = {};
   } else if (usable && (entered || pressed)) {
     std::error_code ignored;
     if (fs::is_directory(typed_path(app), ignored))

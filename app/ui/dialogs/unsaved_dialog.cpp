@@ -34,14 +34,14 @@ void unsaved_dialog(App& app) {
   paragraph(question(app), colors.text);
   if (app.files.conflict)
     paragraph("The file has changed on disk meanwhile; saving replaces what is there.", colors.warn);
-  const int answer = choice_buttons(app, unsaved_answers, app.files.choice);
+  const int answer = choice_buttons(app, unsaved_answers, app.file_dialogs.choice);
   if (answer >= 0 || escape_pressed()) close_dialog();
   if (answer == 0)
     save_first(app);
   else if (answer == 1)
     leave_now(app);
   else if (answer == 2 || escape_pressed())
-    app.files.then = {};
+    app.file_dialogs.then = {};
   end_dialog();
 }
 

@@ -49,9 +49,9 @@ bool begin_choice(App& app, const std::string& name, const std::string& label, c
 // A body's point keeps being told of.
 void rename_told_point(App& app, const Part& part, const std::string& name) {
   if (part.kind != PartKind::body) return;
-  if (auto told = app.inspector.points.extract(part.name)) {
+  if (auto told = app.points.extract(part.name)) {
     told.key() = name;
-    app.inspector.points.insert(std::move(told));
+    app.points.insert(std::move(told));
   }
 }
 

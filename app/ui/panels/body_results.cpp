@@ -42,8 +42,8 @@ void motion_rows(App& app, const PointMotion& motion, const std::string& name, c
 
 // The tick, the three fields, and how the point moves.
 void point_results(App& app, const Body& body) {
-  const auto told = app.inspector.points.find(body.name);
-  const bool on = told != app.inspector.points.end();
+  const auto told = app.points.find(body.name);
+  const bool on = told != app.points.end();
   if (check_row(app, "results/point/on", "Another point of it", on,
                 "Tells how one more point fixed in the body moves, here and in the plots of the motion."))
     later(app, [name = body.name, on, centre = body.position](App& then) {
@@ -56,8 +56,8 @@ void point_results(App& app, const Body& body) {
                .unit = "m",
                .help = "Where the point is in the drawn pose, in the world; it is fixed in the body.",
                .set = [name = body.name](App& then, int axis, double value) {
-                 const auto known = then.inspector.points.find(name);
-                 if (known == then.inspector.points.end()) return;
+                 const auto known = then.points.find(name);
+                 if (known == then.points.end()) return;
                  Vec3 at = known->second;
                  at[axis] = value;
                  tell_point(then, name, at);

@@ -40,7 +40,10 @@ void discarded(App& app) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("The unsaved work was discarded.");
   ImGui::SameLine();
-  if (text_button(app, "banner/bring_back", "Bring it back")) bring_back_discarded(app);
+  if (text_button(app, "banner/bring_back", "Bring it back")) {
+    bring_back_discarded(app);
+    offer_leftovers(app);
+  }
   ImGui::SameLine();
   if (text_button(app, "banner/close", icon::close)) app.files.aside.clear();
 }

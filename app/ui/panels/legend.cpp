@@ -1,8 +1,6 @@
 #include "app/ui/panels/legend.hpp"
 
-#include "app/ui/settings.hpp"
-#include "app/ui/studies/modes/modes_control.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/ui/choices.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>

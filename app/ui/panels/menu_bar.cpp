@@ -17,7 +17,7 @@ constexpr std::array menus{Menu{"File", "file."}, Menu{"Edit", "edit."},   Menu{
                            Menu{"Help", "help."}};
 
 void recent_menu(App& app) {
-  const auto& files = recent_files(app);
+  const auto& files = app.files.recent;
   if (files.empty() || !ImGui::BeginMenu("Open recent")) return;
   std::filesystem::path chosen;
   for (const std::filesystem::path& file : files) {

@@ -3,7 +3,6 @@
 
 #include "app/render/icons.hpp"
 #include "app/ui/file_commands.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"

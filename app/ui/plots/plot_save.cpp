@@ -67,8 +67,8 @@ bool save_plot(App& app) {
     app.notice = "Saved " + file.string();
     return true;
   } catch (const SceneError& error) {
-    app.files.message = error.what();
-    app.files.replacing.clear();
+    app.file_dialogs.message = error.what();
+    app.file_dialogs.replacing.clear();
     return false;
   }
 }
@@ -89,7 +89,7 @@ void show_plot_dialog(App& app, const std::string& name, PlotSave save) {
   };
   save.pixels = {pixels(save.width), pixels(save.height)};
   show_folder(app, usual_folder(app));
-  app.files.replacing.clear();
+  app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
   const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
   app.dialog.path = stem + "-" + file_stem(name) + extension_of(save.kind);
@@ -110,11 +110,11 @@ void plot_dialog(App& app) {
     app.dialog.path = clicked->filename().string();
   if (save.kind != PlotFile::csv) size_fields(app, save);
   const std::filesystem::path file = typed_file(app, extension);
-  const bool replaces = file == app.files.replacing;
+  const bool replaces = file == app.file_dialogs.replacing;
   if (replaces)
     paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
-  else if (!app.files.message.empty())
-    paragraph(app.files.message, colors_of(app).bad);
+  else if (!app.file_dialogs.message.empty())
+    paragraph(app.file_dialogs.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
   const bool usable = fits(save) && !app.dialog.path.empty();
   ImGui::BeginDisabled(!usable);

@@ -1,8 +1,4 @@
 #include "app/render/icons.hpp"
-#include "app/ui/studies/map/map_control.hpp"
-#include "app/ui/studies/modes/modes_control.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
-#include "app/ui/studies/response/response_control.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -55,19 +51,6 @@ bool tab(App& app, const Tab& wanted) {
 
 } // namespace
 
-void open_study(App& app, Study study) {
-  if (study == app.study.open) study = Study::none;
-  if (study != Study::none) set_mode(app, Mode::explore);
-  // The motion goes with its panel.
-  if (app.study.open == Study::motion && study != Study::motion) show_motion(app, false);
-  if (study != Study::states) app.study.states = {};
-  if (study != Study::modes) close_modes(app);
-  if (study != Study::map) close_map(app);
-  if (study != Study::response) close_response(app);
-  app.study.open = study;
-  if (study == Study::motion) show_motion(app, true);
-}
-
 void study_panel(App& app, const PanelRect& rect) {
   const float s = app.scale;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 4 * s});
@@ -99,13 +82,6 @@ void study_panel(App& app, const PanelRect& rect) {
   ImGui::End();
   if (closed) open_study(app, Study::none);
   if (wanted != Study::none) open_study(app, wanted);
-}
-
-bool studying(const App& app) {
-  return computing_motion(app) || computing_response(app) ||
-         (app.study.compare.task && app.study.compare.task->running()) ||
-         (app.study.states.task && app.study.states.task->running()) || finding_modes(app) ||
-         computing_map(app);
 }
 
 } // namespace flyball

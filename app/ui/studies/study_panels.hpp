@@ -6,14 +6,7 @@
 
 namespace flyball {
 
-// Shows a study, in the explore mode; the same again, or none, closes it.
-void open_study(App& app, Study study);
 void study_panel(App& app, const PanelRect& rect);
-// Takes what studies have found in the background.
-void update_studies(App& app);
-// Whether one computes: then frames go on, for its progress.
-bool studying(const App& app);
-
 void motion_panel(App& app);
 void motion_transport(App& app, float width); // play, scrub; in the present line, pixels
 void compare_panel(App& app);

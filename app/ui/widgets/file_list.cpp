@@ -64,11 +64,11 @@ Place place_of(const App& app) {
   if (ends_in_folder && is_folder(path)) return {path, {}};
   const bool elsewhere = app.dialog.path.find('/') != std::string::npos;
   if (elsewhere && is_folder(path.parent_path())) return {path.parent_path(), path.filename().string()};
-  return {app.files.list.shown, app.dialog.path};
+  return {app.file_dialogs.list.shown, app.dialog.path};
 }
 
 std::vector<FolderEntry> shown_entries(const App& app, bool filtered) {
-  std::vector<FolderEntry> shown = app.files.list.entries;
+  std::vector<FolderEntry> shown = app.file_dialogs.list.entries;
   const std::string filter = filtered ? lower(place_of(app).filter) : std::string();
   std::erase_if(shown, [&](const FolderEntry& entry) {
     return lower(entry.path.filename().string()).find(filter) == std::string::npos;
@@ -81,7 +81,7 @@ std::vector<FolderEntry> shown_entries(const App& app, bool filtered) {
 fs::path typed_path(const App& app) {
   std::string typed = app.dialog.path;
   if (typed == "~" || typed.starts_with("~/")) typed = home_folder().string() + typed.substr(1);
-  return resolved(app.files.list.shown / typed);
+  return resolved(app.file_dialogs.list.shown / typed);
 }
 
 fs::path typed_file(const App& app, const std::string& extension) {
@@ -91,9 +91,9 @@ fs::path typed_file(const App& app, const std::string& extension) {
 }
 
 void show_folder(App& app, const fs::path& folder) {
-  app.files.list = {};
-  app.files.list.shown = resolved(folder.empty() ? fs::path(".") : folder / ""); // where a link leads
-  app.files.message.clear();
+  app.file_dialogs.list = {};
+  app.file_dialogs.list.shown = resolved(folder.empty() ? fs::path(".") : folder / ""); // where a link leads
+  app.file_dialogs.message.clear();
 }
 
 bool path_field(App& app, const std::string& name, const char* hint) {
@@ -106,8 +106,8 @@ bool path_field(App& app, const std::string& name, const char* hint) {
   if (entered) ImGui::SetKeyboardFocusHere(-1);
   note_widget(app.widgets, name + "/path");
   if (app.dialog.path != before) {
-    app.files.message.clear();
-    app.files.list.chosen = -1;
+    app.file_dialogs.message.clear();
+    app.file_dialogs.list.chosen = -1;
   }
   return entered;
 }
@@ -130,7 +130,7 @@ void folder_line(App& app, const std::string& name) {
 
 std::optional<fs::path> file_list(App& app, const std::string& name, const std::string& extension,
                                   bool filtered, float height) {
-  FolderList& list = app.files.list;
+  FolderList& list = app.file_dialogs.list;
   const fs::path folder = place_of(app).folder;
   if (ImGui::IsWindowAppearing() || list.read != folder) {
     list.entries = entries_of(folder, extension);
@@ -173,10 +173,10 @@ std::optional<fs::path> file_list(App& app, const std::string& name, const std::
 
 std::optional<fs::path> entered_file(App& app, bool filtered) {
   const std::vector<FolderEntry> shown = shown_entries(app, filtered);
-  const auto chosen = static_cast<std::size_t>(std::max(app.files.list.chosen, 0));
+  const auto chosen = static_cast<std::size_t>(std::max(app.file_dialogs.list.chosen, 0));
   std::error_code ignored;
   fs::path path = typed_path(app);
-  if (filtered && app.files.list.chosen >= 0 && chosen < shown.size())
+  if (filtered && app.file_dialogs.list.chosen >= 0 && chosen < shown.size())
     path = shown[chosen].path;
   else if (app.dialog.path.empty())
     return std::nullopt;
@@ -190,8 +190,9 @@ std::optional<fs::path> entered_file(App& app, bool filtered) {
 
 bool may_replace(App& app, const fs::path& file) {
   std::error_code ignored;
-  if (!fs::exists(file, ignored) || file == app.files.replacing || file == app.document.file()) return true;
-  app.files.replacing = file;
+  if (!fs::exists(file, ignored) || file == app.file_dialogs.replacing || file == app.document.file())
+    return true;
+  app.file_dialogs.replacing = file;
   return false;
 }
 

@@ -19,15 +19,6 @@ double notice_life(const std::string& notice) {
   return std::clamp(by_letter * static_cast<double>(notice.size()), shortest, longest) + notice_fade;
 }
 
-void show_error(App& app, std::string text) {
-  app.notice_age.error = text;
-  app.notice = std::move(text);
-}
-
-bool is_error(const App& app) {
-  return !app.notice.empty() && app.notice == app.notice_age.error;
-}
-
 float notice_strength(const App& app) {
   if (is_error(app) || app.notice != app.notice_age.of) return 1;
   const double left = notice_life(app.notice) - app.notice_age.seconds;
@@ -45,6 +36,7 @@ void age_notice(App& app, double seconds) {
   age.seconds += seconds;
   if (age.seconds < notice_life(app.notice)) return;
   app.notice.clear();
+  app.failure.clear();
   age = {};
 }
 

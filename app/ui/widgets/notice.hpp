@@ -1,4 +1,5 @@
-// What was last done, in words, fades after a while; what went wrong stays until it is put away.
+// What was last done, in words, fades after a while; what went wrong stays until it is put away (see
+// show_error()).
 #pragma once
 
 #include <string>
@@ -10,15 +11,12 @@ struct App;
 struct NoticeAge {
   std::string of; // the notice that is growing old
   double seconds = 0;
-  std::string error; // the notice that went wrong: while it is the present one, it stays
 };
 
 // s that a notice is shown, the last of them fading. Long ones stay longer.
 double notice_life(const std::string& notice);
 inline constexpr double notice_fade = 0.4;
 
-void show_error(App& app, std::string text);
-bool is_error(const App& app);
 // 1, less while it fades.
 float notice_strength(const App& app);
 

@@ -1,9 +1,5 @@
 // Error against run time: the direct solution and the motion, measured on the scene as it is now.
 #include "app/plot/comparison_plot.hpp"
-#include "app/ui/studies/map/map_control.hpp"
-#include "app/ui/studies/modes/modes_control.hpp"
-#include "app/ui/studies/response/response_control.hpp"
-#include "app/ui/studies/states/states_control.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -15,24 +11,6 @@ namespace flyball {
 namespace {
 
 constexpr float words_width = 292; // points
-
-void begin(App& app) {
-  CompareState& state = app.study.compare;
-  if (!state.task)
-    state.task = std::make_unique<Background<Comparison>>(app.options.mode, app.options.on_news);
-  state.problem.clear();
-  state.of = app.document.shared();
-  state.task->start([mechanism = app.document.shared(),
-                     repeats = state.repeats](const Background<Comparison>::Watch& watch) {
-    CompareOptions options;
-    options.repeats = repeats;
-    options.cancel = &watch.cancel;
-    options.progress = [&](std::size_t done, std::size_t all) {
-      watch.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
-    };
-    return compare(*mechanism, options);
-  });
-}
 
 void found(App& app, const Comparison& c) {
   const UiColors& colors = colors_of(app);
@@ -61,14 +39,14 @@ void found(App& app, const Comparison& c) {
 void words(App& app) {
   CompareState& state = app.study.compare;
   const UiColors& colors = colors_of(app);
-  const bool running = state.task && state.task->running();
-  if (running) {
+  if (comparing(app)) {
     task_bar(app, "compare/progress", state.task->progress(), state.task->seconds());
     if (text_button(app, "compare/cancel", "Cancel")) state.task->cancel();
     return;
   }
   ImGui::BeginDisabled(!app.mistakes.empty() || app.mechanism().bodies.empty());
-  if (text_button(app, "compare/run", state.result ? "Measure again" : "Measure", true)) begin(app);
+  if (text_button(app, "compare/run", state.result ? "Measure again" : "Measure", true))
+    begin_comparison(app);
   ImGui::EndDisabled();
   if (!state.problem.empty()) paragraph(state.problem, colors.bad);
   if (!state.result) {
@@ -83,30 +61,11 @@ void words(App& app) {
     ImGui::SetClipboardText(comparison_csv(*state.result).c_str());
     app.notice = "The measurements are on the clipboard, as CSV.";
   }
-  if (state.of != app.document.shared() && *state.of != app.mechanism())
-    paragraph("Measured before the last changes.", colors.warn);
+  if (!comparison_is_current(app)) paragraph("Measured before the last changes.", colors.warn);
   found(app, *state.result);
 }
 
 } // namespace
-
-void update_studies(App& app) {
-  update_states(app);
-  update_modes(app);
-  update_map(app);
-  update_response(app);
-  CompareState& state = app.study.compare;
-  if (!state.task) return;
-  if (auto news = state.task->take()) {
-    state.problem = news->problem;
-    if (news->result) {
-      state.result = std::move(news->result);
-      state.plot = comparison_plot("", *state.result);
-      state.plot.version = ++state.plots_made;
-      fit_plot(state.view);
-    }
-  }
-}
 
 void compare_panel(App& app) {
   const float s = app.scale;
@@ -115,10 +74,15 @@ void compare_panel(App& app) {
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  CompareState& state = app.study.compare;
-  if (state.result) {
+  if (const CompareState& state = app.study.compare; state.result) {
+    CompareView& drawn = app.plots.compare;
+    if (drawn.made_result != state.results) {
+      drawn.plot = comparison_plot("", *state.result);
+      drawn.plot.version = drawn.made_result = state.results;
+      fit_plot(drawn.view);
+    }
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    plot_view(app, "compare", state.view, state.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
+    plot_view(app, "compare", drawn.view, drawn.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
   }
   ImGui::EndChild();
 }

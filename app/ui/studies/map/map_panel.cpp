@@ -1,6 +1,6 @@
 // The map of two parameters: what is wanted of it, and the plot.
 #include "app/ui/inspector/inspector_rows.hpp"
-#include "app/ui/studies/map/map_control.hpp"
+#include "app/ui/studies/map/map_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
@@ -48,7 +48,7 @@ void axis_choice(App& app, std::size_t which) {
     const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *chosen) - phrases.begin());
     later(app, [which, address = addresses[i]](App& then) {
       then.study.map.choice.axes[which] = map_axis(then, address);
-      fit_plot(then.study.map.view);
+      fit_plot(then.plots.map.view);
     });
   }
   const auto end = [&](const char* key, double value, bool upper) {
@@ -61,7 +61,7 @@ void axis_choice(App& app, std::size_t which) {
                            (upper ? changed.to : changed.from) = typed;
                            if (changed.from > changed.to) std::swap(changed.from, changed.to);
                            if (changed.from == changed.to) changed.to = changed.from + 1;
-                           fit_plot(then.study.map.view);
+                           fit_plot(then.plots.map.view);
                          }};
   };
   two_fields(app, "from, to", "The range of this axis.", end("from", axis.from, false),
@@ -117,7 +117,7 @@ void curve_choices(App& app) {
     choice.level = value;
 }
 
-void words(App& app) {
+void map_words(App& app) {
   MapState& map = app.study.map;
   const UiColors& colors = colors_of(app);
   if (!map.problem.empty()) paragraph(map.problem, colors.bad);
@@ -159,6 +159,7 @@ void words(App& app) {
 void map_panel(App& app) {
   const float s = app.scale;
   MapState& map = app.study.map;
+  MapView& drawn = app.plots.map;
   ImGui::BeginChild("choices", {map_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
   if (!map.choice.coordinate.empty() && app.mistakes.empty()) {
@@ -168,7 +169,7 @@ void map_panel(App& app) {
     coordinate_choice(app);
     curve_choices(app);
   }
-  words(app);
+  map_words(app);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
@@ -176,13 +177,13 @@ void map_panel(App& app) {
   if (map.cells) {
     draw_map(app);
     const PlotEvents events = plot_view(
-        app, "map", map.view, map.plot,
+        app, "map", drawn.view, drawn.plot,
         {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
     // What is shown may be of other numbers than are chosen by now.
     const bool same = map.cells->choice.axes[0].address == map.choice.axes[0].address &&
                       map.cells->choice.axes[1].address == map.choice.axes[1].address;
     if (const auto place = events.dragged_at ? events.dragged_at : events.clicked_at; place && same)
-      later(app, [place = std::array{(*place)[0] / map.plot.x.factor, (*place)[1] / map.plot.y.factor}](
+      later(app, [place = std::array{(*place)[0] / drawn.plot.x.factor, (*place)[1] / drawn.plot.y.factor}](
                      App& then) { go_to_place(then, place); });
   }
   ImGui::EndChild();

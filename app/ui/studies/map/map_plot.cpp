@@ -1,6 +1,7 @@
-// The map as a plot: colours, hatching where it is unstable, the curves in it and the present place.
+#include "app/ui/studies/map/map_plot.hpp"
+
+#include "app/session/number_text.hpp"
 #include "app/ui/plots/shown_plot.hpp"
-#include "app/ui/studies/map/map_control.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -86,27 +87,28 @@ void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level)
 } // namespace
 
 void draw_map(App& app) {
-  MapState& map = app.study.map;
-  if (map.made && map.made_ticket == app.answer.ticket) return;
+  const MapState& map = app.study.map;
+  MapView& drawn = app.plots.map;
+  const bool made = drawn.made_version == map.version;
+  if (made && drawn.made_ticket == app.answer.ticket) return;
   if (!map.cells) return;
   const FoundCells& found = *map.cells;
   const std::array<MapAxis, 2>& axes = found.choice.axes;
-  const bool moved_only = map.made;
-  map.made = true;
-  map.made_ticket = app.answer.ticket;
-  map.plot.marker.reset();
+  drawn.made_version = map.version;
+  drawn.made_ticket = app.answer.ticket;
+  drawn.plot.marker.reset();
   if (converged(app) && !solving(app)) {
     const double x = get_parameter(app.mechanism(), axes[0].address);
     const double y = get_parameter(app.mechanism(), axes[1].address);
     if (x >= axes[0].from && x <= axes[0].to && y >= axes[1].from && y <= axes[1].to)
-      map.plot.marker = PlotMarker{x, y, ""};
+      drawn.plot.marker = PlotMarker{x, y, ""};
   }
   const auto show_marker = [&] {
-    if (!map.plot.marker) return;
-    map.plot.marker->x *= map.plot.x.factor;
-    map.plot.marker->y *= map.plot.y.factor;
+    if (!drawn.plot.marker) return;
+    drawn.plot.marker->x *= drawn.plot.x.factor;
+    drawn.plot.marker->y *= drawn.plot.y.factor;
   };
-  if (moved_only) return show_marker();
+  if (made) return show_marker();
   Plot plot;
   const auto axis_for = [&](const MapAxis& axis) {
     return PlotAxis{.label = parameter_phrase(axis.address),
@@ -141,9 +143,9 @@ void draw_map(App& app) {
                    unit.text);
   show_axis(plot, 0, axis_unit(app, axes[0]), app.units);
   show_axis(plot, 1, axis_unit(app, axes[1]), app.units);
-  plot.marker = map.plot.marker;
-  plot.version = ++map.plots_made;
-  map.plot = std::move(plot);
+  plot.marker = drawn.plot.marker;
+  plot.version = ++drawn.plots_made;
+  drawn.plot = std::move(plot);
   show_marker();
 }
 

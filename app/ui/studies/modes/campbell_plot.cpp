@@ -1,7 +1,6 @@
-// The Campbell diagram as a plot.
+#include "app/ui/studies/modes/campbell_plot.hpp"
+
 #include "app/ui/plots/shown_plot.hpp"
-#include "app/ui/studies/modes/campbell.hpp"
-#include "app/ui/studies/modes/modes_control.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace flyball {
 namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 // Eigenvalues less than this are zero (1/s).
 double rounding(const std::vector<std::vector<std::complex<double>>>& lines) {
@@ -34,16 +33,16 @@ void add(Segment& segment, bool stable, const std::array<double, 2>& at) {
   auto& other = stable ? segment.unstable : segment.stable;
   // The two kinds meet.
   if (!other.empty() && std::isfinite(other.back()[1])) {
-    mine.push_back({nothing, nothing});
+    mine.push_back({no_value, no_value});
     mine.push_back(other.back());
-    other.push_back({nothing, nothing});
+    other.push_back({no_value, no_value});
   }
   mine.push_back(at);
 }
 
 void gap(Segment& segment) {
   for (auto* points : {&segment.stable, &segment.unstable})
-    if (!points->empty()) points->push_back({nothing, nothing});
+    if (!points->empty()) points->push_back({no_value, no_value});
 }
 
 void add_lines(Plot& plot, const ResponseBranch& branch,
@@ -85,7 +84,7 @@ void add_lines(Plot& plot, const ResponseBranch& branch,
   }
   if (std::ranges::any_of(plot.curves, [](const PlotCurve& c) { return c.line == PlotLine::dashed; }))
     plot.curves.push_back({.name = "unstable",
-                           .points = {{nothing, nothing}},
+                           .points = {{no_value, no_value}},
                            .line = PlotLine::dashed,
                            .color = plot_color::neutral});
 }
@@ -100,7 +99,7 @@ void add_orders(Plot& plot, double from, double to, double factor, double highes
                    .width = 1.2};
     for (int i = 0; i <= 200; ++i) {
       const double speed = from + (to - from) * i / 200, y = order * std::abs(speed) * factor;
-      line.points.push_back({speed, y <= highest ? y : nothing});
+      line.points.push_back({speed, y <= highest ? y : no_value});
     }
     // Told at its end, for the two look alike.
     const auto last =
@@ -154,29 +153,29 @@ double highest_of(const Plot& plot) {
 } // namespace
 
 void draw_campbell(App& app) {
-  CampbellState& campbell = app.study.modes.campbell;
+  const CampbellState& campbell = app.study.modes.campbell;
+  CampbellView& drawn = app.plots.campbell;
   const std::optional<std::size_t> chosen = app.study.modes.chosen;
-  if (campbell.made_result == campbell.results && campbell.made_ticket == app.answer.ticket &&
-      campbell.made_modes == app.study.modes.of && campbell.made_hertz == campbell.hertz &&
-      campbell.made_chosen == chosen)
+  if (drawn.made_result == campbell.results && drawn.made_ticket == app.answer.ticket &&
+      drawn.made_modes == app.study.modes.of && drawn.made_hertz == drawn.hertz &&
+      drawn.made_chosen == chosen)
     return;
   if (!campbell.result || solving(app)) return; // the answer belongs to other numbers
-  campbell.made_result = campbell.results;
-  campbell.made_ticket = app.answer.ticket;
-  campbell.made_modes = app.study.modes.of;
-  campbell.made_hertz = campbell.hertz;
-  campbell.made_chosen = chosen;
+  drawn.made_result = campbell.results;
+  drawn.made_ticket = app.answer.ticket;
+  drawn.made_modes = app.study.modes.of;
+  drawn.made_hertz = drawn.hertz;
+  drawn.made_chosen = chosen;
   Plot plot;
-  const double factor = campbell.hertz ? 1 / turn : 1;
+  const double factor = drawn.hertz ? 1 / turn : 1;
   const FoundCampbell& found = *campbell.result;
   const std::string unit = parameter_unit(app.mechanism(), found.drive);
   plot.x = {.label = parameter_phrase(found.drive),
             .unit = unit,
             .range = PlotRange{std::min(found.from, found.to), std::max(found.from, found.to)},
             .room = 0};
-  plot.y = {.label = "frequency", .unit = campbell.hertz ? "Hz" : "rad/s"};
+  plot.y = {.label = "frequency", .unit = drawn.hertz ? "Hz" : "rad/s"};
   const std::optional<std::size_t> branch = campbell_branch(app);
-  campbell.on_branch = branch.has_value();
   if (branch) {
     add_lines(plot, found.diagram.branches[*branch], found.lines[*branch], factor);
     const double highest = highest_of(plot);
@@ -191,8 +190,8 @@ void draw_campbell(App& app) {
       plot.marker = PlotMarker{speed * shown_unit(unit, app.units).factor, mode->frequency * factor, ""};
   }
   show_axis(plot, 0, unit, app.units);
-  plot.version = ++campbell.plots_made;
-  campbell.plot = std::move(plot);
+  plot.version = ++drawn.plots_made;
+  drawn.plot = std::move(plot);
 }
 
 } // namespace flyball

@@ -1,11 +1,10 @@
 // The modes of the state that is shown: a list, what moves in the view, and the Campbell diagram beside it.
 #include "app/render/icons.hpp"
-#include "app/session/state_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
-#include "app/ui/studies/modes/campbell.hpp"
-#include "app/ui/studies/modes/modes_control.hpp"
+#include "app/ui/studies/modes/campbell_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/stability_words.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -223,7 +222,7 @@ void campbell_choices(App& app, const std::string& drive) {
       if (ImGui::Selectable(parameter_phrase(speed).c_str(), speed == drive) && speed != drive) {
         campbell.drive = speed;
         campbell.from = campbell.to = 0;
-        fit_plot(campbell.view);
+        fit_plot(app.plots.campbell.view);
       }
       note_widget(app.widgets, "campbell/drive/" + speed);
     }
@@ -232,7 +231,7 @@ void campbell_choices(App& app, const std::string& drive) {
   ImGui::PopStyleColor();
   note_widget(app.widgets, "campbell/drive");
   help_on_hover("The drive whose speed is along the axis.");
-  PlotRange range = campbell_range(app);
+  const PlotRange range = campbell_range(app);
   const std::string unit = parameter_unit(app.mechanism(), drive);
   const auto end = [&](const char* name, const char* word, std::size_t which) {
     ImGui::SameLine(0, 10 * s);
@@ -252,18 +251,19 @@ void campbell_choices(App& app, const std::string& drive) {
                           CampbellState& changed = then.study.modes.campbell;
                           changed.from = std::min(ends[0], ends[1]);
                           changed.to = std::max(ends[0], ends[1]);
-                          fit_plot(changed.view);
+                          fit_plot(then.plots.campbell.view);
                         }},
                    84 * s);
   };
   end("campbell/from", "from", 0);
   end("campbell/to", "to", 1);
+  CampbellView& drawn = app.plots.campbell;
   for (const bool hertz : {true, false}) {
     ImGui::SameLine(0, hertz ? 14 * s : 2 * s);
     if (text_button(app, hertz ? "campbell/hertz" : "campbell/radians", hertz ? "Hz" : "rad/s",
-                    campbell.hertz == hertz)) {
-      campbell.hertz = hertz;
-      campbell.view.look.range[1].reset();
+                    drawn.hertz == hertz)) {
+      drawn.hertz = hertz;
+      drawn.view.look.range[1].reset();
     }
   }
   if (campbell.task && campbell.task->running()) {
@@ -291,7 +291,7 @@ void campbell_diagram(App& app) {
   if (!campbell.on_branch && converged(app) && !solving(app) && !campbell.task->running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
   const PlotEvents events = plot_view(
-      app, "campbell", campbell.view, campbell.plot,
+      app, "campbell", app.plots.campbell.view, app.plots.campbell.plot,
       {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
   const auto set = [&](double speed) {
     later(app, [drive, speed](App& then) { change_parameter(then, drive, speed); });

@@ -3,7 +3,6 @@
 #include "app/ui/file_commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -260,7 +259,7 @@ void plots(App& app) {
     return;
   }
   const std::vector<MotionQuantity> all = motion_quantities(*shown->run);
-  auto& shown_plots = app.motion.plots;
+  auto& shown_plots = app.plots.motion;
   for (std::size_t i = 0; i < shown_plots.size(); ++i) {
     const bool known = std::ranges::find(all, shown_plots[i].quantity, &MotionQuantity::key) != all.end();
     if (!known) shown_plots[i].quantity = first_shown(all, i);
@@ -278,7 +277,7 @@ void plots(App& app) {
     if (each.made != app.motion.version || each.made_for != each.quantity ||
         each.ticket != app.answer.ticket) {
       each.plot = motion_plot(app, each.quantity);
-      each.plot.version = ++app.motion.plots_made;
+      each.plot.version = ++app.plots.motion_plots_made;
       each.made = app.motion.version;
       each.made_for = each.quantity;
       each.ticket = app.answer.ticket;

@@ -1,6 +1,5 @@
 // What plots over time can show, and how it becomes one.
 #include "app/ui/plots/shown_plot.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/text.hpp"
 

@@ -2,7 +2,6 @@
 #include "app/ui/file_commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 #include "app/ui/studies/motion/movie_export.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/file_list.hpp"
@@ -133,7 +132,7 @@ void choices(App& app, const MotionRun& shown) {
   const std::size_t frames = requested_times(app, request).size();
   const std::string problem = problem_of(app, shown, request, frames);
   const std::filesystem::path first = first_file(request.file, frames);
-  const bool replaces = first == app.files.replacing;
+  const bool replaces = first == app.file_dialogs.replacing;
   ImGui::Dummy({0, 2 * app.scale});
   if (!problem.empty())
     paragraph(problem, shown.finished ? colors_of(app).bad : colors_of(app).dim);
@@ -164,13 +163,13 @@ void show_movie_dialog(App& app) {
   app.dialog.wanted = Dialog::export_run;
   std::error_code ignored;
   show_folder(app, std::filesystem::current_path(ignored));
-  app.files.replacing.clear();
+  app.file_dialogs.replacing.clear();
   app.movie.problem.clear();
   app.movie.done = false;
   const std::filesystem::path& file = app.document.file();
   const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
   const char* const ending = ffmpeg_available() ? ".mp4" : ".png";
-  app.dialog.path = (app.files.list.shown / ("flyball-" + stem + ending)).string();
+  app.dialog.path = (app.file_dialogs.list.shown / ("flyball-" + stem + ending)).string();
 }
 
 void movie_dialog(App& app) {

@@ -1,14 +1,12 @@
 #include "app/ui/studies/motion/movie_export.hpp"
 
-#include "app/ui/studies/motion/motion_control.hpp"
-
 #include <exception>
 
 namespace flyball {
 
 namespace {
 
-constexpr double patience = 0.005; // s a frame of the window may be held up by ffmpeg
+constexpr double longest_wait = 0.005; // s a frame of the window may be held up by ffmpeg
 
 // Where it is, in words.
 std::string saved_words(const std::filesystem::path& file, std::size_t frames) {
@@ -51,7 +49,7 @@ void MovieExport::update(App& app, ViewRenderer& renderer) {
       state.done = false;
       begin(app, *request);
     }
-    if (movie_ && movie_->step(renderer, patience)) {
+    if (movie_ && movie_->step(renderer, longest_wait)) {
       app.notice = saved_words(file_, movie_->frames());
       movie_.reset();
       state.done = true;

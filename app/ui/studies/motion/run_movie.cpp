@@ -1,6 +1,6 @@
 #include "app/ui/studies/motion/run_movie.hpp"
 
-#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/session/motion.hpp"
 
 #include <algorithm>
 #include <cmath>

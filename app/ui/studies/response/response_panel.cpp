@@ -1,7 +1,7 @@
 // The response curve's choices, design mode, and the plot.
 #include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
-#include "app/ui/studies/response/response_control.hpp"
+#include "app/ui/studies/response/response_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
@@ -38,21 +38,13 @@ void parameter_choice(App& app) {
 void range_field(App& app, const char* name, const char* help, double ResponseState::*end, float width) {
   const ParameterControl* control = response_control(app);
   ResponseState& state = app.study.response;
-  const QuantityField field{.name = name,
-                            .value = state.*end,
-                            .unit = control ? control->unit : "",
-                            .help = help,
-                            .set =
-                                [end](App& changed, double typed) {
-                                  ResponseState& now = changed.study.response;
-                                  const double other = end == &ResponseState::from ? now.to : now.from;
-                                  if (typed == other) return;
-                                  now.*end = typed;
-                                  const ParameterControl* varied = response_control(changed);
-                                  now.logarithmic = varied && varied->log && std::min(now.from, now.to) > 0;
-                                  fit_plot(now.view);
-                                },
-                            .at_once = true};
+  const QuantityField field{
+      .name = name,
+      .value = state.*end,
+      .unit = control ? control->unit : "",
+      .help = help,
+      .set = [end](App& changed, double typed) { choose_response_end(changed, end, typed); },
+      .at_once = true};
   quantity_field(app, field, width);
 }
 
@@ -122,12 +114,13 @@ void progress(App& app) {
   ResponseState& state = app.study.response;
   const bool curve = state.task && state.task->running(),
              design = state.design.task && state.design.task->running();
+  double& waiting_since = app.plots.response.waiting_since;
   if (!curve && !design) {
-    state.waiting_since = -1;
+    waiting_since = -1;
     return;
   }
-  if (state.waiting_since < 0) state.waiting_since = ImGui::GetTime();
-  if (ImGui::GetTime() - state.waiting_since < curve_patience) return;
+  if (waiting_since < 0) waiting_since = ImGui::GetTime();
+  if (ImGui::GetTime() - waiting_since < curve_patience) return;
   task_bar(app, "response/progress", curve ? state.task->progress() : state.design.task->progress(),
            curve ? state.task->seconds() : state.design.task->seconds(),
            ImGui::GetContentRegionAvail().x - 70 * app.scale);
@@ -308,15 +301,15 @@ void response_panel(App& app) {
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  ResponseState& state = app.study.response;
-  if (state.result && response_refusal(app).empty()) {
+  ResponseView& drawn = app.plots.response;
+  if (app.study.response.result && response_refusal(app).empty()) {
     draw_response(app);
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const PlotEvents events =
-        plot_view(app, "response", state.view, state.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
+        plot_view(app, "response", drawn.view, drawn.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
     const bool dragged = events.dragged_to.has_value();
     if (const auto hit = dragged ? events.dragged_to : events.clicked)
-      later(app, [hit = *hit, dragged](App& then) { go_to_response(then, hit, dragged); });
+      later(app, [hit = *hit, dragged](App& then) { go_to_hit(then, hit, dragged); });
   } else if (!app.mistakes.empty()) {
     paragraph("The mechanism is not finished; see the line below the view.", colors_of(app).dim);
   }

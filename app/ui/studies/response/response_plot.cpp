@@ -1,6 +1,8 @@
-// From branches to curves: what is stable, what is not, and where that changes.
+#include "app/ui/studies/response/response_plot.hpp"
+
+#include "app/plot/axis.hpp"
 #include "app/session/number_text.hpp"
-#include "app/ui/studies/response/response_control.hpp"
+#include "app/ui/plots/shown_plot.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>
@@ -30,32 +32,6 @@ KindLook look_of(Kind kind) {
 
 Kind kind_of(const ResponsePoint& point) {
   return !point.stable ? Kind::undecided : *point.stable ? Kind::stable : Kind::unstable;
-}
-
-// How far apart two points look: the parameter over `range`, coordinates in radians and metres.
-double distance(const ResponsePoint& a, const ResponsePoint& b, double range) {
-  double square = std::pow((a.parameter - b.parameter) / range, 2);
-  for (std::size_t i = 0; i < a.coordinates.size() && i < b.coordinates.size(); ++i) {
-    double step = a.coordinates[i].value - b.coordinates[i].value;
-    if (a.coordinates[i].angle) step = std::remainder(step, 2 * std::numbers::pi);
-    square += step * step;
-  }
-  return std::sqrt(square);
-}
-
-// Where a special point belongs in its branch: the gap that it lengthens least. 0: before all points, or at
-// the first itself.
-std::size_t gap_for(const ResponsePoint& point, const std::vector<ResponsePoint>& points, double range) {
-  std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const double longer = distance(points[i - 1], point, range) + distance(point, points[i], range) -
-                          distance(points[i - 1], points[i], range);
-    if (longer >= least) continue;
-    least = longer;
-    best = i;
-  }
-  return best;
 }
 
 // Whether point i only marks where two pieces meet: there stability is undecided by nature.
@@ -155,31 +131,6 @@ std::string mark_label(const SpecialPoint& special, const ShownUnit& unit) {
 
 } // namespace
 
-std::vector<ResponseLine> response_lines(ResponseDiagram& diagram) {
-  std::vector<ResponseLine> lines;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (ResponseBranch& branch : diagram.branches) {
-    for (const ResponsePoint& p : branch.points) {
-      low = std::min(low, p.parameter);
-      high = std::max(high, p.parameter);
-    }
-    lines.push_back({std::move(branch.points), {}, branch.connected});
-    lines.back().special.assign(lines.back().points.size(), 0);
-    branch.points.clear();
-  }
-  const double range = high > low ? high - low : 1;
-  for (const SpecialPoint& special : diagram.special) {
-    if (special.branch < 0 || static_cast<std::size_t>(special.branch) >= lines.size()) continue;
-    ResponseLine& line = lines[static_cast<std::size_t>(special.branch)];
-    const std::size_t gap = gap_for(special.at, line.points, range);
-    if (gap == 0) continue;
-    const auto at = static_cast<std::ptrdiff_t>(gap);
-    line.points.insert(line.points.begin() + at, special.at);
-    line.special.insert(line.special.begin() + at, 1);
-  }
-  return lines;
-}
-
 Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantity, const DisplayUnits& units,
                    std::vector<ResponsePiece>& pieces) {
   Plot plot;
@@ -202,6 +153,61 @@ Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantit
            .label = mark_label(special, shown_unit(unit, units)),
            .shape = special.type == SpecialPointType::branch_point ? PlotShape::diamond : PlotShape::circle});
   return plot;
+}
+
+void draw_response(App& app) {
+  const ResponseState& state = app.study.response;
+  ResponseView& drawn = app.plots.response;
+  if (drawn.chosen != state.chosen) fit_plot(drawn.view);
+  drawn.chosen = state.chosen;
+  const ResponseQuantity& quantity = state.shown;
+  // Until a curve with reactions is there the one before stays.
+  const bool told = state.result && (state.result->of.reactions || !needs_reactions(state.quantity));
+  if (drawn.plotted != state.version && told) {
+    const std::optional<PlotRange> before = drawn.plot.y.range;
+    const bool same = drawn.plot.y.label == quantity.title;
+    drawn.plot = response_plot(*state.result, quantity, app.units, drawn.pieces);
+    if (const auto& answer = state.design.answer; answer && "value " + answer->coordinate == state.quantity &&
+                                                  answer->of.address == state.result->of.address) {
+      drawn.plot.references.push_back(
+          {.axis = 1, .at = answer->value * quantity.factor, .label = "wanted", .color = plot_color::green});
+      for (const DesignSolution& s : answer->found.solutions)
+        drawn.plot.marks.push_back({.at = {s.parameter, answer->value * quantity.factor},
+                                    .label = "",
+                                    .shape = PlotShape::diamond,
+                                    .color = plot_color::green});
+    }
+    show_axis(drawn.plot, 0, drawn.plot.x.unit, app.units);
+    show_axis(drawn.plot, 1, quantity.unit, app.units);
+    // While one slider is dragged the axis only grows: a curve that moves is seen against it.
+    PlotRange range = axis_range(drawn.plot, {}, 1);
+    if (before && same && drawn.gesture == app.gesture)
+      range = {std::min(range[0], (*before)[0]), std::max(range[1], (*before)[1])};
+    drawn.plot.y.range = range;
+    drawn.gesture = app.gesture;
+    drawn.plot.version = ++drawn.plots_made;
+    drawn.plotted = state.version;
+  }
+  drawn.plot.marker.reset();
+  if (!state.result || !converged(app)) return;
+  const std::optional<ResponsePoint> now = present_point(app, state.result->of.address);
+  if (!now) return;
+  if (const auto y = quantity_mark(*now, state.quantity))
+    drawn.plot.marker =
+        PlotMarker{now->parameter * drawn.plot.x.factor, *y * quantity.factor * drawn.plot.y.factor, ""};
+}
+
+void go_to_hit(App& app, const PlotHit& hit, bool dragged) {
+  const ResponseState& state = app.study.response;
+  const ResponseView& drawn = app.plots.response;
+  if (hit.curve >= drawn.pieces.size()) return;
+  const ResponsePiece& piece = drawn.pieces[hit.curve];
+  const double span = std::abs(state.to - state.from);
+  double step = std::pow(10, std::floor(std::log10(span)) - 4);
+  // A logarithmic range needs more digits at its lower end.
+  if (const double x = hit.x / drawn.plot.x.factor; state.logarithmic && x > 0)
+    step = std::pow(10, std::floor(std::log10(x)) - 4);
+  go_to_response(app, piece.line, static_cast<double>(piece.first) + hit.index, step, dragged);
 }
 
 } // namespace flyball

@@ -1,9 +1,8 @@
 // All equilibria: how they were searched, and a table of them.
 #include "app/render/icons.hpp"
-#include "app/session/state_words.hpp"
 #include "app/session/units.hpp"
-#include "app/ui/studies/states/states_control.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/stability_words.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"

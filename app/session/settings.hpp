@@ -7,8 +7,6 @@
 
 namespace flyball {
 
-struct App;
-
 struct Settings {
   DisplayUnits units;
   bool legend = true; // of the view is open
@@ -19,10 +17,5 @@ struct Settings {
 Settings read_settings(const std::filesystem::path& state_folder);
 // Where they cannot be kept nobody is disturbed.
 void keep_settings(const std::filesystem::path& state_folder, const Settings& settings);
-
-// Fields, results and plots show their numbers in other units from now on; kept.
-void choose_units(App& app, const DisplayUnits& units);
-// Opens or folds the legend of the view; kept.
-void open_legend(App& app, bool open);
 
 } // namespace flyball

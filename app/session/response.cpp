@@ -1,8 +1,6 @@
-#include "app/ui/studies/response/response_control.hpp"
+#include "app/session/response.hpp"
 
-#include "app/ui/plots/shown_plot.hpp"
-
-#include "app/plot/axis.hpp"
+#include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>
@@ -42,9 +40,10 @@ BranchOptions follow_options(const ResponseRequest& of, double present) {
 }
 
 // What the present choices ask for; none where there is nothing to follow.
-std::optional<ResponseRequest> wanted_now(const App& app) {
-  const ResponseState& state = app.study.response;
-  if (app.mechanism().bodies.empty() || !app.mistakes.empty() || !response_control(app)) return std::nullopt;
+std::optional<ResponseRequest> wanted_now(const Session& session) {
+  const ResponseState& state = session.study.response;
+  if (session.mechanism().bodies.empty() || !session.mistakes.empty() || !response_control(session))
+    return std::nullopt;
   ResponseRequest of;
   of.address = state.address;
   of.from = state.from;
@@ -52,7 +51,7 @@ std::optional<ResponseRequest> wanted_now(const App& app) {
   of.logarithmic = state.logarithmic;
   of.all = state.all;
   of.reactions = needs_reactions(state.quantity);
-  Mechanism followed = app.mechanism();
+  Mechanism followed = session.mechanism();
   set_parameter(followed, of.address, of.from);
   // What moves no equilibrium begins no new curve.
   followed.sliders.clear();
@@ -62,27 +61,18 @@ std::optional<ResponseRequest> wanted_now(const App& app) {
   return of;
 }
 
-// The answer as a point of a curve; none where its mechanism has no such number.
-std::optional<ResponsePoint> present_point(const App& app, const std::string& address) {
-  try {
-    return response_point(app.answer.solution, get_parameter(*app.answer.mechanism, address));
-  } catch (const SceneError&) {
-    return std::nullopt;
-  }
-}
-
-void follow(App& app, ResponseRequest of) {
-  ResponseState& state = app.study.response;
+void follow(Session& session, ResponseRequest of) {
+  ResponseState& state = session.study.response;
   if (!state.task)
-    state.task = std::make_unique<Background<ResponseResult>>(app.options.mode, app.options.on_news);
+    state.task = std::make_unique<Background<ResponseResult>>(session.options.mode, session.options.on_news);
   // While a hand drags one slider every curve that was begun is worth seeing; another question is not.
   const bool after = state.asked && state.asked->address == of.address && state.asked->from == of.from &&
                      state.asked->to == of.to && state.asked->all == of.all;
   state.asked = of;
   std::optional<ResponsePoint> through;
-  if (converged(app)) through = present_point(app, of.address);
-  state.through = app.answer.ticket;
-  const double present = get_parameter(app.mechanism(), of.address);
+  if (converged(session)) through = present_point(session, of.address);
+  state.through = session.answer.ticket;
+  const double present = get_parameter(session.mechanism(), of.address);
   state.task->start(
       [of = std::move(of), through = std::move(through),
        present](const Background<ResponseResult>::Watch& watch) {
@@ -116,8 +106,8 @@ void take_result(ResponseState& state) {
 }
 
 // How far a state is from the present one (rad and m, added up).
-double away(const App& app, const ResponsePoint& point) {
-  const std::vector<CoordinateSolution>& now = app.answer.solution.coordinates;
+double away(const Session& session, const ResponsePoint& point) {
+  const std::vector<CoordinateSolution>& now = session.answer.solution.coordinates;
   double sum = 0;
   for (std::size_t i = 0; i < now.size() && i < point.coordinates.size(); ++i) {
     const double apart = point.coordinates[i].value - now[i].value;
@@ -127,42 +117,42 @@ double away(const App& app, const ResponsePoint& point) {
 }
 
 // Stable states first, then those that are like the present one.
-void take_design(App& app) {
-  ResponseState& state = app.study.response;
+void take_design(Session& session) {
+  ResponseState& state = session.study.response;
   auto news = state.design.task ? state.design.task->take() : std::nullopt;
   if (!news) return;
   state.design.problem = news->problem;
   state.design.answer = std::move(news->result);
   if (state.design.answer)
     std::ranges::stable_sort(state.design.answer->found.solutions, {}, [&](const DesignSolution& s) {
-      return std::pair(s.at.stable != true, away(app, s.at));
+      return std::pair(s.at.stable != true, away(session, s.at));
     });
   ++state.version;
 }
 
 // First the parameter that is likely meant: a drive's speed.
-void choose_first(App& app) {
-  if (response_control(app)) return;
-  if (app.parameters.empty()) {
-    app.study.response.address.clear();
+void choose_first(Session& session) {
+  if (response_control(session)) return;
+  if (session.parameters.empty()) {
+    session.study.response.address.clear();
     return;
   }
-  const auto drive = std::ranges::find_if(app.parameters, [](const ParameterControl& control) {
+  const auto drive = std::ranges::find_if(session.parameters, [](const ParameterControl& control) {
     return control.address.find(".drive") != std::string::npos;
   });
-  choose_response(app, (drive == app.parameters.end() ? app.parameters.front() : *drive).address);
+  choose_response(session, (drive == session.parameters.end() ? session.parameters.front() : *drive).address);
 }
 
 // At first a length, as of a collar, for what moves it; else the first coordinate.
-void choose_first_quantity(App& app) {
-  ResponseState& state = app.study.response;
-  const std::vector<ResponseQuantity> all = offered_quantities(app);
+void choose_first_quantity(Session& session) {
+  ResponseState& state = session.study.response;
+  const std::vector<ResponseQuantity> all = offered_quantities(session);
   if (const auto found = std::ranges::find(all, state.quantity, &ResponseQuantity::key); found != all.end()) {
     state.shown = *found;
     return;
   }
   // Without an answer not everything is offered that may be so again.
-  if (all.empty() || (!state.quantity.empty() && !converged(app))) return;
+  if (all.empty() || (!state.quantity.empty() && !converged(session))) return;
   const auto length = std::ranges::find_if(
       all, [](const ResponseQuantity& each) { return each.unit == "m" && each.key.starts_with("value "); });
   state.shown = length == all.end() ? all.front() : *length;
@@ -199,12 +189,12 @@ ResponsePoint between(const ResponsePoint& a, const ResponsePoint& b, double par
 
 // Whether the present state has come to stand beside all branches that were followed: past a fold, or where a
 // hand has put it.
-bool left_curves(const App& app) {
-  const ResponseState& state = app.study.response;
-  if (!state.result || state.task->running() || !converged(app) || solving(app)) return false;
-  if (app.answer.ticket == state.through) return false;
+bool left_curves(const Session& session) {
+  const ResponseState& state = session.study.response;
+  if (!state.result || state.task->running() || !converged(session) || solving(session)) return false;
+  if (session.answer.ticket == state.through) return false;
   const ResponseRequest& of = state.result->of;
-  const std::optional<ResponsePoint> now = present_point(app, of.address);
+  const std::optional<ResponsePoint> now = present_point(session, of.address);
   if (!now || (now->parameter - of.from) * (now->parameter - of.to) > 0) return false;
   for (const ResponseLine& line : state.result->lines)
     for (std::size_t i = 1; i < line.points.size(); ++i) {
@@ -241,24 +231,32 @@ ResponsePoint rounded_point(const ResponseLine& line, double at, double step) {
 
 } // namespace
 
-void update_response(App& app) {
-  ResponseState& state = app.study.response;
+std::optional<ResponsePoint> present_point(const Session& session, const std::string& address) {
+  try {
+    return response_point(session.answer.solution, get_parameter(*session.answer.mechanism, address));
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
+void update_response(Session& session) {
+  ResponseState& state = session.study.response;
   take_result(state);
-  take_design(app);
-  if (app.study.open != Study::response || app.mode != Mode::explore) return;
-  choose_first(app);
-  choose_first_quantity(app);
-  if (state.asked && state.asked_revision == app.document.revision() &&
+  take_design(session);
+  if (session.study.open != Study::response || session.mode != Mode::explore) return;
+  choose_first(session);
+  choose_first_quantity(session);
+  if (state.asked && state.asked_revision == session.document.revision() &&
       state.asked->address == state.address && state.asked->from == state.from &&
       state.asked->to == state.to && state.asked->all == state.all &&
       state.asked->reactions == needs_reactions(state.quantity)) {
-    if (!left_curves(app)) return;
-    follow(app, ResponseRequest(*state.asked));
+    if (!left_curves(session)) return;
+    follow(session, ResponseRequest(*state.asked));
     take_result(state);
     return;
   }
-  std::optional<ResponseRequest> wanted = wanted_now(app);
-  state.asked_revision = app.document.revision();
+  std::optional<ResponseRequest> wanted = wanted_now(session);
+  state.asked_revision = session.document.revision();
   if (!wanted) {
     const bool had = state.asked || state.result;
     state.asked.reset();
@@ -269,13 +267,13 @@ void update_response(App& app) {
     return;
   }
   if (state.asked == wanted) return;
-  follow(app, std::move(*wanted));
-  if (state.design.answer) find_design(app);
+  follow(session, std::move(*wanted));
+  if (state.design.answer) find_design(session);
   take_result(state); // in immediate mode it is there
 }
 
-void close_response(App& app) {
-  ResponseState& state = app.study.response;
+void close_response(Session& session) {
+  ResponseState& state = session.study.response;
   ResponseState fresh;
   fresh.address = state.address;
   fresh.from = state.from;
@@ -285,83 +283,90 @@ void close_response(App& app) {
   fresh.all = state.all;
   fresh.design.coordinate = state.design.coordinate;
   fresh.design.value = state.design.value;
+  fresh.version = state.version + 1;
+  fresh.chosen = state.chosen + 1;
   state = std::move(fresh);
 }
 
-bool computing_response(const App& app) {
-  const ResponseState& state = app.study.response;
+bool computing_response(const Session& session) {
+  const ResponseState& state = session.study.response;
   return (state.task && state.task->running()) || (state.design.task && state.design.task->running());
 }
 
-const ParameterControl* response_control(const App& app) {
+const ParameterControl* response_control(const Session& session) {
   const auto found =
-      std::ranges::find(app.parameters, app.study.response.address, &ParameterControl::address);
-  return found == app.parameters.end() ? nullptr : &*found;
+      std::ranges::find(session.parameters, session.study.response.address, &ParameterControl::address);
+  return found == session.parameters.end() ? nullptr : &*found;
 }
 
-void choose_response(App& app, const std::string& address) {
-  const auto found = std::ranges::find(app.parameters, address, &ParameterControl::address);
-  if (found == app.parameters.end()) return;
-  ResponseState& state = app.study.response;
+void choose_response(Session& session, const std::string& address) {
+  const auto found = std::ranges::find(session.parameters, address, &ParameterControl::address);
+  if (found == session.parameters.end()) return;
+  ResponseState& state = session.study.response;
   state.address = address;
   state.from = found->from;
   state.to = found->to;
   state.logarithmic = found->log;
   state.design.answer.reset();
-  fit_plot(state.view);
+  ++state.chosen;
   ++state.version;
 }
 
-std::string response_refusal(const App& app) {
-  if (!app.study.response.problem.empty()) return app.study.response.problem;
+void choose_response_end(Session& session, double ResponseState::*end, double value) {
+  ResponseState& state = session.study.response;
+  if (value == (end == &ResponseState::from ? state.to : state.from)) return;
+  state.*end = value;
+  const ParameterControl* varied = response_control(session);
+  state.logarithmic = varied && varied->log && std::min(state.from, state.to) > 0;
+  ++state.chosen;
+}
+
+std::string response_refusal(const Session& session) {
+  if (!session.study.response.problem.empty()) return session.study.response.problem;
   // Where the balance turns with the drives, what is followed from their standing still is no steady state.
-  const Solution& solution = app.answer.solution;
-  const bool told = app.answer.ticket && !app.answer.error && app.mistakes.empty();
+  const Solution& solution = session.answer.solution;
+  const bool told = session.answer.ticket && !session.answer.error && session.mistakes.empty();
   return told && solution.status == Status::no_steady_state ? solution.message : "";
 }
 
-void choose_quantity(App& app, const ResponseQuantity& quantity) {
-  ResponseState& state = app.study.response;
+void choose_quantity(Session& session, const ResponseQuantity& quantity) {
+  ResponseState& state = session.study.response;
   state.quantity = quantity.key;
   state.shown = quantity;
   ++state.version;
-  fit_plot(state.view);
+  ++state.chosen;
 }
 
-std::vector<ResponseQuantity> offered_quantities(const App& app) {
-  if (converged(app)) return response_quantities(response_point(app.answer.solution, 0));
-  const auto& result = app.study.response.result;
+std::vector<ResponseQuantity> offered_quantities(const Session& session) {
+  if (converged(session)) return response_quantities(response_point(session.answer.solution, 0));
+  const auto& result = session.study.response.result;
   if (result && !result->lines.empty() && !result->lines.front().points.empty())
     return response_quantities(result->lines.front().points.front());
   return {};
 }
 
-void go_to_response(App& app, const PlotHit& hit, bool dragged) {
-  ResponseState& state = app.study.response;
-  if (!state.result || hit.curve >= state.pieces.size()) return;
-  const ResponsePiece& piece = state.pieces[hit.curve];
-  const ResponseLine& line = state.result->lines[piece.line];
+void go_to_response(Session& session, std::size_t line_index, double at, double step, bool dragged) {
+  const ResponseState& state = session.study.response;
+  if (!state.result || line_index >= state.result->lines.size()) return;
+  const ResponseLine& line = state.result->lines[line_index];
   if (line.points.size() < 2) return;
-  const double span = std::abs(state.to - state.from);
-  double step = std::pow(10, std::floor(std::log10(span)) - 4);
-  // A logarithmic range needs more digits at its lower end.
-  if (const double x = hit.x / state.plot.x.factor; state.logarithmic && x > 0)
-    step = std::pow(10, std::floor(std::log10(x)) - 4);
-  const ResponsePoint point = rounded_point(line, static_cast<double>(piece.first) + hit.index, step);
+  const ResponsePoint point = rounded_point(line, at, step);
   // A hand that rests on the marker asks for nothing new.
   const bool there =
-      app.on_branch && point.parameter == get_parameter(app.mechanism(), state.result->of.address);
-  if (dragged && there && (solving(app) || near(app.answer.solution.coordinates, point.coordinates))) return;
-  go_to_state(app, state.result->of.address, point.parameter, start_values(point.coordinates));
+      session.on_branch && point.parameter == get_parameter(session.mechanism(), state.result->of.address);
+  if (dragged && there && (solving(session) || near(session.answer.solution.coordinates, point.coordinates)))
+    return;
+  go_to_state(session, state.result->of.address, point.parameter, start_values(point.coordinates));
 }
 
-void find_design(App& app) {
-  ResponseState& state = app.study.response;
+void find_design(Session& session) {
+  ResponseState& state = session.study.response;
   ResponseDesign& wanted = state.design;
-  std::optional<ResponseRequest> of = wanted_now(app);
+  std::optional<ResponseRequest> of = wanted_now(session);
   if (!of || wanted.coordinate.empty()) return;
   if (!wanted.task)
-    wanted.task = std::make_unique<Background<ResponseDesign::Answer>>(app.options.mode, app.options.on_news);
+    wanted.task =
+        std::make_unique<Background<ResponseDesign::Answer>>(session.options.mode, session.options.on_news);
   wanted.problem.clear();
   // The same question about a mechanism that is being changed: every answer is worth seeing.
   const bool after =
@@ -378,51 +383,13 @@ void find_design(App& app) {
             design(*of.mechanism, of.address, of.from, of.to, coordinate, value, options)};
       },
       after);
-  take_design(app);
+  take_design(session);
 }
 
-void go_to_design(App& app, const DesignSolution& solution) {
-  const auto& answer = app.study.response.design.answer;
-  if (answer) go_to_state(app, answer->of.address, solution.parameter, start_values(solution.at.coordinates));
-}
-
-void draw_response(App& app) {
-  ResponseState& state = app.study.response;
-  const ResponseQuantity& quantity = state.shown;
-  // Until a curve with reactions is there the one before stays.
-  const bool told = state.result && (state.result->of.reactions || !needs_reactions(state.quantity));
-  if (state.plotted != state.version && told) {
-    const std::optional<PlotRange> before = state.plot.y.range;
-    const bool same = state.plot.y.label == quantity.title;
-    state.plot = response_plot(*state.result, quantity, app.units, state.pieces);
-    if (const auto& answer = state.design.answer; answer && "value " + answer->coordinate == state.quantity &&
-                                                  answer->of.address == state.result->of.address) {
-      state.plot.references.push_back(
-          {.axis = 1, .at = answer->value * quantity.factor, .label = "wanted", .color = plot_color::green});
-      for (const DesignSolution& s : answer->found.solutions)
-        state.plot.marks.push_back({.at = {s.parameter, answer->value * quantity.factor},
-                                    .label = "",
-                                    .shape = PlotShape::diamond,
-                                    .color = plot_color::green});
-    }
-    show_axis(state.plot, 0, state.plot.x.unit, app.units);
-    show_axis(state.plot, 1, quantity.unit, app.units);
-    // While one slider is dragged the axis only grows: a curve that moves is seen against it.
-    PlotRange range = axis_range(state.plot, {}, 1);
-    if (before && same && state.plot_gesture == app.gesture)
-      range = {std::min(range[0], (*before)[0]), std::max(range[1], (*before)[1])};
-    state.plot.y.range = range;
-    state.plot_gesture = app.gesture;
-    state.plot.version = ++state.plots_made;
-    state.plotted = state.version;
-  }
-  state.plot.marker.reset();
-  if (!state.result || !converged(app)) return;
-  const std::optional<ResponsePoint> now = present_point(app, state.result->of.address);
-  if (!now) return;
-  if (const auto y = quantity_mark(*now, state.quantity))
-    state.plot.marker =
-        PlotMarker{now->parameter * state.plot.x.factor, *y * quantity.factor * state.plot.y.factor, ""};
+void go_to_design(Session& session, const DesignSolution& solution) {
+  const auto& answer = session.study.response.design.answer;
+  if (answer)
+    go_to_state(session, answer->of.address, solution.parameter, start_values(solution.at.coordinates));
 }
 
 } // namespace flyball

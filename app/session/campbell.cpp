@@ -1,8 +1,8 @@
 // The Campbell diagram, followed in the background.
-#include "app/ui/studies/modes/campbell.hpp"
+#include "app/session/campbell.hpp"
 
+#include "app/session/session.hpp"
 #include "app/session/state_words.hpp"
-#include "app/ui/studies/modes/modes_control.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>
@@ -89,9 +89,9 @@ FoundCampbell follow(const Mechanism& mechanism, const std::string& drive, doubl
 }
 
 // What is shown; without coordinates where that is no steady state, or of other numbers.
-State present(const App& app, const std::string& drive) {
-  if (!converged(app) || solving(app)) return {};
-  return {get_parameter(app.mechanism(), drive), app.answer.solution.coordinates};
+State present(const Session& session, const std::string& drive) {
+  if (!converged(session) || solving(session)) return {};
+  return {get_parameter(session.mechanism(), drive), session.answer.solution.coordinates};
 }
 
 } // namespace
@@ -106,45 +106,46 @@ std::vector<std::string> drive_speeds(const Mechanism& mechanism) {
   return speeds;
 }
 
-std::string campbell_drive(const App& app) {
-  const std::vector<std::string> speeds = drive_speeds(app.mechanism());
-  if (std::ranges::find(speeds, app.study.modes.campbell.drive) != speeds.end())
-    return app.study.modes.campbell.drive;
+std::string campbell_drive(const Session& session) {
+  const std::vector<std::string> speeds = drive_speeds(session.mechanism());
+  if (std::ranges::find(speeds, session.study.modes.campbell.drive) != speeds.end())
+    return session.study.modes.campbell.drive;
   return speeds.empty() ? "" : speeds.front();
 }
 
-PlotRange campbell_range(const App& app) {
-  const CampbellState& campbell = app.study.modes.campbell;
+std::array<double, 2> campbell_range(const Session& session) {
+  const CampbellState& campbell = session.study.modes.campbell;
   if (campbell.from != campbell.to) return {campbell.from, campbell.to};
-  const std::string drive = campbell_drive(app);
-  for (const ParameterControl& control : app.parameters)
+  const std::string drive = campbell_drive(session);
+  for (const ParameterControl& control : session.parameters)
     if (control.address == drive)
       return {std::min(control.from, control.to), std::max(control.from, control.to)};
   return {0, 10};
 }
 
-void follow_campbell(App& app) {
-  CampbellState& campbell = app.study.modes.campbell;
-  const std::string drive = campbell_drive(app);
-  if (drive.empty() || !app.mistakes.empty()) return;
+void follow_campbell(Session& session) {
+  CampbellState& campbell = session.study.modes.campbell;
+  const std::string drive = campbell_drive(session);
+  if (drive.empty() || !session.mistakes.empty()) return;
   if (!campbell.task)
-    campbell.task = std::make_unique<Background<FoundCampbell>>(app.options.mode, app.options.on_news);
-  const PlotRange range = campbell_range(app);
-  campbell.asked = without_speed(app.mechanism(), drive);
+    campbell.task =
+        std::make_unique<Background<FoundCampbell>>(session.options.mode, session.options.on_news);
+  const std::array<double, 2> range = campbell_range(session);
+  campbell.asked = without_speed(session.mechanism(), drive);
   campbell.asked_drive = drive;
   campbell.asked_from = range[0];
   campbell.asked_to = range[1];
   campbell.problem.clear();
-  const State state = present(app, drive);
-  campbell.asked_ticket = app.answer.ticket;
-  campbell.task->start([mechanism = app.document.shared(), drive, range,
+  const State state = present(session, drive);
+  campbell.asked_ticket = session.answer.ticket;
+  campbell.task->start([mechanism = session.document.shared(), drive, range,
                         state](const Background<FoundCampbell>::Watch& watch) {
     return follow(*mechanism, drive, range[0], range[1], state, watch);
   });
 }
 
-void update_campbell(App& app) {
-  CampbellState& campbell = app.study.modes.campbell;
+void update_campbell(Session& session) {
+  CampbellState& campbell = session.study.modes.campbell;
   if (campbell.task)
     if (auto news = campbell.task->take()) {
       campbell.problem = news->problem;
@@ -159,38 +160,44 @@ void update_campbell(App& app) {
       }
     }
   // The drive may have been taken away.
-  const std::vector<std::string> speeds = drive_speeds(app.mechanism());
+  const std::vector<std::string> speeds = drive_speeds(session.mechanism());
   if (campbell.result && std::ranges::find(speeds, campbell.result->drive) == speeds.end())
     campbell.result.reset();
-  if (app.mode != Mode::explore || speeds.empty() || !app.mistakes.empty()) return;
-  if (!campbell.task) return follow_campbell(app);
-  const PlotRange range = campbell_range(app);
-  const bool chosen = campbell.asked_drive == campbell_drive(app) && campbell.asked_from == range[0] &&
+  if (campbell.result && !solving(session) &&
+      (campbell.judged_result != campbell.results || campbell.judged_ticket != session.answer.ticket)) {
+    campbell.on_branch = campbell_branch(session).has_value();
+    campbell.judged_result = campbell.results;
+    campbell.judged_ticket = session.answer.ticket;
+  }
+  if (session.mode != Mode::explore || speeds.empty() || !session.mistakes.empty()) return;
+  if (!campbell.task) return follow_campbell(session);
+  const std::array<double, 2> range = campbell_range(session);
+  const bool chosen = campbell.asked_drive == campbell_drive(session) && campbell.asked_from == range[0] &&
                       campbell.asked_to == range[1];
-  if (campbell.revision != app.document.revision() || !chosen) {
-    campbell.revision = app.document.revision();
+  if (campbell.revision != session.document.revision() || !chosen) {
+    campbell.revision = session.document.revision();
     campbell.current =
-        chosen && campbell.result && campbell.of == without_speed(app.mechanism(), campbell.asked_drive);
+        chosen && campbell.result && campbell.of == without_speed(session.mechanism(), campbell.asked_drive);
   }
   if (campbell.task->running()) return;
   // The state was put on a branch that was not followed.
-  if (campbell.current && !campbell.on_branch && campbell.asked_ticket != app.answer.ticket) {
-    const State state = present(app, campbell.asked_drive);
+  if (campbell.current && !campbell.on_branch && campbell.asked_ticket != session.answer.ticket) {
+    const State state = present(session, campbell.asked_drive);
     const bool inside = state.speed >= range[0] && state.speed <= range[1];
     if (inside && !state.coordinates.empty() && campbell.result->run_time_s < no_time)
-      return follow_campbell(app);
+      return follow_campbell(session);
   }
   if (campbell.current) return;
   const bool new_question =
-      !chosen || !(campbell.asked == without_speed(app.mechanism(), campbell.asked_drive));
+      !chosen || !(campbell.asked == without_speed(session.mechanism(), campbell.asked_drive));
   const bool quick = !campbell.result || campbell.result->run_time_s < no_time;
-  if (new_question && (quick || !chosen)) follow_campbell(app);
+  if (new_question && (quick || !chosen)) follow_campbell(session);
 }
 
-std::optional<std::size_t> campbell_branch(const App& app) {
-  const CampbellState& campbell = app.study.modes.campbell;
+std::optional<std::size_t> campbell_branch(const Session& session) {
+  const CampbellState& campbell = session.study.modes.campbell;
   if (!campbell.result) return std::nullopt;
-  return branch_through(campbell.result->diagram.branches, present(app, campbell.result->drive));
+  return branch_through(campbell.result->diagram.branches, present(session, campbell.result->drive));
 }
 
 } // namespace flyball

@@ -1,16 +1,20 @@
-// The response curve: what is wanted, what was found, and how it is drawn. Nothing of it is made before a
-// person asks for it.
+// The response curve: what is wanted and what was found. Nothing of it is made before a person asks for it.
 #pragma once
 
 #include "app/live/background.hpp"
+#include "app/session/parameter_list.hpp"
 #include "app/session/response_quantity.hpp"
-#include "app/ui/plots/plot_view.hpp"
 #include "engine/study/design.hpp"
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <tuple>
+#include <vector>
 
 namespace flyball {
+
+struct Session;
 
 // What a curve is followed for; while it stays the same nothing is computed.
 struct ResponseRequest {
@@ -34,11 +38,6 @@ struct ResponseLine {
   std::vector<ResponsePoint> points;
   std::vector<char> special; // of each point, whether it is one
   bool connected = true;
-};
-
-// Which points of a line a plot's curve goes through.
-struct ResponsePiece {
-  std::size_t line = 0, first = 0;
 };
 
 struct ResponseResult {
@@ -79,14 +78,41 @@ struct ResponseState {
   std::string problem; // why there is no curve
   ResponseDesign design;
 
-  PlotView view;
-  Plot plot;                         // of the result, with the answer's marker
-  std::vector<ResponsePiece> pieces; // by curve of the plot
-  std::uint64_t version = 1;         // of result, quantity and design
-  std::uint64_t plotted = 0;         // the version that the plot shows
-  std::uint64_t plots_made = 0;
-  std::uint64_t plot_gesture = 0; // of the hand, when the plot's range of y was last fitted
-  double waiting_since = -1;      // s, ImGui's clock; negative: nothing runs
+  std::uint64_t version = 1; // of result, quantity and design
+  std::uint64_t chosen = 0;  // how often a parameter, a range or a quantity was chosen
 };
+
+// Takes what was computed and asks for what is wanted now; nothing unless the panel is open.
+void update_response(Session& session);
+// Everything of it goes but what was chosen.
+void close_response(Session& session);
+bool computing_response(const Session& session);
+
+// The parameter that is varied, with the range of its slider.
+void choose_response(Session& session, const std::string& address);
+// One end of its range, `from` or `to`.
+void choose_response_end(Session& session, double ResponseState::*end, double value);
+// The control of the varied parameter; null: there is none.
+const ParameterControl* response_control(const Session& session);
+// Why there is no curve, a sentence; empty where there is one.
+std::string response_refusal(const Session& session);
+
+// What is drawn over the parameter.
+void choose_quantity(Session& session, const ResponseQuantity& quantity);
+// What there is to choose from: of the present answer, or else of the curve.
+std::vector<ResponseQuantity> offered_quantities(const Session& session);
+
+// The state at a place of a line (the index of a point, with a fraction) becomes the present one, along with
+// the parameter, which is rounded to `step`. `dragged`: every frame anew, while the hand holds the marker.
+void go_to_response(Session& session, std::size_t line, double at, double step, bool dragged);
+// The answer as a point of a curve over the number; none where its mechanism has no such number.
+std::optional<ResponsePoint> present_point(const Session& session, const std::string& address);
+
+// Looks for the parameter at which the design's coordinate has its value; the solution then becomes present.
+void find_design(Session& session);
+void go_to_design(Session& session, const DesignSolution& solution);
+
+// A diagram's branches with their special points in their places. Takes them out of it.
+std::vector<ResponseLine> response_lines(ResponseDiagram& diagram);
 
 } // namespace flyball

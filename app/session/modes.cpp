@@ -1,8 +1,7 @@
-#include "app/ui/studies/modes/modes_control.hpp"
+#include "app/session/modes.hpp"
 
+#include "app/session/session.hpp"
 #include "app/session/state_words.hpp"
-#include "app/ui/studies/modes/campbell.hpp"
-#include "app/ui/studies/motion/motion_control.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -39,14 +38,14 @@ FoundModes find(std::shared_ptr<const Mechanism> mechanism,
 }
 
 // Poses of the chosen mode as it stands now.
-void pose(App& app) {
-  ModesState& modes = app.study.modes;
-  const VibrationMode* mode = moving_mode(app);
+void pose(Session& session) {
+  ModesState& modes = session.study.modes;
+  const VibrationMode* mode = moving_mode(session);
   if (!mode) {
     modes.poses.clear();
     return;
   }
-  const ModesState::Posed now{modes.of, *modes.chosen, modes.amplitude, modes.phase, steady_time(app)};
+  const ModesState::Posed now{modes.of, *modes.chosen, modes.amplitude, modes.phase, steady_time(session)};
   if (!modes.poses.empty() && now == modes.posed) return;
   modes.poses = modes.result->analysis->mode_poses(*mode, modes.amplitude, modes.phase, now.time);
   modes.posed = now;
@@ -54,26 +53,26 @@ void pose(App& app) {
 
 } // namespace
 
-bool modes_are_current(const App& app) {
-  const ModesState& modes = app.study.modes;
-  return modes.result && modes.of == app.answer.ticket && converged(app);
+bool modes_are_current(const Session& session) {
+  const ModesState& modes = session.study.modes;
+  return modes.result && modes.of == session.answer.ticket && converged(session);
 }
 
-void find_modes_again(App& app) {
-  ModesState& modes = app.study.modes;
-  if (!converged(app)) return;
+void find_modes_again(Session& session) {
+  ModesState& modes = session.study.modes;
+  if (!converged(session)) return;
   if (!modes.task)
-    modes.task = std::make_unique<Background<FoundModes>>(app.options.mode, app.options.on_news);
-  modes.asked = app.answer.ticket;
+    modes.task = std::make_unique<Background<FoundModes>>(session.options.mode, session.options.on_news);
+  modes.asked = session.answer.ticket;
   modes.problem.clear();
   modes.task->start(
-      [mechanism = app.answer.mechanism, start = start_values(app.answer.solution.coordinates)](
+      [mechanism = session.answer.mechanism, start = start_values(session.answer.solution.coordinates)](
           const Background<FoundModes>::Watch& watch) { return find(mechanism, start, watch); });
 }
 
-void update_modes(App& app) {
-  if (app.study.open != Study::modes) return;
-  ModesState& modes = app.study.modes;
+void update_modes(Session& session) {
+  if (session.study.open != Study::modes) return;
+  ModesState& modes = session.study.modes;
   if (modes.task)
     if (auto news = modes.task->take()) {
       modes.problem = news->problem;
@@ -87,51 +86,51 @@ void update_modes(App& app) {
       }
       modes.of = modes.asked;
     }
-  if (app.mode == Mode::explore && converged(app) && modes.asked != app.answer.ticket) {
+  if (session.mode == Mode::explore && converged(session) && modes.asked != session.answer.ticket) {
     const bool idle = !modes.task || !modes.task->running();
     const bool quick = !modes.result || modes.result->run_time_s < no_time;
-    if (idle && quick) find_modes_again(app);
+    if (idle && quick) find_modes_again(session);
   }
-  pose(app);
-  update_campbell(app);
+  pose(session);
+  update_campbell(session);
 }
 
-void close_modes(App& app) {
-  const CampbellState& campbell = app.study.modes.campbell;
+void close_modes(Session& session) {
+  const CampbellState& campbell = session.study.modes.campbell;
   ModesState fresh;
-  fresh.amplitude = app.study.modes.amplitude;
+  fresh.amplitude = session.study.modes.amplitude;
   fresh.campbell.drive = campbell.drive;
   fresh.campbell.from = campbell.from;
   fresh.campbell.to = campbell.to;
-  fresh.campbell.hertz = campbell.hertz;
-  app.study.modes = std::move(fresh);
+  fresh.campbell.results = campbell.results;
+  session.study.modes = std::move(fresh);
 }
 
-bool finding_modes(const App& app) {
-  const ModesState& modes = app.study.modes;
+bool finding_modes(const Session& session) {
+  const ModesState& modes = session.study.modes;
   return (modes.task && modes.task->running()) || (modes.campbell.task && modes.campbell.task->running());
 }
 
-void choose_mode(App& app, std::optional<std::size_t> mode) {
-  ModesState& modes = app.study.modes;
+void choose_mode(Session& session, std::optional<std::size_t> mode) {
+  ModesState& modes = session.study.modes;
   modes.chosen = mode;
   modes.phase = 0;
   modes.poses.clear();
   modes.playing = mode.has_value();
-  app.playback.playing = false; // what turns as well hides how it swings
+  session.playback.playing = false; // what turns as well hides how it swings
 }
 
-const VibrationMode* moving_mode(const App& app) {
-  const ModesState& modes = app.study.modes;
-  if (app.study.open != Study::modes || app.mode != Mode::explore || !modes.chosen) return nullptr;
-  if (!modes.result || *modes.chosen >= modes.result->modes.size() || !converged(app)) return nullptr;
+const VibrationMode* moving_mode(const Session& session) {
+  const ModesState& modes = session.study.modes;
+  if (session.study.open != Study::modes || session.mode != Mode::explore || !modes.chosen) return nullptr;
+  if (!modes.result || *modes.chosen >= modes.result->modes.size() || !converged(session)) return nullptr;
   return &modes.result->modes[*modes.chosen];
 }
 
-void advance_mode(App& app, double seconds) {
-  const VibrationMode* mode = moving_mode(app);
-  if (!mode || !app.study.modes.playing) return;
-  double& phase = app.study.modes.phase;
+void advance_mode(Session& session, double seconds) {
+  const VibrationMode* mode = moving_mode(session);
+  if (!mode || !session.study.modes.playing) return;
+  double& phase = session.study.modes.phase;
   phase = std::fmod(phase + turn * seconds / shown_period(*mode), turn);
 }
 

@@ -1,5 +1,6 @@
-#include "app/ui/studies/motion/motion_control.hpp"
+#include "app/session/motion.hpp"
 
+#include "app/session/session.hpp"
 #include "engine/dynamics/joined.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -13,8 +14,8 @@ namespace {
 constexpr double samples_per_run = 2000; // for plots that stay smooth when they are zoomed
 constexpr double least_rate = 100;       // 1/s
 
-SimulationOptions options_of(const App& app, bool damped) {
-  const MotionState& motion = app.motion;
+SimulationOptions options_of(const Session& session, bool damped) {
+  const MotionState& motion = session.motion;
   SimulationOptions options;
   options.duration = motion.duration;
   options.rate = std::max(least_rate, samples_per_run / motion.duration);
@@ -24,38 +25,39 @@ SimulationOptions options_of(const App& app, bool damped) {
   options.start = motion.start;
   options.reactions = true;
   constexpr std::size_t many = 60; // bodies; their motions would take more memory than they are worth
-  if (app.mechanism().bodies.size() <= many)
-    for (const Body& body : app.mechanism().bodies)
+  if (session.mechanism().bodies.size() <= many)
+    for (const Body& body : session.mechanism().bodies)
       options.points.push_back({body.name});
-  for (BodyPoint& point : told_points(app))
+  for (BodyPoint& point : told_points(session))
     options.points.push_back(std::move(point));
   if (motion.start == Start::state) options.state = motion.saved;
   if (motion.start == Start::equilibrium) {
-    const std::vector<std::string> names = free_coordinates(app);
+    const std::vector<std::string> names = free_coordinates(session);
     const bool known = std::ranges::find(names, motion.kicked) != names.end();
     if (known || !names.empty()) options.kick = {{known ? motion.kicked : names.front(), motion.kick}};
   }
   return options;
 }
 
-bool fit_to_run(const App& app) {
-  return !app.mechanism().bodies.empty() && app.mistakes.empty();
+bool fit_to_run(const Session& session) {
+  return !session.mechanism().bodies.empty() && session.mistakes.empty();
 }
 
-void ask(App& app, bool go_on) {
-  MotionState& motion = app.motion;
-  const bool dampers = has_dampers(app.mechanism());
+void ask(Session& session, bool go_on) {
+  MotionState& motion = session.motion;
+  const bool dampers = has_dampers(session.mechanism());
   for (std::size_t i = 0; i < motion.runs.size(); ++i) {
     MotionRun& run = motion.runs[i];
     const bool damped = i == 0;
-    if (!run.wanted || (!damped && !dampers && motion.runs[0].wanted) || !fit_to_run(app)) {
+    if (!run.wanted || (!damped && !dampers && motion.runs[0].wanted) || !fit_to_run(session)) {
       run = {.wanted = run.wanted, .live = nullptr, .run = nullptr, .problem = {}};
       continue;
     }
-    if (!run.live) run.live = std::make_unique<LiveMotion>(app.options.mode, app.options.on_news);
-    const SimulationOptions options = options_of(app, damped);
-    run.asked = go_on && run.run ? run.live->go_on(app.document.shared(), options, run.run, app.playback.time)
-                                 : run.live->start(app.document.shared(), options);
+    if (!run.live) run.live = std::make_unique<LiveMotion>(session.options.mode, session.options.on_news);
+    const SimulationOptions options = options_of(session, damped);
+    run.asked = go_on && run.run
+                    ? run.live->go_on(session.document.shared(), options, run.run, session.playback.time)
+                    : run.live->start(session.document.shared(), options);
     run.finished = false;
     run.problem.clear();
   }
@@ -83,22 +85,22 @@ bool has_dampers(const Mechanism& mechanism) {
          std::ranges::any_of(mechanism.forces, [](const Force& force) { return force.damping != 0; });
 }
 
-const MotionRun* shown_motion(const App& app) {
-  for (const MotionRun& run : app.motion.runs)
+const MotionRun* shown_motion(const Session& session) {
+  for (const MotionRun& run : session.motion.runs)
     if (run.wanted && run.run && !run.run->time.empty()) return &run;
   return nullptr;
 }
 
-bool computing_motion(const App& app) {
-  return app.motion.on && std::ranges::any_of(app.motion.runs, [](const MotionRun& run) {
+bool computing_motion(const Session& session) {
+  return session.motion.on && std::ranges::any_of(session.motion.runs, [](const MotionRun& run) {
            return run.asked != 0 && run.live && !run.finished;
          });
 }
 
-std::optional<double> computed_motion(const App& app) {
-  if (!computing_motion(app)) return std::nullopt;
-  double least = app.motion.duration;
-  for (const MotionRun& motion : app.motion.runs) {
+std::optional<double> computed_motion(const Session& session) {
+  if (!computing_motion(session)) return std::nullopt;
+  double least = session.motion.duration;
+  for (const MotionRun& motion : session.motion.runs) {
     if (motion.asked == 0 || !motion.live || motion.finished) continue;
     // Until something of the new run has come, what there is may be another's.
     const bool any = motion.answered == motion.asked && motion.run && !motion.run->time.empty();
@@ -107,71 +109,73 @@ std::optional<double> computed_motion(const App& app) {
   return least;
 }
 
-std::string motion_words(const App& app, const MotionRun* motion) {
-  if (!has_dampers(app.mechanism())) return "Motion";
+std::string motion_words(const Session& session, const MotionRun* motion) {
+  if (!has_dampers(session.mechanism())) return "Motion";
   return !motion || !motion->run || motion->run->damped ? "Motion, damped" : "Motion, without dampers";
 }
 
-std::vector<std::string> free_coordinates(const App& app) {
+std::vector<std::string> free_coordinates(const Session& session) {
   std::vector<std::string> names;
-  for (const CoordinateSolution& c : app.answer.summary.coordinates)
+  for (const CoordinateSolution& c : session.answer.summary.coordinates)
     if (!c.driven && !c.dependent) names.push_back(coordinate_label(c));
   return names;
 }
 
-void show_motion(App& app, bool on) {
-  if (on == app.motion.on) return;
+void show_motion(Session& session, bool on) {
+  if (on == session.motion.on) return;
   if (!on) {
-    for (MotionRun& run : app.motion.runs)
+    for (MotionRun& run : session.motion.runs)
       run = {.wanted = run.wanted, .live = nullptr, .run = nullptr, .problem = {}};
-    app.motion.on = false;
-    app.motion.poses.clear();
-    app.motion.settled.reset();
-    ++app.motion.version;
-    play(app, false);
-    rewind(app);
+    session.motion.on = false;
+    session.motion.poses.clear();
+    session.motion.settled.reset();
+    ++session.motion.version;
+    play(session, false);
+    rewind(session);
     return;
   }
-  app.motion.on = true;
-  restart_motion(app);
+  session.motion.on = true;
+  restart_motion(session);
 }
 
-void restart_motion(App& app) {
-  app.motion.on = true;
-  ask(app, false);
-  app.playback.time = app.motion.start == Start::state ? app.motion.saved.time : 0;
-  app.moved_time = true;
-  play(app, fit_to_run(app));
+void restart_motion(Session& session) {
+  session.motion.on = true;
+  ask(session, false);
+  session.playback.time = session.motion.start == Start::state ? session.motion.saved.time : 0;
+  session.moved_time = true;
+  play(session, fit_to_run(session));
 }
 
-void stop_motion(App& app) {
-  for (MotionRun& run : app.motion.runs)
+void stop_motion(Session& session) {
+  for (MotionRun& run : session.motion.runs)
     if (run.live) run.live->stop();
 }
 
-void follow_motion(App& app, bool another) {
+void follow_motion(Session& session, bool another) {
   if (another) {
-    app.motion = MotionState{};
-    app.motion.duration = app.mechanism().simulation.duration;
-    app.motion.runs[0].wanted = app.mechanism().simulation.damped || !has_dampers(app.mechanism());
-    app.study = {};
+    session.motion = MotionState{};
+    session.motion.duration = session.mechanism().simulation.duration;
+    session.motion.runs[0].wanted =
+        session.mechanism().simulation.damped || !has_dampers(session.mechanism());
+    session.study = {};
   }
-  if (!app.motion.on) return;
-  const bool go_on = app.motion.go_on && shown_motion(app);
-  ask(app, go_on);
+  if (!session.motion.on) return;
+  const bool go_on = session.motion.go_on && shown_motion(session);
+  ask(session, go_on);
   // Who has paused looks at a moment, which stays.
-  if (!go_on && app.playback.playing)
-    seek_motion(app, app.motion.start == Start::state ? app.motion.saved.time : 0);
+  if (!go_on && session.playback.playing)
+    seek_motion(session, session.motion.start == Start::state ? session.motion.saved.time : 0);
 }
 
-void retell_motion(App& app) {
-  if (!app.motion.on) return;
-  ask(app, false);
-  if (app.playback.playing) seek_motion(app, app.motion.start == Start::state ? app.motion.saved.time : 0);
+void retell_motion(Session& session) {
+  if (!session.motion.on) return;
+  ask(session, false);
+  if (session.playback.playing)
+    seek_motion(session, session.motion.start == Start::state ? session.motion.saved.time : 0);
 }
 
-void update_motion(App& app) {
-  MotionState& motion = app.motion;
+void update_motion(Session& session) {
+  MotionState& motion = session.motion;
   if (!motion.on) return;
   bool news = false;
   for (MotionRun& run : motion.runs) {
@@ -187,68 +191,70 @@ void update_motion(App& app) {
   }
   if (news) {
     ++motion.version;
-    app.moved_time = true; // the drives may stand elsewhere in the new run, see steady_time()
+    session.moved_time = true; // the drives may stand elsewhere in the new run, see steady_time()
   }
-  const MotionRun* shown = shown_motion(app);
+  const MotionRun* shown = shown_motion(session);
   if (!shown) {
     motion.poses.clear();
     motion.settled.reset();
     return;
   }
   const Run& run = *shown->run;
-  if (motion.posed != app.playback.time || motion.posed_version != motion.version) {
-    motion.poses = poses_at(run, app.playback.time);
-    motion.posed = app.playback.time;
+  if (motion.posed != session.playback.time || motion.posed_version != motion.version) {
+    motion.poses = poses_at(run, session.playback.time);
+    motion.posed = session.playback.time;
   }
-  if (motion.posed_version != motion.version || motion.settled_ticket != app.answer.ticket) {
+  if (motion.posed_version != motion.version || motion.settled_ticket != session.answer.ticket) {
     motion.settled.reset();
-    if (run.damped && converged(app) && !solving(app))
-      motion.settled = find_settled(run, app.answer.solution);
-    motion.settled_ticket = app.answer.ticket;
+    if (run.damped && converged(session) && !solving(session))
+      motion.settled = find_settled(run, session.answer.solution);
+    motion.settled_ticket = session.answer.ticket;
   }
   motion.posed_version = motion.version;
 }
 
-void advance_motion(App& app, double seconds) {
-  const MotionRun* shown = shown_motion(app);
+void advance_motion(Session& session, double seconds) {
+  const MotionRun* shown = shown_motion(session);
   if (!shown) return;
   const std::vector<double>& times = shown->run->time;
-  double time = app.playback.time + seconds;
+  double time = session.playback.time + seconds;
   if (time >= times.back()) {
     time = times.back();
     if (shown->finished) { // else what is still being computed is waited for
-      if (app.motion.loop && times.back() > times.front())
+      if (session.motion.loop && times.back() > times.front())
         time = times.front();
       else
-        app.playback.playing = false;
+        session.playback.playing = false;
     }
   }
-  seek_motion(app, time);
+  seek_motion(session, time);
 }
 
-void seek_motion(App& app, double time) {
-  if (const MotionRun* shown = shown_motion(app))
+void seek_motion(Session& session, double time) {
+  if (const MotionRun* shown = shown_motion(session))
     time = std::clamp(time, shown->run->time.front(), shown->run->time.back());
-  app.playback.time = time;
-  app.moved_time = true;
+  session.playback.time = time;
+  session.moved_time = true;
 }
 
-void step_motion(App& app, int samples) {
-  const MotionRun* shown = shown_motion(app);
+void step_motion(Session& session, int samples) {
+  const MotionRun* shown = shown_motion(session);
   if (!shown) return;
-  app.playback.playing = false;
+  session.playback.playing = false;
   const std::vector<double>& times = shown->run->time;
-  const auto now = static_cast<long>(sample_before(*shown->run, app.playback.time + 1e-12));
+  const auto now = static_cast<long>(sample_before(*shown->run, session.playback.time + 1e-12));
   // From between two samples, back means to the one before.
-  const long back = samples < 0 && times[static_cast<std::size_t>(now)] < app.playback.time - 1e-9 ? 1 : 0;
+  const long back =
+      samples < 0 && times[static_cast<std::size_t>(now)] < session.playback.time - 1e-9 ? 1 : 0;
   const long to = std::clamp(now + samples + back, 0L, static_cast<long>(times.size()) - 1);
-  seek_motion(app, times[static_cast<std::size_t>(to)]);
+  seek_motion(session, times[static_cast<std::size_t>(to)]);
 }
 
-double steady_time(const App& app) {
-  const MotionRun* shown = app.motion.on ? shown_motion(app) : nullptr;
-  return shown && app.answer.mechanism ? steady_time(*shown->run, *app.answer.mechanism, app.playback.time)
-                                       : app.playback.time;
+double steady_time(const Session& session) {
+  const MotionRun* shown = session.motion.on ? shown_motion(session) : nullptr;
+  return shown && session.answer.mechanism
+             ? steady_time(*shown->run, *session.answer.mechanism, session.playback.time)
+             : session.playback.time;
 }
 
 double steady_time(const Run& run, const Mechanism& mechanism, double time) {
@@ -269,11 +275,11 @@ double steady_time(const Run& run, const Mechanism& mechanism, double time) {
   return (value_at(run.time, driven->value, time) - coordinates[i].drawn) / coordinates[i].drive->speed;
 }
 
-void keep_motion_state(App& app) {
-  const MotionRun* shown = shown_motion(app);
+void keep_motion_state(Session& session) {
+  const MotionRun* shown = shown_motion(session);
   if (!shown) return;
-  app.motion.saved = state_at(*shown->run, sample_before(*shown->run, app.playback.time + 1e-12));
-  app.notice = "The state of the motion is kept to start from.";
+  session.motion.saved = state_at(*shown->run, sample_before(*shown->run, session.playback.time + 1e-12));
+  session.notice = "The state of the motion is kept to start from.";
 }
 
 } // namespace flyball

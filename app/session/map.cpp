@@ -1,5 +1,6 @@
-#include "app/ui/studies/map/map_control.hpp"
+#include "app/session/map.hpp"
 
+#include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/sweep.hpp"
@@ -91,32 +92,33 @@ FoundCurves find_curves(const Mechanism& mechanism, const MapChoice& choice,
   return found;
 }
 
-void compute_cells(App& app) {
-  MapState& map = app.study.map;
+void compute_cells(Session& session) {
+  MapState& map = session.study.map;
   if (!map.cells_task)
-    map.cells_task = std::make_unique<Background<FoundCells>>(app.options.mode, app.options.on_news);
+    map.cells_task = std::make_unique<Background<FoundCells>>(session.options.mode, session.options.on_news);
   map.asked_cells = of_cells(map.choice);
-  map.cells_of = without_place(app.mechanism(), map.choice);
+  map.cells_of = without_place(session.mechanism(), map.choice);
   map.problem.clear();
-  map.cells_task->start([mechanism = app.document.shared(),
+  map.cells_task->start([mechanism = session.document.shared(),
                          choice = map.asked_cells](const Background<FoundCells>::Watch& watch) {
     return find_cells(*mechanism, choice, watch);
   });
 }
 
-void compute_curves(App& app) {
-  MapState& map = app.study.map;
+void compute_curves(Session& session) {
+  MapState& map = session.study.map;
   map.asked_curves = of_curves(map.choice);
-  map.curves_of = without_place(app.mechanism(), map.choice);
+  map.curves_of = without_place(session.mechanism(), map.choice);
   if (!map.choice.folds && !map.choice.level) {
     map.curves_task.reset();
     map.curves.reset();
-    map.made = false;
+    ++map.version;
     return;
   }
   if (!map.curves_task)
-    map.curves_task = std::make_unique<Background<FoundCurves>>(app.options.mode, app.options.on_news);
-  map.curves_task->start([mechanism = app.document.shared(),
+    map.curves_task =
+        std::make_unique<Background<FoundCurves>>(session.options.mode, session.options.on_news);
+  map.curves_task->start([mechanism = session.document.shared(),
                           choice = map.asked_curves](const Background<FoundCurves>::Watch& watch) {
     return find_curves(*mechanism, choice, watch);
   });
@@ -132,16 +134,16 @@ bool known(const Mechanism& mechanism, const std::string& address) {
 }
 
 // What an axis is at first: across a drive's speed; up another slider, or else gravity or a mass.
-std::string first_address(const App& app, std::size_t axis) {
-  const std::string& other = app.study.map.choice.axes[1 - axis].address;
+std::string first_address(const Session& session, std::size_t axis) {
+  const std::string& other = session.study.map.choice.axes[1 - axis].address;
   std::string found;
-  for (const ParameterControl& control : app.parameters) {
+  for (const ParameterControl& control : session.parameters) {
     if (control.group == ParameterGroup::dampers || control.address == other) continue;
     if (axis == 0 && control.address.ends_with("speed")) return control.address;
     if (found.empty()) found = control.address;
   }
   if (!found.empty()) return found;
-  const Mechanism& mechanism = app.mechanism();
+  const Mechanism& mechanism = session.mechanism();
   for (int i = 0; i < 3; ++i)
     if (const std::string g = "gravity." + std::to_string(i); mechanism.gravity[i] != 0 && g != other)
       return g;
@@ -152,17 +154,17 @@ std::string first_address(const App& app, std::size_t axis) {
 
 // What is chosen at first, and instead of what is not there any more. False where there is nothing to vary or
 // to show.
-bool choose(App& app) {
-  MapChoice& choice = app.study.map.choice;
+bool choose(Session& session) {
+  MapChoice& choice = session.study.map.choice;
   for (std::size_t i = 0; i < 2; ++i) {
-    if (known(app.mechanism(), choice.axes[i].address)) continue;
+    if (known(session.mechanism(), choice.axes[i].address)) continue;
     choice.axes[i].address.clear();
-    const std::string address = first_address(app, i);
+    const std::string address = first_address(session, i);
     if (address.empty()) return false;
-    choice.axes[i] = map_axis(app, address);
+    choice.axes[i] = map_axis(session, address);
   }
-  if (map_coordinate(app)) return true;
-  for (const CoordinateSolution& c : app.answer.summary.coordinates)
+  if (map_coordinate(session)) return true;
+  for (const CoordinateSolution& c : session.answer.summary.coordinates)
     if (!c.driven) {
       choice.coordinate = coordinate_label(c);
       choice.level.reset();
@@ -171,8 +173,8 @@ bool choose(App& app) {
   return false;
 }
 
-void take(App& app) {
-  MapState& map = app.study.map;
+void take(Session& session) {
+  MapState& map = session.study.map;
   if (map.cells_task)
     if (auto news = map.cells_task->take()) {
       if (!news->problem.empty()) map.problem = news->problem;
@@ -180,7 +182,7 @@ void take(App& app) {
         map.problem = "Computing the map was stopped.";
       } else if (news->result) {
         map.cells = std::move(news->result);
-        map.made = false;
+        ++map.version;
       }
     }
   if (map.curves_task)
@@ -188,29 +190,29 @@ void take(App& app) {
       if (!news->problem.empty()) map.problem = news->problem;
       if (news->result) {
         map.curves = std::move(news->result);
-        map.made = false;
+        ++map.version;
       }
     }
 }
 
 } // namespace
 
-std::vector<std::string> map_addresses(const App& app) {
+std::vector<std::string> map_addresses(const Session& session) {
   constexpr std::size_t many = 60; // bodies
   std::vector<std::string> all;
-  for (const ParameterControl& control : app.parameters)
+  for (const ParameterControl& control : session.parameters)
     if (control.group != ParameterGroup::dampers) all.push_back(control.address);
-  if (app.mechanism().bodies.size() > many) return all;
-  for (const std::string& address : parameter_addresses(app.mechanism()))
+  if (session.mechanism().bodies.size() > many) return all;
+  for (const std::string& address : parameter_addresses(session.mechanism()))
     if (!address.starts_with("simulation.") && address.find(".damping") == std::string::npos &&
         std::ranges::find(all, address) == all.end())
       all.push_back(address);
   return all;
 }
 
-MapAxis map_axis(const App& app, const std::string& address) {
-  Slider slider = slider_for(app.mechanism(), address);
-  for (const ParameterControl& control : app.parameters)
+MapAxis map_axis(const Session& session, const std::string& address) {
+  Slider slider = slider_for(session.mechanism(), address);
+  for (const ParameterControl& control : session.parameters)
     if (control.address == address) {
       slider.from = control.from;
       slider.to = control.to;
@@ -219,7 +221,7 @@ MapAxis map_axis(const App& app, const std::string& address) {
   MapAxis axis{
       .address = address, .from = std::min(slider.from, slider.to), .to = std::max(slider.from, slider.to)};
   // Decades do not show on an even axis.
-  const double value = get_parameter(app.mechanism(), address);
+  const double value = get_parameter(session.mechanism(), address);
   if (slider.scale == SliderScale::log && value > 0) {
     axis.from = value / 4;
     axis.to = value * 2;
@@ -227,36 +229,38 @@ MapAxis map_axis(const App& app, const std::string& address) {
   return axis;
 }
 
-const CoordinateSolution* map_coordinate(const App& app) {
-  const auto& shown = converged(app) ? app.answer.solution.coordinates : app.answer.summary.coordinates;
+const CoordinateSolution* map_coordinate(const Session& session) {
+  const auto& shown =
+      converged(session) ? session.answer.solution.coordinates : session.answer.summary.coordinates;
   for (const CoordinateSolution& c : shown)
-    if (!c.driven && coordinate_label(c) == app.study.map.choice.coordinate) return &c;
+    if (!c.driven && coordinate_label(c) == session.study.map.choice.coordinate) return &c;
   return nullptr;
 }
 
-void compute_map(App& app) {
-  compute_cells(app);
-  compute_curves(app);
+void compute_map(Session& session) {
+  compute_cells(session);
+  compute_curves(session);
 }
 
-void cancel_map(App& app) {
-  if (app.study.map.cells_task) app.study.map.cells_task->cancel();
-  if (app.study.map.curves_task) app.study.map.curves_task->cancel();
+void cancel_map(Session& session) {
+  if (session.study.map.cells_task) session.study.map.cells_task->cancel();
+  if (session.study.map.curves_task) session.study.map.curves_task->cancel();
 }
 
-void close_map(App& app) {
+void close_map(Session& session) {
   MapState fresh;
-  fresh.choice = app.study.map.choice;
-  app.study.map = std::move(fresh);
+  fresh.choice = session.study.map.choice;
+  fresh.version = session.study.map.version + 1;
+  session.study.map = std::move(fresh);
 }
 
-bool computing_map(const App& app) {
-  const MapState& map = app.study.map;
+bool computing_map(const Session& session) {
+  const MapState& map = session.study.map;
   return (map.cells_task && map.cells_task->running()) || (map.curves_task && map.curves_task->running());
 }
 
-Progress map_progress(const App& app) {
-  const MapState& map = app.study.map;
+Progress map_progress(const Session& session) {
+  const MapState& map = session.study.map;
   double all = 0, done = 0;
   const char* phase = "";
   const auto add = [&](const auto& task) {
@@ -271,8 +275,8 @@ Progress map_progress(const App& app) {
   return {phase, all > 0 ? done / all : 1};
 }
 
-double map_seconds(const App& app) {
-  const MapState& map = app.study.map;
+double map_seconds(const Session& session) {
+  const MapState& map = session.study.map;
   double longest = 0;
   const auto add = [&](const auto& task) {
     if (task && task->running()) longest = std::max(longest, task->seconds());
@@ -282,36 +286,36 @@ double map_seconds(const App& app) {
   return longest;
 }
 
-void update_map(App& app) {
-  if (app.study.open != Study::map) return;
-  MapState& map = app.study.map;
-  take(app);
-  if (app.mode != Mode::explore || !app.mistakes.empty() || !app.answer.ticket) return;
-  if (!choose(app)) {
+void update_map(Session& session) {
+  if (session.study.open != Study::map) return;
+  MapState& map = session.study.map;
+  take(session);
+  if (session.mode != Mode::explore || !session.mistakes.empty() || !session.answer.ticket) return;
+  if (!choose(session)) {
     map.problem = "A map is over two numbers and shows a free coordinate, and there are not as many here.";
     return;
   }
   // What is shown may be over numbers that are there no more.
   if (map.cells && !std::ranges::all_of(map.cells->choice.axes, [&](const MapAxis& axis) {
-        return known(app.mechanism(), axis.address);
+        return known(session.mechanism(), axis.address);
       }))
     map.cells.reset();
-  if (!map.cells_task || of_cells(map.choice) != map.asked_cells) compute_cells(app);
-  if (of_curves(map.choice) != map.asked_curves) compute_curves(app);
-  if (map.revision == app.document.revision() || computing_map(app)) return;
-  map.revision = app.document.revision();
-  const Mechanism now = without_place(app.mechanism(), map.choice);
+  if (!map.cells_task || of_cells(map.choice) != map.asked_cells) compute_cells(session);
+  if (of_curves(map.choice) != map.asked_curves) compute_curves(session);
+  if (map.revision == session.document.revision() || computing_map(session)) return;
+  map.revision = session.document.revision();
+  const Mechanism now = without_place(session.mechanism(), map.choice);
   map.stale = !(map.cells_of == now);
   const bool quick =
       map.cells && map.cells->run_time_s < no_time && (!map.curves || map.curves->run_time_s < no_time);
   if (!map.stale || !quick) return;
-  compute_map(app);
+  compute_map(session);
   map.stale = false;
 }
 
-void go_to_place(App& app, const std::array<double, 2>& place) {
-  const std::array<MapAxis, 2>& axes = app.study.map.choice.axes;
-  change_parameters(app,
+void go_to_place(Session& session, const std::array<double, 2>& place) {
+  const std::array<MapAxis, 2>& axes = session.study.map.choice.axes;
+  change_parameters(session,
                     "Set " + parameter_phrase(axes[0].address) + " and " + parameter_phrase(axes[1].address),
                     {{axes[0].address, place[0]}, {axes[1].address, place[1]}});
 }

@@ -1,6 +1,5 @@
-#include "app/ui/settings.hpp"
+#include "app/session/settings.hpp"
 
-#include "app/ui/app.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
 
@@ -75,27 +74,6 @@ void keep_settings(const fs::path& state_folder, const Settings& settings) {
     write_bytes(file_in(state_folder), file.dump(1) + "\n");
   } catch (const SceneError&) { // a convenience, no reason to disturb anybody
   }
-}
-
-void choose_units(App& app, const DisplayUnits& units) {
-  if (app.units == units) return;
-  app.units = units;
-  keep_settings(app.options.state, {app.units, app.panels.legend});
-  // Plots are in these units; how a person has looked at them was in others.
-  ++app.study.response.version;
-  fit_plot(app.study.response.view);
-  app.study.map.made = false;
-  fit_plot(app.study.map.view);
-  app.study.modes.campbell.made_result = 0;
-  fit_plot(app.study.modes.campbell.view);
-  ++app.motion.version;
-  for (MotionPlot& plot : app.motion.plots)
-    fit_plot(plot.view);
-}
-
-void open_legend(App& app, bool open) {
-  app.panels.legend = open;
-  keep_settings(app.options.state, {app.units, app.panels.legend});
 }
 
 } // namespace flyball

@@ -3,13 +3,18 @@
 #pragma once
 
 #include "app/live/background.hpp"
-#include "app/ui/plots/plot_view.hpp"
+#include "engine/solve/solution.hpp"
 #include "engine/study/fold_curve.hpp"
 
 #include <array>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace flyball {
+
+struct Session;
 
 struct MapAxis {
   std::string address;
@@ -56,11 +61,28 @@ struct MapState {
   std::uint64_t revision = 0;          // of the document when `stale` was found
   bool stale = false;                  // computed before the last changes
   std::string problem;
-  PlotView view;
-  Plot plot;
-  std::uint64_t made_ticket = 0; // of the answer that the marker shows
-  bool made = false;             // the plot is of what there is
-  std::uint64_t plots_made = 0;
+  std::uint64_t version = 1; // of what was found
 };
+
+// Takes what was computed; computes what was chosen, and anew after changes where that takes no time to speak
+// of.
+void update_map(Session& session);
+void compute_map(Session& session); // all of it
+void cancel_map(Session& session);
+// Everything goes but what was chosen.
+void close_map(Session& session);
+bool computing_map(const Session& session);
+Progress map_progress(const Session& session);
+double map_seconds(const Session& session); // since it was begun
+
+// Addresses of the numbers that may be varied: those with a slider first, then every other unless they are
+// very many.
+std::vector<std::string> map_addresses(const Session& session);
+// An axis over the number, with the range of its slider or of one that suits it.
+MapAxis map_axis(const Session& session, const std::string& address);
+// The coordinate that is shown, with its present value; null where there is none.
+const CoordinateSolution* map_coordinate(const Session& session);
+// Both parameters, as one step of the history.
+void go_to_place(Session& session, const std::array<double, 2>& place);
 
 } // namespace flyball

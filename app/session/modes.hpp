@@ -1,0 +1,69 @@
+// The modes of the steady state that is shown, and one of them moving in the view. Nothing of it is made
+// before a person asks.
+#pragma once
+
+#include "app/live/background.hpp"
+#include "app/session/campbell.hpp"
+#include "engine/report/analysis.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+struct Session;
+
+struct FoundModes {
+  std::vector<VibrationMode> modes;
+  std::optional<StabilityEvidence> evidence;
+  std::unique_ptr<Analysis> analysis; // which stands in the state, for poses along a mode
+  double run_time_s = 0;
+};
+
+struct ModesState {
+  std::unique_ptr<Background<FoundModes>> task;
+  std::optional<FoundModes> result;
+  std::uint64_t asked = 0, of = 0; // tickets of the answers: last asked for, and of the result
+  std::string problem;
+
+  std::optional<std::size_t> chosen; // of the modes
+  double amplitude = 0.15;           // of the largest coordinate: rad, or parts of the mechanism's reach
+  double phase = 0;                  // rad
+  bool playing = false;
+  std::vector<Pose> poses; // along the chosen mode; empty: none
+  struct Posed {
+    std::uint64_t of = 0;
+    std::size_t mode = 0;
+    double amplitude = 0, phase = 0, time = 0;
+    bool operator==(const Posed&) const = default;
+  } posed; // what they are of
+
+  CampbellState campbell;
+};
+
+// Takes what was found; asks for what is missing while the study is open.
+void update_modes(Session& session);
+void find_modes_again(Session& session);
+// Everything goes but how the Campbell diagram is wanted.
+void close_modes(Session& session);
+// Whether modes or the diagram are being computed.
+bool finding_modes(const Session& session);
+// Whether the modes are those of the state that is shown.
+bool modes_are_current(const Session& session);
+
+// Moves the mode, or none, in the view.
+void choose_mode(Session& session, std::optional<std::size_t> mode);
+// The mode that moves in the view; null: none.
+const VibrationMode* moving_mode(const Session& session);
+// Its motion goes on by `seconds` on the screen.
+void advance_mode(Session& session, double seconds);
+// s, of one swing on the screen; what does not swing sways.
+double shown_period(const VibrationMode& mode);
+// How many times slower than it is the mode is shown; below one: faster. Nothing where it does not swing.
+std::optional<double> shown_slower(const VibrationMode& mode);
+// Whether disturbances of its shape grow.
+bool grows(const VibrationMode& mode);
+
+} // namespace flyball

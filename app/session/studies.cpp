@@ -1,0 +1,35 @@
+#include "app/session/studies.hpp"
+
+#include "app/session/session.hpp"
+
+namespace flyball {
+
+void open_study(Session& session, Study study) {
+  if (study == session.study.open) study = Study::none;
+  if (study != Study::none) set_mode(session, Mode::explore);
+  // The motion goes with its panel.
+  if (session.study.open == Study::motion && study != Study::motion) show_motion(session, false);
+  if (study != Study::states) session.study.states = {};
+  if (study != Study::modes) close_modes(session);
+  if (study != Study::map) close_map(session);
+  if (study != Study::response) close_response(session);
+  session.study.open = study;
+  if (study == Study::motion) show_motion(session, true);
+}
+
+void update_studies(Session& session) {
+  update_states(session);
+  update_modes(session);
+  update_map(session);
+  update_response(session);
+  update_comparison(session);
+}
+
+bool studying(const Session& session) {
+  const StudyState& study = session.study;
+  return computing_motion(session) || computing_response(session) || comparing(session) ||
+         (study.states.task && study.states.task->running()) || finding_modes(session) ||
+         computing_map(session);
+}
+
+} // namespace flyball

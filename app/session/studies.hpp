@@ -1,0 +1,32 @@
+// The studies of a steady state: which one is open, and what they have found.
+#pragma once
+
+#include "app/session/compare.hpp"
+#include "app/session/map.hpp"
+#include "app/session/modes.hpp"
+#include "app/session/response.hpp"
+#include "app/session/states.hpp"
+
+namespace flyball {
+
+struct Session;
+
+enum class Study { none, motion, compare, response, states, modes, map };
+
+struct StudyState {
+  Study open = Study::none;
+  CompareState compare;
+  ResponseState response;
+  StatesState states;
+  ModesState modes;
+  MapState map;
+};
+
+// Shows a study, in the explore mode; the same again, or none, closes it.
+void open_study(Session& session, Study study);
+// Takes what studies have found in the background, and asks for what is missing.
+void update_studies(Session& session);
+// Whether one computes.
+bool studying(const Session& session);
+
+} // namespace flyball
