@@ -1,0 +1,77 @@
+// A session without a window: this program is linked without Dear ImGui and without OpenGL.
+#include "app/session/session.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+
+#include <chrono>
+#include <thread>
+
+using namespace flyball;
+
+namespace {
+
+constexpr const char* speed = "joints.spin.drive.speed";
+constexpr const char* governor = FLYBALL_ASSETS "/scenes/governor.json";
+
+double collar(const Session& session) {
+  REQUIRE(converged(session));
+  for (const CoordinateSolution& c : session.answer.solution.coordinates)
+    if (c.joint == "slide") return c.value;
+  FAIL("no collar");
+  return 0;
+}
+
+// A window's loop without the window, until `done`.
+template <class Done>
+bool run_until(Session& session, const Done& done) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!done() && std::chrono::steady_clock::now() < end) {
+    update(session, 0.01);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return done();
+}
+
+} // namespace
+
+TEST_CASE("Session: opens a scene, follows a slider and takes it back") {
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_scene(session, governor);
+  update(session, 0);
+  REQUIRE(session.problem.empty());
+  const double at_rest = collar(session), before = get_parameter(session.mechanism(), speed);
+  ++session.gesture;
+  change_parameter(session, speed, before + 3);
+  update(session, 0);
+  CHECK(get_parameter(session.mechanism(), speed) == before + 3);
+  CHECK(get_parameter(session.document.stored(), speed) == before);
+  CHECK(std::abs(collar(session) - at_rest) > 1e-3); // faster balls move the collar
+  undo(session);
+  update(session, 0);
+  CHECK(get_parameter(session.mechanism(), speed) == before);
+  CHECK(std::abs(collar(session) - at_rest) < 1e-9);
+}
+
+TEST_CASE("Session: solves and studies in the background") {
+  Session session({.mode = LiveSolver::Mode::background});
+  open_scene(session, governor);
+  REQUIRE(run_until(session, [&] { return converged(session) && !solving(session); }));
+  open_study(session, Study::states);
+  REQUIRE(run_until(session, [&] { return session.study.states.result && !studying(session); }));
+  REQUIRE_FALSE(session.study.states.result->all.equilibria.empty());
+  CHECK(states_are_current(session));
+  CHECK(shown_state(session).has_value());
+  open_study(session, Study::response);
+  REQUIRE(run_until(session, [&] { return session.study.response.result && !studying(session); }));
+  CHECK_FALSE(session.study.response.result->lines.empty());
+  CHECK_FALSE(session.study.states.result.has_value()); // gone with its tab
+}
+
+TEST_CASE("Session: a slider's move hands one mechanism on, from the document to the answer") {
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_scene(session, governor);
+  ++session.gesture;
+  change_parameter(session, speed, 12);
+  update(session, 0);
+  CHECK(session.answer.mechanism.get() == session.document.shared().get());
+}

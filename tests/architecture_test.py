@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Includes go one way: a folder sees itself and what this table names, and nothing else.
+
+    architecture_test.py SOURCE_DIR
+"""
+import pathlib
+import re
+import sys
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
+
+# In the order of the house: each folder sees those before it that it names. `engine` is all of the engine.
+ENGINE = ["task", "linear", "mechanism", "system", "kkt", "solve", "stability", "search", "report",
+          "continuation", "dynamics", "study"]
+APP = {
+    "app/platform": [],
+    "app/document": ["engine", "app/platform"],
+    "app/live": ["engine"],
+    "app/plot": ["engine"],
+    "app/render": ["engine", "app/platform"],
+    "app/session": ["engine", "app/platform", "app/document", "app/live"],
+    "app/viewport": ["engine", "app/platform", "app/document", "app/render"],
+    "app/ui": ["engine", "app/platform", "app/document", "app/live", "app/plot", "app/render", "app/session",
+               "app/viewport"],
+    "app/cli": ["engine", "app/platform", "app/document", "app/live", "app/plot", "app/render",
+                "app/session", "app/viewport", "app/ui"],
+}
+# What draws has no place in these, nor in the engine.
+WITHOUT_DRAWING = ["app/platform", "app/document", "app/live", "app/plot", "app/session"]
+DRAWING = re.compile(r"^(imgui|GL/|glad/|GLFW/|EGL/)")
+
+
+def folder_of(path):
+    parts = path.split("/")
+    return "/".join(parts[:2]) if len(parts) > 2 else parts[0]
+
+
+def violations(source):
+    found = []
+    for top in ("engine", "app"):
+        for file in sorted((source / top).rglob("*.[ch]pp")):
+            path = file.relative_to(source).as_posix()
+            mine = folder_of(path)
+            for name in INCLUDE.findall(file.read_text()):
+                if DRAWING.match(name) and (top == "engine" or mine in WITHOUT_DRAWING):
+                    found.append(f"{path}: {name}: nothing is drawn here")
+                if not name.startswith(("engine/", "app/", "tests/")):
+                    continue
+                theirs = folder_of(name)
+                if theirs == mine:
+                    continue
+                if top == "engine":
+                    order = [f"engine/{each}" for each in ENGINE]
+                    good = theirs in order and mine in order and order.index(theirs) < order.index(mine)
+                    good = good or mine == "engine"  # the public face
+                else:
+                    seen = APP.get(mine, [])
+                    good = theirs in seen or ("engine" in seen and name.startswith("engine/"))
+                if not good:
+                    found.append(f"{path}: {name}: {mine} may not include {theirs}")
+    return found
+
+
+def self_test():
+    """The rules refuse what they are there to refuse."""
+    import tempfile
+    with tempfile.TemporaryDirectory() as folder:
+        source = pathlib.Path(folder)
+        for path, text in {"app/session/a.cpp": '#include "app/ui/app.hpp"\n#include <imgui.h>\n',
+                           "engine/linear/b.cpp": '#include "engine/study/sweep.hpp"\n',
+                           "app/ui/studies/c.cpp": '#include "app/session/session.hpp"\n'}.items():
+            (source / path).parent.mkdir(parents=True, exist_ok=True)
+            (source / path).write_text(text)
+        return len(violations(source)) == 3
+
+
+def main():
+    if not self_test():
+        sys.exit("the rules do not refuse what they should")
+    found = violations(pathlib.Path(sys.argv[1]))
+    print("\n".join(found) or "includes go one way")
+    sys.exit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()
