@@ -19,7 +19,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float list_width = 400; // points
+constexpr float list_width = 400;       // points
 constexpr double modes_patience = 0.25; // s: a shorter wait is not worth a bar
 constexpr ImGuiTableFlags table_flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                                         ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;

@@ -17,7 +17,7 @@ namespace flyball {
 namespace {
 
 constexpr float response_choices_width = 300; // points
-constexpr double curve_patience = 0.25;    // s: a shorter wait is not worth a bar
+constexpr double curve_patience = 0.25;       // s: a shorter wait is not worth a bar
 
 void parameter_choice(App& app) {
   std::vector<std::string> phrases;
