@@ -2,7 +2,6 @@
 #include "app/session/campbell.hpp"
 
 #include "app/session/session.hpp"
-#include "app/session/state_words.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>

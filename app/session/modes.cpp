@@ -1,7 +1,6 @@
 #include "app/session/modes.hpp"
 
 #include "app/session/session.hpp"
-#include "app/session/state_words.hpp"
 
 #include <chrono>
 #include <cmath>

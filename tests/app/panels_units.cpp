@@ -1,8 +1,8 @@
 // Numbers are shown in the units a person has chosen, in fields, results and plots alike; files stay in SI.
 #include "app/plot/csv.hpp"
 #include "app/session/quantity.hpp"
+#include "app/ui/choices.hpp"
 #include "app/ui/plots/shown_plot.hpp"
-#include "app/ui/settings.hpp"
 #include "engine/mechanism/address.hpp"
 #include "robot.hpp"
 #include "temporary_folder.hpp"
