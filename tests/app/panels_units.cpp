@@ -1,6 +1,7 @@
 // Numbers are shown in the units a person has chosen, in fields, results and plots alike; files stay in SI.
 #include "app/plot/csv.hpp"
 #include "app/session/quantity.hpp"
+#include "app/session/settings.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "engine/mechanism/address.hpp"

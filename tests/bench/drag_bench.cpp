@@ -155,32 +155,34 @@ void pull_all(App& app, const Frame& frame) {
   pull_by_hand(app, frame, "chain of 100 while building", chain, tip, ::flyball::Mode::build);
   pull_by_hand(app, frame, "governor while exploring", governor, "ball1", ::flyball::Mode::explore);
   pull_by_hand(app, frame, "chain of 100 while exploring", chain, tip, ::flyball::Mode::explore);
-  // In ms: from a slider's event to the answer, with a session alone: no window, no pixels.
-  void move_in_session(const char* name, const Mechanism& mechanism, const std::string& address) {
-    constexpr int moves = 25;
-    std::vector<double> event, answer;
-    Session session({.mode = LiveSolver::Mode::background});
-    open_document(session, Document(mechanism));
-    session.mode = ::flyball::Mode::explore;
-    const auto wait = [&] {
-      do {
-        update(session, 0);
-        std::this_thread::sleep_for(std::chrono::microseconds(50));
-      } while (solving(session));
-    };
+}
+
+// In ms: from a slider's event to the answer, with a session alone: no window, no pixels.
+void move_in_session(const char* name, const Mechanism& mechanism, const std::string& address) {
+  constexpr int moves = 25;
+  std::vector<double> event, answer;
+  Session session({.mode = LiveSolver::Mode::background});
+  open_document(session, Document(mechanism));
+  session.mode = ::flyball::Mode::explore;
+  const auto wait = [&] {
+    do {
+      update(session, 0);
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+    } while (solving(session));
+  };
+  wait();
+  const double start = get_parameter(mechanism, address);
+  for (int i = 0; i < moves; ++i) {
+    const auto begin = Clock::now();
+    change_parameter(session, address, start * (1 + 1e-3 * (i + 1)));
+    event.push_back(1e3 * seconds_since(begin));
     wait();
-    const double start = get_parameter(mechanism, address);
-    for (int i = 0; i < moves; ++i) {
-      const auto begin = Clock::now();
-      change_parameter(session, address, start * (1 + 1e-3 * (i + 1)));
-      event.push_back(1e3 * seconds_since(begin));
-      wait();
-      answer.push_back(1e3 * seconds_since(begin));
-    }
-    std::ranges::sort(event);
-    std::ranges::sort(answer);
-    std::printf("%-34s %8.3f ms, answered after %.3f ms\n", name, event[moves / 2], answer[moves / 2]);
+    answer.push_back(1e3 * seconds_since(begin));
   }
+  std::ranges::sort(event);
+  std::ranges::sort(answer);
+  std::printf("%-34s %8.3f ms, answered after %.3f ms\n", name, event[moves / 2], answer[moves / 2]);
+}
 
 } // namespace
 
