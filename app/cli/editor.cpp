@@ -266,6 +266,7 @@ Ending run_window(Window& window, const std::filesystem::path& scene, const Edit
            .scenes = data_folder() / "scenes",
            .theme = options.dark ? Theme::dark : Theme::light,
            .numbers = {},
+           .animated = true,
            .state = state_folder()});
   app.files.changes = ChangeWatch(glfwPostEmptyEvent);
   Stage stage(app, options.scale.value_or(std::max(window.content_scale(), 1.f)));

@@ -33,9 +33,15 @@ Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& o
            .numbers = {}});
   app.view.samples = options.antialiased ? 4 : 1;
   app.scale = options.scale;
+  app.view.loads = options.loads || !options.free_body.empty();
   open_document(app, Document(load_scene(scene), scene));
   for (const SceneError& warning : find_warnings(app.mechanism()))
     report_warning(scene, warning);
+  if (!options.free_body.empty()) {
+    if (body_index(app.mechanism(), options.free_body) < 0)
+      throw SceneError("--free-body", "no body is called \"" + options.free_body + "\"");
+    select(app, {{Part{PartKind::body, options.free_body}}});
+  }
   if (options.drawn_pose) {
     app.mode = Mode::build;
     app.view.ghost = false;
@@ -43,7 +49,8 @@ Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& o
   const OffscreenContext context;
   const PixelSize size{options.width, options.height};
   Picture picture;
-  picture.image = options.interface ? interface_picture(app, size, options.scale) : view_picture(app, size);
+  picture.image = options.interface ? interface_picture(app, size, options.scale)
+                                    : view_picture(app, size, options.scale);
   picture.drawn_by = context.description();
   picture.answer = app.answer;
   return picture;

@@ -18,6 +18,8 @@ struct PictureOptions {
   float scale = 1;                // pixels a point has
   Theme theme = Theme::light;
   bool antialiased = true;
+  bool loads = false;    // arrows of what acts
+  std::string free_body; // of this body its free-body diagram; empty: of none
 };
 
 struct Picture {

@@ -17,9 +17,9 @@ namespace {
 
 struct RenderOptions {
   std::filesystem::path scene, out;
-  std::string size = "1280x720", pose = "equilibrium", theme = "light";
+  std::string free_body, size = "1280x720", pose = "equilibrium", theme = "light";
   float scale = 1;
-  bool interface = false, plain = false;
+  bool interface = false, plain = false, loads = false;
 };
 
 Ending run_render(const RenderOptions& options) {
@@ -29,6 +29,8 @@ Ending run_render(const RenderOptions& options) {
   wanted.drawn_pose = options.pose == "drawn";
   wanted.scale = options.scale;
   wanted.theme = options.theme == "dark" ? Theme::dark : Theme::light;
+  wanted.loads = options.loads;
+  wanted.free_body = options.free_body;
   wanted.antialiased = !options.plain;
   constexpr int largest = 16384; // pixels a side
   read_size(options.size, largest, wanted.width, wanted.height);
@@ -71,6 +73,9 @@ void add_render(CLI::App& app, Ending& ending) {
   command->add_option("--theme", options->theme, "Colours")
       ->check(CLI::IsMember({"light", "dark"}))
       ->capture_default_str();
+  command->add_flag("--loads", options->loads,
+                    "With arrows of reactions, drive torques, springs' forces and inertial loads");
+  command->add_option("--free-body", options->free_body, "With the free-body diagram of this body");
   command->add_flag("--no-msaa", options->plain, "Without anti-aliasing of the view: faster");
   command->footer("Example: flyball render governor.json -o governor.png --ui --size 1280x800");
   command->callback([options, &ending] { ending = run_render(*options); });

@@ -182,7 +182,10 @@ LiveAnswer LiveSolver::State::solve(const Job& job) {
     out.summary = analysis->summary();
     analysed = out.solution.status == Status::converged ? job.ticket : 0;
     if (analysed && job.request.grip) out.grip = find_grip(*out.mechanism, out.solution, *job.request.grip);
-    if (analysed) out.poses = out.time == 0 ? out.solution.poses : analysis->poses_at(out.time);
+    if (analysed) {
+      out.poses = out.time == 0 ? out.solution.poses : analysis->poses_at(out.time);
+      out.turning = analysis->turning_at(0);
+    }
   } catch (const std::exception& error) { // SceneError, or no memory
     out.error = error.what();
     out.solution = {};

@@ -45,11 +45,12 @@ struct LiveAnswer {
   std::shared_ptr<const Mechanism> mechanism; // as asked: the very one; null where ticket is 0
   Solution solution;
   SystemSummary summary;
-  std::vector<Pose> poses;          // at the time asked for; empty where there is no solution
-  double time = 0;                  // s
-  std::optional<std::string> error; // why the mechanism cannot be compiled; then there is no solution
-  bool left_branch = false;         // asked for the nearest, but nothing was near
-  std::optional<Grip> grip;         // where it was asked for and there is a steady state
+  std::vector<Pose> poses;            // at the time asked for; empty where there is no solution
+  std::vector<AngularMotion> turning; // of the bodies, at the drawn drive phase; empty likewise
+  double time = 0;                    // s
+  std::optional<std::string> error;   // why the mechanism cannot be compiled; then there is no solution
+  bool left_branch = false;           // asked for the nearest, but nothing was near
+  std::optional<Grip> grip;           // where it was asked for and there is a steady state
 };
 
 // Where the last answer's mechanism is at another time.

@@ -28,6 +28,9 @@ constexpr std::array<Words<LengthUnit>, 2> lengths{
 constexpr std::array<Words<SpeedUnit>, 3> speeds{
     {{"rad/s", SpeedUnit::radian}, {"deg/s", SpeedUnit::degree}, {"rpm", SpeedUnit::rpm}}};
 
+constexpr std::array<Words<Navigation>, 3> navigations{
+    {{"own", Navigation::own}, {"blender", Navigation::blender}, {"cad", Navigation::cad}}};
+
 template <class Table, class Value>
 void read(const json& from, const char* key, const Table& words, Value& value) {
   const auto found = from.find(key);
@@ -55,6 +58,7 @@ Settings read_settings(const fs::path& state_folder) {
     read(file, "angle", angles, settings.units.angle);
     read(file, "length", lengths, settings.units.length);
     read(file, "speed", speeds, settings.units.speed);
+    read(file, "navigation", navigations, settings.navigation);
     if (const auto legend = file.find("legend"); legend != file.end() && legend->is_boolean())
       settings.legend = legend->get<bool>();
   } catch (const SceneError&) { // unreadable
@@ -67,6 +71,7 @@ void keep_settings(const fs::path& state_folder, const Settings& settings) {
   const json file = {{"angle", word_for(angles, settings.units.angle)},
                      {"length", word_for(lengths, settings.units.length)},
                      {"speed", word_for(speeds, settings.units.speed)},
+                     {"navigation", word_for(navigations, settings.navigation)},
                      {"legend", settings.legend}};
   std::error_code ignored;
   fs::create_directories(state_folder, ignored);

@@ -1,6 +1,7 @@
 // What a person has chosen for every document, kept from one run of the program to the next.
 #pragma once
 
+#include "app/session/navigation.hpp"
 #include "app/session/units.hpp"
 
 #include <filesystem>
@@ -10,6 +11,7 @@ namespace flyball {
 struct Settings {
   DisplayUnits units;
   bool legend = true; // of the view is open
+  Navigation navigation = Navigation::own;
   bool operator==(const Settings&) const = default;
 };
 

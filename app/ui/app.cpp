@@ -1,6 +1,7 @@
 #include "app/ui/app.hpp"
 
 #include "app/session/settings.hpp"
+#include "app/ui/load_view.hpp"
 
 namespace flyball {
 
@@ -13,10 +14,12 @@ void fit_view(App& app, ViewSize size) {
   Bounds bounds = scene.solid.bounds;
   for (const Instance& instance : scene.ghost)
     bounds.add(instance_bounds(instance));
-  if (app.view.keep_direction)
-    app.view.camera.fit(bounds, size);
-  else
+  if (app.view.keep_direction) {
+    (app.view.glide ? app.view.glide->to : app.view.camera).fit(bounds, size);
+  } else {
+    app.view.glide.reset();
     app.view.camera = initial_camera(*frame.mechanism, bounds, size);
+  }
   // Until the first answer is there nobody knows what will have to be in view.
   if (!solving(app)) app.view.fit = false;
 }
@@ -30,7 +33,10 @@ App::App(AppOptions chosen)
                .numbers = chosen.numbers,
                .state = std::move(chosen.state)}),
       theme(chosen.theme) {
-  panels.legend = read_settings(options.state).legend;
+  const Settings settings = read_settings(options.state);
+  panels.legend = settings.legend;
+  navigation = settings.navigation;
+  view.animated = chosen.animated;
   document_opened(false);
 }
 
@@ -42,6 +48,7 @@ void App::document_opened(bool same_file) {
   if (!same_file) {
     view.fit = true;
     view.keep_direction = false;
+    view.hidden.clear();
   }
   plots = {};
   view.hovered = {};
@@ -58,8 +65,9 @@ void set_tool(App& app, Tool tool) {
 }
 
 void look_from(App& app, double azimuth, double elevation) {
-  app.view.camera.azimuth = azimuth;
-  app.view.camera.elevation = elevation;
+  ViewCamera& camera = glide_goal(app);
+  camera.azimuth = azimuth;
+  camera.elevation = elevation;
   app.view.fit = app.view.keep_direction = true;
 }
 
@@ -73,7 +81,9 @@ void update(App& app, double seconds, ViewSize view) {
     app.plots.campbell = {};
     app.plots.campbell.hertz = hertz;
   }
+  app.view.size = view;
   fit_view(app, view);
+  advance_glide(app, seconds);
 }
 
 ViewFrame view_frame(const App& app) {
@@ -112,6 +122,8 @@ ViewFrame view_frame(const App& app) {
   frame.options.scale = app.scale;
   frame.selected = find_parts(*frame.mechanism, app.selection());
   frame.hovered = app.view.hovered;
+  frame.hidden = find_parts(*frame.mechanism, {app.view.hidden});
+  show_loads(app, frame);
   frame.cut_joints = app.answer.summary.cut_joints;
   frame.colouring = app.document.colouring();
   return frame;
@@ -122,6 +134,7 @@ ViewFrame motion_frame(const App& app) {
   frame.poses = app.motion.poses;
   frame.ghost = {};
   frame.motion = {};
+  frame.loads = nullptr;
   frame.hovered = {};
   return frame;
 }

@@ -3,10 +3,13 @@
 #pragma once
 
 #include "app/render/fonts.hpp"
+#include "app/session/navigation.hpp"
 #include "app/session/session.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/command_state.hpp"
 #include "app/ui/file_dialog_state.hpp"
 #include "app/ui/inspector_state.hpp"
+#include "app/ui/panels/view_cube.hpp"
 #include "app/ui/shown_scene.hpp"
 #include "app/ui/studies/motion/movie_state.hpp"
 #include "app/ui/studies/study_views.hpp"
@@ -35,12 +38,23 @@ struct AppOptions {
   std::filesystem::path scenes;  // the shipped scenes; may be empty
   Theme theme = Theme::light;
   NumberStyle numbers;
+  bool animated = false;         // the camera glides to where commands put it
   std::filesystem::path state{}; // folder for recent files and autosaves; empty: nothing is kept anywhere
 };
 
 struct ViewState {
   ViewCamera camera;
+  ViewSize size;                    // pixels, of the last update
+  std::optional<CameraGlide> glide; // while the camera is on its way
+  bool animated = false;            // commands make it glide
+  ViewCubeState cube;
+  std::vector<Part> hidden;    // not drawn, nor to be pointed at
+  int menu_in = 0;             // frames until the context menu opens, as panels settle first; 0: it does not
+  std::optional<Vec2> menu_at; // where, in pixels of the window; none: where its part is
+  bool menu_of_part = false;   // it is that of the selected parts
   bool ghost = true, grid = true, shadow = true;
+  bool loads = false;          // arrows of what acts; see load_view.hpp
+  bool alone = false;          // no panels round it, for pictures
   int samples = 4;             // 1: no anti-aliasing
   bool fit = true;             // wanted at the next update
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
@@ -109,14 +123,14 @@ struct DialogState {
   bool showing = false;
   std::string path;                // typed
   int width = 1920, height = 1080; // pixels
-  bool panels = false;
+  bool panels = false, loads = false;
   std::shared_ptr<PlotSave> plot; // while one is being saved
 };
 
 struct ExportRequest {
   std::filesystem::path file;
   int width = 1920, height = 1080; // pixels
-  bool panels = false;
+  bool panels = false, loads = false;
   std::shared_ptr<const PlotSave> plot{}; // this instead of the window or the view
 };
 
@@ -133,6 +147,7 @@ struct App : Session {
   PanelState panels;
   DialogState dialog;
   Theme theme = Theme::light;
+  Navigation navigation = Navigation::own;
   float scale = 1; // pixels a point has
   UiFonts fonts;
   WidgetMap widgets;

@@ -39,6 +39,7 @@ void build_gui(App& app) {
   take_tool_keys(app);
   handle_shortcuts(app);
   const Layout layout = layout_of(app, size.x, size.y);
+  if (app.view.alone) return view_alone(app, layout.view);
   // ImGui puts windows that never come to the front behind those it has: the first is the topmost.
   drag_splitters(app, layout);
   welcome(app, layout.view);

@@ -5,10 +5,18 @@
 
 namespace flyball {
 
+namespace {
+
+Settings settings_of(const App& app) {
+  return {.units = app.units, .legend = app.panels.legend, .navigation = app.navigation};
+}
+
+} // namespace
+
 void choose_units(App& app, const DisplayUnits& units) {
   if (app.units == units) return;
   app.units = units;
-  keep_settings(app.options.state, {app.units, app.panels.legend});
+  keep_settings(app.options.state, settings_of(app));
   // Plots are in these units; how a person has looked at them was in others.
   app.plots.response.plotted = 0;
   fit_plot(app.plots.response.view);
@@ -21,9 +29,14 @@ void choose_units(App& app, const DisplayUnits& units) {
     fit_plot(plot.view);
 }
 
+void choose_navigation(App& app, Navigation navigation) {
+  app.navigation = navigation;
+  keep_settings(app.options.state, settings_of(app));
+}
+
 void open_legend(App& app, bool open) {
   app.panels.legend = open;
-  keep_settings(app.options.state, {app.units, app.panels.legend});
+  keep_settings(app.options.state, settings_of(app));
 }
 
 } // namespace flyball

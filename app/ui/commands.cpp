@@ -4,8 +4,10 @@
 #include "app/ui/choices.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/file_commands.hpp"
+#include "app/ui/hidden_parts.hpp"
 #include "app/ui/key_focus.hpp"
 #include "app/ui/panels.hpp"
+#include "app/ui/panels/context_menu.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
@@ -345,7 +347,7 @@ const std::array table{
             .title = "All in view",
             .help = "Move the camera so that everything is seen.",
             .key = plain('F'),
-            .run = [](App& app) { app.view.fit = app.view.keep_direction = true; },
+            .run = fit_all,
             .separated = true},
     Command{.id = "view.front",
             .title = "From the front",
@@ -367,6 +369,31 @@ const std::array table{
             .help = "Look from the front, right and above.",
             .key = plain('4'),
             .run = [](App& app) { look_from(app, right_angle / 2, isometric_elevation); }},
+    Command{.id = "view.fit_selected",
+            .title = "Selection in view",
+            .help = "Move the camera to what is selected.",
+            .key = plain('Z'),
+            .run = fit_selected,
+            .enabled = any_selected},
+    Command{.id = "view.hide",
+            .title = "Hide",
+            .help = "Leave the selected parts out of the view; they act as before.",
+            .key = shift('H'),
+            .run = hide_selected,
+            .enabled = any_selected,
+            .separated = true},
+    Command{.id = "view.isolate",
+            .title = "Isolate",
+            .help = "Hide everything but the selected parts and what joins them.",
+            .key = plain('I'),
+            .run = isolate_selected,
+            .enabled = any_selected},
+    Command{.id = "view.show_all",
+            .title = "Show all",
+            .help = "Bring hidden parts back.",
+            .key = ctrl_shift('H'),
+            .run = show_hidden,
+            .enabled = [](const App& app) { return !app.view.hidden.empty(); }},
     Command{.id = "view.ghost",
             .title = "Ghost",
             .help = "The drawn pose behind the steady state, or the other way round.",
@@ -374,6 +401,13 @@ const std::array table{
             .run = [](App& app) { app.view.ghost = !app.view.ghost; },
             .checked = [](const App& app) { return app.view.ghost; },
             .separated = true},
+    Command{.id = "view.loads",
+            .title = "Forces",
+            .help = "Arrows of reactions, drive torques, springs' forces and inertial loads; with one body "
+                    "chosen, its free-body diagram.",
+            .key = plain('A'),
+            .run = [](App& app) { app.view.loads = !app.view.loads; },
+            .checked = [](const App& app) { return app.view.loads; }},
     Command{.id = "view.grid",
             .title = "Grid",
             .help = "The grid on the floor.",
@@ -384,6 +418,32 @@ const std::array table{
             .help = "The shadow on the floor.",
             .run = [](App& app) { app.view.shadow = !app.view.shadow; },
             .checked = [](const App& app) { return app.view.shadow; }},
+    Command{.id = "view.navigation_own",
+            .title = "Mouse: left button orbits",
+            .help = "Drag to orbit, right drag or Shift+drag to pan, the wheel zooms to the pointer.",
+            .run = [](App& app) { choose_navigation(app, Navigation::own); },
+            .checked = [](const App& app) { return app.navigation == Navigation::own; },
+            .separated = true},
+    Command{.id = "view.navigation_blender",
+            .title = "Mouse: as in Blender",
+            .help =
+                "Middle drag to orbit, with Shift to pan, with Ctrl or the wheel to zoom; the left button "
+                "selects a box.",
+            .run = [](App& app) { choose_navigation(app, Navigation::blender); },
+            .checked = [](const App& app) { return app.navigation == Navigation::blender; }},
+    Command{.id = "view.navigation_cad",
+            .title = "Mouse: as in CAD",
+            .help =
+                "Right or middle drag to orbit, with Ctrl to pan, with Shift or the wheel to zoom (Onshape, "
+                "SolidWorks); the left button selects a box.",
+            .run = [](App& app) { choose_navigation(app, Navigation::cad); },
+            .checked = [](const App& app) { return app.navigation == Navigation::cad; }},
+    Command{.id = "view.menu",
+            .title = "Context menu",
+            .help = "What can be done with the selected parts, or with the view; as a right click.",
+            .key = shift(keys::f10),
+            .also = plain(keys::menu),
+            .run = open_context_menu},
     Command{.id = "view.theme",
             .title = "Dark colours",
             .help = "Light or dark.",
@@ -537,6 +597,8 @@ std::string key_text(const KeyPress& key) {
   case keys::del: return text + "Delete";
   case keys::f1: return text + "F1";
   case keys::f2: return text + "F2";
+  case keys::f10: return text + "F10";
+  case keys::menu: return text + "Menu";
   default: return text + static_cast<char>(key.key);
   }
 }

@@ -39,7 +39,8 @@ void shortcut_sheet(App& app);
 // GLFW's codes of keys without a character.
 namespace keys {
 inline constexpr int escape = 256, enter = 257, tab = 258, backspace = 259, insert = 260, del = 261,
-                     right = 262, left = 263, down = 264, up = 265, home = 268, end = 269, f1 = 290, f2 = 291;
+                     right = 262, left = 263, down = 264, up = 265, home = 268, end = 269, f1 = 290, f2 = 291,
+                     f10 = 299, menu = 348;
 } // namespace keys
 
 } // namespace flyball

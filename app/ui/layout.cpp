@@ -78,6 +78,10 @@ Layout layout_of(const App& app, float width, float height) {
   const float s = app.scale;
   const bool building = app.mode == Mode::build;
   Layout layout;
+  if (app.view.alone) {
+    layout.view = {0, 0, width, height};
+    return layout;
+  }
   const float top = std::round(toolbar_height * s);
   float below = std::max(height - top, 1.f);
   layout.toolbar = {0, 0, width, top};

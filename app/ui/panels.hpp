@@ -8,6 +8,7 @@ namespace flyball {
 
 void toolbar_panel(App& app, const PanelRect& rect);
 void viewport_panel(App& app, const PanelRect& rect);
+void view_alone(App& app, const PanelRect& rect);
 void beside_panel(App& app, const PanelRect& rect);  // the view of the motion alone
 void outline_panel(App& app, const PanelRect& rect); // the parts, as a tree
 void inspector_panel(App& app,

@@ -20,12 +20,16 @@ const std::shared_ptr<const ViewScene>& keep(const App& app, ShownScene& shown, 
   const bool waits = app.mode == Mode::explore && app.answer.ticket != 0;
   const std::uint64_t revision = waits ? 0 : app.document.revision();
   if (shown.scene && source.revision == revision && source.ticket == app.answer.ticket &&
-      source.theme == frame.theme && same(source.poses, frame.poses) && same(source.ghost, frame.ghost) &&
-      same(source.motion, frame.motion))
+      source.theme == frame.theme && source.loads == (frame.loads != nullptr) &&
+      source.loads_body == frame.loads_body && source.hidden == frame.hidden &&
+      same(source.poses, frame.poses) && same(source.ghost, frame.ghost) && same(source.motion, frame.motion))
     return shown.scene;
   source.revision = revision;
   source.ticket = app.answer.ticket;
   source.theme = frame.theme;
+  source.loads = frame.loads != nullptr;
+  source.loads_body = frame.loads_body;
+  source.hidden = frame.hidden;
   source.poses.assign(frame.poses.begin(), frame.poses.end());
   source.ghost.assign(frame.ghost.begin(), frame.ghost.end());
   source.motion.assign(frame.motion.begin(), frame.motion.end());

@@ -17,6 +17,9 @@ struct SceneSource {
   std::uint64_t revision = 0; // of the document where its mechanism is shown, else 0
   std::uint64_t ticket = 0;   // of the answer
   Theme theme = Theme::light;
+  bool loads = false;
+  int loads_body = -1;
+  std::vector<PartId> hidden;
   std::vector<Pose> poses, ghost, motion;
 };
 

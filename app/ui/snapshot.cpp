@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <utility>
 
 namespace flyball {
 
@@ -17,6 +18,29 @@ Image view_picture(App& app, PixelSize size) {
   frame.hovered = {};
   renderer.draw(frame, target);
   return target.read();
+}
+
+namespace {
+
+// A switch of the app for as long as a picture takes, which may fail.
+class Switched {
+ public:
+  Switched(bool& flag, bool value) : flag_(flag), former_(std::exchange(flag, value)) {}
+  ~Switched() { flag_ = former_; }
+  Switched(const Switched&) = delete;
+  Switched& operator=(const Switched&) = delete;
+
+ private:
+  bool& flag_;
+  bool former_;
+};
+
+} // namespace
+
+Image view_picture(App& app, PixelSize size, float scale) {
+  if (!app.view.loads) return view_picture(app, size);
+  const Switched alone(app.view.alone, true);
+  return interface_picture(app, size, scale);
 }
 
 Image interface_picture(App& app, PixelSize size, float scale) {
@@ -53,9 +77,10 @@ void export_picture(App& app, PixelSize window) {
     const float grown = std::min(static_cast<float>(size.width) / static_cast<float>(window.width),
                                  static_cast<float>(size.height) / static_cast<float>(window.height));
     const float scale = std::max(1.f, std::round(4 * app.scale * grown) / 4);
+    const Switched loads(app.view.loads, request.loads);
     const Image image = request.plot     ? plot_picture(*request.plot, size)
                         : request.panels ? interface_picture(app, size, scale)
-                                         : view_picture(app, size);
+                                         : view_picture(app, size, scale);
     replace_file(request.file, encode_png(image));
     app.notice = "Saved " + request.file.string();
   } catch (const std::exception& error) {

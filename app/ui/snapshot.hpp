@@ -7,6 +7,9 @@ namespace flyball {
 
 // The view from where the camera stands, in app.theme, anti-aliased as app.view says.
 Image view_picture(App& app, PixelSize size);
+// The same with the legend and the values that are written over it, where loads are shown: with letters for
+// `scale` pixels a point.
+Image view_picture(App& app, PixelSize size, float scale);
 // The interface as a window of that size would show it, `scale` pixels a point.
 Image interface_picture(App& app, PixelSize size, float scale);
 

@@ -71,7 +71,9 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   const Layout layout = layout_of(app, width, height);
   const PanelRect& view = layout.view;
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
-  app.view.texture = draw_view(app, view_, view_frame(app), shown_scene(app), pixels_of(view));
+  ViewFrame shown = view_frame(app);
+  shown.options.triad = !has_view_cube(app, view); // the cube shows the axes
+  app.view.texture = draw_view(app, view_, shown, shown_scene(app), pixels_of(view));
   if (layout.beside.width > 0)
     app.view.texture_beside =
         draw_view(app, beside_, motion_frame(app), motion_scene(app), pixels_of(layout.beside));

@@ -125,6 +125,7 @@ struct ViewRenderer::State {
   void draw_floor(const Stage& stage, const ViewFrame& frame, bool shadowed);
   void draw_translucent(const Stage& stage, const ViewFrame& frame, const SceneList& scene,
                         std::span<const Instance> list, float push);
+  void draw_loads(const Stage& stage, const ViewFrame& frame, const ViewScene& shown);
   void draw_triad(const Stage& stage, const ViewFrame& frame, const SceneList& scene);
 };
 
@@ -145,7 +146,8 @@ void ViewRenderer::State::draw_shadow(const Stage& stage, const std::shared_ptr<
   if (shaded == scene && shaded_from == stage.key) return;
   if (!shadow) shadow.emplace();
   shadow->begin(scene->solid.bounds, stage.key);
-  casting.set(scene->solid.instances, shadow->units(), shadow->sight());
+  const bool diagram = !scene->free_body.empty();
+  casting.set(diagram ? scene->free_body : scene->solid.instances, shadow->units(), shadow->sight());
   depth.use();
   set_matrix(depth, "view_projection", shadow->matrix());
   glEnable(GL_POLYGON_OFFSET_FILL);
@@ -322,6 +324,28 @@ void ViewRenderer::State::draw_translucent(const Stage& stage, const ViewFrame& 
   report.drawn += translucent.count();
 }
 
+// Arrows are seen through the solids before them, faintly; glass is drawn over them later.
+void ViewRenderer::State::draw_loads(const Stage& stage, const ViewFrame& frame, const ViewScene& shown) {
+  constexpr float hidden = 0.3f; // alpha
+  std::vector<Instance> faint = shown.arrows.solids;
+  for (Instance& instance : faint)
+    instance.color.a = hidden;
+  translucent.set(faint, stage.units, stage.sight, false);
+  use_lit(stage, frame, shown.solid, false, true);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  report.draw_calls += draw_lit(translucent, frame.options.draft);
+  glDisable(GL_BLEND);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_TRUE);
+  marked.set(shown.arrows.solids, stage.units, stage.sight, false);
+  use_lit(stage, frame, shown.solid, false, false);
+  report.draw_calls += draw_lit(marked, frame.options.draft);
+  report.passes.push_back("loads");
+}
+
 void ViewRenderer::State::draw_triad(const Stage& stage, const ViewFrame& frame, const SceneList& scene) {
   const auto side = static_cast<int>(76 * frame.options.scale);
   const auto gap = static_cast<int>(10 * frame.options.scale);
@@ -359,7 +383,8 @@ ViewReport ViewRenderer::draw(const ViewFrame& frame, const std::shared_ptr<cons
   s.report = {};
   const SceneList& scene = shown->solid;
   const Stage stage(frame, scene, target);
-  s.solids.set(scene.instances, stage.units, stage.sight);
+  const bool diagram = !shown->free_body.empty() || !shown->others.empty();
+  s.solids.set(diagram ? shown->free_body : scene.instances, stage.units, stage.sight);
   s.report.instances = static_cast<int>(scene.instances.size());
   s.report.drawn = s.solids.count();
   const bool floor = (frame.options.grid || frame.options.shadow) && stage.floor_in_view(stage.camera.eye());
@@ -384,6 +409,11 @@ ViewReport ViewRenderer::draw(const ViewFrame& frame, const std::shared_ptr<cons
     s.draw_outline(stage, frame, of_parts(scene, frame.selected), stage.colors->accent, 2.5f);
   }
   if (floor) s.draw_floor(stage, frame, shadowed);
+  if (!shown->arrows.solids.empty()) s.draw_loads(stage, frame, *shown);
+  if (!shown->others.empty()) {
+    s.draw_translucent(stage, frame, scene, shown->others, 1);
+    s.report.passes.push_back("others");
+  }
   if (!shown->motion.empty()) {
     s.draw_translucent(stage, frame, scene, shown->motion, 1);
     s.report.passes.push_back("motion");

@@ -12,8 +12,8 @@ namespace flyball {
 
 // What was done, and by omission what was not needed.
 struct ViewReport {
-  std::vector<std::string_view> passes; // of "background", "shadow", "solid", "outline", "grid", "motion",
-                                        // "ghost", "drawn", "triad", in the order drawn
+  std::vector<std::string_view> passes; // of "background", "shadow", "solid", "outline", "grid", "loads",
+                                        // "others", "motion", "ghost", "drawn", "triad", in the order drawn
   int instances = 0;                    // solids of the scene, each counted once
   int drawn = 0;                        // of them, those in view and not too small to be seen
   int draw_calls = 0;

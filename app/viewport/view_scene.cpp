@@ -2,6 +2,8 @@
 
 #include "app/viewport/body_form.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 
 namespace {
@@ -21,27 +23,54 @@ GhostColors one_color(const Mechanism& mechanism, Color color) {
   return {std::vector<Color>(mechanism.bodies.size(), color), color};
 }
 
+void add_loads(const ViewFrame& frame, const Palette& colors, ViewScene& scene) {
+  constexpr float faded = 0.16f; // alpha
+  const Assembly assembly(*frame.mechanism, frame.poses);
+  const bool diagram = frame.loads_body >= 0;
+  scene.loads = loads_of(assembly, *frame.loads, frame.loads_turning, frame.loads_body, frame.loads_turn);
+  scene.arrows = load_arrows(assembly, scene.loads, diagram, colors);
+  for (const Instance& instance : scene.arrows.solids)
+    scene.solid.bounds.add(instance_bounds(instance));
+  if (!diagram) return;
+  for (Instance instance : scene.solid.instances) {
+    const bool chosen = instance.part == PartId{PartKind::body, frame.loads_body};
+    if (!chosen) instance.color.a = faded;
+    (chosen ? scene.free_body : scene.others).push_back(instance);
+  }
+}
+
+void hide(const std::vector<PartId>& parts, std::vector<Instance>& list) {
+  if (parts.empty()) return;
+  std::erase_if(
+      list, [&](const Instance& instance) { return std::ranges::find(parts, instance.part) != parts.end(); });
+}
+
 } // namespace
 
 SceneList scene_of(const ViewFrame& frame) {
   if (!frame.mechanism) return {};
-  return build_scene(*frame.mechanism, frame.poses,
-                     {.theme = frame.theme,
-                      .joints = frame.options.joints,
-                      .drives = frame.options.drives,
-                      .forces = frame.options.forces,
-                      .cut_joints = frame.cut_joints,
-                      .colouring = frame.colouring});
+  SceneList scene = build_scene(*frame.mechanism, frame.poses,
+                                {.theme = frame.theme,
+                                 .joints = frame.options.joints,
+                                 .drives = frame.options.drives,
+                                 .forces = frame.options.forces,
+                                 .cut_joints = frame.cut_joints,
+                                 .colouring = frame.colouring});
+  hide(frame.hidden, scene.instances);
+  return scene;
 }
 
-ViewScene view_scene(const ViewFrame& frame) {
+namespace {
+
+ViewScene whole_scene(const ViewFrame& frame) {
   ViewScene scene;
   scene.solid = scene_of(frame);
   if (!frame.mechanism) return scene;
   const Mechanism& mechanism = *frame.mechanism;
   const Palette& colors = palette(frame.theme);
+  if (frame.loads && frame.poses.size() == mechanism.bodies.size()) add_loads(frame, colors, scene);
   if (!frame.motion.empty()) scene.motion = build_ghost(mechanism, frame.motion, colors.motion);
-  if (frame.ghost.empty()) return scene;
+  if (frame.ghost.empty() || !scene.others.empty()) return scene; // a diagram has no second pose
   const std::vector<Pose> as_drawn = drawn_poses(mechanism);
   const std::span<const Pose> solid = frame.poses.size() == as_drawn.size() ? frame.poses : as_drawn;
   if (frame.ghost_pose == GhostPose::steady)
@@ -50,6 +79,15 @@ ViewScene view_scene(const ViewFrame& frame) {
   scene.drawn = scene.drawn_is_solid
                     ? build_ghost(mechanism, solid, one_color(mechanism, colors.drawn), frame.ghost)
                     : build_ghost(mechanism, frame.ghost, one_color(mechanism, colors.drawn), solid);
+  return scene;
+}
+
+} // namespace
+
+ViewScene view_scene(const ViewFrame& frame) {
+  ViewScene scene = whole_scene(frame);
+  for (std::vector<Instance>* list : {&scene.ghost, &scene.motion, &scene.drawn})
+    hide(frame.hidden, *list);
   return scene;
 }
 

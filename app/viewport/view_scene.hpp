@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/viewport/camera.hpp"
+#include "app/viewport/load_arrows.hpp"
 #include "app/viewport/scene_list.hpp"
 
 #include <span>
@@ -31,13 +32,18 @@ struct ViewFrame {
   std::span<const Pose> poses;          // solid; empty: the drawn pose
   std::span<const Pose> ghost;          // beside it; may be empty
   GhostPose ghost_pose = GhostPose::drawn;
-  std::span<const Pose> motion; // amber, translucent: the motion; may be empty
-  BodyColouring colouring;      // without: as the mechanism alone says
+  std::span<const Pose> motion;                 // amber, translucent: the motion; may be empty
+  const Solution* loads = nullptr;              // of the solid poses, to draw what acts; null: nothing of it
+  std::span<const AngularMotion> loads_turning; // of the bodies, at the drawn phase
+  Quat loads_turn = Quat::Identity();           // since the drawn phase, which the solution is of
+  int loads_body = -1;                          // its free-body diagram; -1: all loads
+  BodyColouring colouring;                      // without: as the mechanism alone says
   ViewCamera camera;
   Theme theme = Theme::light;
   ViewOptions options;
   std::vector<PartId> selected;
   PartId hovered;
+  std::vector<PartId> hidden;              // not drawn
   std::span<const std::string> cut_joints; // names
 };
 
@@ -47,6 +53,11 @@ struct ViewScene {
   std::vector<Instance> ghost, motion; // of glass
   // Outlined by dashes: solids of the drawn pose, of those bodies that stand elsewhere in the other pose.
   std::vector<Instance> drawn;
+  std::vector<Load> loads;
+  LoadArrows arrows; // of them, drawn over everything else
+  // In a free-body diagram: the solids of the body, and all others, which are drawn as glass. Empty
+  // otherwise.
+  std::vector<Instance> free_body, others;
   bool drawn_is_solid = false; // they are among the solids; else there is nothing of them but the outline
 };
 ViewScene view_scene(const ViewFrame& frame);

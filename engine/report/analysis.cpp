@@ -366,6 +366,16 @@ std::vector<Pose> Analysis::poses_at(double t) {
   return poses;
 }
 
+std::vector<AngularMotion> Analysis::turning_at(double t) {
+  State& s = *state_;
+  std::vector<AngularMotion> turning;
+  Kinematics<double>& kinematics = s.steady.elsewhere().kinematics;
+  forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, kinematics);
+  for (const int link : s.system.body_link)
+    turning.push_back({kinematics.at(link).w, kinematics.at(link).dw});
+  return turning;
+}
+
 std::vector<VibrationMode> Analysis::modes(int count) {
   State& s = *state_;
   if (!s.settled) return {};

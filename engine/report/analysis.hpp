@@ -59,6 +59,11 @@ struct AllSolutions {
   std::string message; // a sentence
 };
 
+// Of a body, in the world frame: rad/s, rad/s^2.
+struct AngularMotion {
+  Vec3 velocity = Vec3::Zero(), acceleration = Vec3::Zero();
+};
+
 class Analysis {
  public:
   // Compiles. Throws SceneError (validate first for all mistakes at once). A mechanism given by pointer (not
@@ -85,6 +90,8 @@ class Analysis {
   // Poses of all bodies at time t (s) after the drawn drive phase: drives turn, the other coordinates stand
   // at their last answer (at the drawn pose before there is one).
   std::vector<Pose> poses_at(double t);
+  // How they turn then.
+  std::vector<AngularMotion> turning_at(double t);
 
   // Modes of the linearised motion about the last answer (modes.hpp); of more than 200 coordinates the
   // `count` whose eigenvalues are nearest to zero. Empty where the last solve has none, or numbers have

@@ -186,3 +186,21 @@ TEST_CASE("the tutorial's pictures are what its steps lead to") {
     }
   });
 }
+
+TEST_CASE("what acts on the governor is drawn, and on one ball of it") {
+  Hand hand("governor.json");
+  set_mode(hand.app, Mode::explore);
+  hand.frames(2);
+  hand.key('A');
+  hand.check("governor-loads");
+  hand.choose(PartKind::body, "ball1");
+  hand.check("governor-free-body");
+}
+
+TEST_CASE("the context menu of a body") {
+  Hand hand("governor.json");
+  hand.choose(PartKind::body, "ball1");
+  run_command(hand.app, "view.menu");
+  hand.frames(2);
+  hand.check("context-menu");
+}

@@ -22,8 +22,9 @@ void save(App& app) {
   DialogState& dialog = app.dialog;
   const std::filesystem::path file = typed_file(app, ".png");
   if (!may_replace(app, file)) return;
-  app.export_request = ExportRequest{file, std::clamp(dialog.width, smallest, largest),
-                                     std::clamp(dialog.height, smallest, largest), dialog.panels};
+  app.export_request =
+      ExportRequest{file, std::clamp(dialog.width, smallest, largest),
+                    std::clamp(dialog.height, smallest, largest), dialog.panels, dialog.loads};
   close_dialog();
 }
 
@@ -31,6 +32,7 @@ void save(App& app) {
 
 void show_export_dialog(App& app) {
   app.dialog.wanted = Dialog::export_picture;
+  app.dialog.loads = app.view.loads;
   std::error_code ignored;
   show_folder(app, std::filesystem::current_path(ignored));
   app.file_dialogs.replacing.clear();
@@ -48,6 +50,10 @@ void export_dialog(App& app) {
   ImGui::SetCursorPosX(80 * app.scale);
   ImGui::Checkbox("With the panels", &dialog.panels);
   note_widget(app.widgets, "export/panels");
+  ImGui::SameLine(0, 20 * app.scale);
+  ImGui::Checkbox("With forces", &dialog.loads);
+  note_widget(app.widgets, "export/loads");
+  help_on_hover("Arrows of what acts, and their legend; with one body selected, its free-body diagram.");
 
   const bool fits =
       std::min(dialog.width, dialog.height) >= smallest && std::max(dialog.width, dialog.height) <= largest;

@@ -1,6 +1,7 @@
 // What acts on each coordinate of a joint: drive, spring, damper, stop; and where it settles.
 #include "app/session/units.hpp"
 #include "app/ui/assembly_edits.hpp"
+#include "app/ui/inspector/coordinate_drive.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -11,11 +12,11 @@ namespace flyball {
 
 namespace {
 
-// What a new drive, spring, ... begins with, to be changed at once.
+// What a new spring, damper or stop begins with, to be changed at once.
 struct Beginning {
-  double speed, stiffness, damping, stop_reach, stop_stiffness;
+  double stiffness, damping, stop_reach, stop_stiffness;
 };
-constexpr Beginning of_angle{10, 10, 1, 0.5, 1000}, of_length{0.1, 1000, 10, 0.1, 1e5};
+constexpr Beginning of_angle{10, 1, 0.5, 1000}, of_length{1000, 10, 0.1, 1e5};
 
 // One coordinate and how it is called in addresses and widgets.
 struct CoordinateRows {
@@ -126,18 +127,10 @@ struct CoordinateRows {
   }
 
   void drive() const {
-    const char* refused = nullptr;
-    if (is_rotation_vector(joint.type, i))
-      refused = "A component of a rotation vector cannot be driven; use revolute joints.";
-    else if (joint.cut == true)
-      refused = "A joint that is cut has no coordinate to drive.";
-    else if (coordinate().spring || coordinate().stop)
-      refused = "Not beside a spring or stop, which would never settle; take it away first.";
-    const Beginning& b = beginning();
-    tick(
-        "drive", "Drive", "drive", coordinate().drive.has_value(),
-        "Moves the coordinate at a constant speed.", refused, [](Coordinate& c) { c.drive.reset(); },
-        [speed = b.speed](Coordinate& c) { c.drive.emplace().speed = speed; });
+    const bool on = coordinate().drive.has_value();
+    if (check_row(app, widget(key("drive")), "Drive", on, "Moves the coordinate at a constant speed.",
+                  on ? nullptr : drive_refused(joint, i)))
+      set_driven(app, joint.name, i, !on);
   }
 
   void drive_numbers() const {

@@ -1,6 +1,7 @@
 #include "app/ui/panels/legend.hpp"
 
 #include "app/ui/choices.hpp"
+#include "app/ui/panels/load_legend.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
@@ -44,7 +45,9 @@ void draw_mark(const App& app, LegendMark mark, ImVec2 from, ImVec2 to) {
 
 } // namespace
 
-std::vector<LegendRow> legend_rows(App& app) {
+namespace {
+
+std::vector<LegendRow> pose_rows(App& app) {
   if (app.mechanism().bodies.empty()) return {};
   const ViewScene& scene = *shown_scene(app);
   const bool apart = !scene.drawn.empty(); // the two poses differ
@@ -68,6 +71,19 @@ std::vector<LegendRow> legend_rows(App& app) {
   return rows;
 }
 
+} // namespace
+
+std::vector<LegendRow> legend_rows(App& app) {
+  std::vector<LegendRow> rows = pose_rows(app);
+  if (rows.empty()) return rows;
+  if (const std::size_t hidden = view_frame(app).hidden.size())
+    rows.push_back({.mark = LegendMark::note,
+                    .words = std::to_string(hidden) + (hidden == 1 ? " part hidden" : " parts hidden"),
+                    .help = "View, Show all brings hidden parts back (Ctrl+Shift+H)."});
+  add_load_rows(app, rows);
+  return rows;
+}
+
 void legend(App& app, const PanelRect& view) {
   const std::vector<LegendRow> rows = legend_rows(app);
   if (rows.empty() || view.width < 260 * app.scale || view.height < 160 * app.scale) return;
@@ -86,12 +102,16 @@ void legend(App& app, const PanelRect& view) {
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
                    ImGuiWindowFlags_NoNav);
   const float line = ImGui::GetTextLineHeight(), side = std::round(0.55f * line);
-  const float width = std::round(1.4f * line);
+  const float mark = std::round(1.4f * line);
+  float width = mark; // of the widest mark
+  for (const LegendRow& row : rows)
+    width = std::max(width, row.length + 2 * s);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::vector<LegendRow> shown = app.panels.legend ? rows : std::vector<LegendRow>();
   float room = ImGui::CalcTextSize("Shown").x + 16 * s;
   for (const LegendRow& row : shown)
-    room = std::max(room, width + 7 * s + ImGui::CalcTextSize(row.words.c_str()).x);
+    room = std::max(room, (row.mark == LegendMark::note ? s : width + 7 * s) +
+                              ImGui::CalcTextSize(row.words.c_str()).x);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   if (ImGui::InvisibleButton("title", {room, line})) open_legend(app, !app.panels.legend);
   note_widget(app.widgets, "legend");
@@ -107,9 +127,15 @@ void legend(App& app, const PanelRect& view) {
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float top = at.y + std::round((line - side) / 2);
-    draw_mark(app, shown[i].mark, {at.x + s, top}, {at.x + width, top + side});
-    list.AddText({at.x + width + 7 * s, at.y}, packed(colors.text), shown[i].words.c_str());
+    const bool note = shown[i].mark == LegendMark::note;
+    if (shown[i].mark == LegendMark::load)
+      draw_load_mark(app, shown[i], {at.x + s, at.y}, line);
+    else if (!note)
+      draw_mark(app, shown[i].mark, {at.x + s, top}, {at.x + mark, top + side});
+    list.AddText({at.x + (note ? s : width + 7 * s), at.y}, packed(note ? colors.dim : colors.text),
+                 shown[i].words.c_str());
     ImGui::Dummy({room, line});
+    if (!shown[i].help.empty()) help_on_hover(shown[i].help.c_str());
     note_widget(app.widgets, "legend/" + std::to_string(i));
   }
   ImGui::End();

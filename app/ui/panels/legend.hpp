@@ -2,17 +2,22 @@
 #pragma once
 
 #include "app/ui/layout.hpp"
+#include "app/viewport/loads.hpp"
 
 #include <string>
 #include <vector>
 
 namespace flyball {
 
-enum class LegendMark { solid, outlined, dashed, glass, motion };
+enum class LegendMark { solid, outlined, dashed, glass, motion, load, note }; // note: words alone
 
 struct LegendRow {
   LegendMark mark = LegendMark::solid;
-  std::string words; // "Steady state"
+  std::string words{}; // "Steady state"
+  LoadKind load = LoadKind::reaction;
+  bool moment = false;
+  float length = 0;   // pixels, of a load's arrow
+  std::string help{}; // where it is pointed at
 };
 // What is in the view now; nothing for an empty document.
 std::vector<LegendRow> legend_rows(App& app);

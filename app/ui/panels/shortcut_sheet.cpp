@@ -10,21 +10,14 @@ namespace flyball {
 
 namespace {
 
-struct Line {
-  const char* keys;
-  const char* does;
-};
 constexpr std::array mouse{
-    Line{"Drag", "Orbit"},
-    Line{"Right drag, Shift+drag", "Pan"},
-    Line{"Wheel", "Zoom"},
-    Line{"Click", "Select; Ctrl adds"},
-    Line{"Ctrl+drag", "Select a box"},
-    Line{"Alt+drag", "Pull a body"},
-    Line{"Double-click", "All in view"},
-    Line{"Double-click a slider", "Type its value"},
-    Line{"Shift+drag a slider", "Finer"},
-    Line{"Digits while placing", "Length or size, with unit"},
+    NavigationLine{"Click", "Select; Ctrl adds"},
+    NavigationLine{"Alt+drag", "Pull a body"},
+    NavigationLine{"Right click", "Context menu"},
+    NavigationLine{"Double-click", "All in view"},
+    NavigationLine{"Double-click a slider", "Type its value"},
+    NavigationLine{"Shift+drag a slider", "Finer"},
+    NavigationLine{"Digits while placing", "Length or size, with unit"},
 };
 
 void line(App& app, const std::string& keys, const std::string& does) {
@@ -94,7 +87,9 @@ void shortcut_sheet(App& app) {
     lines(app, "View", "view.");
     heading(app, "Mouse in the view");
     if (begin_lines("mouse")) {
-      for (const Line& entry : mouse)
+      for (const NavigationLine& entry : navigation_lines(app.navigation))
+        line(app, entry.keys, entry.does);
+      for (const NavigationLine& entry : mouse)
         line(app, entry.keys, entry.does);
       ImGui::EndTable();
     }

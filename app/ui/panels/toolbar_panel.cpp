@@ -123,8 +123,7 @@ void direction_buttons(App& app) {
     help_on_hover(direction.help);
     next(app);
   }
-  if (icon_button(app, "toolbar/fit", icon::expand, "All in view (F)"))
-    app.view.fit = app.view.keep_direction = true;
+  if (icon_button(app, "toolbar/fit", icon::expand, "All in view (F)")) fit_all(app);
 }
 
 void toggle(App& app, const char* name, const char* text, const char* help, bool& on) {

@@ -28,40 +28,52 @@ ViewInput view_input(const App& app, const PanelRect& rect) {
   input.released = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left);
   const float slack = click_slack * app.scale;
   input.moved = io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] >= slack * slack;
+  input.menu = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
+               io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Right] < slack * slack;
   input.ctrl = io.KeyCtrl;
   input.shift = io.KeyShift;
   input.alt = io.KeyAlt;
   return input;
 }
 
+namespace {
+
+void drag_camera(App& app, const ViewInput& input, CameraDrag drag, Vec2 by, Vec2 from) {
+  constexpr double zoom_by_pixel = 1.006;
+  ViewCamera& camera = app.view.camera;
+  if (drag == CameraDrag::orbit) camera.orbit(by.x(), by.y(), input.size);
+  if (drag == CameraDrag::pan) camera.pan(by.x(), by.y(), input.size);
+  if (drag == CameraDrag::zoom) camera.zoom(std::pow(zoom_by_pixel, -by.y() / input.point), from, input.size);
+}
+
+} // namespace
+
 void steer(App& app, const ViewInput& input) {
   const ImGuiIO& io = ImGui::GetIO();
-  const double dx = static_cast<double>(io.MouseDelta.x), dy = static_cast<double>(io.MouseDelta.y);
-  const bool middle = ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+  const Vec2 by(static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y));
   // Whoever has taken hold of the camera wants it where he puts it, also while the first answer is awaited.
-  if (input.active && (dx != 0 || dy != 0)) {
-    app.view.fit = false;
-    if (middle || ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
-      if (middle && input.shift)
-        app.view.camera.orbit(dx, dy, input.size);
-      else
-        app.view.camera.pan(dx, dy, input.size);
-    } else if (input.moved && !takes_left_drag(app, input)) {
-      if (input.shift)
-        app.view.camera.pan(dx, dy, input.size);
-      else
-        app.view.camera.orbit(dx, dy, input.size);
+  if (input.active && by != Vec2::Zero()) {
+    stop_glide(app);
+    for (const int button : {ImGuiMouseButton_Middle, ImGuiMouseButton_Right, ImGuiMouseButton_Left}) {
+      if (!ImGui::IsMouseDown(button)) continue;
+      if (button == ImGuiMouseButton_Left && (!input.moved || takes_left_drag(app, input))) break;
+      const ImVec2& pressed = io.MouseClickedPos[button];
+      drag_camera(
+          app, input, camera_drag(app.navigation, button, input.ctrl, input.shift), by,
+          {static_cast<double>(pressed.x - input.rect.x), static_cast<double>(pressed.y - input.rect.y)});
+      break;
     }
   }
   if (!input.hovered) return;
   if (io.MouseWheel != 0 && !app.tool.pull) {
-    app.view.fit = false;
+    stop_glide(app);
     app.view.camera.zoom(std::pow(zoom_step, static_cast<double>(io.MouseWheel)), input.cursor, input.size);
   }
   const bool on_handle = app.tool.hovered != Handle::none || app.tool.hovered_point;
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && app.view.hovered.kind == PartKind::none &&
-      !on_handle && !places(app.tool.tool) && !takes_left_drag(app, input))
-    app.view.fit = app.view.keep_direction = true;
+      !on_handle && !places(app.tool.tool) &&
+      (frames_with_left(app.navigation) || !takes_left_drag(app, input)))
+    fit_all(app);
 }
 
 } // namespace flyball

@@ -18,6 +18,7 @@ struct ViewInput {
   bool pressed = false, released = false; // the left button, over the view
   bool held = false;                      // it, since it was pressed over the view
   bool moved = false;                     // by more than a click allows, since it was pressed
+  bool menu = false;                      // the right button clicked
   bool ctrl = false, shift = false, alt = false;
 
   Ray ray() const { return camera.ray(cursor, size); }

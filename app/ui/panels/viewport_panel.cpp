@@ -1,6 +1,8 @@
 #include "app/render/imgui_compat.hpp"
 #include "app/ui/panels.hpp"
+#include "app/ui/panels/context_menu.hpp"
 #include "app/ui/panels/legend.hpp"
+#include "app/ui/panels/load_labels.hpp"
 #include "app/ui/panels/view_overlays.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/tools/tools_hand.hpp"
@@ -41,6 +43,7 @@ void viewport_panel(App& app, const PanelRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddImage(imgui_compat::texture_id(app.view.texture), {rect.x, rect.y},
                 {rect.x + rect.width, rect.y + rect.height}, {0, 1}, {1, 0});
+  use_view_cube(app, rect);
   ImGui::InvisibleButton("view", {rect.width, rect.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
@@ -52,11 +55,14 @@ void viewport_panel(App& app, const PanelRect& rect) {
   use_selecting(app, input);
   use_tool(app, input);
   steer(app, input);
+  load_labels(app, rect);
+  draw_view_cube(app, rect);
+  context_menu(app, input);
   caption(app, rect);
   view_lines(app, rect);
   status_chip(app, rect);
   ImGui::End();
-  part_label(app);
+  if (!load_tooltip(app, input)) part_label(app);
   tool_strip(app, rect);
   legend(app, rect);
   explored_chip(app, rect);

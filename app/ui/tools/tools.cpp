@@ -113,7 +113,7 @@ void keep_tool_state(App& app) {
 bool takes_left_drag(const App& app, const ViewInput& input) {
   const ToolState& tool = app.tool;
   if (tool.grab || tool.assembly || tool.pull || tool.frame || tool.spent) return true;
-  return drags(tool.tool) || (input.ctrl && !places(tool.tool));
+  return drags(tool.tool) || ((input.ctrl || frames_with_left(app.navigation)) && !places(tool.tool));
 }
 
 bool step_back(App& app) {

@@ -91,7 +91,9 @@ void use_selecting(App& app, const ViewInput& input) {
   point_at_parts(app, input);
   if (tool.grab || tool.spent) return;
   const bool handle = tool.hovered != Handle::none || tool.hovered_point;
-  if (input.pressed && !handle && (tool.tool == Tool::box || input.ctrl)) tool.frame = input.cursor;
+  if (input.pressed && !handle &&
+      (tool.tool == Tool::box || input.ctrl || (frames_with_left(app.navigation) && !input.alt)))
+    tool.frame = input.cursor;
   if (!input.released) return;
   if (tool.frame && input.moved) {
     select_framed(app, input);

@@ -1,0 +1,66 @@
+#include "app/ui/camera_glide.hpp"
+
+#include "app/ui/app.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flyball {
+
+ViewCamera CameraGlide::now() const {
+  const double t = std::clamp(elapsed / duration, 0., 1.), share = t * t * (3 - 2 * t);
+  ViewCamera camera = to;
+  camera.target = (1 - share) * from.target + share * to.target;
+  camera.distance = from.distance * std::pow(to.distance / from.distance, share);
+  const double turn = std::remainder(to.azimuth - from.azimuth, 2 * std::numbers::pi); // the shorter way
+  camera.azimuth = to.azimuth - (1 - share) * turn;
+  camera.elevation = (1 - share) * from.elevation + share * to.elevation;
+  return camera;
+}
+
+ViewCamera& glide_goal(App& app) {
+  if (!app.view.animated) return app.view.camera;
+  const ViewCamera goal = settled_camera(app);
+  app.view.glide = CameraGlide{app.view.camera, goal, 0};
+  return app.view.glide->to;
+}
+
+const ViewCamera& settled_camera(const App& app) {
+  return app.view.glide ? app.view.glide->to : app.view.camera;
+}
+
+void advance_glide(App& app, double seconds) {
+  if (!app.view.glide) return;
+  constexpr double longest_step = 0.04; // s: a window that has been idle does not jump
+  CameraGlide& glide = *app.view.glide;
+  glide.elapsed += std::min(seconds, longest_step);
+  app.view.camera = glide.elapsed >= CameraGlide::duration ? glide.to : glide.now();
+  if (glide.elapsed >= CameraGlide::duration) app.view.glide.reset();
+}
+
+void stop_glide(App& app) {
+  app.view.glide.reset();
+  app.view.fit = false;
+}
+
+bool in_motion(const App& app) {
+  return app.view.glide || in_motion(static_cast<const Session&>(app));
+}
+
+void fit_all(App& app) {
+  glide_goal(app);
+  app.view.fit = app.view.keep_direction = true;
+}
+
+void fit_selected(App& app) {
+  const std::vector<PartId> parts = view_frame(app).selected;
+  Bounds bounds;
+  for (const Instance& instance : shown_scene(app)->solid.instances)
+    if (std::ranges::find(parts, instance.part) != parts.end()) bounds.add(instance_bounds(instance));
+  if (bounds.empty) return fit_all(app);
+  glide_goal(app).fit(bounds, app.view.size, 1.6);
+  app.view.fit = false;
+}
+
+} // namespace flyball

@@ -1,0 +1,213 @@
+#include "app/ui/panels/context_menu.hpp"
+
+#include "app/ui/commands.hpp"
+#include "app/ui/inspector/coordinate_drive.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/address.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace flyball {
+
+namespace {
+
+constexpr const char* context_popup = "view menu";
+
+// What is chosen happens after the frame, as it may change what the rest of it shows.
+void command_item(App& app, const char* id) {
+  const Command& wanted = command(id);
+  const bool on = wanted.checked && wanted.checked(app);
+  ImGui::PushID(id);
+  if (ImGui::MenuItem(wanted.title, key_text(wanted.key).c_str(), on, is_enabled(app, wanted)))
+    later(app, [id](App& changed) { run_command(changed, id); });
+  ImGui::PopID();
+  note_widget(app.widgets, std::string("view/menu/") + id);
+  help_on_hover(wanted.help);
+}
+
+void command_items(App& app, std::initializer_list<const char*> ids) {
+  for (const char* id : ids)
+    command_item(app, id);
+}
+
+void menu_title(App& app, const std::string& name, const std::string& what) {
+  ImGui::PushFont(app.fonts.strong);
+  ImGui::TextUnformatted(name.c_str());
+  ImGui::PopFont();
+  note_widget(app.widgets, "view/menu/title");
+  if (!what.empty()) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", what.c_str());
+  }
+  ImGui::Separator();
+}
+
+std::string menu_kind(const Mechanism& mechanism, PartId part) {
+  const auto i = static_cast<std::size_t>(part.index);
+  if (part.kind == PartKind::joint) return std::string(type_name(mechanism.joints[i].type)) + " joint";
+  if (part.kind == PartKind::force) return std::string(type_name(mechanism.forces[i].type));
+  return "body";
+}
+
+// "joints.spin." of a joint.
+std::string addresses_begin(const Part& part) {
+  const char* list = part.kind == PartKind::body    ? "bodies."
+                     : part.kind == PartKind::joint ? "joints."
+                                                    : "forces.";
+  return list + part.name + ".";
+}
+
+// A tick for each number of the part: whether it has a slider.
+void number_items(App& app, const Part& part) {
+  const std::string begins = addresses_begin(part);
+  std::vector<std::string> addresses;
+  for (std::string& address : parameter_addresses(app.mechanism()))
+    if (address.starts_with(begins)) addresses.push_back(std::move(address));
+  if (addresses.empty() || !ImGui::BeginMenu("Slider for")) {
+    note_widget(app.widgets, "view/menu/pins");
+    return;
+  }
+  note_widget(app.widgets, "view/menu/pins");
+  for (const std::string& address : addresses) {
+    const bool pinned = is_pinned(app.mechanism(), address);
+    const std::string words = address.substr(begins.size());
+    const std::string unit = parameter_unit(app.mechanism(), address);
+    const std::string value = short_text(get_parameter(app.mechanism(), address)) + " " + unit;
+    if (ImGui::MenuItem(words.c_str(), value.c_str(), pinned))
+      later(app, [address, pinned](App& changed) { pin(changed, address, !pinned); });
+    note_widget(app.widgets, "view/menu/pin/" + address);
+  }
+  ImGui::EndMenu();
+}
+
+void drive_items(App& app, const Joint& joint) {
+  for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+    const int coordinate = static_cast<int>(i);
+    const bool on = joint.coordinates[i].drive.has_value();
+    const char* refused = on ? nullptr : drive_refused(joint, coordinate);
+    const std::string words = joint.coordinates.size() == 1 ? "Driven" : "Driven: " + std::to_string(i);
+    if (ImGui::MenuItem(words.c_str(), nullptr, on, !refused))
+      later(app, [name = joint.name, coordinate, on](App& changed) {
+        set_driven(changed, name, coordinate, !on);
+      });
+    note_widget(app.widgets, "view/menu/drive/" + std::to_string(i));
+    help_on_hover(refused ? refused : "Moves the coordinate at a constant speed.");
+  }
+}
+
+// The loads of a steady state, which is shown while exploring.
+void free_body_item(App& app) {
+  const bool on = app.view.loads && app.mode == Mode::explore;
+  if (ImGui::MenuItem("Free-body diagram", key_text(command("view.loads").key).c_str(), on))
+    later(app, [on](App& changed) {
+      changed.view.loads = !on;
+      if (!on) set_mode(changed, Mode::explore);
+    });
+  note_widget(app.widgets, "view/menu/view.loads");
+  help_on_hover("What acts on this body alone in the steady state; it adds up to zero.");
+}
+
+void part_items(App& app) {
+  const Selection selection = app.selection(); // a copy, as what is chosen may change it
+  const Mechanism& mechanism = app.mechanism();
+  const Part& part = selection.parts.back();
+  const PartId id = find_part(mechanism, part);
+  const bool alone = selection.parts.size() == 1 && id.kind != PartKind::none;
+  if (alone)
+    menu_title(app, part.name, menu_kind(mechanism, id));
+  else
+    menu_title(app, std::to_string(selection.parts.size()) + " parts", "");
+  if (alone) command_item(app, "edit.rename");
+  command_items(app, {"edit.duplicate", "edit.copy", "edit.delete"});
+  if (selection.has(PartKind::body)) command_items(app, {"edit.mirror", "edit.circular"});
+  if (selection.names(PartKind::joint).size() == 2) command_item(app, "edit.gear");
+  ImGui::Separator();
+  if (alone && id.kind == PartKind::joint)
+    drive_items(app, mechanism.joints[static_cast<std::size_t>(id.index)]);
+  if (alone) number_items(app, part);
+  if (alone && id.kind == PartKind::body) free_body_item(app);
+  ImGui::Separator();
+  command_items(app, {"view.fit_selected", "view.hide", "view.isolate", "view.show_all"});
+}
+
+void view_items(App& app) {
+  menu_title(app, "View", "");
+  command_items(app, {"view.fit", "view.front", "view.side", "view.top", "view.iso"});
+  ImGui::Separator();
+  command_items(app, {"view.ghost", "view.loads", "view.grid", "view.shadow", "view.show_all"});
+  ImGui::Separator();
+  command_item(app, "view.mode");
+  if (app.mode != Mode::build) return command_item(app, "view.play");
+  if (ImGui::BeginMenu("Add")) {
+    note_widget(app.widgets, "view/menu/add");
+    for (const Command& each : commands())
+      if (std::string_view(each.id).starts_with("insert.")) {
+        if (each.separated) ImGui::Separator();
+        command_item(app, each.id);
+      }
+    ImGui::EndMenu();
+  } else {
+    note_widget(app.widgets, "view/menu/add");
+  }
+  command_items(app, {"edit.paste", "edit.all"});
+}
+
+// Where a key has asked for it: at the selected part, else in the middle of the view.
+ImVec2 place_for_key(App& app, const ViewInput& input) {
+  const ViewFrame frame = view_frame(app);
+  Bounds bounds;
+  for (const Instance& instance : shown_scene(app)->solid.instances)
+    if (!frame.selected.empty() && instance.part == frame.selected.back())
+      bounds.add(instance_bounds(instance));
+  const auto at = bounds.empty ? std::nullopt : input.on_screen(bounds.center());
+  return at.value_or(ImVec2(input.rect.x + input.rect.width / 2, input.rect.y + input.rect.height / 2));
+}
+
+} // namespace
+
+namespace {
+
+// A panel that appears with what is selected takes the focus, which would close a menu that is open already.
+constexpr int frames_to_settle = 2;
+
+} // namespace
+
+void open_context_menu(App& app) {
+  app.view.menu_in = frames_to_settle;
+  app.view.menu_at.reset();
+  app.view.menu_of_part = !app.selection().empty();
+}
+
+void context_menu(App& app, const ViewInput& input) {
+  if (input.menu && !app.tool.grab) {
+    const auto hit = part_under_cursor(app, input);
+    if (hit) {
+      Part part = part_of(*view_frame(app).mechanism, hit->part);
+      if (!app.selection().has(part)) select(app, {{std::move(part)}});
+    }
+    const ImVec2 at = ImGui::GetIO().MousePos;
+    app.view.menu_in = frames_to_settle;
+    app.view.menu_at = Vec2(static_cast<double>(at.x), static_cast<double>(at.y));
+    app.view.menu_of_part = hit.has_value();
+  } else if (app.view.menu_in > 0 && --app.view.menu_in == 0) {
+    const auto& at = app.view.menu_at;
+    ImGui::SetNextWindowPos(at ? ImVec2(static_cast<float>(at->x()), static_cast<float>(at->y()))
+                               : place_for_key(app, input));
+    ImGui::OpenPopup(context_popup);
+  }
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * app.scale, 8 * app.scale});
+  if (ImGui::BeginPopup(context_popup)) {
+    if (app.view.menu_of_part && !app.selection().empty())
+      part_items(app);
+    else
+      view_items(app);
+    ImGui::EndPopup();
+  }
+  ImGui::PopStyleVar();
+}
+
+} // namespace flyball

@@ -1,0 +1,165 @@
+#include "app/ui/panels/load_labels.hpp"
+
+#include "app/ui/panels/load_legend.hpp"
+#include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "app/viewport/picking.hpp"
+
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace flyball {
+
+namespace {
+
+struct LabelBox {
+  ImVec2 from, to;
+  bool meets(const LabelBox& other) const {
+    return from.x < other.to.x && other.from.x < to.x && from.y < other.to.y && other.from.y < to.y;
+  }
+};
+
+std::string load_part_name(const Mechanism& mechanism, const Load& load) {
+  return part_of(mechanism, load.part).name;
+}
+
+std::string load_value_text(const Load& load) {
+  return short_text(load.vector.stableNorm(), 4) + (load.moment ? " N m" : " N");
+}
+
+// "reaction in arm1", "weight of ball1".
+std::string long_load_name(const Mechanism& mechanism, const Load& load) {
+  const std::string name = load_part_name(mechanism, load);
+  switch (load.kind) {
+  case LoadKind::reaction: return "Reaction in " + name;
+  case LoadKind::drive: return "Drive of " + name;
+  case LoadKind::spring: return "Spring of " + name;
+  case LoadKind::weight: return "Weight of " + name;
+  case LoadKind::applied: return name;
+  case LoadKind::drag: return "Drag of " + name;
+  case LoadKind::inertia: return "Inertial load of " + name;
+  }
+  return name;
+}
+
+// In the body's own diagram.
+std::string short_load_name(const Mechanism& mechanism, const Load& load) {
+  if (load.kind == LoadKind::weight) return "weight";
+  if (load.kind == LoadKind::inertia) return load.moment ? "inertia" : "inertial load";
+  return load_part_name(mechanism, load);
+}
+
+std::string load_components_text(const Load& load) {
+  const double size = load.vector.lpNorm<Eigen::Infinity>();
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += std::string(i ? "  " : "") + "xyz"[i] + " " +
+            (std::abs(load.vector[i]) <= 1e-9 * size ? "0" : short_text(load.vector[i], 5));
+  return text + (load.moment ? " N m" : " N");
+}
+
+// What else is drawn over the view.
+std::vector<LabelBox> taken_by_others(const App& app, const PanelRect& rect) {
+  std::vector<LabelBox> taken;
+  if (const ImGuiWindow* legend = ImGui::FindWindowByName("legend"); legend && legend->WasActive)
+    taken.push_back({legend->Pos, {legend->Pos.x + legend->Size.x, legend->Pos.y + legend->Size.y}});
+  if (has_view_cube(app, rect)) {
+    const WidgetRect cube = app.widgets.at("view/cube");
+    taken.push_back({cube.from, cube.to});
+  }
+  return taken;
+}
+
+// Where there is room for a label, as near as can be to where it would be best; nothing where all is taken.
+std::optional<LabelBox> free_place(ImVec2 best, ImVec2 half, const LabelBox& room,
+                                   const std::vector<LabelBox>& taken) {
+  constexpr int reach = 6; // labels to each side
+  std::optional<LabelBox> found;
+  float nearest = 0;
+  for (int row = -reach; row <= reach; ++row)
+    for (int column = -reach; column <= reach; ++column) {
+      ImVec2 at(best.x + static_cast<float>(column) * half.x,
+                best.y + static_cast<float>(row) * 2.1f * half.y);
+      at.x = std::clamp(at.x, room.from.x + half.x, std::max(room.from.x + half.x, room.to.x - half.x));
+      const float away = std::hypot(at.x - best.x, at.y - best.y);
+      const LabelBox box{{std::round(at.x - half.x), std::round(at.y - half.y)},
+                         {std::round(at.x + half.x), std::round(at.y + half.y)}};
+      if ((found && away >= nearest) || box.from.y < room.from.y || box.to.y > room.to.y ||
+          std::ranges::any_of(taken, [&](const LabelBox& other) { return box.meets(other); }))
+        continue;
+      found = box;
+      nearest = away;
+    }
+  return found;
+}
+
+} // namespace
+
+void load_labels(App& app, const PanelRect& rect) {
+  const ViewFrame frame = view_frame(app);
+  if (!frame.loads || frame.loads_body < 0) return;
+  const ViewScene& scene = *shown_scene(app);
+  const ViewSize size{static_cast<double>(rect.width), static_cast<double>(rect.height)};
+  const UiColors& colors = colors_of(app);
+  const float s = app.scale, pad = 4 * s;
+  const ImFont& font = *app.fonts.text;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float above = app.view.alone ? pad : 32 * s,
+              below = app.view.alone ? pad : 44 * s; // the view's own lines
+  const LabelBox room{{rect.x + pad, rect.y + above},
+                      {rect.x + rect.width - pad, rect.y + rect.height - below}};
+  std::vector<LabelBox> taken = taken_by_others(app, rect);
+  for (const LoadArrow& arrow : scene.arrows.arrows) {
+    const Load& load = scene.loads[arrow.load];
+    const auto tail = frame.camera.project(arrow.from, size), tip = frame.camera.project(arrow.to, size);
+    if (!tail || !tip) continue;
+    const std::string words = short_load_name(*frame.mechanism, load) + " " + load_value_text(load);
+    const ImVec2 text = font.CalcTextSizeA(font.FontSize, 1e9f, 0, words.c_str());
+    const ImVec2 half(text.x / 2 + pad + 2 * s, text.y / 2 + s);
+    Vec2 away = *tip - *tail;
+    away = away.norm() > 1 ? Vec2(away.normalized()) : Vec2(0, -1);
+    const double clear = std::min(static_cast<double>(half.x) / std::max(std::abs(away.x()), 1e-9),
+                                  static_cast<double>(half.y) / std::max(std::abs(away.y()), 1e-9));
+    const Vec2 middle = *tip + away * (clear + 5 * static_cast<double>(s));
+    const ImVec2 best(rect.x + static_cast<float>(middle.x()), rect.y + static_cast<float>(middle.y()));
+    if (const auto found = free_place(best, half, room, taken)) {
+      const LabelBox& box = *found;
+      ImVec4 plate = colors.panel;
+      plate.w = 0.85f;
+      list.AddRectFilled(box.from, box.to, packed(plate), 3 * s);
+      list.AddRectFilled(box.from, {box.from.x + 3 * s, box.to.y},
+                         packed(load_color(load.kind, palette(app.theme)), 1), 2 * s);
+      list.AddText(app.fonts.text, font.FontSize, {box.from.x + pad + 2 * s, box.from.y + s},
+                   packed(colors.text), words.c_str());
+      app.widgets["load/" + words.substr(0, words.find(' ')) + (load.moment ? "/moment" : "/force")] = {
+          box.from, box.to};
+      taken.push_back(box);
+    }
+  }
+}
+
+bool load_tooltip(App& app, const ViewInput& input) {
+  if (!input.hovered || places(app.tool.tool)) return false;
+  const ViewScene& scene = *shown_scene(app);
+  if (scene.arrows.solids.empty()) return false;
+  const auto hit = pick(scene.arrows.solids, input.ray(), 3 * input.point);
+  if (!hit) return false;
+  const Load& load = scene.loads[scene.arrows.arrows[scene.arrows.arrow_of[hit->instance]].load];
+  const Mechanism& mechanism = *view_frame(app).mechanism;
+  ImGui::BeginTooltip();
+  ImGui::PushFont(app.fonts.strong);
+  ImGui::TextUnformatted(long_load_name(mechanism, load).c_str());
+  ImGui::PopFont();
+  ImGui::SameLine();
+  ImGui::TextUnformatted(load_value_text(load).c_str());
+  note_widget(app.widgets, "load/pointed");
+  ImGui::TextDisabled("%s", load_components_text(load).c_str());
+  ImGui::EndTooltip();
+  return true;
+}
+
+} // namespace flyball

@@ -1,0 +1,15 @@
+// What the arrows of loads mean: for each kind what an arrow of a certain length stands for, and its largest.
+#pragma once
+
+#include "app/ui/panels/legend.hpp"
+
+namespace flyball {
+
+// Rows for the legend; nothing where no loads are wanted.
+void add_load_rows(App& app, std::vector<LegendRow>& rows);
+// The row's arrow, in a space as high as text.
+void draw_load_mark(const App& app, const LegendRow& row, ImVec2 from, float height);
+
+const char* load_name(LoadKind kind); // "Reactions"
+
+} // namespace flyball

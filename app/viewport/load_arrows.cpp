@@ -1,0 +1,98 @@
+#include "app/viewport/load_arrows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr double rounding = 1e-9; // beside the largest
+
+constexpr std::array all_kinds{LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::weight,
+                               LoadKind::applied,  LoadKind::drag,  LoadKind::inertia};
+
+} // namespace
+
+LoadScales::LoadScales(const std::vector<Load>& loads, bool in_proportion, double longest)
+    : in_proportion_(in_proportion), longest_(longest) {
+  for (const Load& load : loads) {
+    double& largest = largest_[static_cast<std::size_t>(load.kind)][load.moment ? 1 : 0];
+    largest = std::max(largest, load.vector.stableNorm());
+  }
+  std::array<double, 2> most{};
+  for (const LoadKind kind : all_kinds)
+    for (const bool moment : {false, true})
+      most[moment ? 1 : 0] = std::max(most[moment ? 1 : 0], of(largest_, kind, moment));
+  // Moments of a mechanism that has none are rounding of its forces at their arms.
+  const std::array least{rounding * most[0], rounding * std::max(most[1], most[0] * longest)};
+  for (const LoadKind kind : all_kinds)
+    for (const std::size_t moment : {0, 1}) {
+      const auto k = static_cast<std::size_t>(kind);
+      if (!(largest_[k][moment] > least[moment])) largest_[k][moment] = 0;
+      full_[k][moment] = in_proportion && largest_[k][moment] > 0 ? most[moment] : largest_[k][moment];
+    }
+}
+
+double LoadScales::length(LoadKind kind, bool moment, double size) const {
+  const double full = of(full_, kind, moment);
+  if (!(full > 0) || !(size > rounding * full)) return 0;
+  const double share = size / full;
+  return longest_ * (in_proportion_ ? share : std::cbrt(share));
+}
+
+double LoadScales::size(LoadKind kind, bool moment, double length) const {
+  if (!(longest_ > 0)) return 0;
+  const double share = length / longest_;
+  return of(full_, kind, moment) * (in_proportion_ ? share : share * share * share);
+}
+
+LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads, bool in_proportion) {
+  return {loads, in_proportion, std::max(0.36 * assembly.scale.bounds.radius(), 9 * assembly.scale.unit)};
+}
+
+LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, bool in_proportion,
+                       const Palette& colors) {
+  LoadArrows out;
+  out.scales = load_scales(assembly, loads, in_proportion);
+  Sketch sketch(out.solids);
+  const double u = assembly.scale.unit, radius = 0.2 * u, head = 6 * radius;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const Load& load = loads[i];
+    const double exact = out.scales.length(load);
+    if (!(exact > 0)) continue;
+    const double least = load.moment ? 1.7 * head : head, length = std::max(exact, least);
+    const Vec3 along = load.vector.stableNormalized();
+    Vec3 from = load.at;
+    if (load.moment) { // a free vector: anywhere will do
+      const Vec3 side = along.cross(assembly.scale.up);
+      from += 1.6 * u * (side.norm() > 1e-3 ? Vec3(side.normalized()) : along.unitOrthogonal());
+    }
+    const Vec3 to = from + length * along;
+    sketch.pen = {load_color(load.kind, colors), Surface::plain, Role::force, load.part};
+    sketch.rod(from, to - head * along, radius);
+    sketch.cone(to - head * along, along, 0.42 * head, head);
+    if (load.moment) {
+      sketch.cone(to - 1.7 * head * along, along, 0.42 * head, head);
+      sketch.rod(to - 0.9 * head * along, to - 0.6 * head * along, radius);
+    }
+    out.arrow_of.resize(out.solids.size(), out.arrows.size());
+    out.arrows.push_back({i, from, to});
+  }
+  return out;
+}
+
+Color load_color(LoadKind kind, const Palette& colors) {
+  switch (kind) {
+  case LoadKind::reaction: return rgb(0xD11F45); // no body's colour
+  case LoadKind::drive: return colors.accent;
+  case LoadKind::spring: return okabe_ito::green;
+  case LoadKind::weight: return colors.slack;
+  case LoadKind::applied: return colors.force;
+  case LoadKind::drag: return okabe_ito::sky_blue;
+  case LoadKind::inertia: return okabe_ito::orange;
+  }
+  return colors.force;
+}
+
+} // namespace flyball

@@ -1,0 +1,214 @@
+#include "app/viewport/loads.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <unordered_map>
+
+namespace flyball {
+
+namespace {
+
+PartId part_at(PartKind kind, std::size_t index) {
+  return {kind, static_cast<int>(index)};
+}
+
+// Collects the loads of one mechanism, or of one body of it.
+class Collector {
+ public:
+  Collector(const Assembly& assembly, const Solution& solution, std::span<const AngularMotion> turning,
+            int body, const Quat& turn)
+      : assembly_(assembly), mechanism_(assembly.mechanism), solution_(solution), turning_(turning),
+        body_(body), turn_(turn) {
+    for (std::size_t i = 0; i < mechanism_.joints.size(); ++i)
+      joints_.emplace(mechanism_.joints[i].name, i);
+  }
+
+  void reactions() {
+    for (const Reaction& r : solution_.reactions) {
+      const auto found = joints_.find(r.joint);
+      if (found == joints_.end()) continue;
+      const std::size_t j = found->second;
+      const Joint& joint = mechanism_.joints[j];
+      const auto [parent, child] = assembly_.joint_bodies[j];
+      if (!of_body(parent) && !of_body(child)) continue;
+      const bool on_parent = body_ >= 0 && body_ == parent;
+      const double sign = on_parent ? -1 : 1;
+      // A link pulls along its line: there each body feels it at its own end.
+      const Vec3 at = joint.type == JointType::distance
+                          ? assembly_.point(on_parent ? parent : child, joint.points[on_parent ? 0 : 1])
+                          : assembly_.point(child, joint.at);
+      add(LoadKind::reaction, false, at, turn_ * (sign * r.force), part_at(PartKind::joint, j));
+      add(LoadKind::reaction, true, at, turn_ * (sign * r.torque), part_at(PartKind::joint, j));
+    }
+  }
+
+  void drives() {
+    for (const DriveTorque& t : solution_.drive_torques)
+      along_coordinate(LoadKind::drive, t.joint, t.index, t.angle, t.value);
+  }
+
+  // What springs and stops of joints exert along their coordinates.
+  void joint_springs() {
+    for (const CoordinateSolution& c : solution_.coordinates) {
+      const auto found = joints_.find(c.joint);
+      if (found == joints_.end()) continue;
+      const Joint& joint = mechanism_.joints[found->second];
+      const auto i = static_cast<std::size_t>(c.index);
+      if (i >= joint.coordinates.size()) continue;
+      const Coordinate& coordinate = joint.coordinates[i];
+      double force = 0;
+      if (coordinate.spring) force -= coordinate.spring->stiffness * (c.value - coordinate.spring->free);
+      if (const auto& stop = coordinate.stop) {
+        if (stop->lower) force += stop->stiffness * std::max(*stop->lower - c.value, 0.);
+        if (stop->upper) force -= stop->stiffness * std::max(c.value - *stop->upper, 0.);
+      }
+      if (force != 0) along_coordinate(LoadKind::spring, c.joint, c.index, c.angle, force);
+    }
+  }
+
+  void springs() {
+    for (std::size_t f = 0; f < mechanism_.forces.size(); ++f) {
+      const Force& force = mechanism_.forces[f];
+      if (force.type != ForceType::spring) continue;
+      const auto [first, second] = assembly_.force_bodies[f];
+      const Vec3 a = assembly_.point(first, force.points[0]), b = assembly_.point(second, force.points[1]);
+      const double length = (b - a).stableNorm();
+      if (!(length > 0)) continue;
+      const Vec3 along = (b - a) / length;
+      const double free = force.free_length.value_or((force.points[1] - force.points[0]).stableNorm());
+      const double stretching = force.damping > 0 ? along.dot(velocity(second, b) - velocity(first, a)) : 0;
+      const Vec3 pull = (force.stiffness * (length - free) + force.damping * stretching) * along;
+      if (first >= 0 && of_body(first)) add(LoadKind::spring, false, a, pull, part_at(PartKind::force, f));
+      if (second >= 0 && of_body(second)) add(LoadKind::spring, false, b, -pull, part_at(PartKind::force, f));
+    }
+  }
+
+  void applied() {
+    for (std::size_t f = 0; f < mechanism_.forces.size(); ++f) {
+      const Force& force = mechanism_.forces[f];
+      if (force.type != ForceType::force && force.type != ForceType::torque) continue;
+      const int body = assembly_.force_bodies[f][0];
+      if (body < 0 || !of_body(body)) continue;
+      const Quat& rotation = assembly_.poses[static_cast<std::size_t>(body)].rotation;
+      add(LoadKind::applied, force.type == ForceType::torque, acts_at(force, body),
+          force.frame == ForceFrame::world ? force.vector : Vec3(rotation * force.vector),
+          part_at(PartKind::force, f));
+    }
+  }
+
+  void drag() {
+    for (std::size_t f = 0; f < mechanism_.forces.size(); ++f) {
+      const Force& force = mechanism_.forces[f];
+      const int body = assembly_.force_bodies[f][0];
+      if (force.type != ForceType::drag || body < 0 || !of_body(body)) continue;
+      const Vec3 at = acts_at(force, body), v = velocity(body, at);
+      add(LoadKind::drag, false, at, -(force.linear + force.quadratic * v.stableNorm()) * v,
+          part_at(PartKind::force, f));
+    }
+  }
+
+  void weight() {
+    const auto b = static_cast<std::size_t>(body_);
+    add(LoadKind::weight, false, assembly_.poses[b].position, mechanism_.bodies[b].mass * mechanism_.gravity,
+        part_at(PartKind::body, b));
+  }
+
+  void inertia() {
+    for (std::size_t b = 0; b < mechanism_.bodies.size(); ++b) {
+      if (!of_body(static_cast<int>(b)) || !has_motion(b)) continue;
+      const Vec3& at = assembly_.poses[b].position;
+      add(LoadKind::inertia, false, at,
+          turn_ * (-mechanism_.bodies[b].mass * solution_.centres[b].acceleration),
+          part_at(PartKind::body, b));
+      const Mat3 rotation = assembly_.poses[b].rotation.toRotationMatrix();
+      const Mat3 tensor = rotation * tensor_of(mechanism_.bodies[b]) * rotation.transpose();
+      const Vec3 w = turn_ * turning_[b].velocity, dw = turn_ * turning_[b].acceleration;
+      add(LoadKind::inertia, true, at, -(tensor * dw + w.cross(tensor * w)), part_at(PartKind::body, b));
+    }
+  }
+
+  std::vector<Load> loads;
+
+ private:
+  bool of_body(int body) const { return body_ < 0 || body == body_; }
+  bool has_motion(std::size_t body) const {
+    return body < solution_.centres.size() && body < turning_.size();
+  }
+
+  static Mat3 tensor_of(const Body& body) {
+    const auto& i = body.inertia;
+    return (Mat3() << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]).finished();
+  }
+
+  Vec3 acts_at(const Force& force, int body) const {
+    return assembly_.point(body,
+                           force.at.value_or(mechanism_.bodies[static_cast<std::size_t>(body)].position));
+  }
+
+  Vec3 velocity(int body, const Vec3& at) const {
+    const auto b = static_cast<std::size_t>(body);
+    if (body < 0 || !has_motion(b)) return Vec3::Zero();
+    return turn_ * solution_.centres[b].velocity +
+           (turn_ * turning_[b].velocity).cross(at - assembly_.poses[b].position);
+  }
+
+  // On the joint's child.
+  void along_coordinate(LoadKind kind, const std::string& name, int index, bool angle, double value) {
+    const auto found = joints_.find(name);
+    if (found == joints_.end()) return;
+    const std::size_t j = found->second;
+    const Joint& joint = mechanism_.joints[j];
+    const CoordinateAxis along = coordinate_axis(joint, static_cast<std::size_t>(index));
+    const auto [parent, child] = assembly_.joint_bodies[j];
+    add(kind, angle, assembly_.point(child, joint.at),
+        value * assembly_.vector(along.end == 0 ? parent : child, along.axis), part_at(PartKind::joint, j));
+  }
+
+  void add(LoadKind kind, bool moment, const Vec3& at, const Vec3& vector, PartId part) {
+    if (vector.stableNorm() > 0) loads.push_back({kind, moment, at, vector, part});
+  }
+
+  const Assembly& assembly_;
+  const Mechanism& mechanism_;
+  const Solution& solution_;
+  std::span<const AngularMotion> turning_;
+  int body_;
+  Quat turn_;
+  std::unordered_map<std::string_view, std::size_t> joints_;
+};
+
+} // namespace
+
+std::optional<Quat> common_turn(const Mechanism& mechanism, const Solution& solution,
+                                std::span<const Pose> poses) {
+  constexpr double alike = 1e-9;
+  if (poses.empty() || poses.size() != solution.poses.size()) return std::nullopt;
+  if (std::ranges::any_of(solution.reactions, &Reaction::varying)) return std::nullopt;
+  const Quat turn = poses[0].rotation * solution.poses[0].rotation.conjugate();
+  for (std::size_t b = 1; b < poses.size(); ++b)
+    if (turn.angularDistance(poses[b].rotation * solution.poses[b].rotation.conjugate()) > alike)
+      return std::nullopt;
+  if ((turn * mechanism.gravity - mechanism.gravity).norm() > alike * mechanism.gravity.norm())
+    return std::nullopt;
+  return turn;
+}
+
+std::vector<Load> loads_of(const Assembly& assembly, const Solution& solution,
+                           std::span<const AngularMotion> turning, int body, const Quat& turn) {
+  Collector collector(assembly, solution, turning, body, turn);
+  collector.reactions();
+  if (body < 0) { // of a body they are part of the reactions
+    collector.drives();
+    collector.joint_springs();
+  }
+  collector.springs();
+  if (body >= 0) {
+    collector.applied(); // of the mechanism they are drawn as parts of it
+    collector.weight();
+  }
+  collector.drag();
+  collector.inertia();
+  return std::move(collector.loads);
+}
+
+} // namespace flyball

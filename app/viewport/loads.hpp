@@ -1,0 +1,41 @@
+// What acts on the bodies of a steady state: reactions, drives, springs, weights, applied loads, drag and
+// inertial loads, each as a force or a moment at a point. No OpenGL.
+#pragma once
+
+#include "app/viewport/assembly.hpp"
+#include "engine/report/analysis.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace flyball {
+
+enum class LoadKind { reaction, drive, spring, weight, applied, drag, inertia };
+inline constexpr std::size_t load_kinds = 7;
+
+struct Load {
+  LoadKind kind = LoadKind::reaction;
+  bool moment = false;        // N m rather than N
+  Vec3 at = Vec3::Zero();     // m, world
+  Vec3 vector = Vec3::Zero(); // N or N m, world
+  PartId part;                // the joint, spring, force or body that it comes from
+};
+
+// The rotation that carries the loads at the drawn phase of the drives to the phase with these poses, where
+// there is one: all bodies have turned alike, no reaction changes with the phase, and gravity looks the same.
+std::optional<Quat> common_turn(const Mechanism& mechanism, const Solution& solution,
+                                std::span<const Pose> poses);
+
+// Of a steady state and how its bodies turn (both at the drawn phase); the assembly has its poses, turned by
+// `turn` since then.
+//   body < 0: of the mechanism. What each joint's parent exerts on its child; of that, what drives, springs
+//   and
+//     stops exert along the joints' coordinates; springs between bodies, on both; drag; inertial loads.
+//   a body: its free-body diagram, which is complete: its forces, -m a of the mass centre included, add up to
+//     zero, and so do their moments with the couples, -d(I w)/dt included (d'Alembert).
+std::vector<Load> loads_of(const Assembly& assembly, const Solution& solution,
+                           std::span<const AngularMotion> turning, int body,
+                           const Quat& turn = Quat::Identity());
+
+} // namespace flyball

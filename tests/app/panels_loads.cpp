@@ -1,0 +1,152 @@
+// Arrows of what acts, in the view: shown and taken away by a key, read with the mouse, exported.
+#include "app/ui/load_view.hpp"
+#include "app/ui/panels/legend.hpp"
+#include "app/ui/snapshot.hpp"
+#include "robot.hpp"
+#include "temporary_folder.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <set>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+// How many pixels of the view differ.
+int differing(const Robot& robot, const Image& a, const Image& b) {
+  const WidgetRect view = robot.app.widgets.at("view");
+  int count = 0;
+  for (int y = static_cast<int>(view.from.y); y < static_cast<int>(view.to.y); ++y)
+    for (int x = static_cast<int>(view.from.x); x < static_cast<int>(view.to.x); ++x)
+      if (!std::equal(a.at(x, y), a.at(x, y) + 4, b.at(x, y))) ++count;
+  return count;
+}
+
+bool has_row(App& app, const std::string& words) {
+  return std::ranges::any_of(
+      legend_rows(app), [&](const LegendRow& row) { return row.words.find(words) != std::string::npos; });
+}
+
+} // namespace
+
+TEST_CASE("a key shows what acts, and takes it away again") {
+  Robot robot;
+  App& app = robot.app;
+  robot.point({1, 1});
+  const Image before = robot.picture();
+  CHECK_FALSE(has_row(app, "reactions"));
+  robot.key('A');
+  CHECK(app.view.loads);
+  const Image with = robot.picture();
+  CHECK(differing(robot, before, with) > 1500);
+  CHECK(has_row(app, "N: reactions, up to 1991 N"));
+  CHECK(has_row(app, "N: inertial loads, up to"));
+  robot.key('A');
+  CHECK(differing(robot, before, robot.picture()) == 0);
+  CHECK_FALSE(has_row(app, "reactions"));
+  robot.key(' ', true); // no other key does
+  CHECK_FALSE(app.view.loads);
+}
+
+TEST_CASE("with a body selected the arrows are its free-body diagram, with values beside them") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  robot.key('A');
+  select(app, {{Part{PartKind::body, "ball1"}}});
+  robot.frames(2);
+  CHECK(has_row(app, "Free body: ball1"));
+  const ViewScene& scene = *shown_scene(app);
+  CHECK(std::ranges::count(scene.loads, LoadKind::weight, &Load::kind) == 1);
+  for (const Instance& instance : scene.free_body)
+    CHECK(instance.part == find_part(app.mechanism(), {PartKind::body, "ball1"}));
+  CHECK(!scene.free_body.empty());
+  CHECK(scene.others.size() > scene.free_body.size());
+  CHECK(scene.drawn.empty());
+  std::vector<WidgetRect> labels;
+  for (const auto& [name, rect] : app.widgets)
+    if (name.starts_with("load/")) labels.push_back(rect);
+  CHECK(labels.size() >= 4); // weight, inertial load, hinge, link
+  CHECK(app.widgets.count("load/weight/force") == 1);
+  CHECK(app.widgets.count("load/arm1/force") == 1);
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const bool apart = labels[i].to.x <= labels[k].from.x || labels[k].to.x <= labels[i].from.x ||
+                         labels[i].to.y <= labels[k].from.y || labels[k].to.y <= labels[i].from.y;
+      CHECK(apart);
+    }
+  // A faded body can be picked: its diagram takes the place of the first.
+  robot.click_at(app.poses[static_cast<std::size_t>(body_index(app.mechanism(), "ball2"))].position);
+  CHECK(has_row(app, "Free body: ball2"));
+}
+
+TEST_CASE("an arrow that is pointed at tells what it is") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  robot.key('A');
+  const ViewScene& scene = *shown_scene(app);
+  const auto arrow = std::ranges::find_if(scene.arrows.arrows, [&](const LoadArrow& each) {
+    return scene.loads[each.load].kind == LoadKind::inertia && !scene.loads[each.load].moment;
+  });
+  REQUIRE(arrow != scene.arrows.arrows.end());
+  robot.point_at(0.2 * arrow->from + 0.8 * arrow->to);
+  robot.frames(2);
+  CHECK(app.widgets.count("load/pointed") == 1);
+  robot.key('A');
+  CHECK(app.widgets.count("load/pointed") == 0);
+}
+
+TEST_CASE("arrows turn along where that is exact, and the legend says where they cannot") {
+  Robot robot;
+  App& app = robot.app;
+  robot.key('A');
+  const auto reaction = [&] {
+    for (const Load& load : shown_scene(app)->loads)
+      if (load.kind == LoadKind::inertia && !load.moment && load.vector.norm() > 1) return load.vector;
+    return Vec3(Vec3::Zero());
+  };
+  const Vec3 at_first = reaction();
+  REQUIRE(at_first.norm() > 1);
+  robot.key(' ');
+  robot.frames(10, 0.03);
+  CHECK(app.playback.time > 0.1);
+  CHECK(reaction().norm() == Approx(at_first.norm()));
+  CHECK((reaction() - at_first).norm() > 0.2 * at_first.norm());
+  CHECK(loads_missing(app).empty());
+  robot.key(' ');
+  open_scene(app, FLYBALL_ASSETS "/scenes/rate_gyro.json");
+  robot.frames(3);
+  CHECK(!shown_scene(app)->loads.empty());
+  robot.key(' ');
+  robot.frames(5, 0.03);
+  CHECK(shown_scene(app)->loads.empty());
+  CHECK(has_row(app, "at the drawn phase only"));
+  robot.key(' ');
+  rewind(app);
+  robot.frames(2);
+  CHECK(!shown_scene(app)->loads.empty());
+  robot.key(258); // Tab: building
+  CHECK(has_row(app, "while exploring"));
+}
+
+TEST_CASE("an exported picture has the arrows where that is ticked") {
+  const TemporaryFolder folder;
+  Robot robot;
+  App& app = robot.app;
+  const auto exported = [&](const std::string& name, bool loads) {
+    const std::filesystem::path file = folder.path() / name;
+    app.export_request = ExportRequest{file, 640, 480, false, loads};
+    export_picture(app, robot.size);
+    return std::filesystem::file_size(file);
+  };
+  const auto without = exported("without.png", false), with = exported("with.png", true);
+  CHECK(with > without + 2000);
+  CHECK_FALSE(app.view.loads);
+  CHECK_FALSE(app.view.alone);
+  robot.key('E', true);
+  robot.frames(2);
+  CHECK_FALSE(app.dialog.loads);
+  robot.click("export/loads");
+  CHECK(app.dialog.loads);
+}

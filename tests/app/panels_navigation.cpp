@@ -1,0 +1,126 @@
+// How the mouse moves the camera, by the habits that a person has chosen.
+#include "app/ui/choices.hpp"
+#include "robot.hpp"
+#include "temporary_folder.hpp"
+#include "tests/catch.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr int left = 0, right = 1, middle = 2;
+
+// What a drag over empty space of the view did to the camera.
+CameraDrag done(Robot& robot, int button, bool ctrl, bool shift) {
+  App& app = robot.app;
+  select(app, {});
+  robot.key('1');
+  robot.frames(2);
+  const ViewCamera before = app.view.camera;
+  robot.hold(ctrl, shift);
+  robot.drag("view", {0.1f, 0.2f}, {0.2f, 0.3f}, button);
+  robot.hold(false, false);
+  const ViewCamera& after = app.view.camera;
+  const bool turned = after.azimuth != before.azimuth, nearer = after.distance != before.distance,
+             moved = (after.target - before.target).norm() > 1e-9;
+  CHECK(static_cast<int>(turned) + static_cast<int>(nearer) + static_cast<int>(moved && !nearer) <= 1);
+  return turned ? CameraDrag::orbit : nearer ? CameraDrag::zoom : moved ? CameraDrag::pan : CameraDrag::none;
+}
+
+} // namespace
+
+TEST_CASE("drags mean what the chosen habits say") {
+  Robot robot;
+  App& app = robot.app;
+  CHECK(done(robot, left, false, false) == CameraDrag::orbit);
+  CHECK(done(robot, left, false, true) == CameraDrag::pan);
+  CHECK(done(robot, right, false, false) == CameraDrag::pan);
+  CHECK(done(robot, middle, false, false) == CameraDrag::pan);
+  CHECK(done(robot, middle, false, true) == CameraDrag::orbit);
+  choose_navigation(app, Navigation::blender);
+  CHECK(done(robot, middle, false, false) == CameraDrag::orbit);
+  CHECK(done(robot, middle, false, true) == CameraDrag::pan);
+  CHECK(done(robot, middle, true, false) == CameraDrag::zoom);
+  CHECK(done(robot, left, false, false) == CameraDrag::none);
+  CHECK(done(robot, right, false, false) == CameraDrag::none);
+  choose_navigation(app, Navigation::cad);
+  CHECK(done(robot, right, false, false) == CameraDrag::orbit);
+  CHECK(done(robot, middle, false, false) == CameraDrag::orbit);
+  CHECK(done(robot, right, true, false) == CameraDrag::pan);
+  CHECK(done(robot, middle, true, false) == CameraDrag::pan);
+  CHECK(done(robot, middle, false, true) == CameraDrag::zoom);
+  CHECK(done(robot, left, false, false) == CameraDrag::none);
+}
+
+TEST_CASE("where the left button does not turn the view it frames parts") {
+  Robot robot;
+  App& app = robot.app;
+  choose_navigation(app, Navigation::cad);
+  robot.drag("view", {0.15f, 0.1f}, {0.85f, 0.9f});
+  CHECK(app.selection().parts.size() > 3);
+  robot.click_at(app.poses[static_cast<std::size_t>(body_index(app.mechanism(), "ball1"))].position);
+  CHECK(app.selection().parts == std::vector<Part>{{PartKind::body, "ball1"}});
+}
+
+TEST_CASE("zooming keeps what is under the pointer where it is") {
+  Robot robot;
+  App& app = robot.app;
+  const WidgetRect view = robot.widget("view");
+  const ViewSize size{static_cast<double>(view.to.x - view.from.x),
+                      static_cast<double>(view.to.y - view.from.y)};
+  const auto under = [&](ImVec2 at) { // in the plane of the target
+    const Ray ray = app.view.camera.ray(
+        {static_cast<double>(at.x - view.from.x), static_cast<double>(at.y - view.from.y)}, size);
+    const Vec3 normal = app.view.camera.backward();
+    return Vec3(ray.origin + ray.direction * ((app.view.camera.target - ray.origin).dot(normal) /
+                                              ray.direction.dot(normal)));
+  };
+  const ImVec2 at(view.from.x + 0.3f * (view.to.x - view.from.x),
+                  view.from.y + 0.25f * (view.to.y - view.from.y));
+  robot.point(at);
+  const Vec3 before = under(at);
+  const double distance = app.view.camera.distance;
+  for (const float notches : {1.f, 1.f, -3.f}) {
+    ImGui::GetIO().MouseWheel = notches;
+    robot.frames(2);
+    CHECK(app.view.camera.distance != distance);
+    CHECK((under(at) - before).norm() < 1e-9);
+    const ImVec2 now = robot.pixel(before);
+    CHECK(std::hypot(now.x - at.x, now.y - at.y) < 0.01f);
+  }
+  // So does dragging, about the point where the button went down.
+  choose_navigation(app, Navigation::blender);
+  robot.hold(true, false);
+  robot.drag(at, {at.x, at.y + 60}, middle);
+  CHECK((under(at) - before).norm() < 1e-9);
+  CHECK(app.view.camera.distance > distance);
+}
+
+TEST_CASE("the habits are kept, and the sheet of shortcuts tells them") {
+  const TemporaryFolder folder;
+  {
+    App app({.mode = LiveSolver::Mode::immediate,
+             .on_news = {},
+             .scenes = {},
+             .numbers = {},
+             .state = folder.path()});
+    CHECK(app.navigation == Navigation::own);
+    choose_navigation(app, Navigation::blender);
+  }
+  App app({.mode = LiveSolver::Mode::immediate,
+           .on_news = {},
+           .scenes = {},
+           .numbers = {},
+           .state = folder.path()});
+  CHECK(app.navigation == Navigation::blender);
+  Robot robot({1280, 900});
+  robot.key('?');
+  robot.frames(2);
+  CHECK(robot.app.widgets.count("shortcuts/Right drag, Shift+drag") == 1);
+  robot.key(key_escape);
+  choose_navigation(robot.app, Navigation::cad);
+  robot.key('?');
+  robot.frames(2);
+  CHECK(robot.app.widgets.count("shortcuts/Right drag, middle drag") == 1);
+}

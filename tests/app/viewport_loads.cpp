@@ -1,0 +1,209 @@
+// What acts on a body adds up, inertial loads included (d'Alembert), and arrows tell how much it is.
+#include "app/viewport/load_arrows.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "engine/report/analysis.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+using namespace flyball;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Forces and moments of a free-body diagram, beside the largest of them.
+struct Sum {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  double largest_force = 0, largest_moment = 0;
+  double force_error() const { return largest_force > 0 ? force.norm() / largest_force : force.norm(); }
+  double moment_error() const { return largest_moment > 0 ? moment.norm() / largest_moment : moment.norm(); }
+};
+
+Sum sum_of(const std::vector<Load>& loads, const Vec3& about, double reach) {
+  Sum sum;
+  for (const Load& load : loads) {
+    const Vec3 moment = load.moment ? load.vector : Vec3((load.at - about).cross(load.vector));
+    if (!load.moment) sum.force += load.vector;
+    sum.moment += moment;
+    const double size = load.vector.norm();
+    sum.largest_force = std::max(sum.largest_force, load.moment ? size / reach : size);
+    sum.largest_moment = std::max(sum.largest_moment, load.moment ? size : size * reach);
+  }
+  return sum;
+}
+
+struct Steady {
+  Mechanism mechanism;
+  Solution solution;
+  std::vector<AngularMotion> turning;
+};
+
+Steady solved(Mechanism mechanism) {
+  Analysis analysis(mechanism);
+  Solution solution = analysis.solve();
+  INFO(mechanism.name << ": " << solution.message);
+  REQUIRE(solution.status == Status::converged);
+  return {std::move(mechanism), std::move(solution), analysis.turning_at(0)};
+}
+
+// How far the worst of the bodies is from balance, in parts of its largest load.
+double worst_of(const Steady& steady, std::span<const Pose> poses, const Quat& turn) {
+  const auto& [mechanism, solution, turning] = steady;
+  const Assembly assembly(mechanism, poses);
+  double worst = 0;
+  for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+    const Sum sum = sum_of(loads_of(assembly, solution, turning, static_cast<int>(b), turn),
+                           poses[b].position, assembly.scale.bounds.radius());
+    INFO(mechanism.name << ", " << mechanism.bodies[b].name << ": forces " << sum.force_error()
+                        << ", moments " << sum.moment_error());
+    CHECK(sum.force_error() < 1e-9);
+    CHECK(sum.moment_error() < 1e-9);
+    worst = std::max({worst, sum.force_error(), sum.moment_error()});
+  }
+  return worst;
+}
+
+std::vector<fs::path> shipped_scenes() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(FLYBALL_ASSETS "/scenes"))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+// An arm that hangs out of a driven hub, with one of everything that can act on it, and a wheel that a gear
+// turns along.
+Mechanism laden_arm() {
+  return parse_scene(R"({"flyball": 1, "name": "Laden arm", "gravity": [0, -9.8, 0],
+    "bodies": [
+      {"name": "hub", "mass": 3, "position": [0, 0, 0], "inertia": [0.2, 0.3, 0.2]},
+      {"name": "wheel", "mass": 2, "position": [0.6, 0, 0], "inertia": [0.1, 0.2, 0.1]},
+      {"name": "arm", "mass": 1.5, "position": [0.25, -0.05, 0.02],
+       "inertia": [0.02, 0.05, 0.06, 0.004, -0.003, 0.002]}],
+    "joints": [
+      {"name": "spin", "type": "revolute", "bodies": ["ground", "hub"], "at": [0, 0, 0], "axis": [0, 1, 0],
+       "drive": {"speed": 6}},
+      {"name": "turn", "type": "revolute", "bodies": ["ground", "wheel"], "at": [0.6, 0, 0],
+       "axis": [0, 1, 0]},
+      {"name": "mesh", "type": "gear", "joints": ["spin", "turn"], "ratio": -2},
+      {"name": "hinge", "type": "revolute", "bodies": ["hub", "arm"], "at": [0.1, 0, 0], "axis": [0, 0, 1],
+       "spring": {"stiffness": 5, "free": 0.1}, "damping": 2}],
+    "forces": [
+      {"name": "coil", "type": "spring", "bodies": ["hub", "arm"], "points": [[0, 0.3, 0], [0.3, 0, 0]],
+       "stiffness": 40, "free_length": 0.3, "damping": 3},
+      {"name": "air", "type": "drag", "body": "arm", "at": [0.4, -0.1, 0.05], "linear": 0.4,
+       "quadratic": 0.3},
+      {"name": "push", "type": "force", "body": "arm", "at": [0.35, 0, 0.03], "vector": [1, 2, -3],
+       "frame": "body"},
+      {"name": "twist", "type": "torque", "body": "arm", "vector": [0.3, 0.1, 0.2], "frame": "body"}]})");
+}
+
+} // namespace
+
+TEST_CASE("every body's free-body diagram adds up, inertial loads included") {
+  std::size_t bodies = 0;
+  for (const fs::path& file : shipped_scenes()) {
+    INFO(file.filename().string());
+    const Steady steady = solved(load_scene(file));
+    worst_of(steady, steady.solution.poses, Quat::Identity());
+    bodies += steady.mechanism.bodies.size();
+  }
+  CHECK(bodies > 30);
+}
+
+TEST_CASE("gears, drag, dampers and applied loads are parts of the diagram") {
+  const Steady steady = solved(laden_arm());
+  const Assembly assembly(steady.mechanism, steady.solution.poses);
+  const std::vector<Load> loads = loads_of(assembly, steady.solution, steady.turning, 2);
+  for (const LoadKind kind : {LoadKind::reaction, LoadKind::spring, LoadKind::weight, LoadKind::applied,
+                              LoadKind::drag, LoadKind::inertia})
+    CHECK(std::ranges::count(loads, kind, &Load::kind) >= 1);
+  CHECK(worst_of(steady, steady.solution.poses, Quat::Identity()) < 1e-9);
+  // Without any one of them it does not add up.
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    std::vector<Load> less = loads;
+    less.erase(less.begin() + static_cast<std::ptrdiff_t>(i));
+    const Sum sum = sum_of(less, steady.solution.poses[2].position, 0.5);
+    CHECK(std::max(sum.force_error(), sum.moment_error()) > 1e-4);
+  }
+}
+
+TEST_CASE("loads turn with a drive that turns everything about the vertical, and only then") {
+  const auto later = [](const Mechanism& mechanism) {
+    Analysis analysis(mechanism);
+    analysis.solve();
+    return analysis.poses_at(0.37);
+  };
+  const Steady governor = solved(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  const std::vector<Pose> turned = later(governor.mechanism);
+  const auto turn = common_turn(governor.mechanism, governor.solution, turned);
+  REQUIRE(turn);
+  CHECK(turn->angularDistance(Quat::Identity()) > 0.1);
+  CHECK(worst_of(governor, turned, *turn) < 1e-9);
+  const Steady gyro = solved(load_scene(FLYBALL_ASSETS "/scenes/rate_gyro.json"));
+  CHECK_FALSE(common_turn(gyro.mechanism, gyro.solution, later(gyro.mechanism)));
+}
+
+TEST_CASE("of the governor's loads the bearing bears the whole weight, and the spring holds the collar") {
+  const Steady steady = solved(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  const Mechanism& mechanism = steady.mechanism;
+  const std::vector<Load> loads =
+      loads_of(Assembly(mechanism, steady.solution.poses), steady.solution, steady.turning, -1);
+  double weight = 0;
+  for (const Body& body : mechanism.bodies)
+    weight += body.mass * mechanism.gravity.norm();
+  const auto joint = [&](const std::string& name) { return find_part(mechanism, {PartKind::joint, name}); };
+  const auto load = [&](LoadKind kind, PartId part) {
+    const auto found = std::ranges::find_if(
+        loads, [&](const Load& each) { return each.kind == kind && each.part == part && !each.moment; });
+    REQUIRE(found != loads.end());
+    return *found;
+  };
+  const Load bearing = load(LoadKind::reaction, joint("spin"));
+  CHECK((bearing.vector - Vec3(0, weight, 0)).norm() < 1e-9 * weight);
+  // 1000 N/m, free at 0.15 m, settles at 0.15001745812529710 m: along the joint's axis, which points down.
+  const Load spring = load(LoadKind::spring, joint("slide"));
+  CHECK(spring.vector.y() == Approx(1000 * (0.1500174581252971 - 0.15)).epsilon(1e-6));
+}
+
+TEST_CASE("arrows: a scale for each kind in a mechanism, one for all of a body") {
+  const Steady steady = solved(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  const Mechanism& mechanism = steady.mechanism;
+  const Assembly assembly(mechanism, steady.solution.poses);
+  const Palette& colors = palette(Theme::light);
+  const std::vector<Load> all = loads_of(assembly, steady.solution, steady.turning, -1);
+  const LoadArrows arrows = load_arrows(assembly, all, false, colors);
+  const LoadScales& scales = arrows.scales;
+  const double reaction = scales.largest(LoadKind::reaction, false),
+               inertia = scales.largest(LoadKind::inertia, false);
+  CHECK(reaction > 100 * inertia); // the shaft's weight
+  CHECK(scales.length(LoadKind::inertia, false, inertia) ==
+        Approx(scales.length(LoadKind::reaction, false, reaction)));
+  CHECK(scales.length(LoadKind::inertia, false, inertia / 8) ==
+        Approx(scales.length(LoadKind::inertia, false, inertia) / 2));
+  for (const double size : {0.3, 2., 11.})
+    CHECK(scales.size(LoadKind::inertia, false, scales.length(LoadKind::inertia, false, size)) ==
+          Approx(size));
+  CHECK(scales.largest(LoadKind::weight, false) == 0); // part of a body's diagram only
+
+  const int ball = body_index(mechanism, "ball1");
+  const std::vector<Load> of_ball = loads_of(assembly, steady.solution, steady.turning, ball);
+  const LoadArrows diagram = load_arrows(assembly, of_ball, true, colors);
+  double longest = 0;
+  Vec3 tip = Vec3::Zero(); // of all forces one after the other
+  for (const LoadArrow& arrow : diagram.arrows) {
+    const Load& load = of_ball[arrow.load];
+    if (load.moment) continue;
+    CHECK((arrow.from - load.at).norm() < 1e-12);
+    const double exact = diagram.scales.length(load);
+    if (exact < 1e-3) continue; // drawn as a head
+    CHECK((arrow.to - arrow.from).cross(load.vector).norm() < 1e-9 * load.vector.norm());
+    longest = std::max(longest, exact);
+    tip += exact * load.vector.normalized();
+  }
+  CHECK(longest > 0);
+  CHECK(tip.norm() < 1e-9 * longest);
+}
