@@ -9,8 +9,10 @@
 #include "app/cli/window_keys.hpp"
 #include "app/cli/window_state.hpp"
 #include "app/platform/data_folder.hpp"
+#include "app/platform/system_colors.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/render/window.hpp"
+#include "app/ui/choices.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/snapshot.hpp"
 #include "app/ui/widgets/ui_style.hpp"
@@ -88,6 +90,8 @@ class Input {
 struct Desk {
   App* app;
   std::atomic<bool>* stirred; // something has happened that may show: set from any thread
+  AltTap alt{};
+  SystemColors* colors = nullptr;
 };
 
 Desk& desk_of(GLFWwindow* window) {
@@ -106,11 +110,23 @@ void stir(GLFWwindow* window, Arguments...) {
 void press_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
   stir(window);
   if (const auto press = pressed_key(key, scancode, action, modifiers)) app_of(window).keys.push_back(*press);
+  if (const auto tap = desk_of(window).alt.see(key, action)) app_of(window).keys.push_back(*tap);
 }
 
 void type_character(GLFWwindow* window, unsigned character) {
   stir(window);
   if (const auto press = typed_sign(character)) app_of(window).keys.push_back(*press);
+}
+
+void press_button(GLFWwindow* window, int, int, int) {
+  stir(window);
+  desk_of(window).alt.disturb();
+}
+
+// It may have been night, or the settings, that came meanwhile.
+void focus_window(GLFWwindow* window, int focused) {
+  stir(window);
+  if (focused && desk_of(window).colors) desk_of(window).colors->ask();
 }
 
 void drop_file(GLFWwindow* window, int count, const char** paths) {
@@ -126,15 +142,24 @@ void set_callbacks(GLFWwindow* window, Desk& desk) {
   glfwSetCharCallback(window, type_character);
   glfwSetCursorPosCallback(window, stir);
   glfwSetCursorEnterCallback(window, stir);
-  glfwSetMouseButtonCallback(window, stir);
+  glfwSetMouseButtonCallback(window, press_button);
   glfwSetScrollCallback(window, stir);
-  glfwSetWindowFocusCallback(window, stir);
+  glfwSetWindowFocusCallback(window, focus_window);
   glfwSetWindowCloseCallback(window, stir);
   glfwSetWindowSizeCallback(window, stir);
   glfwSetWindowRefreshCallback(window, stir);
   glfwSetWindowIconifyCallback(window, stir);
   glfwSetWindowContentScaleCallback(window, stir);
   glfwSetFramebufferSizeCallback(window, stir);
+}
+
+Theme theme_of(DesktopColors colors) {
+  switch (colors) {
+  case DesktopColors::light: return Theme::light;
+  case DesktopColors::dark: return Theme::dark;
+  case DesktopColors::high_contrast: break;
+  }
+  return Theme::high_contrast;
 }
 
 std::string title_of(const App& app) {
@@ -166,7 +191,7 @@ class ShownState {
 };
 
 // Until the person quits or `ends` says so.
-void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& options,
+void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& options, SystemColors& colors,
               std::atomic<bool>& stirred, const std::function<bool()>& ends) {
   const auto scale = [&] { return options.scale.value_or(std::max(window.content_scale(), 1.f)); };
   Input input(window);
@@ -187,6 +212,7 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
     last = now;
     const bool help = app.tooltip.due <= elapsed; // is due, and takes a frame more to find its size
     const bool fades = next_notice_change(app) <= elapsed;
+    if (const auto found = colors.take()) take_system_theme(app, theme_of(*found));
     const bool news = update_files(app, elapsed) || help || fades;
     age_notice(app, elapsed);
     const bool something = stirred.exchange(false) || news || (hidden && window.visible());
@@ -264,22 +290,28 @@ Ending run_window(Window& window, const std::filesystem::path& scene, const Edit
                  glfwPostEmptyEvent();
                },
            .scenes = data_folder() / "scenes",
-           .theme = options.dark ? Theme::dark : Theme::light,
+           .theme = Theme::light,
            .numbers = {},
            .animated = true,
-           .state = state_folder()});
+           .state = state_folder(),
+           .theme_choice = options.theme});
   app.files.changes = ChangeWatch(glfwPostEmptyEvent);
   Stage stage(app, options.scale.value_or(std::max(window.content_scale(), 1.f)));
   stage.draft_while_moving(true);
   ImGui::GetIO().ConfigInputTextCursorBlink = false;
-  Desk desk{&app, stirred.get()};
+  SystemColors colors([stirred] {
+    *stirred = true;
+    glfwPostEmptyEvent();
+  });
+  colors.ask();
+  Desk desk{.app = &app, .stirred = stirred.get(), .colors = &colors};
   set_callbacks(window.handle(), desk);
   open_first(app, scene);
   const std::shared_ptr<AutosaveSlot> slot = app.files.autosave.slot();
   lost_display.emplace(slot);
   signals.emplace(glfwPostEmptyEvent, [slot] { tell_kept(slot->write(), *slot); });
   try {
-    run_loop(window, app, stage, options, *stirred, [&] { return signals->came() != 0; });
+    run_loop(window, app, stage, options, colors, *stirred, [&] { return signals->came() != 0; });
   } catch (...) {
     tell_kept(keep_unsaved_work(app), *slot);
     throw;
@@ -296,7 +328,8 @@ Ending run_without_display(const std::filesystem::path& scene, const EditorOptio
   wanted.width = static_cast<int>(static_cast<float>(options.width) * wanted.scale);
   wanted.height = static_cast<int>(static_cast<float>(options.height) * wanted.scale);
   wanted.interface = true;
-  wanted.theme = options.dark ? Theme::dark : Theme::light;
+  const ThemeChoice theme = options.theme.value_or(ThemeChoice::light);
+  wanted.theme = theme_of(theme, Theme::light);
   const Picture picture = draw_picture(scene, wanted);
   const std::filesystem::path file =
       std::filesystem::current_path() / ("flyball-" + scene.stem().string() + ".png");

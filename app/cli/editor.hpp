@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/cli/command.hpp"
+#include "app/session/settings.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -10,8 +11,8 @@
 namespace flyball::cli {
 
 struct EditorOptions {
-  std::optional<float> scale; // pixels a point has; the display's own without
-  bool dark = false;
+  std::optional<float> scale;         // pixels a point has; the display's own without
+  std::optional<ThemeChoice> theme{}; // for this run; none: as the person has chosen
   int width = 1280, height = 800;     // points
   std::filesystem::path state_file{}; // what the window shows, as JSON after every change: for tests
 };

@@ -38,13 +38,13 @@ int run(int argc, char** argv) {
 
   Ending ending;
   EditorOptions options;
-  std::string scene, theme = "light";
+  std::string scene, theme;
   app.add_option("scene", scene, "Scene file to open (default: the governor)");
   app.add_option("--scale", options.scale, "Pixels a point has (default: as the display says)")
       ->check(CLI::Range(0.5, 4.0));
-  app.add_option("--theme", theme, "Colours of the window")
-      ->check(CLI::IsMember({"light", "dark"}))
-      ->capture_default_str();
+  app.add_option("--theme", theme,
+                 "Colours of the window (default: as chosen in it, at first as the system has)")
+      ->check(CLI::IsMember({"system", "light", "dark", "high-contrast"}));
   app.add_option("--state-file", options.state_file)->group("");
 
   add_solve(app, ending);
@@ -60,7 +60,7 @@ int run(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
-    options.dark = theme == "dark";
+    options.theme = theme_choice_of(theme);
     if (app.get_subcommands().empty()) {
       if (is_slip(scene)) return report_slip(app, scene);
       ending = run_editor(scene, options);

@@ -28,7 +28,9 @@ Ending run_render(const RenderOptions& options) {
   wanted.interface = options.interface;
   wanted.drawn_pose = options.pose == "drawn";
   wanted.scale = options.scale;
-  wanted.theme = options.theme == "dark" ? Theme::dark : Theme::light;
+  wanted.theme = options.theme == "dark"    ? Theme::dark
+                 : options.theme == "light" ? Theme::light
+                                            : Theme::high_contrast;
   wanted.loads = options.loads;
   wanted.free_body = options.free_body;
   wanted.antialiased = !options.plain;
@@ -71,7 +73,7 @@ void add_render(CLI::App& app, Ending& ending) {
       ->check(CLI::Range(0.5, 4.0))
       ->capture_default_str();
   command->add_option("--theme", options->theme, "Colours")
-      ->check(CLI::IsMember({"light", "dark"}))
+      ->check(CLI::IsMember({"light", "dark", "high-contrast"}))
       ->capture_default_str();
   command->add_flag("--loads", options->loads,
                     "With arrows of reactions, drive torques, springs' forces and inertial loads");

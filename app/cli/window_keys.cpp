@@ -23,23 +23,33 @@ int labelled(int key, int scancode) {
 // What a person holds down to have it again and again.
 bool repeats(const KeyPress& press) {
   if (press.ctrl) return press.key == 'Z' || press.key == 'Y';
-  return press.key >= GLFW_KEY_RIGHT && press.key <= GLFW_KEY_UP;
+  return (press.key >= GLFW_KEY_RIGHT && press.key <= GLFW_KEY_PAGE_DOWN) || press.key == GLFW_KEY_TAB;
 }
 
 } // namespace
 
 std::optional<KeyPress> pressed_key(int key, int scancode, int action, int modifiers) {
-  if (action == GLFW_RELEASE || key == GLFW_KEY_UNKNOWN || (modifiers & GLFW_MOD_ALT) != 0)
-    return std::nullopt;
+  if (action == GLFW_RELEASE || key == GLFW_KEY_UNKNOWN) return std::nullopt;
   KeyPress press;
   press.key = labelled(key, scancode);
+  press.alt = (modifiers & GLFW_MOD_ALT) != 0;
+  if (press.alt && (action == GLFW_REPEAT || !is_letter(press.key))) return std::nullopt;
   press.ctrl = (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
   press.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
-  const bool bare = press.key >= GLFW_KEY_ESCAPE && press.key < GLFW_KEY_KP_0;
-  if (press.key >= GLFW_KEY_KP_0 || !(press.ctrl || bare || is_letter(press.key) || press.key == ' '))
+  const bool menu = press.key == GLFW_KEY_MENU;
+  const bool bare = (press.key >= GLFW_KEY_ESCAPE && press.key < GLFW_KEY_KP_0) || menu;
+  if ((press.key >= GLFW_KEY_KP_0 && !menu) ||
+      !(press.ctrl || bare || is_letter(press.key) || press.key == ' '))
     return std::nullopt;
   if (action == GLFW_REPEAT && !repeats(press)) return std::nullopt;
   return press;
+}
+
+std::optional<KeyPress> AltTap::see(int key, int action) {
+  const bool alt = key == GLFW_KEY_LEFT_ALT;
+  const bool tapped = alt && action == GLFW_RELEASE && down_;
+  if (action != GLFW_REPEAT || !alt) down_ = alt && action == GLFW_PRESS;
+  return tapped ? std::optional(KeyPress{GLFW_KEY_LEFT_ALT, false, false}) : std::nullopt;
 }
 
 std::optional<KeyPress> typed_sign(unsigned character) {

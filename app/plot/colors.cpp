@@ -6,7 +6,7 @@
 
 namespace flyball {
 
-const PlotColors& plot_colors(bool dark) {
+const PlotColors& plot_colors(PlotGround ground) {
   static constexpr PlotColors on_light = {.page = 0xFFFFFF,
                                           .area = 0xFFFFFF,
                                           .text = 0x20262D,
@@ -23,10 +23,23 @@ const PlotColors& plot_colors(bool dark) {
                                          .grid = 0x2D343B,
                                          .minor_grid = 0x20262B,
                                          .frame = 0x6B7681};
-  return dark ? on_dark : on_light;
+  static constexpr PlotColors on_black = {.page = 0x000000,
+                                          .area = 0x000000,
+                                          .text = 0xFFFFFF,
+                                          .dim = 0xE4E4E4,
+                                          .faint = 0x9A9A9A,
+                                          .grid = 0x6A6A6A,
+                                          .minor_grid = 0x2E2E2E,
+                                          .frame = 0xFFFFFF};
+  switch (ground) {
+  case PlotGround::light: return on_light;
+  case PlotGround::dark: return on_dark;
+  case PlotGround::high_contrast: break;
+  }
+  return on_black;
 }
 
-std::uint32_t curve_color(int index, bool dark) {
+std::uint32_t curve_color(int index, PlotGround ground) {
   static constexpr std::array<std::uint32_t, 7> on_light = {0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7,
                                                             0xE69F00, 0x56B4E9, 0x20262D};
   // Lighter where the originals are dim on a dark ground.
@@ -34,7 +47,10 @@ std::uint32_t curve_color(int index, bool dark) {
                                                            0xE9AE2B, 0x9AD8FA, 0xE3E8ED};
   const auto count = static_cast<int>(on_light.size());
   const auto i = static_cast<std::size_t>((index % count + count) % count);
-  return dark ? on_dark[i] : on_light[i];
+  // And all of them as light as letters have to be on black.
+  static constexpr std::array<std::uint32_t, 7> on_black = {0x5CB8FF, 0xFF9A52, 0x2EE6A8, 0xFF9BD2,
+                                                            0xFFC233, 0xB8E6FF, 0xFFFFFF};
+  return ground == PlotGround::light ? on_light[i] : ground == PlotGround::dark ? on_dark[i] : on_black[i];
 }
 
 std::uint32_t heat_color(double part) {

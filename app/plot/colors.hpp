@@ -1,9 +1,12 @@
-// The colours of plots, as 0xRRGGBB, on light and on dark ground.
+// The colours of plots, as 0xRRGGBB, on light, dark and black ground. On black all words have a contrast of 7
+// or more and all lines of 3.
 #pragma once
 
 #include <cstdint>
 
 namespace flyball {
+
+enum class PlotGround { light, dark, high_contrast };
 
 struct PlotColors {
   std::uint32_t page, area;       // around the plot and inside the frame
@@ -11,10 +14,10 @@ struct PlotColors {
   std::uint32_t grid, minor_grid, frame;
 };
 
-const PlotColors& plot_colors(bool dark);
+const PlotColors& plot_colors(PlotGround ground);
 // Okabe and Ito's palette (2008), which every common colour vision can tell apart; see plot_color in
 // plot.hpp.
-std::uint32_t curve_color(int index, bool dark);
+std::uint32_t curve_color(int index, PlotGround ground);
 // Viridis: perceptually uniform, from dark blue at 0 to yellow at 1.
 std::uint32_t heat_color(double part);
 

@@ -54,7 +54,7 @@ struct Drawing {
   const Plot& plot;
   const PlotLayout& layout;
   const PlotColors& colors;
-  bool dark;
+  PlotGround ground;
   std::string out{};
 
   void text(const PlotText& t, std::uint32_t color) {
@@ -145,7 +145,7 @@ struct Drawing {
 
   void curve(const PlotCurveLines& lines) {
     const PlotCurve& c = plot.curves[lines.curve];
-    const std::uint32_t color = curve_color(c.color, dark);
+    const std::uint32_t color = curve_color(c.color, ground);
     std::string path;
     for (const PixelLine& line : lines.lines)
       for (std::size_t i = 0; i < line.size(); ++i)
@@ -166,14 +166,14 @@ struct Drawing {
                                    ? fmt::format("M{} {}H{}", px(a.left), px(r.y), px(a.right))
                                    : fmt::format("M{} {}V{}", px(r.x), px(a.top), px(a.bottom));
       out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"{}/>\n", path,
-                         hex(curve_color(reference.color, dark)), dash_of(reference.line));
+                         hex(curve_color(reference.color, ground)), dash_of(reference.line));
     }
   }
 
   void legend() {
     for (const PlotLegendEntry& entry : layout.legend) {
       const PlotCurve& c = plot.curves[entry.curve];
-      const std::uint32_t color = curve_color(c.color, dark);
+      const std::uint32_t color = curve_color(c.color, ground);
       const double y = (entry.sample.top + entry.sample.bottom) / 2;
       if (c.line != PlotLine::none)
         out += fmt::format("<path d=\"M{} {}H{}\" stroke=\"{}\" stroke-width=\"{}\"{}/>\n",
@@ -227,14 +227,14 @@ struct Drawing {
 
   void marks(const PlotMetrics& metrics) {
     for (const PlotPlaced& m : layout.marks)
-      shape(plot.marks[m.index].shape, m.x, m.y, 9, curve_color(plot.marks[m.index].color, dark), true);
+      shape(plot.marks[m.index].shape, m.x, m.y, 9, curve_color(plot.marks[m.index].color, ground), true);
     for (const auto* placed : {&layout.references, &layout.marks})
       for (const PlotPlaced& p : *placed)
         label(p);
     if (!plot.marker) return;
     const double x = layout.x.pixel(plot.marker->x), y = layout.y.pixel(plot.marker->y);
     if (!layout.area.grown(0.5).contains(x, y)) return;
-    shape(PlotShape::circle, x, y, 11, curve_color(plot_color::neutral, dark), false);
+    shape(PlotShape::circle, x, y, 11, curve_color(plot_color::neutral, ground), false);
     if (!plot.marker->label.empty())
       label({0, x, y, label_beside(layout, x, y, plot.marker->label, metrics)});
   }
@@ -246,7 +246,7 @@ std::string to_svg(const Plot& plot, const SvgOptions& options, const PlotLook& 
   PlotMetrics metrics;
   metrics.height = {line_height, line_height, line_height + 2};
   const PlotLayout layout = plot_layout(plot, look, options.width, options.height, metrics);
-  Drawing d{plot, layout, plot_colors(options.dark), options.dark};
+  Drawing d{plot, layout, plot_colors(options.ground), options.ground};
   d.out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"{2}\" font-size=\"{3}\" style=\"font-variant-numeric: tabular-nums\" fill=\"{4}\">\n"

@@ -1,6 +1,7 @@
 // Plots as SVG text.
 #pragma once
 
+#include "app/plot/colors.hpp"
 #include "app/plot/plot.hpp"
 
 namespace flyball {
@@ -8,7 +9,7 @@ namespace flyball {
 struct SvgOptions {
   int width = 800, height = 520;
   std::string font = "Inter, Helvetica, Arial, sans-serif";
-  bool dark = false;
+  PlotGround ground = PlotGround::light;
 };
 
 // Valid XML whatever the texts hold.

@@ -57,6 +57,37 @@ inline bool key_pressed(ImGuiKey key, bool repeat = true) {
 }
 #endif
 
+// Whether nothing can be done with the last item now.
+inline bool last_item_disabled() {
+  const ImGuiLastItemData& item = ImGui::GetCurrentContext()->LastItemData;
+#if IMGUI_VERSION_NUM >= 19140
+  return (item.ItemFlags & ImGuiItemFlags_Disabled) != 0;
+#else
+  return (item.InFlags & ImGuiItemFlags_Disabled) != 0;
+#endif
+}
+
+// Tab and Ctrl+Tab are the program's own, not Dear ImGui's, which from release to release goes through other
+// items with them. Once a frame.
+inline void keep_tab() {
+#if IMGUI_VERSION_NUM >= 19000
+  ImGui::SetKeyOwner(ImGuiKey_Tab, ImHashStr("tab"));
+  ImGui::GetCurrentContext()->ConfigNavWindowingKeyNext = 0;
+  ImGui::GetCurrentContext()->ConfigNavWindowingKeyPrev = 0;
+#elif IMGUI_VERSION_NUM < 18700
+  ImGui::GetIO().KeyMap[ImGuiKey_Tab] = -1;
+#endif
+}
+
+// Presses an item by its ID as the keyboard does, in the next frame; in a field, begins to type. What
+// ActivateItem() and its later names do, which leave out by what it was pressed.
+inline void press_item(ImGuiID id, bool to_type) {
+  ImGuiContext& context = *ImGui::GetCurrentContext();
+  context.NavInputSource = ImGuiInputSource_Keyboard;
+  context.NavNextActivateId = id;
+  context.NavNextActivateFlags = to_type ? ImGuiActivateFlags_PreferInput : ImGuiActivateFlags_None;
+}
+
 // Keys as input of one frame, by GLFW's codes.
 #if IMGUI_VERSION_NUM >= 18900
 inline ImGuiKey key_of(int code) {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -30,6 +31,10 @@ constexpr std::array<Words<SpeedUnit>, 3> speeds{
 
 constexpr std::array<Words<Navigation>, 3> navigations{
     {{"own", Navigation::own}, {"blender", Navigation::blender}, {"cad", Navigation::cad}}};
+constexpr std::array<Words<ThemeChoice>, 4> themes{{{"system", ThemeChoice::system},
+                                                    {"light", ThemeChoice::light},
+                                                    {"dark", ThemeChoice::dark},
+                                                    {"high-contrast", ThemeChoice::high_contrast}}};
 
 template <class Table, class Value>
 void read(const json& from, const char* key, const Table& words, Value& value) {
@@ -59,6 +64,7 @@ Settings read_settings(const fs::path& state_folder) {
     read(file, "length", lengths, settings.units.length);
     read(file, "speed", speeds, settings.units.speed);
     read(file, "navigation", navigations, settings.navigation);
+    read(file, "theme", themes, settings.theme);
     if (const auto legend = file.find("legend"); legend != file.end() && legend->is_boolean())
       settings.legend = legend->get<bool>();
   } catch (const SceneError&) { // unreadable
@@ -72,13 +78,20 @@ void keep_settings(const fs::path& state_folder, const Settings& settings) {
                      {"length", word_for(lengths, settings.units.length)},
                      {"speed", word_for(speeds, settings.units.speed)},
                      {"navigation", word_for(navigations, settings.navigation)},
-                     {"legend", settings.legend}};
+                     {"legend", settings.legend},
+                     {"theme", word_for(themes, settings.theme)}};
   std::error_code ignored;
   fs::create_directories(state_folder, ignored);
   try {
     write_bytes(file_in(state_folder), file.dump(1) + "\n");
   } catch (const SceneError&) { // a convenience, no reason to disturb anybody
   }
+}
+
+std::optional<ThemeChoice> theme_choice_of(std::string_view word) {
+  for (const auto& [name, choice] : themes)
+    if (name == word) return choice;
+  return std::nullopt;
 }
 
 } // namespace flyball

@@ -5,13 +5,21 @@
 #include "app/session/units.hpp"
 
 #include <filesystem>
+#include <optional>
+#include <string_view>
 
 namespace flyball {
+
+// The colours that were asked for; as the desktop has them where it says so, else light.
+enum class ThemeChoice { system, light, dark, high_contrast };
+// Of "system", "light", "dark" and "high-contrast".
+std::optional<ThemeChoice> theme_choice_of(std::string_view word);
 
 struct Settings {
   DisplayUnits units;
   bool legend = true; // of the view is open
   Navigation navigation = Navigation::own;
+  ThemeChoice theme = ThemeChoice::system;
   bool operator==(const Settings&) const = default;
 };
 

@@ -1,6 +1,7 @@
 #include "app/ui/app.hpp"
 
 #include "app/session/settings.hpp"
+#include "app/ui/choices.hpp"
 #include "app/ui/load_view.hpp"
 
 namespace flyball {
@@ -32,11 +33,13 @@ App::App(AppOptions chosen)
                .scenes = std::move(chosen.scenes),
                .numbers = chosen.numbers,
                .state = std::move(chosen.state)}),
-      theme(chosen.theme) {
+      theme(chosen.theme), system_theme(chosen.theme) {
   const Settings settings = read_settings(options.state);
   panels.legend = settings.legend;
   navigation = settings.navigation;
   view.animated = chosen.animated;
+  theme_choice = chosen.theme_choice.value_or(settings.theme);
+  theme = theme_of(theme_choice, chosen.theme);
   document_opened(false);
 }
 
@@ -60,6 +63,7 @@ void App::mode_chosen() {
 }
 
 void set_tool(App& app, Tool tool) {
+  app.keyboard.at.clear(); // the tool works in the view
   if (tool != Tool::select && tool != Tool::box && tool != Tool::pull) set_mode(app, Mode::build);
   app.tool.tool = tool;
 }

@@ -5,10 +5,12 @@
 #include "app/render/fonts.hpp"
 #include "app/session/navigation.hpp"
 #include "app/session/session.hpp"
+#include "app/session/settings.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/command_state.hpp"
 #include "app/ui/file_dialog_state.hpp"
 #include "app/ui/inspector_state.hpp"
+#include "app/ui/keyboard/keyboard_state.hpp"
 #include "app/ui/panels/view_cube.hpp"
 #include "app/ui/shown_scene.hpp"
 #include "app/ui/studies/motion/movie_state.hpp"
@@ -36,10 +38,12 @@ struct AppOptions {
   LiveSolver::Mode mode = LiveSolver::Mode::background;
   std::function<void()> on_news; // from the background thread; see LiveSolver
   std::filesystem::path scenes;  // the shipped scenes; may be empty
-  Theme theme = Theme::light;
+  Theme theme = Theme::light;    // until the desktop has been asked
   NumberStyle numbers;
   bool animated = false;         // the camera glides to where commands put it
   std::filesystem::path state{}; // folder for recent files and autosaves; empty: nothing is kept anywhere
+  // Of the command line, for this run; none: as it was kept.
+  std::optional<ThemeChoice> theme_choice{};
 };
 
 struct ViewState {
@@ -98,7 +102,7 @@ struct PanelState {
 // begins, and misses one that was tapped while a slow frame was drawn.
 struct KeyPress {
   int key = 0; // 'A' to 'Z' as the keyboard's layout has it, a digit, ' ', a sign, or from 256 on GLFW's code
-  bool ctrl = false, shift = false;
+  bool ctrl = false, shift = false, alt = false;
   bool operator==(const KeyPress&) const = default;
 };
 
@@ -146,17 +150,21 @@ struct App : Session {
   ViewState view;
   PanelState panels;
   DialogState dialog;
-  Theme theme = Theme::light;
+  Theme theme = Theme::light; // that is shown
+  Theme system_theme = Theme::light;
+  ThemeChoice theme_choice = ThemeChoice::system;
   Navigation navigation = Navigation::own;
   float scale = 1; // pixels a point has
   UiFonts fonts;
   WidgetMap widgets;
+  KeyboardState keyboard;
   std::vector<KeyPress> keys; // since the last frame; whoever runs the loop adds, build_gui() empties
 
   // Told to whoever runs the loop, who clears them.
   bool quit = false;
   std::optional<ExportRequest> export_request;
   NoticeAge notice_age; // of `notice`, which is shown in the view for a while, see notice.hpp
+  NoticeLog notice_log;
   TooltipState tooltip;
 
  protected:

@@ -1,6 +1,7 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/key_focus.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/plots/plot_save.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -19,7 +20,7 @@ void show(App& app, Panel panel, const PanelRect& rect) {
 
 // A new movement of the hand begins: what it changes is one step.
 void notice_gestures(App& app) {
-  bool pressed = !app.keys.empty();
+  bool pressed = !app.keys.empty() && !goes_on_nudging(app);
   for (int button = 0; button < 3; ++button)
     pressed = pressed || ImGui::IsMouseClicked(button);
   if (pressed) ++app.gesture;
@@ -32,11 +33,13 @@ void notice_gestures(App& app) {
 
 void build_gui(App& app) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  app.widgets.clear();
   notice_gestures(app);
+  take_keyboard(app);
+  app.widgets.clear();
   notice_key_focus(app);
   give_keys_to_popups(app);
   take_tool_keys(app);
+  take_view_keys(app);
   handle_shortcuts(app);
   const Layout layout = layout_of(app, size.x, size.y);
   if (app.view.alone) return view_alone(app, layout.view);
@@ -53,6 +56,7 @@ void build_gui(App& app) {
   show(app, study_panel, layout.study);
   toolbar_panel(app, layout.toolbar);
   if (app.inspector.history) history_panel(app);
+  if (app.notice_log.showing) messages_panel(app);
   app.dialog.showing = false;
   open_dialog(app);
   save_dialog(app);
@@ -67,6 +71,7 @@ void build_gui(App& app) {
   shortcut_sheet(app);
   command_palette(app);
   settle_fields(app);
+  settle_keyboard(app);
 }
 
 } // namespace flyball

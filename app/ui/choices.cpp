@@ -1,14 +1,17 @@
 #include "app/ui/choices.hpp"
 
-#include "app/session/settings.hpp"
 #include "app/ui/app.hpp"
+#include "app/ui/widgets/ui_style.hpp"
 
 namespace flyball {
 
 namespace {
 
 Settings settings_of(const App& app) {
-  return {.units = app.units, .legend = app.panels.legend, .navigation = app.navigation};
+  return {.units = app.units,
+          .legend = app.panels.legend,
+          .navigation = app.navigation,
+          .theme = app.theme_choice};
 }
 
 } // namespace
@@ -32,6 +35,37 @@ void choose_units(App& app, const DisplayUnits& units) {
 void choose_navigation(App& app, Navigation navigation) {
   app.navigation = navigation;
   keep_settings(app.options.state, settings_of(app));
+}
+
+namespace {
+
+void show_theme(App& app, Theme theme) {
+  if (app.theme == theme) return;
+  app.theme = theme;
+  apply_style(theme, app.scale);
+}
+
+} // namespace
+
+Theme theme_of(ThemeChoice choice, Theme system) {
+  switch (choice) {
+  case ThemeChoice::system: return system;
+  case ThemeChoice::light: return Theme::light;
+  case ThemeChoice::dark: return Theme::dark;
+  case ThemeChoice::high_contrast: break;
+  }
+  return Theme::high_contrast;
+}
+
+void choose_theme(App& app, ThemeChoice choice) {
+  app.theme_choice = choice;
+  keep_settings(app.options.state, settings_of(app));
+  show_theme(app, theme_of(choice, app.system_theme));
+}
+
+void take_system_theme(App& app, Theme theme) {
+  app.system_theme = theme;
+  if (app.theme_choice == ThemeChoice::system) show_theme(app, theme);
 }
 
 void open_legend(App& app, bool open) {

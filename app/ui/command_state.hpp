@@ -3,7 +3,9 @@
 
 #include "engine/mechanism/mechanism.hpp"
 
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace flyball {
 
@@ -13,6 +15,8 @@ struct CopyChoice {
   Vec3 point = Vec3::Zero(); // m
   int count = 3;
 };
+
+struct PaletteIndex; // see palette_entries.hpp
 
 // Where keys go; see key_focus.hpp.
 struct KeyFocus {
@@ -28,6 +32,8 @@ struct CommandState {
   bool palette_wanted = false, palette_showing = false; // wanted: to be opened by the next frame
   std::string search;
   int chosen = 0; // row of the palette
+  std::shared_ptr<PaletteIndex> index{};
+  std::vector<std::string> recent{}; // entries of the palette, the last used first
   bool shortcuts = false;
   KeyFocus focus;
   CopyChoice copy;

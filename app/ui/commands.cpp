@@ -6,10 +6,11 @@
 #include "app/ui/file_commands.hpp"
 #include "app/ui/hidden_parts.hpp"
 #include "app/ui/key_focus.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/panels/context_menu.hpp"
 #include "app/ui/studies/study_panels.hpp"
-#include "app/ui/widgets/ui_style.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
 
 #include <algorithm>
 #include <array>
@@ -65,6 +66,15 @@ bool shown_in(const App& app) {
 template <void (*command)(Session&)>
 void run_session(App& app) {
   command(app);
+}
+
+template <ThemeChoice choice>
+void choose_colours(App& app) {
+  choose_theme(app, choice);
+}
+template <ThemeChoice choice>
+bool colours_chosen(const App& app) {
+  return app.theme_choice == choice;
 }
 
 std::string undo_label(const App& app) {
@@ -208,6 +218,16 @@ const std::array table{
             .key = plain(keys::f2),
             .run = start_rename,
             .enabled = [](const App& app) { return app.selection().parts.size() == 1; }},
+    Command{.id = "edit.pin",
+            .title = "Pin the number",
+            .help = "The number of the field that the keyboard is in gets a slider, or loses it.",
+            .key = ctrl('L'),
+            .run =
+                [](App& app) {
+                  const std::string address = focused_address(app);
+                  pin(app, address, !is_pinned(app.mechanism(), address));
+                },
+            .enabled = [](const App& app) { return !focused_address(app).empty(); }},
     Command{.id = "edit.all",
             .title = "Select all",
             .help = "Select every part.",
@@ -444,16 +464,27 @@ const std::array table{
             .key = shift(keys::f10),
             .also = plain(keys::menu),
             .run = open_context_menu},
-    Command{.id = "view.theme",
-            .title = "Dark colours",
-            .help = "Light or dark.",
-            .run =
-                [](App& app) {
-                  app.theme = app.theme == Theme::dark ? Theme::light : Theme::dark;
-                  apply_style(app.theme, app.scale);
-                },
-            .checked = [](const App& app) { return app.theme == Theme::dark; },
+    Command{.id = "view.theme_system",
+            .title = "Colours of the system",
+            .help = "Light or dark as the desktop is, also when that changes.",
+            .run = choose_colours<ThemeChoice::system>,
+            .checked = colours_chosen<ThemeChoice::system>,
             .separated = true},
+    Command{.id = "view.theme_light",
+            .title = "Light colours",
+            .help = "Dark words on a light ground.",
+            .run = choose_colours<ThemeChoice::light>,
+            .checked = colours_chosen<ThemeChoice::light>},
+    Command{.id = "view.theme_dark",
+            .title = "Dark colours",
+            .help = "Light words on a dark ground.",
+            .run = choose_colours<ThemeChoice::dark>,
+            .checked = colours_chosen<ThemeChoice::dark>},
+    Command{.id = "view.theme_contrast",
+            .title = "High contrast",
+            .help = "On black, with every word at a contrast of 7 to 1 or more.",
+            .run = choose_colours<ThemeChoice::high_contrast>,
+            .checked = colours_chosen<ThemeChoice::high_contrast>},
 
     Command{.id = "units.degrees",
             .title = "Angles in degrees",
@@ -543,10 +574,15 @@ const std::array table{
             .separated = true},
 
     Command{.id = "help.palette",
-            .title = "Find a command…",
-            .help = "Every command by name.",
+            .title = "Find…",
+            .help = "Commands, parts and numbers by name; \"spin 15\" sets a number.",
             .key = ctrl('P'),
             .run = [](App& app) { app.commands.palette_wanted = true; }},
+    Command{.id = "help.messages",
+            .title = "Messages",
+            .help = "What was told before, the latest first.",
+            .run = [](App& app) { app.notice_log.showing = !app.notice_log.showing; },
+            .checked = [](const App& app) { return app.notice_log.showing; }},
     Command{.id = "help.shortcuts",
             .title = "Shortcuts",
             .help = "Every key and what it does.",
@@ -597,6 +633,7 @@ std::string key_text(const KeyPress& key) {
   case keys::del: return text + "Delete";
   case keys::f1: return text + "F1";
   case keys::f2: return text + "F2";
+  case keys::f6: return text + "F6";
   case keys::f10: return text + "F10";
   case keys::menu: return text + "Menu";
   default: return text + static_cast<char>(key.key);

@@ -32,6 +32,7 @@ std::string key_text(const KeyPress& key);
 // The keys of the last frames, unless something is being typed.
 void handle_shortcuts(App& app);
 
+std::span<const char* const> menu_titles(); // of the bar, from left to right
 void menu_bar(App& app);
 void command_palette(App& app);
 void shortcut_sheet(App& app);
@@ -39,8 +40,8 @@ void shortcut_sheet(App& app);
 // GLFW's codes of keys without a character.
 namespace keys {
 inline constexpr int escape = 256, enter = 257, tab = 258, backspace = 259, insert = 260, del = 261,
-                     right = 262, left = 263, down = 264, up = 265, home = 268, end = 269, f1 = 290, f2 = 291,
-                     f10 = 299, menu = 348;
+                     right = 262, left = 263, down = 264, up = 265, page_up = 266, page_down = 267,
+                     home = 268, end = 269, f1 = 290, f2 = 291, f6 = 295, f10 = 299, alt = 342, menu = 348;
 } // namespace keys
 
 } // namespace flyball

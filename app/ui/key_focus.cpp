@@ -72,7 +72,8 @@ void notice_key_focus(App& app) {
 
 bool may_command(App& app, const KeyPress& key) {
   KeyFocus& focus = app.commands.focus;
-  if (!focus.in_panel) return true;
+  // With the keyboard at a widget its number begins with a digit, and letters stay commands.
+  if (!focus.in_panel || app.keyboard.ring) return true;
   bool typed = false;
   if (key.ctrl) {
     typed = focus.among_fields && edits_text(key);

@@ -1,5 +1,6 @@
 #include "app/ui/layout.hpp"
 
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
 #include <algorithm>
@@ -9,7 +10,8 @@ namespace flyball {
 
 namespace {
 
-constexpr float toolbar_height = 68, narrow = 1060;                    // points
+constexpr float toolbar_height = 68, narrow = 1060; // points
+constexpr float key_step = 10;                      // points that a key moves a line between panels
 constexpr float least_panel = 230, most_panel = 560, least_view = 240; // points
 
 float panel_width(float wanted, float room) {
@@ -60,14 +62,17 @@ float splitter(App& app, const char* name, const PanelRect& line, bool upright) 
                    ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar(2);
   ImGui::InvisibleButton("line", size);
-  note_widget(app.widgets, name);
-  const bool active = ImGui::IsItemActive(), lit = active || ImGui::IsItemHovered();
+  note_widget(app.widgets, name, KeyUse::slide);
+  const bool active = ImGui::IsItemActive();
+  const bool lit = active || ImGui::IsItemHovered() || has_keyboard(app, name);
   if (lit) ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
   const UiColors& colors = ui_colors(app.theme);
   const ImVec2 to(line.x + (upright ? thick : line.width), line.y + (upright ? line.height : thick));
   ImGui::GetWindowDrawList()->AddRectFilled(
       {line.x, line.y}, to, ImGui::ColorConvertFloat4ToU32(lit ? colors.accent : colors.border));
   ImGui::End();
+  if (const KeyNudge* nudge = nudge_of(app, name)) // to the left and upwards, or to the right and downwards
+    return static_cast<float>(nudge->x * nudge->size) * key_step * app.scale;
   if (!active) return 0;
   return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
 }

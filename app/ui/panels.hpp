@@ -18,6 +18,7 @@ void results_panel(App& app, const PanelRect& rect);
 void welcome(App& app, const PanelRect& view); // over the view of an empty document: what to do first
 void factor_combo(App& app, const char* name, float width); // seconds shown a second; width in pixels
 void status_chip(App& app, const PanelRect& view);          // solved, solving, or what is missing
+void messages_panel(App& app);                              // what was told before
 void history_panel(App& app);                               // the steps, to go back to
 void start_rename(App& app); // of the selected part, in its place in the outline
 void open_dialog(App& app);

@@ -46,7 +46,8 @@ Image view_picture(App& app, PixelSize size, float scale) {
 Image interface_picture(App& app, PixelSize size, float scale) {
   const float former_scale = app.scale;
   const UiFonts former_fonts = app.fonts;
-  const WidgetMap former_widgets = app.widgets;
+  const WidgetMap former_widgets = std::exchange(app.widgets, {});
+  const KeyboardState former_keyboard = std::exchange(app.keyboard, {});
   const unsigned former_texture = app.view.texture;
   app.view.hovered = {};
   Image image;
@@ -63,6 +64,7 @@ Image interface_picture(App& app, PixelSize size, float scale) {
   app.scale = former_scale;
   app.fonts = former_fonts;
   app.widgets = former_widgets;
+  app.keyboard = former_keyboard;
   app.view.texture = former_texture;
   return image;
 }

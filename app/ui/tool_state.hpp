@@ -106,10 +106,12 @@ struct ToolState {
   std::optional<Aim> first{};  // where the button went down, or the first of two clicks
   bool first_clicked = false;  // the latter
   std::optional<JointDraft> joint{};
-  float card_height = 0;  // pixels, the most that the joint's card has taken
-  bool spent = false;     // the button that is down has done its work
-  std::string typed{};    // the length or size of what is being placed, instead of the hand's
-  bool place_now = false; // Enter was pressed: as if clicked here
+  float card_height = 0;        // pixels, the most that the joint's card has taken
+  bool spent = false;           // the button that is down has done its work
+  std::string typed{};          // the length or size of what is being placed, instead of the hand's
+  bool place_now = false;       // Enter was pressed: as if clicked here
+  std::optional<Vec2> cursor{}; // pixel of the view where the keyboard has put it; see tool_cursor.hpp
+  bool cursor_click = false;    // Enter was pressed there
 
   ToolCaches caches{};
 };

@@ -57,10 +57,47 @@ constexpr Palette dark = {
     .axis_z = rgb(0x4DA6E8),
 };
 
+// Each hue, then each in a lighter shade: a darker one would be too near to black.
+constexpr std::array<Color, 12> light_body_colors = [] {
+  constexpr std::array<Color, 6> light_hues = {rgb(0x1FD6A0), rgb(0x56B4E9), rgb(0xE58DC0),
+                                               rgb(0xF0E442), rgb(0xFF8A3D), rgb(0xB4BEC8)};
+  std::array<Color, 12> all;
+  for (std::size_t i = 0; i < light_hues.size(); ++i) {
+    all[i] = light_hues[i];
+    all[i + light_hues.size()] = mix(light_hues[i], rgb(0xFFFFFF), 0.45f);
+  }
+  return all;
+}();
+
+constexpr Palette high_contrast = {
+    .background_top = rgb(0x000000),
+    .background_bottom = rgb(0x000000),
+    .grid = rgb(0xFFFFFF, 0.42f),
+    .accent = rgb(0x00E5FF),
+    .metal = rgb(0xD6DCE2),
+    .metal_dark = rgb(0x9AA3AD),
+    .drawn = rgb(0xFFFFFF),
+    .motion = rgb(0xFFB000, 0.55f),
+    .tension = rgb(0xFF8A3D),
+    .compression = rgb(0x5CB8FF),
+    .slack = rgb(0xC8C8C8),
+    .cut = rgb(0xFF9BD2),
+    .force = rgb(0xFFFFFF),
+    .bodies = light_body_colors,
+    .axis_x = rgb(0xFF8A3D),
+    .axis_y = rgb(0x2EE6A8),
+    .axis_z = rgb(0x5CB8FF),
+};
+
 } // namespace
 
 const Palette& palette(Theme theme) {
-  return theme == Theme::light ? light : dark;
+  switch (theme) {
+  case Theme::light: return light;
+  case Theme::dark: return dark;
+  case Theme::high_contrast: break;
+  }
+  return high_contrast;
 }
 
 } // namespace flyball

@@ -28,7 +28,8 @@ inline constexpr Color black = rgb(0x000000), orange = rgb(0xE69F00), sky_blue =
                        vermillion = rgb(0xD55E00), purple = rgb(0xCC79A7);
 } // namespace okabe_ito
 
-enum class Theme { light, dark };
+// high_contrast: on black, with words at a contrast of 7 or more to their ground and signs at 3 (WCAG AAA).
+enum class Theme { light, dark, high_contrast };
 
 struct Palette {
   Color background_top, background_bottom;

@@ -51,14 +51,6 @@ struct Hand : Robot {
     select(app, {{{PartKind::joint, "spin"}}});
     frames(2);
   }
-  // As a person types, each key also as a character.
-  void strike(const std::string& text) {
-    for (const char c : text) {
-      const int code = std::toupper(static_cast<unsigned char>(c));
-      ImGui::GetIO().AddInputCharacter(static_cast<unsigned char>(c));
-      key(code);
-    }
-  }
   // Beside everything in the inspector.
   void miss_in_inspector() {
     const WidgetRect name = widget("inspector/name");

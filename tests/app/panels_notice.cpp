@@ -1,4 +1,5 @@
 // What was last done is told for a while.
+#include "app/ui/commands.hpp"
 #include "app/ui/widgets/notice.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"
@@ -39,6 +40,47 @@ TEST_CASE("the same notice again is told anew") {
   age_notice(app, 4);
   CHECK(app.notice == "Undone: Move");
   CHECK(notice_strength(app) == 1);
+}
+
+TEST_CASE("a notice that is pointed at stays") {
+  Robot robot;
+  App& app = robot.app;
+  app.notice = "Copied ball1";
+  robot.frames(2);
+  age_notice(app, 0);
+  const double before = notice_life("short"), after = notice_life(std::string(100, 'x'));
+  CHECK(after > before); // long ones take longer to read
+  robot.point(robot.widget("notice").center());
+  for (int i = 0; i < 100; ++i) {
+    age_notice(app, 1);
+    robot.frames(1);
+  }
+  CHECK(app.notice == "Copied ball1");
+  CHECK(notice_strength(app) == 1);
+  robot.point(ImVec2{5, 300});
+  for (int i = 0; i < 20; ++i)
+    age_notice(app, 1);
+  CHECK(app.notice.empty());
+}
+
+TEST_CASE("what was told before is listed, the latest first") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  app.notice = "Copied ball1";
+  robot.frames(2);
+  show_error(app, "Not saved: the disk is full");
+  robot.frames(2);
+  app.notice.clear();
+  robot.frames(2);
+  run_command(app, "help.messages");
+  robot.frames(3);
+  REQUIRE(app.notice_log.past.size() >= 2);
+  CHECK(app.notice_log.past.back().text == "Not saved: the disk is full");
+  CHECK(app.notice_log.past.back().error);
+  CHECK_FALSE((app.notice_log.past.end() - 2)->error);
+  CHECK(robot.widget("messages/1").from.y < robot.widget("messages/2").from.y);
+  robot.click("messages/1");
+  CHECK(std::string(ImGui::GetClipboardText()) == "Not saved: the disk is full");
 }
 
 TEST_CASE("what went wrong stays until it is put away") {

@@ -324,10 +324,10 @@ TEST_CASE("a plot's picture has its curves in their colours where they should be
   const OffscreenContext gl;
   Plot plot = two_lines();
   plot.curves[1].line = PlotLine::solid;
-  for (const bool dark : {false, true})
+  for (const PlotGround ground : {PlotGround::light, PlotGround::dark, PlotGround::high_contrast})
     for (const float scale : {1.f, 2.f}) {
       const PixelSize size{static_cast<int>(600 * scale), static_cast<int>(400 * scale)};
-      const Image image = draw_plot_picture(plot, {size, scale, dark});
+      const Image image = draw_plot_picture(plot, {size, scale, ground});
       REQUIRE(image.width == size.width);
       const auto color_at = [&](int x, int y) {
         const std::uint8_t* p = image.at(x, y);
@@ -340,7 +340,7 @@ TEST_CASE("a plot's picture has its curves in their colours where they should be
         return true;
       };
       // The frame is found by its colour, from the middle outwards.
-      const PlotColors& colors = plot_colors(dark);
+      const PlotColors& colors = plot_colors(ground);
       CHECK(near(color_at(1, 1), colors.page));
       int left = size.width / 2, right = left, top = size.height / 2, bottom = top;
       const auto frame_at = [&](int x, int y) { return near(color_at(x, y), colors.frame); };
@@ -363,7 +363,7 @@ TEST_CASE("a plot's picture has its curves in their colours where they should be
           const int y = bottom - static_cast<int>(std::lround(y_value / 10 * (bottom - top)));
           bool there = false;
           for (int d = -2; d <= 2; ++d)
-            there = there || near(color_at(x, y + d), curve_color(curve, dark));
+            there = there || near(color_at(x, y + d), curve_color(curve, ground));
           found += there;
         }
       }

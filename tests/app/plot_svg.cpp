@@ -115,7 +115,7 @@ TEST_CASE("SVG is well-formed for empty, tiny, dark and heat plots", "[plot]") {
   CHECK(well_formed(to_svg(every_kind(), {.width = 10, .height = 10})));
   Plot plot;
   plot.heat = PlotHeat{{0, 1}, {0, 1}, {1, 2, 3, NAN}, "collar <h>", "m"};
-  const std::string svg = to_svg(plot, {.dark = true});
+  const std::string svg = to_svg(plot, {.ground = PlotGround::dark});
   CHECK(well_formed(svg));
   CHECK(svg.find("collar &lt;h&gt; [m]") != std::string::npos);
   CHECK(svg.find("linearGradient") != std::string::npos);

@@ -4,6 +4,7 @@
 
 #include "tests/catch.hpp"
 
+#include <cctype>
 #include <cmath>
 
 namespace flyball::test {
@@ -103,6 +104,18 @@ void Robot::key(int code, bool ctrl, bool shift) {
   imgui_compat::set_modifiers(ctrl_, shift_);
   imgui_compat::set_key(code, false);
   frames(2);
+}
+
+void Robot::alt(int code) {
+  app.keys.push_back({code, false, false, code != 342});
+  frames(3);
+}
+
+void Robot::strike(const std::string& text) {
+  for (const char c : text) {
+    ImGui::GetIO().AddInputCharacter(static_cast<unsigned char>(c));
+    key(std::toupper(static_cast<unsigned char>(c)));
+  }
 }
 
 void Robot::hold(bool ctrl, bool shift, bool alt) {

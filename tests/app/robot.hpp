@@ -33,6 +33,8 @@ class Robot {
   void wheel(const std::string& name, float notches);
   // A key by its GLFW code, which for letters is ASCII.
   void key(int code, bool ctrl = false, bool shift = false);
+  void alt(int code = 342);                           // a letter together with Alt, or Alt alone
+  void strike(const std::string& text);               // each key also as a character, as a person types
   void hold(bool ctrl, bool shift, bool alt = false); // from now on
 
   // Places of the mechanism, in the 3-D view as its camera stands.

@@ -108,9 +108,9 @@ void circular_dialog(App& app) {
   ImGui::TextUnformatted("In all");
   ImGui::SameLine(90 * app.scale);
   ImGui::SetNextItemWidth(120 * app.scale);
-  ImGui::InputInt("##count", &choice.count);
+  ImGui::InputInt("##count", &choice.count, 0);
   choice.count = std::clamp(choice.count, 2, 100);
-  note_widget(app.widgets, "circular/count");
+  note_widget(app.widgets, "circular/count", KeyUse::type);
   help_on_hover("How many there are then, the selected one included.");
   if (accepted(app, "circular", "Copy"))
     edit(app, "Circular copy", [&](Mechanism& mechanism, Selection& selection) {

@@ -77,7 +77,7 @@ bool show_card(App& app, int i, float width) {
   const ImVec2 to(from.x + width, from.y + card_height(app));
   const std::string name = "gallery/" + card.file.filename().string();
   const bool clicked = ImGui::InvisibleButton(name.c_str(), {width, to.y - from.y});
-  note_widget(app.widgets, name);
+  note_widget(app.widgets, name, KeyUse::none); // has its own arrows and Enter, see below
   const bool hovered = ImGui::IsItemHovered();
   if (hovered && (ImGui::GetIO().MouseDelta.x != 0 || ImGui::GetIO().MouseDelta.y != 0)) gallery.chosen = i;
   const bool chosen = i == gallery.chosen;
@@ -153,7 +153,7 @@ void gallery_dialog(App& app) {
   }
   ImGui::EndChild();
   ImGui::PopStyleVar();
-  if (count > 0 && enter_pressed()) opened = gallery.cards[static_cast<std::size_t>(gallery.chosen)].file;
+  if (count > 0 && enter_pressed(app)) opened = gallery.cards[static_cast<std::size_t>(gallery.chosen)].file;
   if (text_button(app, "gallery/cancel", "Cancel") || escape_pressed() || !opened.empty()) close_dialog();
   ImGui::SameLine();
   if (text_button(app, "gallery/open", "Open a file…")) {

@@ -37,7 +37,7 @@ fs::path recent_list(App& app) {
     const std::string text = std::string(icon::file) + "  " + file.filename().string();
     if (ImGui::Selectable(text.c_str(), false, ImGuiSelectableFlags_DontClosePopups)) clicked = file;
     ImGui::PopID();
-    note_widget(app.widgets, "open/recent/" + std::to_string(i));
+    note_widget(app.widgets, "open/recent/" + std::to_string(i), KeyUse::row);
     help_on_hover(file.c_str());
   }
   ImGui::EndChild();

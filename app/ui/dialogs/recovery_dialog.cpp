@@ -38,7 +38,8 @@ void row(App& app, int i) {
   if (ImGui::Selectable("##leftover", app.file_dialogs.chosen_leftover == i,
                         ImGuiSelectableFlags_DontClosePopups, {0, ImGui::GetTextLineHeight()}))
     app.file_dialogs.chosen_leftover = i;
-  note_widget(app.widgets, "recover/" + std::to_string(i));
+  note_widget(app.widgets, "recover/" + std::to_string(i), KeyUse::row);
+  if (app.file_dialogs.chosen_leftover == i) mark_chosen(app.widgets);
   help_on_hover(leftover.autosave.file.c_str());
   ImGui::SameLine(left + 4 * app.scale);
   clipped_text(title(leftover), 260 * app.scale);

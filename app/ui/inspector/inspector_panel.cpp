@@ -55,9 +55,7 @@ void contents(App& app) {
 } // namespace
 
 void inspector_panel(App& app, const PanelRect& rect) {
-  // Tab goes from field to field only from one that is typed in; otherwise the key has another meaning.
-  begin_panel("inspector", rect,
-              app.inspector.typing.name.empty() ? static_cast<int>(ImGuiWindowFlags_NoNavInputs) : 0);
+  begin_panel("inspector", rect);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, ImGui::GetStyle().FramePadding.y});
   title(app);

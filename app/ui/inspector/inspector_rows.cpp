@@ -135,7 +135,9 @@ bool inspector_section(App& app, const std::string& name, const char* title, boo
   ImGui::Dummy({0, 2 * app.scale});
   section(app, name, title, now);
   if (now != before) app.inspector.open[name] = now;
-  return now;
+  // A number is looked for that may be in it.
+  app.keyboard.section = name;
+  return now || !app.keyboard.sought.empty();
 }
 
 float row_label(App& app, const std::string& label, const char* help) {
@@ -198,6 +200,7 @@ std::optional<std::size_t> choice_row(App& app, const std::string& name, const s
     const std::string option(options[i]);
     if (ImGui::Selectable(option.c_str(), i == chosen) && i != chosen) other = i;
     note_widget(app.widgets, name + "/" + option);
+    if (i == chosen) mark_chosen(app.widgets);
   }
   ImGui::EndCombo();
   return other;
@@ -214,7 +217,7 @@ std::optional<std::string> name_choice_row(App& app, const std::string& name, co
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##search", "Search", &search);
-    note_widget(app.widgets, name + "/search");
+    note_widget(app.widgets, name + "/search", KeyUse::type);
   }
   std::vector<const std::string*> shown;
   for (const std::string& option : options)
@@ -228,6 +231,7 @@ std::optional<std::string> name_choice_row(App& app, const std::string& name, co
       if (ImGui::Selectable(option.c_str(), option == chosen) && option != chosen) other = option;
       ImGui::PopID();
       note_widget(app.widgets, name + "/" + option);
+      if (option == chosen) mark_chosen(app.widgets);
     }
   ImGui::EndCombo();
   return other;
@@ -246,6 +250,7 @@ bool check_row(App& app, const std::string& name, const std::string& label, bool
   ImGui::BeginGroup();
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + spare / 2);
   const bool clicked = ImGui::Checkbox(label.c_str(), &now);
+  note_stop(app.widgets, name);
   const float used = ImGui::GetItemRectSize().x;
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y);
   ImGui::Dummy({used, spare / 2});

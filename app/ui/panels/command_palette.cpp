@@ -1,12 +1,12 @@
 #include "app/render/icons.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/panels/palette_entries.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace flyball {
 
@@ -14,68 +14,48 @@ namespace {
 
 constexpr const char* title = "palette";
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-// How well a command answers the search: every word must be found; the lower the better; negative: not at
-// all. A word's beginning counts more than its middle, the title more than the sentence about it.
-int rank(const App& app, const Command& command, const std::string& search) {
-  const std::string label = lower(label_of(app, command)), all = label + " " + lower(command.help);
-  int rank = 0;
-  std::size_t from = 0;
-  while (from < search.size()) {
-    const std::size_t end = std::min(search.find(' ', from), search.size());
-    const std::string word = search.substr(from, end - from);
-    from = end + 1;
-    if (word.empty()) continue;
-    const std::size_t at = all.find(word);
-    if (at == std::string::npos) return -1;
-    if (at > 0 && all[at - 1] != ' ') rank += 10;
-    if (at >= label.size()) rank += 100;
-    rank += at == 0 ? 0 : 1;
+// The title with what was typed of it marked; returns its width.
+float draw_title(App& app, const PaletteEntry& entry, ImVec2 at) {
+  const UiColors& colors = colors_of(app);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const std::string& text = entry.title;
+  const float start = at.x;
+  auto mark = entry.marks.begin();
+  for (std::size_t from = 0; from < text.size();) {
+    const bool marked = mark != entry.marks.end() && *mark == from;
+    std::size_t to = from;
+    while (to < text.size() && (mark != entry.marks.end() && *mark == to) == marked) {
+      if (marked) ++mark;
+      ++to;
+    }
+    ImFont* font = marked ? app.fonts.strong : app.fonts.text;
+    const ImVec4& color = !entry.enabled ? colors.dim : marked ? colors.accent : colors.text;
+    const float size = app.fonts.text->FontSize;
+    const char *first = text.c_str() + from, *last = text.c_str() + to;
+    list.AddText(font, size, at, packed(color), first, last);
+    at.x += font->CalcTextSizeA(size, 1e9f, 0, first, last).x;
+    from = to;
   }
-  return rank;
-}
-
-std::vector<const Command*> found_commands(const App& app) {
-  const std::string search = lower(app.commands.search);
-  std::vector<std::pair<int, const Command*>> ranked;
-  for (const Command& command : commands())
-    if (const int place = rank(app, command, search); place >= 0)
-      ranked.emplace_back(place + (is_enabled(app, command) ? 0 : 1000), &command);
-  std::ranges::stable_sort(ranked, {}, &std::pair<int, const Command*>::first);
-  std::vector<const Command*> found;
-  for (const auto& entry : ranked)
-    found.push_back(entry.second);
-  return found;
+  return at.x - start;
 }
 
 // A row; returns whether it was clicked.
-bool command_row(App& app, const Command& command, bool chosen) {
+bool entry_row(App& app, const PaletteEntry& entry, bool chosen) {
   const UiColors& colors = colors_of(app);
-  const bool enabled = is_enabled(app, command);
-  const float width = ImGui::GetContentRegionAvail().x;
-  const std::string keys = key_text(command.key);
-  ImGui::PushID(command.id);
-  ImGui::PushStyleColor(ImGuiCol_Text, enabled ? colors.text : colors.dim);
+  const float width = ImGui::GetContentRegionAvail().x, gap = 18 * app.scale;
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  ImGui::PushID(entry.name.c_str());
   const bool clicked =
-      ImGui::Selectable(label_of(app, command).c_str(), chosen, ImGuiSelectableFlags_DontClosePopups) &&
-      enabled;
-  ImGui::PopStyleColor();
-  note_widget(app.widgets, std::string("palette/") + command.id);
-  const float keys_width = ImGui::CalcTextSize(keys.c_str()).x;
-  const float label_width = ImGui::CalcTextSize(label_of(app, command).c_str()).x;
-  const float gap = 18 * app.scale;
-  ImGui::SameLine(label_width + gap);
+      ImGui::Selectable("##entry", chosen, ImGuiSelectableFlags_DontClosePopups) && entry.enabled;
+  note_widget(app.widgets, "palette/" + entry.name, KeyUse::none); // arrows and Enter are the palette's
+  const float title_width = draw_title(app, entry, from);
+  const float right_width = ImGui::CalcTextSize(entry.right.c_str()).x;
+  ImGui::SameLine(title_width + gap);
   ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
-  clipped_text(enabled ? command.help : "Not now: there is nothing selected that it applies to.",
-               std::max(width - label_width - keys_width - 2 * gap, 1.f));
-  ImGui::SameLine(width - keys_width);
-  ImGui::TextUnformatted(keys.c_str());
+  clipped_text(entry.about, std::max(width - title_width - right_width - 2 * gap, 1.f));
   ImGui::PopStyleColor();
+  ImGui::SameLine(width - right_width);
+  ImGui::TextColored(entry.value ? colors.accent : colors.dim, "%s", entry.right.c_str());
   ImGui::PopID();
   return clicked;
 }
@@ -93,7 +73,8 @@ void command_palette(App& app) {
   }
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, 70 * s}, ImGuiCond_Always, {0.5f, 0});
-  const std::vector<const Command*> found = found_commands(app);
+  if (appearing && state.index) state.index->fresh = false; // what can be done now may be something else
+  const std::vector<PaletteEntry>& found = palette_entries(app);
   const int count = static_cast<int>(found.size());
   // As tall as what is found, up to a dozen rows.
   const float row = ImGui::GetTextLineHeight() + ImGui::GetStyle().ItemSpacing.y;
@@ -109,8 +90,10 @@ void command_palette(App& app) {
 
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::InputTextWithHint("##search", "Find a command", &state.search)) state.chosen = 0;
-  note_widget(app.widgets, "palette/search");
+  if (ImGui::InputTextWithHint(
+          "##search", "Find a command, a part or a number; a number behind its name sets it", &state.search))
+    state.chosen = 0;
+  note_widget(app.widgets, "palette/search", KeyUse::none);
   bool accepted = false, moved = false, left = escape_pressed();
   for (const KeyPress& key : std::exchange(app.keys, {})) {
     if (key.key == keys::enter) accepted = true;
@@ -121,22 +104,22 @@ void command_palette(App& app) {
       moved = true;
     }
   }
-  const Command* wanted = nullptr;
+  const PaletteEntry* wanted = nullptr;
   ImGui::BeginChild("found");
   for (int i = 0; i < count; ++i) {
-    const Command& entry = *found[static_cast<std::size_t>(i)];
-    if (command_row(app, entry, i == state.chosen)) wanted = &entry;
+    const PaletteEntry& entry = found[static_cast<std::size_t>(i)];
+    if (entry_row(app, entry, i == state.chosen)) wanted = &entry;
     if (i == state.chosen && moved) ImGui::SetScrollHereY();
   }
-  if (count == 0) ImGui::TextDisabled("No command is called that.");
+  if (count == 0) ImGui::TextDisabled("No command, part or number is called that.");
   ImGui::EndChild();
-  if (accepted && state.chosen < count && is_enabled(app, *found[static_cast<std::size_t>(state.chosen)]))
-    wanted = found[static_cast<std::size_t>(state.chosen)];
+  if (accepted && state.chosen < count && found[static_cast<std::size_t>(state.chosen)].enabled)
+    wanted = &found[static_cast<std::size_t>(state.chosen)];
   if (wanted || left) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
   if (wanted) {
     state.palette_showing = false;
-    wanted->run(app);
+    use_palette_entry(app, *wanted);
   }
 }
 

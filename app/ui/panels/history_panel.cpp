@@ -17,7 +17,8 @@ void step_row(App& app, std::size_t i, float height) {
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
   if (ImGui::InvisibleButton(widget.c_str(), {width, height}))
     later(app, [i](App& changed) { go_to_step(changed, i); });
-  note_widget(app.widgets, widget);
+  note_widget(app.widgets, widget, KeyUse::row);
+  if (i == present) mark_chosen(app.widgets);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 to(from.x + width, from.y + height);
   if (ImGui::IsItemHovered() || i == present)

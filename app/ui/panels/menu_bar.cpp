@@ -18,11 +18,15 @@ constexpr std::array menus{Menu{"File", "file."}, Menu{"Edit", "edit."},   Menu{
 
 void recent_menu(App& app) {
   const auto& files = app.files.recent;
-  if (files.empty() || !ImGui::BeginMenu("Open recent")) return;
+  if (files.empty()) return;
+  const bool open = ImGui::BeginMenu("Open recent");
+  if (!open) note_widget(app.widgets, "menu/recent");
+  if (!open) return;
   std::filesystem::path chosen;
   for (const std::filesystem::path& file : files) {
     ImGui::PushID(file.c_str());
     if (ImGui::MenuItem(file.filename().c_str(), nullptr)) chosen = file;
+    note_widget(app.widgets, "menu/recent/" + file.string());
     help_on_hover(file.c_str());
     ImGui::PopID();
   }
@@ -48,11 +52,22 @@ void items(App& app, const Menu& menu) {
 
 } // namespace
 
+std::span<const char* const> menu_titles() {
+  static constexpr auto titles = [] {
+    std::array<const char*, menus.size()> all{};
+    for (std::size_t i = 0; i < menus.size(); ++i)
+      all[i] = menus[i].title;
+    return all;
+  }();
+  return titles;
+}
+
 void menu_bar(App& app) {
   if (!ImGui::BeginMenuBar()) return;
   for (const Menu& menu : menus) {
+    if (app.keyboard.open_menu == menu.title) ImGui::OpenPopup(menu.title);
     const bool open = ImGui::BeginMenu(menu.title);
-    note_widget(app.widgets, std::string("menu/") + menu.title);
+    note_widget(app.widgets, std::string("menu/") + menu.title, KeyUse::none); // Alt and its letter
     if (!open) continue;
     items(app, menu);
     ImGui::EndMenu();

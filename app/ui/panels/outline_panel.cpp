@@ -2,12 +2,14 @@
 #include "app/render/icons.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/mistake_list.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/body_form.hpp"
 
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -240,11 +242,13 @@ void part_row(Outline& outline, PartId id) {
   }
   ImGui::PushID(id.index);
   if (ImGui::InvisibleButton("row", {width, outline.height})) choose(outline, part);
-  note_widget(app.widgets, widget);
+  note_widget(app.widgets, widget, KeyUse::row);
+  if (app.selection().has(part)) mark_chosen(app.widgets);
   const bool hovered = ImGui::IsItemHovered();
   if (hovered) app.view.hovered = id;
   if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !ImGui::GetIO().KeyCtrl)
     later(app, [field, name = part.name](App& changed) { start_typing(changed, field, name); });
+  if (takes_menu_key(app, widget)) ImGui::OpenPopup(ImGui::GetItemID());
   row_menu(app, part);
   ImGui::PopID();
   draw_row(outline, id, part, from, width, hovered);
@@ -288,7 +292,7 @@ void search_field(App& app) {
   }
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##search", "Search", &app.inspector.search);
-  note_widget(app.widgets, "outline/search");
+  note_widget(app.widgets, "outline/search", KeyUse::type);
   ImGui::Dummy({0, 4 * app.scale});
 }
 
@@ -311,14 +315,13 @@ void start_rename(App& app) {
 }
 
 void outline_panel(App& app, const PanelRect& rect) {
-  const int quiet = app.inspector.typing.name.empty() ? ImGuiWindowFlags_NoNavInputs : 0;
-  begin_panel("outline", rect, quiet);
+  begin_panel("outline", rect);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 0});
   search_field(app);
   // What is missing stays in view below the list.
   const float footer = app.mistakes.empty() ? 0 : app.inspector.missing_height;
   const float room = ImGui::GetContentRegionAvail().y;
-  ImGui::BeginChild("parts", {0, std::max(room - footer, room / 3)}, false, quiet);
+  ImGui::BeginChild("parts", {0, std::max(room - footer, room / 3)}, false);
   keep_rows(app);
   Outline outline{app, {}, {}, 0};
   outline.height = ImGui::GetTextLineHeight() + 8 * app.scale;

@@ -1,6 +1,7 @@
 // The sliders: what a person explores with.
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
 #include "app/ui/widgets/sensitivity_line.hpp"
@@ -75,8 +76,8 @@ bool small_icon(App& app, const std::string& name, const char* icon, const char*
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetFrameHeight();
   const bool pressed = ImGui::InvisibleButton(name.c_str(), {width, height});
-  note_widget(app.widgets, name);
-  const bool hovered = ImGui::IsItemHovered();
+  note_widget(app.widgets, name, KeyUse::aside);
+  const bool hovered = ImGui::IsItemHovered() || has_keyboard(app, name);
   if (shown || hovered) {
     const ImVec2 size = ImGui::CalcTextSize(icon);
     ImGui::GetWindowDrawList()->AddText({from.x + (width - size.x) / 2, from.y + (height - size.y) / 2},
@@ -155,6 +156,7 @@ void parameter(App& app, const ParameterControl& control) {
   if (slider(app, name, control, value, type_value))
     later(app, [set, value](App& app_then) { set(app_then, value); });
   if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) ImGui::OpenPopup("range");
+  if (takes_menu_key(app, name) || takes_menu_key(app, name + "/value")) ImGui::OpenPopup("range");
   if (type_value)
     later(app, [field = name + "/value", text = short_text(unit.shown(control.value), 12) + " " + unit.text](
                    App& app_then) { start_typing(app_then, field, text); });
@@ -171,6 +173,14 @@ bool sliders_moved(const App& app) {
 void group(App& app, ParameterGroup which, const char* name, const char* title, bool& open) {
   const auto [first, last] = std::ranges::equal_range(app.parameters, which, {}, &ParameterControl::group);
   if (first == last || !section(app, name, title, open)) return;
+  if (const auto sought = std::find_if(
+          first, last, [&](const ParameterControl& each) { return each.address == app.keyboard.sought; });
+      sought != last) {
+    const float y = ImGui::GetCursorPosY() + static_cast<float>(sought - first) * row_height(app, which);
+    if (const float top = ImGui::GetScrollY(), room = ImGui::GetWindowHeight();
+        y < top || y + row_height(app, which) > top + room)
+      ImGui::SetScrollY(std::max(y - room / 2, 0.f));
+  }
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(last - first), row_height(app, which));
   while (clipper.Step())
@@ -182,8 +192,7 @@ void group(App& app, ParameterGroup which, const char* name, const char* title, 
 } // namespace
 
 void parameters_panel(App& app, const PanelRect& rect) {
-  begin_panel("parameters", rect,
-              app.inspector.typing.name.empty() ? static_cast<int>(ImGuiWindowFlags_NoNavInputs) : 0);
+  begin_panel("parameters", rect);
   if (!app.parameters.empty()) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
     group(app, ParameterGroup::pinned, "parameters/pinned", "Pinned", app.panels.pinned);

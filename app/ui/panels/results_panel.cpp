@@ -116,9 +116,7 @@ PanelRect below_title(App& app, const PanelRect& rect) {
 } // namespace
 
 void results_panel(App& app, const PanelRect& rect) {
-  // As in the inspector, Tab is a field's only while one is typed in.
-  begin_panel("results", below_title(app, rect),
-              app.inspector.typing.name.empty() ? static_cast<int>(ImGuiWindowFlags_NoNavInputs) : 0);
+  begin_panel("results", below_title(app, rect));
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 4 * app.scale});
   if (app.mechanism().bodies.empty()) {
     paragraph("Place a body and join it to the ground: where everything settles is told here, at every step.",

@@ -20,6 +20,20 @@ constexpr std::array mouse{
     NavigationLine{"Digits while placing", "Length or size, with unit"},
 };
 
+constexpr std::array by_keys{
+    NavigationLine{"Alt, Alt+letter", "Menus"},
+    NavigationLine{"F6, Ctrl+Tab", "Next panel"},
+    NavigationLine{"Tab", "Next field of it"},
+    NavigationLine{"Arrows", "Nearest widget; a step"},
+    NavigationLine{"Shift, Ctrl+arrows", "Finer, coarser steps"},
+    NavigationLine{"Digits", "Type a slider's number"},
+    NavigationLine{"Enter, Space", "Press"},
+    NavigationLine{"Shift+F10, Menu", "More of the widget"},
+    NavigationLine{"Shift+arrows", "In the view: pan, else orbit"},
+    NavigationLine{"+ and -", "Zoom, in plots, too"},
+    NavigationLine{"Page Down, Enter", "Tools: next point, place"},
+};
+
 void line(App& app, const std::string& keys, const std::string& does) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
@@ -52,6 +66,14 @@ void lines(App& app, const char* title, std::string_view prefix) {
   ImGui::EndTable();
 }
 
+void fixed_lines(App& app, const char* title, std::span<const NavigationLine> entries) {
+  heading(app, title);
+  if (!begin_lines(title)) return;
+  for (const NavigationLine& entry : entries)
+    line(app, entry.keys, entry.does);
+  ImGui::EndTable();
+}
+
 } // namespace
 
 void shortcut_sheet(App& app) {
@@ -64,7 +86,7 @@ void shortcut_sheet(App& app) {
   const float s = app.scale;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({std::min(1000 * s, window.x - 20 * s), std::min(600 * s, window.y - 20 * s)});
+  ImGui::SetNextWindowSize({std::min(1000 * s, window.x - 20 * s), std::min(670 * s, window.y - 20 * s)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ImGui::GetStyle().PopupBorderSize);
@@ -79,12 +101,13 @@ void shortcut_sheet(App& app) {
     ImGui::TableNextColumn();
     lines(app, "File", "file.");
     lines(app, "Insert", "insert.");
+    lines(app, "Study", "study.");
     ImGui::TableNextColumn();
     lines(app, "Edit", "edit.");
-    lines(app, "Study", "study.");
-    lines(app, "Help", "help.");
+    fixed_lines(app, "Without a mouse", by_keys);
     ImGui::TableNextColumn();
     lines(app, "View", "view.");
+    lines(app, "Help", "help.");
     heading(app, "Mouse in the view");
     if (begin_lines("mouse")) {
       for (const NavigationLine& entry : navigation_lines(app.navigation))

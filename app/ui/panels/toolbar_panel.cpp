@@ -1,4 +1,5 @@
 #include "app/render/icons.hpp"
+#include "app/ui/choices.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -83,7 +84,7 @@ void mode_switch(App& app) {
     const bool on = app.mode == mode;
     ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.on_accent : colors.text);
     ImGui::PushStyleColor(ImGuiCol_Button, on ? colors.accent : colors.raised);
-    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, on ? colors.accent : colors.border);
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, on ? colors.accent : colors.pointed);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {10 * app.scale, 5 * app.scale});
     ImGui::PushID(name);
     if (ImGui::Button(text)) set_mode(app, mode);
@@ -149,13 +150,17 @@ void factor_combo(App& app, const char* name, float width) {
   ImGui::PushID(name);
   if (ImGui::BeginCombo("##factor", current == factors.end() ? "" : current->text,
                         ImGuiComboFlags_NoArrowButton | ImGuiComboFlags_HeightLarge)) {
-    for (const Factor& factor : factors)
-      if (ImGui::Selectable(factor.text, factor.value == app.playback.factor))
-        app.playback.factor = factor.value;
+    for (const Factor& factor : factors) {
+      const bool chosen = factor.value == app.playback.factor;
+      if (ImGui::Selectable(factor.text, chosen)) app.playback.factor = factor.value;
+      note_widget(app.widgets, std::string(name) + "/" + factor.text);
+      if (chosen) mark_chosen(app.widgets);
+    }
     ImGui::EndCombo();
+  } else {
+    note_widget(app.widgets, name);
   }
   ImGui::PopID();
-  note_widget(app.widgets, name);
   help_on_hover("Speed of the picture: below 1× is slow motion");
 }
 
@@ -183,12 +188,10 @@ void toolbar_panel(App& app, const PanelRect& rect) {
   toggle(app, "toolbar/shadow", "Shadow", "Shadow on the floor", app.view.shadow);
   const float side = ImGui::GetFrameHeight() + 2 * s;
   ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), rect.width - side - 8 * s));
-  const bool dark = app.theme == Theme::dark;
-  if (icon_button(app, "toolbar/theme", dark ? icon::sun : icon::moon,
-                  dark ? "Light colours" : "Dark colours")) {
-    app.theme = dark ? Theme::light : Theme::dark;
-    apply_style(app.theme, app.scale);
-  }
+  const bool light = app.theme == Theme::light;
+  if (icon_button(app, "toolbar/theme", light ? icon::moon : icon::sun,
+                  light ? "Dark colours" : "Light colours"))
+    choose_theme(app, light ? ThemeChoice::dark : ThemeChoice::light);
   const float line = rect.height - std::max(1.f, std::round(s));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();

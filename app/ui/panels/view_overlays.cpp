@@ -14,10 +14,10 @@ namespace flyball {
 
 namespace {
 
-// A line on a plate of its own, above the status, in the middle of the view's width.
-void draw_line(const App& app, const PanelRect& rect, const std::string& text, ImVec4 color, float& y,
-               float strength = 1) {
-  if (text.empty()) return;
+// A line on a plate of its own, above the status, in the middle of the view's width. Returns the plate.
+WidgetRect draw_line(const App& app, const PanelRect& rect, const std::string& text, ImVec4 color, float& y,
+                     float strength = 1) {
+  if (text.empty()) return {};
   const UiColors& colors = colors_of(app);
   const float s = app.scale, pad = 9 * s;
   // Clear of the axes in the corner.
@@ -32,7 +32,9 @@ void draw_line(const App& app, const PanelRect& rect, const std::string& text, I
   color.w *= strength;
   list.AddRectFilled({x - pad, y - 3 * s}, {x + size.x + pad, y + size.y + 3 * s}, packed(plate), 5 * s);
   list.AddText(app.fonts.text, ImGui::GetFontSize(), {x, y}, packed(color), text.c_str(), nullptr, room);
+  const WidgetRect drawn{{x - pad, y - 3 * s}, {x + size.x + pad, y + size.y + 3 * s}};
   y -= 4 * s;
+  return drawn;
 }
 
 } // namespace
@@ -106,7 +108,12 @@ void view_lines(App& app, const PanelRect& rect) {
   float y = rect.y + rect.height - 42 * app.scale;
   draw_line(app, rect, tool_hint(app), colors.text, y);
   app.view.lines_top = y;
-  if (!is_error(app)) draw_line(app, rect, app.notice, colors.dim, y, notice_strength(app));
+  keep_notice(app);
+  app.notice_age.pointed = false;
+  if (is_error(app) || app.notice.empty()) return;
+  const WidgetRect plate = draw_line(app, rect, app.notice, colors.dim, y, notice_strength(app));
+  app.notice_age.pointed = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(plate.from, plate.to);
+  app.widgets["notice"] = plate;
 }
 
 void error_line(App& app, const PanelRect& rect) {

@@ -4,6 +4,7 @@
 #include "app/ui/panels/legend.hpp"
 #include "app/ui/panels/load_labels.hpp"
 #include "app/ui/panels/view_overlays.hpp"
+#include "app/ui/tools/tool_cursor.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/tools/tools_hand.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -47,13 +48,17 @@ void viewport_panel(App& app, const PanelRect& rect) {
   ImGui::InvisibleButton("view", {rect.width, rect.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
-  note_widget(app.widgets, "view");
+  note_widget(app.widgets, "view", KeyUse::none);
   ViewInput input = view_input(app, rect);
   keep_tool_state(app);
+  use_tool_cursor(app, input);
   if (use_hand(app, input)) input.pressed = input.released = false;
   use_gizmo(app, input);
   use_selecting(app, input);
+  const std::uint64_t revision = app.document.revision();
+  const bool joining = app.tool.joint.has_value();
   use_tool(app, input);
+  follow_tool_cursor(app, revision, joining);
   steer(app, input);
   load_labels(app, rect);
   draw_view_cube(app, rect);
@@ -81,7 +86,7 @@ void beside_panel(App& app, const PanelRect& rect) {
   ImGui::InvisibleButton("beside", {rect.width, rect.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
-  note_widget(app.widgets, "beside");
+  note_widget(app.widgets, "beside", KeyUse::none);
   steer(app, view_input(app, rect)); // one camera for both
   motion_caption(app, rect);
   ImGui::End();

@@ -96,7 +96,7 @@ void draw_frame(const PlotPen& pen, const PlotLayout& layout, const PlotColors& 
 }
 
 void draw_curve(const PlotPen& pen, const PlotCurve& curve, const PlotCurveLines& lines) {
-  const ImU32 color = packed_color(curve_color(curve.color, pen.dark));
+  const ImU32 color = packed_color(curve_color(curve.color, pen.ground));
   for (const PixelLine& line : lines.lines)
     draw_line(pen, line, curve.line, curve.width, color);
   for (const PixelPoint& p : lines.shapes)
@@ -106,7 +106,7 @@ void draw_curve(const PlotPen& pen, const PlotCurve& curve, const PlotCurveLines
 void draw_references(const PlotPen& pen, const Plot& plot, const PlotLayout& layout) {
   for (const PlotPlaced& placed : layout.references) {
     const PlotReference& r = plot.references[placed.index];
-    const ImU32 color = packed_color(curve_color(r.color, pen.dark));
+    const ImU32 color = packed_color(curve_color(r.color, pen.ground));
     const PlotBox& a = layout.area;
     // In the middle of a pixel, or it would be a blur two pixels wide.
     const double x = std::floor(placed.x) + 0.5, y = std::floor(placed.y) + 0.5;
@@ -126,7 +126,7 @@ void draw_label(const PlotPen& pen, const PlotText& text, const PlotColors& colo
                         pen.fonts,
                         {pen.origin.x + rim * std::cos(angle), pen.origin.y + rim * std::sin(angle)},
                         pen.scale,
-                        pen.dark};
+                        pen.ground};
     draw_text(moved, text, packed_color(colors.area));
   }
   draw_text(pen, text, packed_color(colors.text));
@@ -137,7 +137,7 @@ void draw_legend(const PlotPen& pen, const Plot& plot, const PlotLook& look, con
   for (const PlotLegendEntry& entry : layout.legend) {
     const PlotCurve& c = plot.curves[entry.curve];
     const bool hidden = look.hidden.contains(entry.name);
-    const ImU32 color = packed_color(hidden ? colors.faint : curve_color(c.color, pen.dark));
+    const ImU32 color = packed_color(hidden ? colors.faint : curve_color(c.color, pen.ground));
     const double y = std::floor((entry.sample.top + entry.sample.bottom) / 2) + 0.5;
     if (c.line != PlotLine::none)
       draw_line(pen, {{entry.sample.left, y}, {entry.sample.right, y}}, c.line, c.width, color);
@@ -268,7 +268,7 @@ void draw_line(const PlotPen& pen, const PixelLine& line, PlotLine kind, double 
 
 void draw_plot(const PlotPen& pen, const Plot& plot, const PlotLook& look, const PlotLayout& layout) {
   if (!layout.drawable()) return;
-  const PlotColors& colors = plot_colors(pen.dark);
+  const PlotColors& colors = plot_colors(pen.ground);
   const PlotBox& a = layout.area;
   pen.list.AddRectFilled(pen.at(a.left, a.top), pen.at(a.right, a.bottom), packed_color(colors.area));
   draw_grid(pen, layout, colors);
@@ -290,7 +290,7 @@ void draw_plot(const PlotPen& pen, const Plot& plot, const PlotLook& look, const
   draw_legend(pen, plot, look, layout, colors);
   for (const PlotPlaced& m : layout.marks)
     draw_shape(pen, plot.marks[m.index].shape, m.x, m.y, 9,
-               packed_color(curve_color(plot.marks[m.index].color, pen.dark)), packed_color(colors.area));
+               packed_color(curve_color(plot.marks[m.index].color, pen.ground)), packed_color(colors.area));
   for (const auto* placed : {&layout.references, &layout.marks})
     for (const PlotPlaced& p : *placed)
       if (p.label) draw_label(pen, *p.label, colors);
@@ -300,10 +300,10 @@ void draw_marker(const PlotPen& pen, const Plot& plot, const PlotLayout& layout,
   if (!plot.marker || !layout.drawable()) return;
   const double x = layout.x.pixel(plot.marker->x), y = layout.y.pixel(plot.marker->y);
   if (!layout.area.grown(0.5).contains(x, y)) return;
-  const PlotColors& colors = plot_colors(pen.dark);
+  const PlotColors& colors = plot_colors(pen.ground);
   draw_shape(pen, PlotShape::circle, x, y, lit ? 17 : 14, packed_color(colors.area));
   draw_shape(pen, PlotShape::circle, x, y, lit ? 13 : 10,
-             packed_color(curve_color(plot_color::neutral, pen.dark)));
+             packed_color(curve_color(plot_color::neutral, pen.ground)));
   if (plot.marker->label.empty()) return;
   if (const auto label = label_beside(layout, x, y, plot.marker->label, plot_metrics(pen.fonts, pen.scale)))
     draw_label(pen, *label, colors);

@@ -1,6 +1,7 @@
 // Plots drawn with Dear ImGui's draw lists, on the screen and for PNG files alike. No OpenGL.
 #pragma once
 
+#include "app/plot/colors.hpp"
 #include "app/plot/layout.hpp"
 #include "app/render/fonts.hpp"
 
@@ -16,7 +17,7 @@ struct PlotPen {
   const UiFonts& fonts;
   ImVec2 origin; // of the plot; whole pixels
   float scale = 1;
-  bool dark = false;
+  PlotGround ground = PlotGround::light;
 
   ImVec2 at(double x, double y) const {
     return {origin.x + static_cast<float>(x), origin.y + static_cast<float>(y)};

@@ -27,12 +27,12 @@ void zoom_with_wheel(const PlotFrame& frame, bool along_x, bool along_y) {
 
 // An invisible button over a box of the plot.
 bool button_over(const PlotFrame& frame, const char* id, const PlotBox& box, const std::string& name,
-                 ImGuiButtonFlags buttons) {
+                 ImGuiButtonFlags buttons, KeyUse use) {
   if (box.width() < 1 || box.height() < 1) return false;
   ImGui::SetCursorScreenPos(frame.pen.at(box.left, box.top));
   const bool pressed = ImGui::InvisibleButton(
       id, {static_cast<float>(box.width()), static_cast<float>(box.height())}, buttons);
-  note_widget(frame.app.widgets, name);
+  note_widget(frame.app.widgets, name, use);
   return pressed;
 }
 
@@ -47,7 +47,6 @@ PlotHit hit_of(const PlotNear& near) {
   return {near.curve, near.index, near.x, near.y};
 }
 
-// What a pixel of the area stands for, in round numbers.
 std::array<double, 2> place_of(const PlotFrame& frame, const PixelPoint& at) {
   const PlotBox& a = frame.layout.area;
   const PixelPoint inside{std::clamp(at[0], a.left, a.right), std::clamp(at[1], a.top, a.bottom)};
@@ -158,7 +157,7 @@ void take_axis(const PlotFrame& frame, bool along_x) {
   const PlotBox box = along_x ? PlotBox{a.left, a.bottom + 1, a.right, frame.layout.height}
                               : PlotBox{0, a.top, a.left - 1, a.bottom};
   button_over(frame, along_x ? "x" : "y", box, frame.name + (along_x ? "/axis/x" : "/axis/y"),
-              ImGuiButtonFlags_MouseButtonLeft);
+              ImGuiButtonFlags_MouseButtonLeft, KeyUse::none);
   zoom_with_wheel(frame, along_x, !along_x);
   if (ImGui::IsItemActivated()) begin_drag(frame, PlotView::Drag::pan, {along_x, !along_x});
   if (ImGui::IsItemActive()) follow_drag(frame);
@@ -172,7 +171,8 @@ void take_axis(const PlotFrame& frame, bool along_x) {
 void take_legend(const PlotFrame& frame) {
   for (const PlotLegendEntry& entry : frame.layout.legend) {
     const std::string name = frame.name + "/legend/" + entry.name;
-    const bool pressed = button_over(frame, name.c_str(), entry.box, name, ImGuiButtonFlags_MouseButtonLeft);
+    const bool pressed =
+        button_over(frame, name.c_str(), entry.box, name, ImGuiButtonFlags_MouseButtonLeft, KeyUse::press);
     if (ImGui::IsItemHovered()) {
       frame.pen.list.AddRectFilled(frame.pen.at(entry.box.left, entry.box.top),
                                    frame.pen.at(entry.box.right, entry.box.bottom),
@@ -198,9 +198,14 @@ void zoom_plot(PlotView& view, const PlotLayout& layout, int axis, double pixel,
       ruler.range_between(pixel + (ruler.from - pixel) * factor, pixel + (ruler.to - pixel) * factor);
 }
 
-bool take_plot_input(const PlotFrame& frame) {
+std::array<double, 2> place_in_plot(const PlotFrame& frame, const PixelPoint& at) {
+  return place_of(frame, at);
+}
+
+std::optional<PixelPoint> take_plot_input(const PlotFrame& frame) {
   button_over(frame, "area", frame.layout.area, frame.name + "/area",
-              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight, KeyUse::plot);
+  const std::optional<PixelPoint> keyed = take_plot_keys(frame);
   zoom_with_wheel(frame, true, true);
   take_area(frame);
   const bool inside = ImGui::IsItemHovered() && frame.view.drag != PlotView::Drag::pan &&
@@ -217,7 +222,8 @@ bool take_plot_input(const PlotFrame& frame) {
   take_axis(frame, true);
   take_axis(frame, false);
   take_legend(frame);
-  return inside && !drags;
+  if (keyed || !inside || drags) return keyed;
+  return pointer_in(frame.pen);
 }
 
 } // namespace flyball

@@ -62,7 +62,7 @@ void plot_menu(const PlotFrame& frame) {
   save.kind = wanted;
   save.width = frame.layout.width / frame.layout.scale;
   save.height = frame.layout.height / frame.layout.scale;
-  save.dark = frame.pen.dark;
+  save.ground = frame.pen.ground;
   show_plot_dialog(frame.app, frame.name.substr(std::string("plot/").size()), std::move(save));
 }
 

@@ -22,10 +22,15 @@ PixelPoint pointer_in(const PlotPen& pen);
 // Zooms by the factor (above one: out) about a pixel.
 void zoom_plot(PlotView& view, const PlotLayout& layout, int axis, double pixel, double factor);
 
-// Area, axes and legend as widgets. Returns whether the pointer is in the area, with nothing else in hand.
-bool take_plot_input(const PlotFrame& frame);
+// Area, axes and legend as widgets. Returns the pixel to read at: that of the pointer while it is in the area
+// with nothing else in hand, or that of the keyboard's cursor.
+std::optional<PixelPoint> take_plot_input(const PlotFrame& frame);
+// What the keyboard does in the plot; where it reads, if it does.
+std::optional<PixelPoint> take_plot_keys(const PlotFrame& frame);
+// What a pixel of the area stands for, in round numbers.
+std::array<double, 2> place_in_plot(const PlotFrame& frame, const PixelPoint& at);
 // Cross-hair and a card with x, the curves' values there and the point under the pointer.
-void show_plot_reading(const PlotFrame& frame);
+void show_plot_reading(const PlotFrame& frame, const PixelPoint& at);
 // What a right click brings.
 void plot_menu(const PlotFrame& frame);
 

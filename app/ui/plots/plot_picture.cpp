@@ -49,14 +49,14 @@ Image draw_plot_picture(const Plot& plot, const PlotPictureOptions& options, con
   renderer.upload_fonts();
   const Framebuffer target(options.size.width, options.size.height, 1);
   ImGui::NewFrame();
-  const PlotPen pen{*ImGui::GetBackgroundDrawList(), fonts, {0, 0}, options.scale, options.dark};
+  const PlotPen pen{*ImGui::GetBackgroundDrawList(), fonts, {0, 0}, options.scale, options.ground};
   const PlotLayout layout =
       plot_layout(plot, look, options.size.width, options.size.height, plot_metrics(fonts, options.scale));
   draw_plot(pen, plot, look, layout);
   draw_marker(pen, plot, layout, false);
   ImGui::Render();
   target.bind();
-  const ImVec4 page = ImGui::ColorConvertU32ToFloat4(packed_color(plot_colors(options.dark).page));
+  const ImVec4 page = ImGui::ColorConvertU32ToFloat4(packed_color(plot_colors(options.ground).page));
   glClearColor(page.x, page.y, page.z, 1);
   glClear(GL_COLOR_BUFFER_BIT);
   renderer.draw(*ImGui::GetDrawData());
@@ -67,7 +67,7 @@ Image plot_picture(const PlotSave& save, PixelSize size) {
   const double grown =
       std::min(size.width / std::max(save.width, 1.), size.height / std::max(save.height, 1.));
   const auto scale = static_cast<float>(std::clamp(std::round(4 * grown) / 4, 1., 8.));
-  return draw_plot_picture(save.plot, {.size = size, .scale = scale, .dark = save.dark}, save.look);
+  return draw_plot_picture(save.plot, {.size = size, .scale = scale, .ground = save.ground}, save.look);
 }
 
 } // namespace flyball

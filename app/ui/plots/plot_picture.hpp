@@ -2,6 +2,7 @@
 // OffscreenContext.
 #pragma once
 
+#include "app/plot/colors.hpp"
 #include "app/ui/plots/plot_save.hpp"
 #include "app/ui/stage.hpp"
 
@@ -10,7 +11,7 @@ namespace flyball {
 struct PlotPictureOptions {
   PixelSize size{1600, 1040};
   float scale = 2; // pixels a point has
-  bool dark = false;
+  PlotGround ground = PlotGround::light;
 };
 
 // Leaves ImGui's context and the bound framebuffer as they were. Throws GlError.

@@ -45,14 +45,14 @@ void add_mark(const PlotFrame& frame, const PixelPoint& at, std::vector<Line>& l
 }
 
 void dot(const PlotFrame& frame, double x, double y, ImU32 color) {
-  draw_shape(frame.pen, PlotShape::circle, x, y, 8, packed_color(plot_colors(frame.pen.dark).area));
+  draw_shape(frame.pen, PlotShape::circle, x, y, 8, packed_color(plot_colors(frame.pen.ground).area));
   draw_shape(frame.pen, PlotShape::circle, x, y, 6, color);
 }
 
 std::vector<Line> lines_at(const PlotFrame& frame, const PixelPoint& at) {
   const PlotLayout& layout = frame.layout;
   const auto color_of = [&](std::size_t curve) {
-    return packed_color(curve_color(frame.plot.curves[curve].color, frame.pen.dark));
+    return packed_color(curve_color(frame.plot.curves[curve].color, frame.pen.ground));
   };
   std::vector<Line> lines;
   add_mark(frame, at, lines);
@@ -63,7 +63,8 @@ std::vector<Line> lines_at(const PlotFrame& frame, const PixelPoint& at) {
     lines.push_back(axis_line(frame, 0, hit->x));
     lines.push_back(axis_line(frame, 1, hit->y));
     draw_shape(frame.pen, PlotShape::circle, layout.x.pixel(hit->x), layout.y.pixel(hit->y),
-               curve.shape_size + 6, color_of(hit->curve), packed_color(plot_colors(frame.pen.dark).area, 0));
+               curve.shape_size + 6, color_of(hit->curve),
+               packed_color(plot_colors(frame.pen.ground).area, 0));
     return lines;
   }
   const double x = layout.x.value(at[0]);
@@ -136,11 +137,10 @@ void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<L
 
 } // namespace
 
-void show_plot_reading(const PlotFrame& frame) {
-  const PixelPoint at = pointer_in(frame.pen);
+void show_plot_reading(const PlotFrame& frame, const PixelPoint& at) {
   const PlotBox& a = frame.layout.area;
   if (!a.contains(at[0], at[1])) return;
-  const ImU32 color = packed_color(plot_colors(frame.pen.dark).frame, 0.7f);
+  const ImU32 color = packed_color(plot_colors(frame.pen.ground).frame, 0.7f);
   const float line = std::max(1.f, std::round(frame.app.scale));
   const ImVec2 cross = frame.pen.at(std::floor(at[0]), std::floor(at[1]));
   const ImVec2 low = frame.pen.at(a.left, a.top), high = frame.pen.at(a.right, a.bottom);

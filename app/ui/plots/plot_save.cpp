@@ -26,7 +26,7 @@ void number(App& app, const char* name, int& value) {
   ImGui::PushID(name);
   ImGui::InputInt("##number", &value, 0);
   ImGui::PopID();
-  note_widget(app.widgets, name);
+  note_widget(app.widgets, name, KeyUse::type);
 }
 
 bool fits(const PlotSave& save) {
@@ -59,11 +59,12 @@ bool save_plot(App& app) {
     return true;
   }
   try {
-    replace_file(file, save.kind == PlotFile::csv
-                           ? to_csv(save.plot, save.look)
-                           : to_svg(save.plot,
-                                    {.width = save.pixels[0], .height = save.pixels[1], .dark = save.dark},
-                                    save.look));
+    replace_file(file,
+                 save.kind == PlotFile::csv
+                     ? to_csv(save.plot, save.look)
+                     : to_svg(save.plot,
+                              {.width = save.pixels[0], .height = save.pixels[1], .ground = save.ground},
+                              save.look));
     app.notice = "Saved " + file.string();
     return true;
   } catch (const SceneError& error) {

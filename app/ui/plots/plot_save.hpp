@@ -1,6 +1,7 @@
 // Saving a plot as it is looked at: PNG, SVG or CSV.
 #pragma once
 
+#include "app/plot/colors.hpp"
 #include "app/ui/plots/plot_view.hpp"
 
 #include <array>
@@ -15,7 +16,7 @@ struct PlotSave {
   PlotFile kind = PlotFile::png;
   double width = 0, height = 0; // points that it has on the screen
   std::array<int, 2> pixels{};  // wanted of PNG and SVG
-  bool dark = false;
+  PlotGround ground = PlotGround::light;
 };
 
 // Asks where to. `name` becomes part of the file's name.

@@ -57,11 +57,11 @@ PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Pl
                     app.fonts,
                     {std::round(at.x), std::round(at.y)},
                     app.scale,
-                    app.theme == Theme::dark};
+                    plot_ground(app.theme)};
   const std::string path = "plot/" + name;
   const PlotFrame frame{app, path, view, plot, *layout, pen, events};
   view.cursor.reset();
-  bool reading = false;
+  std::optional<PixelPoint> reading;
   pen.list.PushClipRect(at, {at.x + size.x, at.y + size.y}, true);
   if (layout->drawable()) {
     reading = take_plot_input(frame);
@@ -70,7 +70,7 @@ PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Pl
   }
   const bool held = view.drag == PlotView::Drag::marker;
   draw_marker(pen, plot, *layout, held);
-  if (reading) show_plot_reading(frame); // its card lies over everything
+  if (reading) show_plot_reading(frame, *reading); // its card lies over everything
   pen.list.PopClipRect();
   plot_menu(frame);
   ImGui::SetCursorScreenPos(at);

@@ -1,6 +1,7 @@
 // A plot on the screen that can be looked around in: the wheel zooms about the pointer (over an axis: that
 // axis alone), a drag pans, right-drag or Shift-drag zooms to a box, a double click fits; entries of the
-// legend switch curves on and off, and a right click offers scales and files.
+// legend switch curves on and off, and a right click offers scales and files. With the keyboard arrows move
+// the marker, or else a cursor to read by; plus and minus zoom about it, Home fits, Enter is a click there.
 #pragma once
 
 #include "app/plot/layout.hpp"
@@ -43,7 +44,8 @@ struct PlotKept {
 // How a person looks at one plot; a value that the panel keeps from frame to frame.
 struct PlotView {
   PlotLook look;
-  std::optional<double> cursor; // x under the pointer
+  std::optional<double> cursor;               // x under the pointer
+  std::optional<std::array<double, 2>> keyed; // where the keyboard reads the plot
   // What the hand does.
   enum class Drag { none, pan, box, marker } drag = Drag::none;
   std::array<bool, 2> drag_axis{true, true};

@@ -161,6 +161,9 @@ std::string tool_hint(const App& app) {
                                                                            : " Shift leaves joints behind.") +
            " A number can be typed. Esc takes it back.";
   if (const std::string hint = hand_hint(app); !hint.empty()) return hint;
+  if (tool.cursor && !tool.joint)
+    return std::string(tool.first ? "The other end, or its length, in figures: arrows" : "Arrows") +
+           " move the cursor, Page Down goes to the next point, Enter places. Esc ends.";
   switch (tool.tool) {
   case Tool::select: return "";
   case Tool::rotate:

@@ -1,4 +1,5 @@
 // Joining two bodies: a click says where, the card beside the point how.
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/joint_guess.hpp"
@@ -115,6 +116,7 @@ bool make_joint(App& app) {
        });
   app.tool.joint.reset();
   if (!ImGui::GetIO().KeyShift) app.tool.tool = Tool::select;
+  if (app.keyboard.by_key) focus_widget(app, "inspector/name");
   return true;
 }
 

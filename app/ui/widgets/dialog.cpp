@@ -1,6 +1,7 @@
 #include "app/ui/widgets/dialog.hpp"
 
 #include "app/render/imgui_compat.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
@@ -51,17 +52,20 @@ bool escape_pressed() {
   return key_pressed(ImGuiKey_Escape);
 }
 
-bool enter_pressed() {
+bool enter_pressed(const App& app) {
+  if (enter_is_taken(app)) return false;
   return key_pressed(ImGuiKey_Enter) || key_pressed(imgui_compat::keypad_enter);
 }
 
 int choice_buttons(App& app, std::span<const Choice> choices, int& marked) {
   const int count = static_cast<int>(choices.size());
-  if (ImGui::IsWindowAppearing()) marked = 0;
-  const bool back = key_pressed(ImGuiKey_LeftArrow) || (ImGui::GetIO().KeyShift && key_pressed(ImGuiKey_Tab));
-  const bool on = !back && (key_pressed(ImGuiKey_RightArrow) || key_pressed(ImGuiKey_Tab));
-  marked = (marked + (on ? 1 : 0) + (back ? count - 1 : 0)) % count;
-  int pressed = enter_pressed() ? marked : -1;
+  if (ImGui::IsWindowAppearing()) {
+    marked = 0;
+    enter_dialog_at(app, choices[0].name);
+  }
+  for (int i = 0; i < count; ++i)
+    if (has_keyboard(app, choices[static_cast<std::size_t>(i)].name)) marked = i;
+  int pressed = enter_pressed(app) ? marked : -1;
   ImGui::Dummy({0, 4 * app.scale});
   for (int i = 0; i < count; ++i) {
     const Choice& choice = choices[static_cast<std::size_t>(i)];

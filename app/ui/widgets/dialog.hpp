@@ -13,15 +13,16 @@ void end_dialog();
 void close_dialog();
 // Escape, where no field swallows it.
 bool escape_pressed();
-// Enter, where no field swallows it; not the one that brought the dialog.
-bool enter_pressed();
+// Enter, where no field swallows it and no widget that has the keys is pressed by it; not the one that
+// brought the dialog.
+bool enter_pressed(const App& app);
 
 struct Choice {
   const char* name; // for the widget map
   const char* text;
 };
-// A row of buttons of which `marked` is the one that Enter means; the arrow keys and Tab mark another.
-// Returns the one pressed, or -1.
+// A row of buttons of which `marked` is the one that Enter means, at first the first; the arrow keys and Tab
+// go to another. Returns the one pressed, or -1.
 int choice_buttons(App& app, std::span<const Choice> choices, int& marked);
 
 } // namespace flyball

@@ -104,7 +104,7 @@ bool path_field(App& app, const std::string& name, const char* hint) {
       ImGui::InputTextWithHint("##path", hint, &app.dialog.path,
                                ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   if (entered) ImGui::SetKeyboardFocusHere(-1);
-  note_widget(app.widgets, name + "/path");
+  note_widget(app.widgets, name + "/path", KeyUse::type);
   if (app.dialog.path != before) {
     app.file_dialogs.message.clear();
     app.file_dialogs.list.chosen = -1;
@@ -157,7 +157,7 @@ std::optional<fs::path> file_list(App& app, const std::string& name, const std::
     const bool chosen = filtered ? i == list.chosen : entry.path == typed_path(app);
     if (ImGui::Selectable(text.c_str(), chosen, ImGuiSelectableFlags_DontClosePopups)) clicked = entry.path;
     if (chosen && moved) ImGui::SetScrollHereY();
-    note_widget(app.widgets, name + "/" + file);
+    note_widget(app.widgets, name + "/" + file, KeyUse::row);
   }
   if (shown.empty())
     paragraph(list.entries.empty() ? "Nothing to open here." : "Nothing of that name here.",

@@ -2,7 +2,10 @@
 // show_error()).
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace flyball {
 
@@ -11,7 +14,21 @@ struct App;
 struct NoticeAge {
   std::string of; // the notice that is growing old
   double seconds = 0;
+  bool pointed = false; // at: it stays while it is
 };
+
+// What was told before.
+struct PastNotice {
+  std::string text;
+  bool error = false;
+  std::chrono::system_clock::time_point when;
+};
+struct NoticeLog {
+  std::vector<PastNotice> past; // the latest last
+  std::string last;             // that was shown in the last frame
+  bool showing = false;         // the list of them
+};
+inline constexpr std::size_t most_past_notices = 200;
 
 // s that a notice is shown, the last of them fading. Long ones stay longer.
 double notice_life(const std::string& notice);
@@ -20,6 +37,8 @@ inline constexpr double notice_fade = 0.4;
 // 1, less while it fades.
 float notice_strength(const App& app);
 
+// Once a frame, wherever it is drawn: the present notice becomes one of the past.
+void keep_notice(App& app);
 // Once a frame, `seconds` after the last.
 void age_notice(App& app, double seconds);
 // s until age_notice() has something to do; infinite while there is nothing that fades.

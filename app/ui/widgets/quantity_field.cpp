@@ -4,6 +4,7 @@
 #include "app/session/parameter_list.hpp"
 #include "app/session/quantity.hpp"
 #include "app/session/units.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
@@ -184,8 +185,8 @@ void pin_button(App& app, const QuantityField& field, bool row_hovered) {
   ImGui::PushID(name.c_str());
   const bool pressed = ImGui::InvisibleButton("pin", {width, side});
   ImGui::PopID();
-  note_widget(app.widgets, name);
-  const bool hovered = ImGui::IsItemHovered();
+  note_widget(app.widgets, name, KeyUse::aside);
+  const bool hovered = ImGui::IsItemHovered() || has_keyboard(app, name);
   help_on_hover(pinned ? "Pinned as a slider; click to take it off the sliders."
                        : "Pin this number as a slider.");
   if (pressed)
@@ -203,7 +204,7 @@ void scrub_label(App& app, const std::string& label, const QuantityField& field,
   const float height = ImGui::GetFrameHeight();
   const std::string name = field.name + "/label";
   ImGui::InvisibleButton(name.c_str(), {std::max(width, 1.f), height});
-  note_widget(app.widgets, name);
+  note_widget(app.widgets, name, KeyUse::none); // the field does all of it
   const bool active = ImGui::IsItemActive(), draggable = field.various.empty();
   const bool lit = draggable && (active || ImGui::IsItemHovered());
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
@@ -258,7 +259,7 @@ bool margin_button(App& app, const std::string& name, const char* icon, const ch
   ImGui::PopID();
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
-  note_widget(app.widgets, name);
+  note_widget(app.widgets, name, KeyUse::aside);
   help_on_hover(help);
   return pressed;
 }
@@ -294,6 +295,7 @@ void quantity_field(App& app, const QuantityField& field, float width) {
   ImGui::PushFont(app.fonts.digits);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {padding, (height - app.fonts.digits->FontSize) / 2});
   const bool typing = text_field(app, text, width);
+  if (field.name != "parameters/" + field.address + "/value") note_number(app, field.name, field.address);
   ImGui::PopStyleVar();
   ImGui::PopFont();
   if (bare) ImGui::PopStyleColor(2);

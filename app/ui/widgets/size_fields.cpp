@@ -11,7 +11,7 @@ void number(App& app, const std::string& name, int& value) {
   ImGui::PushID(name.c_str());
   ImGui::InputInt("##number", &value, 0);
   ImGui::PopID();
-  note_widget(app.widgets, name);
+  note_widget(app.widgets, name, KeyUse::type);
 }
 
 } // namespace

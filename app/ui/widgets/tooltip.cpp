@@ -1,5 +1,7 @@
 #include "app/ui/widgets/tooltip.hpp"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 
 namespace flyball {
@@ -18,6 +20,11 @@ bool pointed_long() {
   const double left = state->since + TooltipState::patience - state->clock;
   if (left > 0) state->due = std::min(state->due, left);
   return left <= 0;
+}
+
+bool keyed_item() {
+  const auto* state = static_cast<TooltipState*>(ImGui::GetIO().UserData);
+  return state && state->keyed != 0 && state->keyed == ImGui::GetItemID();
 }
 
 void place_beside_window() {

@@ -11,16 +11,19 @@ namespace flyball {
 struct TooltipState {
   static constexpr double patience = 0.6; // s
 
-  double clock = 0; // s of real time, counted by whoever runs the loop
-  ImVec2 item{};    // the upper left corner of what is pointed at, in pixels
-  double since = 0; // by the clock
-  int frame = -2;   // of ImGui, in which it was last pointed at
+  double clock = 0;  // s of real time, counted by whoever runs the loop
+  ImVec2 item{};     // the upper left corner of what is pointed at, in pixels
+  double since = 0;  // by the clock
+  int frame = -2;    // of ImGui, in which it was last pointed at
+  ImGuiID keyed = 0; // the item that the keyboard is at, where that is shown: it counts as pointed at
   // s until help is due; infinite where none is, or it shows already.
   double due = std::numeric_limits<double>::infinity();
 };
 
 // Whether the last item, which is pointed at, has been so for long enough. Without a state: at once.
 bool pointed_long();
+// Whether the keyboard is at the last item, and the mouse at none.
+bool keyed_item();
 // The next window (a tooltip) stands beside the present one, so that what follows in it stays in sight; where
 // that is too wide, beside the pointer as usual.
 void place_beside_window();

@@ -104,7 +104,7 @@ bool text_field(App& app, const TextField& field, float width) {
                                                 flags, field.callback, field.callback_data);
   ImGui::PopID();
   ImGui::PopStyleColor();
-  note_widget(app.widgets, field.name);
+  note_widget(app.widgets, field.name, KeyUse::type);
 
   if (was_typing)
     go_on(app, field, entered);

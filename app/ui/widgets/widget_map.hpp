@@ -1,10 +1,14 @@
-// Where the last frame's widgets are, by name, so that tests can point at them as a person would.
+// Where the last frame's widgets are, by name, so that tests can point at them as a person would, and what
+// of them the keyboard can go to.
 #pragma once
 
 #include <imgui.h>
 
 #include <map>
 #include <string>
+#include <vector>
+
+struct ImGuiWindow;
 
 namespace flyball {
 
@@ -13,17 +17,40 @@ struct WidgetRect {
   ImVec2 center() const { return {(from.x + to.x) / 2, (from.y + to.y) / 2}; }
 };
 
-// Names are paths: "toolbar/play", "parameters/joints.spin.drive.speed", "results/reactions", "view".
-using WidgetMap = std::map<std::string, WidgetRect, std::less<>>;
+// What the keyboard makes of a widget.
+enum class KeyUse {
+  none,  // nothing: another widget does the same for keys
+  press, // Enter and Space press it
+  aside, // the same, but Tab passes it by and only arrows go there
+  row,   // the same; of the rows of a list Tab stops at one
+  type,  // Tab begins to type there
+  slide, // arrows move its number, digits type it
+  plot,  // arrows move what is read off, plus and minus zoom
+};
 
-// Puts what can be seen of ImGui's last item on the map.
-inline void note_widget(WidgetMap& map, const std::string& name) {
-  if (!ImGui::IsItemVisible()) return;
-  const ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 from = list.GetClipRectMin(), to = list.GetClipRectMax();
-  const ImVec2 item_from = ImGui::GetItemRectMin(), item_to = ImGui::GetItemRectMax();
-  map[name] = {{item_from.x > from.x ? item_from.x : from.x, item_from.y > from.y ? item_from.y : from.y},
-               {item_to.x < to.x ? item_to.x : to.x, item_to.y < to.y ? item_to.y : to.y}};
-}
+// A widget that the keyboard can go to, in sight or scrolled out of it.
+struct KeyStop {
+  std::string name;
+  ImGuiID id = 0;
+  ImVec2 from, to;               // pixels of the window
+  ImGuiWindow* window = nullptr; // of this frame
+  KeyUse use = KeyUse::press;
+  bool chosen = false; // where a list is entered
+  std::string address; // of the mechanism's number that it shows, where it shows one
+};
+
+// Names are paths: "toolbar/play", "parameters/joints.spin.drive.speed", "results/reactions", "view".
+struct WidgetMap : std::map<std::string, WidgetRect, std::less<>> {
+  std::vector<KeyStop> stops; // in the order they were drawn
+};
+
+// Puts what can be seen of ImGui's last item on the map, and the item among the keyboard's stops if it can
+// be used at all.
+void note_widget(WidgetMap& map, const std::string& name, KeyUse use = KeyUse::press);
+// The latter alone: for an item in a group that is noted under the same name.
+void note_stop(WidgetMap& map, const std::string& name, KeyUse use = KeyUse::press);
+// What the last stop is besides: where the keyboard enters its list; the number that it shows.
+void mark_chosen(WidgetMap& map);
+void mark_address(WidgetMap& map, const std::string& address);
 
 } // namespace flyball

@@ -1,6 +1,7 @@
 #include "app/ui/widgets/widgets.hpp"
 
 #include "app/session/units.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/tooltip.hpp"
 
 #include <algorithm>
@@ -24,7 +25,11 @@ void text_in(ImFont* font, const ImVec4& color, const std::string& text) {
 } // namespace
 
 void help_on_hover(const char* help) {
-  if (help && *help && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && pointed_long()) {
+  const bool keyed = keyed_item();
+  if (help && *help && (keyed || ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) &&
+      pointed_long()) {
+    if (keyed) // below it, wherever the mouse is
+      ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + 6});
     place_beside_window();
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
@@ -53,8 +58,8 @@ bool icon_button(App& app, const std::string& name, const char* icon, const char
 bool text_button(App& app, const std::string& name, const char* text, bool primary) {
   const UiColors& colors = colors_of(app);
   ImGui::PushStyleColor(ImGuiCol_Button, primary ? colors.accent : colors.raised);
-  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, primary ? colors.accent : colors.border);
-  ImGui::PushStyleColor(ImGuiCol_ButtonActive, primary ? colors.accent : colors.faint);
+  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, primary ? colors.accent : colors.pointed);
+  ImGui::PushStyleColor(ImGuiCol_ButtonActive, primary ? colors.accent : colors.pressed);
   ImGui::PushStyleColor(ImGuiCol_Text, primary ? colors.on_accent : colors.text);
   ImGui::PushID(name.c_str());
   const bool pressed = ImGui::Button(text);
@@ -196,6 +201,15 @@ std::optional<double> slider_place_wanted(App& app, const std::string& name, dou
   return std::exchange(press.place, std::nullopt);
 }
 
+// A key moves by the slider's step, on a logarithmic one by a hundredth of its length.
+double nudged_value(const ParameterControl& control, double value, const KeyNudge& nudge) {
+  if (nudge.end != 0) return nudge.end < 0 ? control.from : control.to;
+  const double span = control.to - control.from;
+  const double share = control.log || control.step <= 0 || span == 0 ? 0.01 : control.step / std::abs(span);
+  const double place = slider_place(control, value) + nudge.x * nudge.size * share;
+  return slider_value(control, place, nudge.size < 1);
+}
+
 // In the unit it is shown in, where the hand's steps are to be round.
 ParameterControl shown_control(ParameterControl control, const ShownUnit& unit) {
   if (unit.factor == 1) return control;
@@ -218,8 +232,9 @@ bool slider(App& app, const std::string& name, const ParameterControl& si_contro
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 4 * radius);
   ImGui::InvisibleButton(name.c_str(), {width, height});
-  note_widget(app.widgets, name);
-  const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
+  note_widget(app.widgets, name, KeyUse::slide);
+  note_number(app, name, si_control.address);
+  const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered() || has_keyboard(app, name);
   const float left = from.x + radius, span = width - 2 * radius, middle = from.y + height / 2;
 
   bool moved = false;
@@ -227,6 +242,12 @@ bool slider(App& app, const std::string& name, const ParameterControl& si_contro
           slider_place_wanted(app, name, slider_place(control, value), left, span, radius, type_value)) {
     const double next = slider_value(control, *place, ImGui::GetIO().KeyShift);
     moved = next != value;
+    value = next;
+    if (moved) si_value = unit.si(next);
+  }
+  if (const KeyNudge* nudge = nudge_of(app, name)) {
+    const double next = nudged_value(control, value, *nudge);
+    moved = moved || next != value;
     value = next;
     if (moved) si_value = unit.si(next);
   }

@@ -2,6 +2,7 @@
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/studies/modes/campbell_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/stability_words.hpp"
@@ -75,7 +76,8 @@ void mode_row(App& app, std::size_t index, const VibrationMode& mode, double lar
   if (ImGui::Selectable("##mode", false, ImGuiSelectableFlags_SpanAllColumns))
     later(app,
           [index, chosen](App& then) { choose_mode(then, chosen ? std::nullopt : std::optional(index)); });
-  note_widget(app.widgets, "modes/row/" + std::to_string(index + 1));
+  note_widget(app.widgets, "modes/row/" + std::to_string(index + 1), KeyUse::row);
+  if (chosen) mark_chosen(app.widgets);
   help_on_hover(mode_help(mode).c_str());
   ImGui::PopID();
   ImGui::SetCursorPos(at);
@@ -175,7 +177,8 @@ void transport(App& app) {
   constexpr double least = 0.01, most = 0.6;
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
   ImGui::SliderScalar("##amplitude", ImGuiDataType_Double, &modes.amplitude, &least, &most, "");
-  note_widget(app.widgets, "modes/amplitude");
+  note_widget(app.widgets, "modes/amplitude", KeyUse::slide);
+  nudge_value(app, "modes/amplitude", modes.amplitude, least, most);
   help_on_hover("How far it is shown swinging; the linearised motion is for small swings.");
   ImGui::SameLine();
   ImGui::BeginGroup();
@@ -225,11 +228,13 @@ void campbell_choices(App& app, const std::string& drive) {
         fit_plot(app.plots.campbell.view);
       }
       note_widget(app.widgets, "campbell/drive/" + speed);
+      if (speed == drive) mark_chosen(app.widgets);
     }
     ImGui::EndCombo();
+  } else {
+    note_widget(app.widgets, "campbell/drive");
   }
   ImGui::PopStyleColor();
-  note_widget(app.widgets, "campbell/drive");
   help_on_hover("The drive whose speed is along the axis.");
   const PlotRange range = campbell_range(app);
   const std::string unit = parameter_unit(app.mechanism(), drive);

@@ -2,6 +2,7 @@
 #include "app/render/icons.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/typed_field.hpp"
@@ -16,7 +17,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float choices_width = 292; // points
+constexpr float motion_choices_width = 292; // points
 
 constexpr std::array<std::string_view, 4> start_names{"Drawn, carried along", "Drawn, standing still",
                                                       "Steady, with a kick", "The kept state"};
@@ -222,11 +223,13 @@ void quantity_choice(App& app, MotionPlot& plot, const std::vector<MotionQuantit
       }
       ImGui::PopID();
       note_widget(app.widgets, name + "/" + each.key);
+      if (each.key == plot.quantity) mark_chosen(app.widgets);
     }
     ImGui::EndCombo();
+  } else {
+    note_widget(app.widgets, name);
   }
   ImGui::PopID();
-  note_widget(app.widgets, name);
 }
 
 // Where the play head stands on the first curve that is shown.
@@ -323,11 +326,12 @@ void motion_transport(App& app, float width) {
   const float room = ImGui::CalcTextSize("0000.000 s").x + 8 * app.scale;
   ImGui::SetNextItemWidth(std::max(right - ImGui::GetCursorPosX() - room, 40.f));
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
-  if (ImGui::SliderScalar("##scrub", ImGuiDataType_Double, &time, &from, &end, "")) {
+  const bool dragged = ImGui::SliderScalar("##scrub", ImGuiDataType_Double, &time, &from, &end, "");
+  note_widget(app.widgets, "motion/scrub", KeyUse::slide);
+  if (nudge_value(app, "motion/scrub", time, from, end) || dragged) {
     app.playback.playing = false;
     seek_motion(app, time);
   }
-  note_widget(app.widgets, "motion/scrub");
   ImGui::SameLine();
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + ImGui::GetStyle().FramePadding.y + digits_drop(app) -
                        app.scale);
@@ -339,7 +343,7 @@ void motion_transport(App& app, float width) {
 
 void motion_panel(App& app) {
   const float s = app.scale;
-  ImGui::BeginChild("choices", {choices_width * s, 0});
+  ImGui::BeginChild("choices", {motion_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
   choices(app);
   ImGui::PopStyleVar();

@@ -75,6 +75,7 @@ void quantity_choice(App& app) {
     if (ImGui::Selectable(each.title.c_str(), each.key == state.quantity)) choose_quantity(app, each);
     ImGui::PopID();
     note_widget(app.widgets, "response/quantity/" + each.key);
+    if (each.key == state.quantity) mark_chosen(app.widgets);
   }
   ImGui::EndCombo();
 }
@@ -173,7 +174,7 @@ void solution_row(App& app, const DesignAnswer& answer, const DesignSolution& s,
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetFrameHeight();
   const bool clicked = ImGui::InvisibleButton(name.c_str(), {std::max(width, 1.f), height});
-  note_widget(app.widgets, name);
+  note_widget(app.widgets, name, KeyUse::row);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float s1 = app.scale, y = from.y + (height - ImGui::GetFontSize()) / 2;
   list.AddRectFilled(from, {from.x + width, from.y + height},

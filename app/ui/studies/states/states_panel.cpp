@@ -151,7 +151,8 @@ void state_row(App& app, std::size_t index, const Solution& solution, const Line
   const ImVec2 at = ImGui::GetCursorPos();
   if (ImGui::Selectable("##row", false, ImGuiSelectableFlags_SpanAllColumns))
     later(app, [index](App& then) { show_state(then, index); });
-  note_widget(app.widgets, name);
+  note_widget(app.widgets, name, KeyUse::row);
+  if (shown) mark_chosen(app.widgets);
   ImGui::PopID();
   ImGui::SetCursorPos(at);
   if (shown) {

@@ -1,0 +1,22 @@
+// How well a name answers what somebody types to find it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flyball {
+
+struct FuzzyMatch {
+  int score = -1;                 // the higher the better; negative: it does not answer
+  std::vector<std::size_t> marks; // the bytes of the name that were typed, ascending
+  explicit operator bool() const { return score >= 0; }
+};
+
+// Every word that is typed has to be found: in `name` together, at best at the beginning of a word, or spread
+// over it from a word's beginning on ("sos" in "speed of spin"), or in `more`, which is not shown, together.
+// Upper and lower case count as the same. Nothing typed answers everything, with 0.
+FuzzyMatch fuzzy_match(std::string_view typed, std::string_view name, std::string_view more = {});
+
+} // namespace flyball

@@ -1,0 +1,421 @@
+#include "app/ui/keyboard/keyboard.hpp"
+
+#include "app/render/imgui_compat.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/keyboard/focus_order.hpp"
+#include "app/ui/keyboard/menu_keys.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace flyball {
+
+namespace {
+
+constexpr int patience_to_draw = 4; // frames in which a widget may be undrawn before the focus goes elsewhere
+constexpr int rows_a_page = 10;
+
+bool is_arrow(int key) {
+  return key >= keys::right && key <= keys::up;
+}
+bool is_digit_or_sign(int key) {
+  return (key >= '0' && key <= '9') || key == '-' || key == '+' || key == '.' || key == ',';
+}
+
+// The field that Dear ImGui types in.
+const KeyStop* typed_stop(const KeyboardState& state) {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  if (context.ActiveId == 0 || !context.IO.WantTextInput) return nullptr;
+  const auto found = std::ranges::find(state.stops, context.ActiveId, &KeyStop::id);
+  return found == state.stops.end() ? nullptr : &*found;
+}
+
+const KeyStop* focused_stop(const KeyboardState& state) {
+  if (const KeyStop* typed = typed_stop(state)) return typed;
+  return stop_named(state.stops, state.at);
+}
+
+// Lists are walked through by arrows also after a click; otherwise it takes a key to have the focus.
+bool has_keys(const KeyboardState& state, const KeyStop* stop) {
+  return stop && (state.ring || stop->use == KeyUse::row);
+}
+
+// Characters that come before the field has the keyboard wait for it.
+void hold_characters(KeyboardState& state) {
+  if (state.ahead_frames == 0) return;
+  ImVector<ImWchar>& queue = ImGui::GetIO().InputQueueCharacters;
+  for (const ImWchar character : queue)
+    state.ahead.push_back(character);
+  queue.resize(0);
+  if (--state.ahead_frames > 0) return;
+  for (const ImWchar character : state.ahead)
+    queue.push_back(character);
+  state.ahead.clear();
+}
+
+void begin_typing(KeyboardState& state, const KeyStop& stop) {
+  imgui_compat::press_item(stop.id, true);
+  state.ahead_frames = 2; // it is pressed in the next frame, and takes characters from the one after that
+}
+
+void go(App& app, const KeyStop& stop, bool type) {
+  KeyboardState& state = app.keyboard;
+  if (typed_stop(state)) ImGui::ClearActiveID(); // what was typed is taken
+  state.at = stop.name;
+  state.region = region_of(stop);
+  state.was[state.region] = stop.name;
+  state.ring = true;
+  state.reveal = 3;
+  state.missing = 0;
+  if (type && stop.use == KeyUse::type) begin_typing(state, stop);
+}
+
+void go_to_view(App& app, bool ring) {
+  KeyboardState& state = app.keyboard;
+  if (typed_stop(state)) ImGui::ClearActiveID();
+  state.at.clear();
+  state.region = view_region;
+  state.ring = ring;
+  app.commands.focus = {};
+}
+
+void go_to_region(App& app, int step) {
+  KeyboardState& state = app.keyboard;
+  const KeyStop* now = focused_stop(state);
+  const std::string next = next_region(state.stops, now ? region_of(*now) : std::string(view_region), step);
+  if (next == view_region) return go_to_view(app, true);
+  const auto was = state.was.find(next);
+  const KeyStop* stop = was == state.was.end() ? nullptr : stop_named(state.stops, was->second);
+  if (!stop || region_of(*stop) != next) stop = tab_stop(state, next, nullptr, 1);
+  if (stop) go(app, *stop, false);
+}
+
+void press(App& app, const KeyStop& stop) {
+  if (stop.use == KeyUse::type) return begin_typing(app.keyboard, stop);
+  if (stop.use == KeyUse::slide) {
+    // Its number is typed in the field beside it.
+    if (const KeyStop* field = stop_named(app.keyboard.stops, stop.name + "/value")) go(app, *field, true);
+    return;
+  }
+  imgui_compat::press_item(stop.id, false);
+}
+
+// Digits begin the number of the slider or field that has the keys.
+void begin_number(App& app, const KeyStop& stop) {
+  press(app, stop);
+  KeyboardState& state = app.keyboard;
+  if (state.ahead_frames == 0) return;
+  ImVector<ImWchar>& queue = ImGui::GetIO().InputQueueCharacters;
+  for (const ImWchar character : queue)
+    state.ahead.push_back(character);
+  queue.resize(0);
+}
+
+bool nudge(App& app, const KeyStop& stop, const KeyPress& key) {
+  const bool plot = stop.use == KeyUse::plot;
+  KeyNudge wanted{.name = stop.name};
+  wanted.size = key.shift ? 0.1 : key.ctrl ? 10 : 1;
+  switch (key.key) {
+  case keys::right: wanted.x = 1; break;
+  case keys::left: wanted.x = -1; break;
+  case keys::up: wanted.y = plot ? 1 : 0; break;
+  case keys::down: wanted.y = plot ? -1 : 0; break;
+  case keys::page_up:
+  case keys::page_down:
+    wanted.x = key.key == keys::page_up ? 1 : -1;
+    wanted.size = 10;
+    break;
+  case keys::home: wanted.end = plot ? 0 : -1, wanted.fit = plot; break;
+  case keys::end: wanted.end = plot ? 0 : 1; break;
+  case '+':
+  case '=': wanted.zoom = plot ? 1 : 0; break;
+  case '-': wanted.zoom = plot ? -1 : 0; break;
+  case keys::enter: wanted.enter = plot; break;
+  default: break;
+  }
+  if (!wanted.x && !wanted.y && !wanted.end && !wanted.zoom && !wanted.fit && !wanted.enter) return false;
+  if (app.keyboard.nudge.name == stop.name) { // several in one frame
+    wanted.x += app.keyboard.nudge.x;
+    wanted.y += app.keyboard.nudge.y;
+  }
+  app.keyboard.nudged = stop.name;
+  app.keyboard.nudge = std::move(wanted);
+  app.keyboard.ring = true;
+  return true;
+}
+
+bool move_by_arrow(App& app, const KeyStop& stop, const KeyPress& key) {
+  const KeyStop* next = nullptr;
+  if (key.key == keys::home || key.key == keys::end)
+    next = last_stop(app.keyboard, stop, key.key == keys::end);
+  else if (key.key == keys::page_up || key.key == keys::page_down)
+    next = stop.use == KeyUse::row
+               ? row_away(app.keyboard.stops, stop, key.key == keys::page_down ? rows_a_page : -rows_a_page)
+               : nullptr;
+  else if (is_arrow(key.key))
+    next = nearest_stop(app.keyboard.stops, stop, key.key);
+  else
+    return false;
+  if (!next) return true;
+  go(app, *next, false);
+  // Parts are chosen as one goes through them; rows that do more wait for Enter.
+  if (next->use == KeyUse::row && next->name.starts_with("outline/")) press(app, *next);
+  return true;
+}
+
+// Escape goes back one step: from a list or menu to what opened it, from a widget to the view.
+bool step_out(App& app) {
+  KeyboardState& state = app.keyboard;
+  const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
+  if (app.dialog.showing && open <= 1) return false; // has its own use for it
+  if (open > 0) {
+    ImGui::ClosePopupToLevel(open - 1, true);
+    return true;
+  }
+  if (!state.ring) { // of clicks key_focus.hpp keeps account
+    state.at.clear();
+    return false;
+  }
+  go_to_view(app, false);
+  return true;
+}
+
+bool take_stop_key(App& app, const KeyStop& stop, const KeyPress& key) {
+  KeyboardState& state = app.keyboard;
+  const bool number = stop.use == KeyUse::slide || stop.use == KeyUse::type;
+  if ((stop.use == KeyUse::slide || stop.use == KeyUse::plot) && nudge(app, stop, key)) return true;
+  if (!key.ctrl && (key.key == keys::menu || (key.shift && key.key == keys::f10))) {
+    state.menu_of = stop.name;
+    return true;
+  }
+  if (move_by_arrow(app, stop, key)) return true;
+  if (!state.ring) return false;
+  if (key.key == keys::enter || (key.key == ' ' && !key.ctrl && stop.use != KeyUse::plot)) {
+    press(app, stop);
+    return true;
+  }
+  if (key.ctrl) return number && (key.key == 'X' || key.key == 'V'); // it is not the part that is meant
+  if (key.key == keys::f2 && number) {
+    press(app, stop);
+    return true;
+  }
+  if (key.key == keys::del || key.key == keys::backspace) return number;
+  if (!is_digit_or_sign(key.key)) return false;
+  if (number) begin_number(app, stop);
+  return true; // the beginning of a number is no command
+}
+
+bool take_focus_key(App& app, const KeyPress& key) {
+  KeyboardState& state = app.keyboard;
+  const KeyStop* stop = focused_stop(state);
+  const bool typing = ImGui::GetIO().WantTextInput;
+  const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
+  if (key.alt || key.key == keys::alt) return take_alt(app, key);
+  if (key.key == keys::escape) return !typing && step_out(app);
+  if (open == 0 && (key.key == keys::f6 || (key.ctrl && key.key == keys::tab))) {
+    go_to_region(app, key.shift ? -1 : 1);
+    return true;
+  }
+  // A command, but one for the field that is typed in.
+  if (typing && key.ctrl && key.key == 'L' && !focused_address(app).empty()) {
+    run_command(app, "edit.pin");
+    return true;
+  }
+  if (key.key == keys::tab && !key.ctrl) {
+    const bool clicked_row = stop && stop->use == KeyUse::row && !state.ring && open == 0;
+    if (open == 0 && !typing && (!stop || clicked_row)) return false; // a command in the view
+    const std::string region = stop ? region_of(*stop) : popup_region();
+    if (const KeyStop* next = tab_stop(state, region, stop, key.shift ? -1 : 1)) go(app, *next, true);
+    return true;
+  }
+  if (typing) return false;
+  if (open > 0 && take_menu_arrow(app, stop, key)) return true;
+  if (open > 0 && !stop && is_arrow(key.key) && !app.dialog.showing) { // dialogs have their own use for them
+    if (const KeyStop* first = tab_stop(state, popup_region(), nullptr, 1)) go(app, *first, false);
+    return true;
+  }
+  return has_keys(state, stop) && take_stop_key(app, *stop, key);
+}
+
+// A popup that opens has the keys, and gives them back when it goes.
+void follow_popups(App& app) {
+  KeyboardState& state = app.keyboard;
+  const auto open = static_cast<std::size_t>(ImGui::GetCurrentContext()->OpenPopupStack.Size);
+  while (state.behind.size() < open) {
+    state.behind.emplace_back(state.at, state.ring);
+    state.at = std::exchange(state.entry, {});
+    state.ring = state.ring || !state.at.empty();
+    state.missing = 0;
+  }
+  while (state.behind.size() > open) {
+    std::tie(state.at, state.ring) = state.behind.back();
+    state.behind.pop_back();
+    state.missing = 0;
+    if (const KeyStop* stop = stop_named(state.stops, state.at)) state.region = region_of(*stop);
+  }
+  if (open == 0) state.menu = -1;
+  const std::string popup = popup_region();
+  if (popup.empty() || ImGui::GetIO().WantTextInput) return;
+  const KeyStop* stop = stop_named(state.stops, state.at);
+  if ((stop && region_of(*stop) == popup) || !state.ring) return;
+  const auto chosen = std::ranges::find_if(
+      state.stops, [&](const KeyStop& each) { return each.chosen && region_of(each) == popup; });
+  if (chosen != state.stops.end())
+    go(app, *chosen, false);
+  else if (const KeyStop* first = tab_stop(state, popup, nullptr, 1))
+    go(app, *first, false);
+}
+
+// A click takes the keys to what was clicked, without a ring.
+void follow_clicks(App& app) {
+  KeyboardState& state = app.keyboard;
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool clicked = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
+  if (!app.keys.empty()) state.by_key = true;
+  const bool moved = io.MousePos.x != state.mouse.x || io.MousePos.y != state.mouse.y;
+  if (moved || io.MouseWheel != 0 || clicked) state.by_key = false;
+  state.mouse = io.MousePos;
+  if (!clicked) return;
+  state.nudged.clear();
+  state.ring = false;
+  state.at.clear();
+  const ImGuiWindow* under = ImGui::GetCurrentContext()->HoveredWindow;
+  for (const KeyStop& stop : state.stops) {
+    const ImVec2 at = io.MousePos;
+    const bool within = at.x >= stop.from.x && at.x < stop.to.x && at.y >= stop.from.y && at.y < stop.to.y;
+    if (!within || !under || stop.window != under) continue;
+    if (stop.use == KeyUse::press || stop.use == KeyUse::aside) continue; // done with by the click
+    state.at = stop.name;
+    state.region = region_of(stop);
+  }
+}
+
+// Of a region that has gone, or of a widget that has.
+void find_another(App& app) {
+  KeyboardState& state = app.keyboard;
+  const std::vector<KeyStop>& stops = app.widgets.stops;
+  const KeyStop* nearest = nullptr;
+  for (std::size_t i = 0; i < stops.size(); ++i)
+    if (region_of(stops[i]) == state.region && stops[i].use != KeyUse::aside &&
+        (!nearest || i <= state.place))
+      nearest = &stops[i];
+  if (nearest)
+    state.at = nearest->name;
+  else
+    state.at.clear();
+  state.missing = 0;
+}
+
+} // namespace
+
+void take_keyboard(App& app) {
+  KeyboardState& state = app.keyboard;
+  state.stops = std::exchange(app.widgets.stops, {});
+  if (const auto view = app.widgets.find("view"); view != app.widgets.end()) state.view = view->second;
+  imgui_compat::keep_tab();
+  state.nudge = {};
+  state.open_menu.clear();
+  hold_characters(state);
+  follow_popups(app);
+  follow_clicks(app);
+  if (const KeyStop* typed = typed_stop(state)) {
+    state.at = typed->name;
+    state.region = region_of(*typed);
+    state.was[state.region] = typed->name;
+  }
+  const KeyStop* stop = focused_stop(state);
+  app.tooltip.keyed = state.ring && state.by_key && stop && !typed_stop(state) ? stop->id : 0;
+  // These two see to their keys themselves.
+  if (app.commands.palette_showing || app.commands.shortcuts || app.tool.grab) return;
+  std::erase_if(app.keys, [&](const KeyPress& key) { return take_focus_key(app, key); });
+}
+
+void settle_keyboard(App& app) {
+  KeyboardState& state = app.keyboard;
+  state.menu_of.clear();
+  if (!state.sought.empty() && --state.sought_frames < 0) state.sought.clear();
+  const std::vector<KeyStop>& stops = app.widgets.stops;
+  const auto found = std::ranges::find(stops, state.at, &KeyStop::name);
+  if (state.at.empty()) return draw_view_ring(app);
+  if (found == stops.end()) {
+    if (++state.missing > patience_to_draw) find_another(app);
+    return;
+  }
+  state.missing = 0;
+  state.place = static_cast<std::size_t>(found - stops.begin());
+  state.region = region_of(*found);
+  if (state.reveal > 0) {
+    --state.reveal;
+    bring_into_sight(app, *found);
+  }
+  draw_focus_ring(app, *found);
+}
+
+void focus_widget(App& app, const std::string& name) {
+  app.keyboard.at = name;
+  app.keyboard.ring = true;
+  app.keyboard.reveal = 4;
+  app.keyboard.missing = 0;
+}
+
+void seek_number(App& app, const std::string& address) {
+  app.keyboard.sought = address;
+  app.keyboard.sought_frames = patience_to_draw;
+}
+
+void note_number(App& app, const std::string& name, const std::string& address) {
+  mark_address(app.widgets, address);
+  KeyboardState& state = app.keyboard;
+  if (address.empty() || address != state.sought) return;
+  state.sought.clear();
+  focus_widget(app, name);
+  if (name.starts_with("inspector/") && !state.section.empty()) app.inspector.open[state.section] = true;
+}
+
+void enter_dialog_at(App& app, const std::string& name) {
+  app.keyboard.entry = name;
+}
+
+bool has_keyboard(const App& app, const std::string& name) {
+  return app.keyboard.ring && app.keyboard.at == name;
+}
+
+const KeyNudge* nudge_of(const App& app, const std::string& name) {
+  return app.keyboard.nudge.name == name ? &app.keyboard.nudge : nullptr;
+}
+
+bool nudge_value(const App& app, const std::string& name, double& value, double from, double to) {
+  const KeyNudge* nudge = nudge_of(app, name);
+  if (!nudge || !(to > from)) return false;
+  double next = value + nudge->x * nudge->size * (to - from) / 100;
+  if (nudge->end != 0) next = nudge->end < 0 ? from : to;
+  next = std::clamp(next, from, to);
+  return std::exchange(value, next) != next;
+}
+
+bool takes_menu_key(App& app, const std::string& name) {
+  if (app.keyboard.menu_of != name || name.empty()) return false;
+  app.keyboard.menu_of.clear();
+  return true;
+}
+
+bool enter_is_taken(const App& app) {
+  const KeyStop* stop = stop_named(app.keyboard.stops, app.keyboard.at);
+  return app.keyboard.ring && stop && region_of(*stop) == popup_region();
+}
+
+bool goes_on_nudging(const App& app) {
+  const KeyboardState& state = app.keyboard;
+  return !app.keys.empty() && state.ring && !state.at.empty() && state.nudged == state.at &&
+         std::ranges::all_of(app.keys, [](const KeyPress& key) {
+           return is_arrow(key.key) || key.key == keys::page_up || key.key == keys::page_down;
+         });
+}
+
+std::string focused_address(const App& app) {
+  const KeyStop* stop = stop_named(app.keyboard.stops, app.keyboard.at);
+  return stop ? stop->address : std::string();
+}
+
+} // namespace flyball

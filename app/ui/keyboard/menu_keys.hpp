@@ -1,0 +1,13 @@
+// Menus by keys: Alt opens the bar, Alt and a letter the menu that begins with it, arrows go through them.
+#pragma once
+
+#include "app/ui/app.hpp"
+
+namespace flyball {
+
+// Alt alone, or Alt with a letter.
+bool take_alt(App& app, const KeyPress& key);
+// Left and right, from menu to menu of the bar and into menus of menus.
+bool take_menu_arrow(App& app, const KeyStop* stop, const KeyPress& key);
+
+} // namespace flyball

@@ -1,0 +1,53 @@
+// The view by keys: arrows turn it, with Shift they move it, plus and minus zoom; while a tool places, they
+// move its cursor instead.
+#include "app/ui/commands.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/tools/tool_cursor.hpp"
+#include "app/ui/tools/tools.hpp"
+
+#include <imgui_internal.h>
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr double turn = 24, closer = 1.15; // points of a drag, as far as one press turns; a press of plus
+
+bool steer_by_key(App& app, const KeyPress& key, ViewSize size) {
+  const double by = turn * static_cast<double>(app.scale) * (key.ctrl ? 3 : 1);
+  const double dx = (key.key == keys::right ? by : 0) - (key.key == keys::left ? by : 0);
+  const double dy = (key.key == keys::down ? by : 0) - (key.key == keys::up ? by : 0);
+  ViewCamera& camera = app.view.camera;
+  if (dx != 0 || dy != 0) {
+    if (key.shift)
+      camera.pan(dx, dy, size);
+    else
+      camera.orbit(dx, dy, size);
+  } else if (!key.ctrl && (key.key == '+' || key.key == '=' || key.key == '-')) {
+    camera.zoom(key.key == '-' ? 1 / closer : closer, {size.width / 2, size.height / 2}, size);
+  } else {
+    return false;
+  }
+  app.view.fit = false;
+  return true;
+}
+
+} // namespace
+
+void take_view_keys(App& app) {
+  const WidgetRect& view = app.keyboard.view;
+  if (view.to.x <= view.from.x || !app.keyboard.at.empty() || ImGui::GetIO().WantTextInput ||
+      app.dialog.showing || app.commands.palette_showing || app.commands.shortcuts ||
+      ImGui::GetCurrentContext()->OpenPopupStack.Size > 0)
+    return;
+  const ViewSize size{static_cast<double>(view.to.x - view.from.x),
+                      static_cast<double>(view.to.y - view.from.y)};
+  std::erase_if(app.keys, [&](const KeyPress& key) {
+    if (app.mode == Mode::build && places(app.tool.tool) && take_cursor_key(app, key, size)) return true;
+    return steer_by_key(app, key, size);
+  });
+}
+
+} // namespace flyball

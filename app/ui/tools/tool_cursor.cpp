@@ -1,0 +1,169 @@
+#include "app/ui/tools/tool_cursor.hpp"
+
+#include "app/ui/commands.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/viewport/picking.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace flyball {
+
+namespace {
+
+constexpr double aside = 70; // points from one place to the next that may be free
+
+const Instance* solid_of(const SceneList& scene, int body) {
+  const auto found = std::ranges::find_if(scene.instances, [&](const Instance& instance) {
+    return instance.part.kind == PartKind::body && instance.part.index == body;
+  });
+  return found == scene.instances.end() ? nullptr : &*found;
+}
+
+// How far the point is from the second nearest of the bodies: where two meet it is none.
+double distance_to_second(App& app, const std::vector<int>& bodies, const Vec3& point) {
+  std::array<double, 2> nearest{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+  for (const int body : bodies) {
+    const Instance* solid = solid_of(cached_scene(app), body);
+    if (!solid) continue;
+    const double away = std::max(surface_distance(*solid, point), 0.0);
+    if (away < nearest[1]) nearest[1] = away;
+    if (nearest[1] < nearest[0]) std::swap(nearest[0], nearest[1]);
+  }
+  return nearest[bodies.size() < 2 ? 0 : 1];
+}
+
+// Where a joint, link or force is most likely wanted: the point where the selected bodies meet, or any two.
+std::optional<Vec3> likely_point(App& app) {
+  const Mechanism& mechanism = app.mechanism();
+  std::vector<int> bodies;
+  for (const std::string& name : app.selection().names(PartKind::body))
+    bodies.push_back(body_index(mechanism, name));
+  if (app.tool.tool != Tool::joint && !bodies.empty())
+    return mechanism.bodies[static_cast<std::size_t>(bodies.front())].position;
+  if (bodies.empty())
+    for (int i = 0; i < static_cast<int>(mechanism.bodies.size()); ++i)
+      bodies.push_back(i);
+  std::optional<Vec3> best;
+  std::tuple<double, bool> least{std::numeric_limits<double>::max(), true};
+  for (const SnapPoint& snap : cached_snap_points(app)) {
+    if (snap.part.kind == PartKind::none) continue;
+    // Rather a body's own point than that of a joint that is there already.
+    const std::tuple<double, bool> worth{distance_to_second(app, bodies, snap.point),
+                                         snap.part.kind != PartKind::body};
+    if (worth >= least) continue;
+    least = worth;
+    best = snap.point;
+  }
+  return best;
+}
+
+bool is_free(App& app, Vec2 pixel, ViewSize view) {
+  const auto& all = cached_scene(app).instances;
+  const auto last =
+      std::ranges::find_if_not(all, [](const Instance& i) { return i.part.kind == PartKind::body; });
+  return !pick(std::span<const Instance>(all.begin(), last), app.view.camera.ray(pixel, view),
+               20 * static_cast<double>(app.scale));
+}
+
+Vec2 first_place(App& app, ViewSize view) {
+  const Vec2 middle(view.width / 2, view.height / 2);
+  switch (app.tool.tool) {
+  case Tool::ball:
+  case Tool::block:
+  case Tool::plate:
+  case Tool::rod: {
+    const double step = aside * static_cast<double>(app.scale);
+    for (Vec2 place = middle; place.x() < view.width - step; place.x() += step)
+      if (is_free(app, place, view)) return place;
+    return middle;
+  }
+  default: break;
+  }
+  const auto point = likely_point(app);
+  return point ? app.view.camera.project(*point, view).value_or(middle) : middle;
+}
+
+// Left to right and top to bottom, as they are seen.
+std::optional<Vec2> next_point(App& app, const Vec2& from, ViewSize view, bool back) {
+  std::vector<std::pair<double, double>> places;
+  for (const SnapPoint& snap : cached_snap_points(app))
+    if (const auto at = app.view.camera.project(snap.point, view))
+      if (at->x() >= 0 && at->y() >= 0 && at->x() < view.width && at->y() < view.height)
+        places.emplace_back(std::round(at->x()), std::round(at->y()));
+  if (places.empty()) return std::nullopt;
+  std::ranges::sort(places);
+  const std::pair now(std::round(from.x()), std::round(from.y()));
+  const auto after = back ? std::ranges::lower_bound(places, now) : std::ranges::upper_bound(places, now);
+  const auto next = back ? (after == places.begin() ? places.end() : after) - 1
+                         : (after == places.end() ? places.begin() : after);
+  return Vec2(next->first, next->second);
+}
+
+// A step of the grid on the screen, a pixel with Shift.
+double arrow_step(const App& app, const KeyPress& key, ViewSize view) {
+  if (key.shift) return 1;
+  ViewInput input;
+  input.size = view;
+  input.camera = app.view.camera;
+  input.point = static_cast<double>(app.scale);
+  const double step = app.tool.snap ? grid_step(input) / input.metres_per_pixel() : 10 * input.point;
+  return key.ctrl ? 5 * step : step;
+}
+
+} // namespace
+
+bool take_cursor_key(App& app, const KeyPress& key, ViewSize view) {
+  ToolState& tool = app.tool;
+  const Vec2 now = tool.cursor.value_or(app.keyboard.in_view.value_or(first_place(app, view)));
+  const double step = arrow_step(app, key, view);
+  Vec2 by = Vec2::Zero();
+  switch (key.key) {
+  case keys::right: by.x() = step; break;
+  case keys::left: by.x() = -step; break;
+  case keys::down: by.y() = step; break;
+  case keys::up: by.y() = -step; break;
+  case keys::page_down:
+  case keys::page_up: tool.cursor = next_point(app, now, view, key.key == keys::page_up); return true;
+  case keys::enter:
+    if (key.ctrl || key.shift) return false;
+    tool.cursor = now;
+    tool.cursor_click = true;
+    return true;
+  default: return false;
+  }
+  tool.cursor = (now + by).cwiseMax(Vec2::Zero()).cwiseMin(Vec2(view.width - 1, view.height - 1));
+  return true;
+}
+
+void use_tool_cursor(App& app, ViewInput& input) {
+  ToolState& tool = app.tool;
+  app.keyboard.in_view = input.hovered ? std::optional(input.cursor) : std::nullopt;
+  const bool click = std::exchange(tool.cursor_click, false);
+  if (!app.keyboard.by_key || app.mode != Mode::build || !places(tool.tool)) {
+    tool.cursor.reset();
+    return;
+  }
+  // A tool that was chosen by a key shows at once where Enter would put it.
+  if (!tool.cursor && !input.hovered && !tool.first && !tool.joint)
+    tool.cursor = first_place(app, input.size);
+  if (!tool.cursor) return;
+  input.cursor = *tool.cursor;
+  input.hovered = true;
+  input.pressed = input.released = click;
+  input.active = input.held = input.moved = false;
+}
+
+void follow_tool_cursor(App& app, std::uint64_t revision_before, bool joining_before) {
+  if (!app.keyboard.by_key) return;
+  if (app.tool.joint && !joining_before) focus_widget(app, "tools/join");
+  if (app.document.revision() != revision_before && app.tool.tool == Tool::select)
+    focus_widget(app, "inspector/name");
+}
+
+} // namespace flyball

@@ -1,0 +1,16 @@
+// The cursor of the tools that place, where the keyboard moves it: arrows, Page Up and Down from point to
+// point of the mechanism, Enter for a click.
+#pragma once
+
+#include "app/ui/panels/view_input.hpp"
+
+namespace flyball {
+
+// A key of the cursor; false: none. `view` in pixels.
+bool take_cursor_key(App& app, const KeyPress& key, ViewSize view);
+// Puts the cursor into the place of the mouse, as long as that rests.
+void use_tool_cursor(App& app, ViewInput& input);
+// After the tool was used: what was made with the cursor has the keys next, or the card that asks how.
+void follow_tool_cursor(App& app, std::uint64_t revision_before, bool joining_before);
+
+} // namespace flyball

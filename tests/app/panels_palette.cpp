@@ -1,0 +1,139 @@
+// The palette finds commands, parts and numbers, and sets numbers.
+#include "robot.hpp"
+
+#include "app/session/fuzzy_match.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panels/palette_entries.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr const char* spin_speed = "joints.spin.drive.speed";
+
+struct Finder : Robot {
+  Finder() : Robot({1280, 900}) {}
+  void find(const std::string& text) {
+    key('P', true);
+    frames(2);
+    REQUIRE(app.commands.palette_showing);
+    type(text);
+    frames(2);
+  }
+  const PaletteEntry& entry(std::size_t i = 0) {
+    const std::vector<PaletteEntry>& found = palette_entries(app);
+    REQUIRE(found.size() > i);
+    return found[i];
+  }
+};
+
+std::string marked(std::string_view typed, const std::string& name) {
+  std::string letters;
+  for (const std::size_t i : fuzzy_match(typed, name).marks)
+    letters += name[i];
+  return letters;
+}
+
+} // namespace
+
+TEST_CASE("names answer by beginnings, initials and words in any order") {
+  const auto score = [](const char* typed, const char* name) { return fuzzy_match(typed, name).score; };
+  CHECK(score("ball1", "ball1") > score("ball1", "mass of ball1"));
+  CHECK(score("spe", "speed of spin") > score("spe", "free speed"));
+  CHECK(score("spin speed", "speed of spin") > 0);
+  CHECK(score("sos", "speed of spin") > 0);
+  CHECK(score("SPIN", "speed of spin") == score("spin", "speed of spin"));
+  CHECK(score("in", "spin") < score("in", "insert"));
+  CHECK(score("xyz", "speed of spin") < 0);
+  CHECK(score("nips", "speed of spin") < 0);
+  CHECK(score("", "anything") == 0);
+  CHECK(fuzzy_match("spring stiffness of slide", "stiffness of slide", "joints slide spring stiffness"));
+  CHECK(marked("sos", "speed of spin") == "sos");
+  CHECK(fuzzy_match("sos", "speed of spin").marks == std::vector<std::size_t>{0, 6, 9});
+  CHECK(marked("slide stiff", "stiffness of slide") == "stiffslide");
+}
+
+TEST_CASE("a part that is found is selected and brought into view") {
+  Finder robot;
+  App& app = robot.app;
+  const ViewCamera before = app.view.camera;
+  robot.find("ball1");
+  CHECK(robot.entry().name == "part/body/ball1");
+  robot.key(key_enter);
+  robot.frames(2);
+  CHECK_FALSE(app.commands.palette_showing);
+  CHECK(app.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
+  CHECK(app.view.camera.distance < before.distance);
+  const int ball = body_index(app.mechanism(), "ball1");
+  const ImVec2 at = robot.pixel(app.poses[static_cast<std::size_t>(ball)].position);
+  const ImVec2 middle = robot.widget("view").center();
+  CHECK(std::abs(at.x - middle.x) < 160); // its arm, too, is in view
+  CHECK(std::abs(at.y - middle.y) < 160);
+}
+
+TEST_CASE("a number that is found has its value and unit, and its slider or field gets the keys") {
+  Finder robot;
+  App& app = robot.app;
+  SECTION("a slider") {
+    robot.find("spring stiffness of slide");
+    CHECK(robot.entry().address == "joints.slide.spring.stiffness");
+    CHECK(robot.entry().right == "1000 N/m");
+    robot.key(key_enter);
+    robot.frames(6);
+    CHECK(app.keyboard.at == "parameters/joints.slide.spring.stiffness");
+    CHECK(has_keyboard(app, app.keyboard.at));
+  }
+  SECTION("a field of a part that was not selected, in a section that was closed") {
+    robot.find("mass of ball1");
+    CHECK(robot.entry().right == "1 kg");
+    robot.key(key_enter);
+    robot.frames(8);
+    CHECK(app.keyboard.at == "inspector/mass");
+    CHECK(app.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
+  }
+}
+
+TEST_CASE("a number behind its name is shown as what would be set, and set by Enter") {
+  Finder robot;
+  App& app = robot.app;
+  const auto [typed, wanted] = GENERATE(table<const char*, double>(
+      {{"speed of spin 15 rad/s", 15.0}, {"spin 15", 15.0}, {"spin 150 rpm", 5 * 3.14159265358979}}));
+  const double before = get_parameter(app.mechanism(), spin_speed);
+  robot.find(typed);
+  CHECK(robot.entry().address == spin_speed);
+  REQUIRE(robot.entry().value);
+  CHECK(*robot.entry().value == Approx(wanted));
+  CHECK_THAT(robot.entry().right, ContainsSubstring("→"));
+  CHECK(get_parameter(app.mechanism(), spin_speed) == before); // not yet
+  robot.key(key_enter);
+  robot.frames(2);
+  CHECK(get_parameter(app.mechanism(), spin_speed) == Approx(wanted));
+  CHECK_THAT(app.notice, ContainsSubstring("speed of spin"));
+  robot.key('Z', true);
+  CHECK(get_parameter(app.mechanism(), spin_speed) == before);
+}
+
+TEST_CASE("what was used last comes first, and all commands without a word") {
+  Finder robot;
+  robot.find("");
+  const std::vector<PaletteEntry> all = palette_entries(robot.app);
+  for (const Command& command : commands())
+    CHECK(std::ranges::any_of(all, [&](const PaletteEntry& entry) { return entry.name == command.id; }));
+  robot.key(key_escape);
+  robot.frames(2);
+  robot.find("ghost");
+  REQUIRE(robot.entry().name == "view.ghost");
+  robot.key(key_enter);
+  robot.frames(2);
+  robot.find("ball1");
+  robot.key(key_enter);
+  robot.frames(2);
+  robot.find("");
+  CHECK(robot.entry(0).name == "part/body/ball1");
+  CHECK(robot.entry(1).name == "view.ghost");
+}
