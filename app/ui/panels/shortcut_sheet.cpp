@@ -86,7 +86,7 @@ void shortcut_sheet(App& app) {
   const float s = app.scale;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({std::min(1000 * s, window.x - 20 * s), std::min(670 * s, window.y - 20 * s)});
+  ImGui::SetNextWindowSize({std::min(1180 * s, window.x - 20 * s), std::min(670 * s, window.y - 20 * s)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ImGui::GetStyle().PopupBorderSize);
@@ -97,17 +97,20 @@ void shortcut_sheet(App& app) {
   ImGui::PopStyleVar(3);
   if (!begun) return;
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {8 * s, 2 * s});
-  if (ImGui::BeginTable("columns", 3, ImGuiTableFlags_SizingStretchSame)) {
+  // What does not fit is scrolled to; the button stays.
+  const float foot = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y;
+  ImGui::BeginChild("all", {0, -foot});
+  if (ImGui::BeginTable("columns", 4, ImGuiTableFlags_SizingStretchSame)) {
     ImGui::TableNextColumn();
     lines(app, "File", "file.");
     lines(app, "Insert", "insert.");
-    lines(app, "Study", "study.");
     ImGui::TableNextColumn();
     lines(app, "Edit", "edit.");
-    fixed_lines(app, "Without a mouse", by_keys);
+    lines(app, "Study", "study.");
+    lines(app, "Help", "help.");
     ImGui::TableNextColumn();
     lines(app, "View", "view.");
-    lines(app, "Help", "help.");
+    ImGui::TableNextColumn();
     heading(app, "Mouse in the view");
     if (begin_lines("mouse")) {
       for (const NavigationLine& entry : navigation_lines(app.navigation))
@@ -116,8 +119,10 @@ void shortcut_sheet(App& app) {
         line(app, entry.keys, entry.does);
       ImGui::EndTable();
     }
+    fixed_lines(app, "Without a mouse", by_keys);
     ImGui::EndTable();
   }
+  ImGui::EndChild();
   ImGui::PopStyleVar();
   const bool beside =
       ImGui::IsMouseClicked(0) && !ImGui::IsWindowHovered(ImGuiHoveredFlags_RootAndChildWindows);
