@@ -61,7 +61,7 @@ def check_completions(share):
     script = share / "bash-completion/completions/flyball"
     check("bash completes a command", completed(script, "flyball", "so") == ["solve"])
     check("bash completes an option", completed(script, "flyball", "render", "--the") == ["--theme"])
-    check("bash completes a choice", completed(script, "flyball", "render", "--theme", "") == ["light", "dark"])
+    check("bash completes a choice", completed(script, "flyball", "render", "--theme", "") == ["light", "dark", "high-contrast"])
     for shell, file in (("zsh", share / "zsh/vendor-completions/_flyball"),
                         ("fish", share / "fish/vendor_completions.d/flyball.fish")):
         check(f"{file} is there", file.stat().st_size > 1000)
