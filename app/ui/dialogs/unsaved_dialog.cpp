@@ -10,7 +10,7 @@ namespace flyball {
 namespace {
 
 constexpr std::array unsaved_answers{Choice{"unsaved/save", "Save"}, Choice{"unsaved/discard", "Don't save"},
-                             Choice{"unsaved/cancel", "Cancel"}};
+                                     Choice{"unsaved/cancel", "Cancel"}};
 
 std::string question(const App& app) {
   const std::string name = document_name(app);
