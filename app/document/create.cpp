@@ -1,6 +1,6 @@
 #include "app/document/create.hpp"
 
-#include "app/document/mass_properties.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 #include "app/document/names.hpp"
 
 #include <cmath>

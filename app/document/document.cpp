@@ -1,6 +1,7 @@
 #include "app/document/document.hpp"
 
 #include "app/document/finite.hpp"
+#include "app/document/formula_edits.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>
@@ -62,7 +63,13 @@ void Document::push(Step step) {
 }
 
 void Document::edit(std::string name, Mechanism next, Selection selection, std::uint64_t gesture) {
-  if (next == stored() || !flyball::is_finite(next)) return select(std::move(selection));
+  if (!flyball::is_finite(next)) return select(std::move(selection));
+  settle_formulas(stored(), next);
+  take(std::move(name), std::move(next), std::move(selection), gesture);
+}
+
+void Document::take(std::string name, Mechanism next, Selection selection, std::uint64_t gesture) {
+  if (next == stored()) return select(std::move(selection));
   Explored left = carried_explored(now().explored, stored(), next);
   push({.name = std::move(name),
         .mechanism = std::make_shared<const Mechanism>(std::move(next)),
@@ -157,7 +164,7 @@ void Document::mark_saved(std::filesystem::path file) {
 }
 
 void Document::recover(Mechanism mechanism) {
-  edit("Recover", std::move(mechanism), {});
+  if (flyball::is_finite(mechanism)) take("Recover", std::move(mechanism), {}, 0);
 }
 
 Mechanism Document::empty_mechanism() {

@@ -52,7 +52,8 @@ class Document {
 
   // A new state. An edit of the same gesture (not 0) and name as the last one takes its place in the history,
   // so that a drag is one step. No step where nothing changes. Redo is lost, as everywhere.
-  // `next` is made from what is stored; what is explored stays beside it (see carried_explored).
+  // `next` is made from what is stored; what is explored stays beside it (see carried_explored). Throws
+  // SceneError where expressions give numbers that it has set otherwise (see settle_formulas).
   void edit(std::string name, Mechanism next, Selection selection, std::uint64_t gesture = 0);
   // The same of one number of the mechanism, which is explored no longer. Throws SceneError.
   void edit_number(std::string name, const std::string& address, double value, std::uint64_t gesture = 0);
@@ -89,6 +90,7 @@ class Document {
 
  private:
   const Step& now() const { return steps_[position_]; }
+  void take(std::string name, Mechanism next, Selection selection, std::uint64_t gesture);
   void push(Step step);
   void changed(const Mechanism* stored_before);
 

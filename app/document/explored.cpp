@@ -30,13 +30,15 @@ std::string renamed(const std::string& name, const std::vector<Part>& before,
 
 std::string renamed_address(const std::string& address, const Mechanism& before, const Mechanism& after) {
   const std::size_t begin = address.find('.'), end = address.find('.', begin + 1);
-  if (begin == std::string::npos || end == std::string::npos) return address;
+  if (begin == std::string::npos) return address;
   const std::string list = address.substr(0, begin), name = address.substr(begin + 1, end - begin - 1);
   std::string now = name;
   if (list == "bodies") now = renamed(name, before.bodies, after.bodies);
   if (list == "joints") now = renamed(name, before.joints, after.joints);
   if (list == "forces") now = renamed(name, before.forces, after.forces);
-  return list + "." + now + address.substr(end);
+  if (list == "parameters") now = renamed(name, before.parameters, after.parameters);
+  if (list == "points") now = renamed(name, before.points, after.points);
+  return list + "." + now + (end == std::string::npos ? "" : address.substr(end));
 }
 
 } // namespace

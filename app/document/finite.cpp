@@ -20,6 +20,9 @@ bool finite(const Vec3& v) {
 bool finite(const Quat& q) {
   return q.coeffs().allFinite();
 }
+bool finite(const NamedPoint& point) {
+  return finite(point.at);
+}
 bool finite(const std::string&) {
   return true;
 }

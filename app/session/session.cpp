@@ -127,14 +127,14 @@ void edit(Session& session, const std::string& name,
           const std::function<void(Mechanism&, Selection&)>& change) {
   Mechanism next = session.document.stored();
   Selection selection = session.selection();
+  const std::uint64_t before = session.document.revision();
   try {
     change(next, selection);
+    session.document.edit(name, std::move(next), std::move(selection), session.gesture);
   } catch (const SceneError& error) {
     return show_error(session, error.what());
   }
   session.notice.clear();
-  const std::uint64_t before = session.document.revision();
-  session.document.edit(name, std::move(next), std::move(selection), session.gesture);
   if (session.document.revision() != before) take_document(session, false, false);
 }
 

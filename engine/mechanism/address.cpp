@@ -1,6 +1,7 @@
 #include "engine/mechanism/address.hpp"
 
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -108,15 +109,33 @@ Number find_number(AMechanism& mechanism, std::string_view address) {
     auto&& simulation = changeable(mechanism.simulation);
     return find_number("", address, numbers_of(simulation));
   }
-  constexpr std::array<std::string_view, 5> starts{"gravity", "bodies", "joints", "forces", "simulation"};
+  if (list == "parameters") { // "parameters.L" is its value
+    auto&& parameter = changeable(find_part(list, name, mechanism.parameters));
+    if (!key.empty()) throw SceneError(path + "." + std::string(key), "expected the address to end before this");
+    return std::move(numbers_of(parameter).front());
+  }
+  if (list == "points") {
+    auto&& point = changeable(find_part(list, name, mechanism.points));
+    return find_number(path, key, numbers_of(point));
+  }
+  constexpr std::array<std::string_view, 7> starts{"parameters", "points", "gravity",   "bodies",
+                                                   "joints",     "forces", "simulation"};
   throw SceneError(std::string(address),
                    "expected an address that begins with " + word_list(starts) + did_you_mean(list, starts));
 }
 
+// Of those that no expression gives.
 void append_addresses(std::vector<std::string>& all, const std::string& prefix,
-                      const std::vector<Number>& numbers) {
+                      const std::vector<Number>& numbers, const Formulas& formulas) {
   for (const Number& number : numbers)
-    all.push_back(prefix + number.key);
+    if (std::ranges::find(formulas, number.key, &Formula::key) == formulas.end())
+      all.push_back(prefix + number.key);
+}
+
+std::string changeable_instead(const Mechanism& mechanism, const std::string& formula) {
+  std::vector<std::string> sources = sources_of(mechanism, formula);
+  if (sources.empty()) return {};
+  return "; change " + word_list(std::vector<std::string_view>(sources.begin(), sources.end()));
 }
 
 } // namespace
@@ -128,7 +147,17 @@ double get_parameter(const Mechanism& mechanism, std::string_view address) {
 void set_parameter(Mechanism& mechanism, std::string_view address, double value) {
   const Number number = find_number(mechanism, address);
   if (!std::isfinite(value)) throw SceneError(std::string(address), "expected a finite number");
+  if (const std::optional<std::string> formula = formula_at(mechanism, address))
+    throw SceneError(std::string(address), "its value is given by \"=" + *formula + "\"" +
+                                               changeable_instead(mechanism, *formula));
   number.set(value);
+  try {
+    evaluate_formulas(mechanism);
+  } catch (...) { // as it was
+    number.set(number.value);
+    evaluate_formulas(mechanism);
+    throw;
+  }
 }
 
 std::string parameter_unit(const Mechanism& mechanism, std::string_view address) {
@@ -138,14 +167,18 @@ std::string parameter_unit(const Mechanism& mechanism, std::string_view address)
 std::vector<std::string> parameter_addresses(const Mechanism& mechanism) {
   Mechanism copy = mechanism;
   std::vector<std::string> all;
-  append_addresses(all, "", numbers_of_gravity(copy.gravity));
+  for (const NamedParameter& parameter : copy.parameters)
+    if (parameter.formulas.empty()) all.push_back("parameters." + parameter.name);
+  for (NamedPoint& point : copy.points)
+    append_addresses(all, "points." + point.name + ".", numbers_of(point), point.formulas);
+  append_addresses(all, "", numbers_of_gravity(copy.gravity), copy.formulas);
   for (Body& body : copy.bodies)
-    append_addresses(all, "bodies." + body.name + ".", numbers_of(body));
+    append_addresses(all, "bodies." + body.name + ".", numbers_of(body), body.formulas);
   for (Joint& joint : copy.joints)
-    append_addresses(all, "joints." + joint.name + ".", numbers_of(mechanism, joint));
+    append_addresses(all, "joints." + joint.name + ".", numbers_of(mechanism, joint), joint.formulas);
   for (Force& force : copy.forces)
-    append_addresses(all, "forces." + force.name + ".", numbers_of(mechanism, force));
-  append_addresses(all, "", numbers_of(copy.simulation));
+    append_addresses(all, "forces." + force.name + ".", numbers_of(mechanism, force), force.formulas);
+  append_addresses(all, "", numbers_of(copy.simulation), copy.formulas);
   return all;
 }
 

@@ -1,6 +1,6 @@
 // Parameter addresses: the path by names to one number of a mechanism, such as
-// `joints.spin.drive.speed`, `joints.x.drive.0.speed`, `bodies.ball1.mass` or `gravity.1`. The same
-// address works in --set, --vary, sliders and panels.
+// `joints.spin.drive.speed`, `joints.x.drive.0.speed`, `bodies.ball1.mass`, `gravity.1`, `parameters.L` or
+// `points.A.0`. The same address works in --set, --vary, sliders and panels.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -13,12 +13,13 @@ namespace flyball {
 
 // The number at an address. Throws SceneError naming the part that does not exist and what does.
 double get_parameter(const Mechanism& mechanism, std::string_view address);
-// Changes it. Does not validate the mechanism as a whole; throws SceneError like get_parameter, and for a
-// value that is not finite.
+// Changes it, and all that expressions make of it. Does not validate the mechanism as a whole; throws
+// SceneError like get_parameter, for a value that is not finite or of which an expression can make nothing, and
+// for a number that is itself given by an expression; the mechanism is then as it was.
 void set_parameter(Mechanism& mechanism, std::string_view address, double value);
 // Unit of the number, as shown to a person: "rad/s", "N/m", "kg", "" where it has none.
 std::string parameter_unit(const Mechanism& mechanism, std::string_view address);
-// Every address that can be set, in the scene's order.
+// Every address that can be set, in the scene's order: of numbers that no expression gives.
 std::vector<std::string> parameter_addresses(const Mechanism& mechanism);
 
 } // namespace flyball

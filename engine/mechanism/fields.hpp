@@ -35,7 +35,9 @@ inline constexpr std::string_view number = "a number", text = "a text", word = "
                                   boolean = "true or false", list = "an array of objects",
                                   object = "an object", point = "three numbers [x, y, z]",
                                   direction = "a direction of three numbers [x, y, z]",
-                                  two_bodies = "two names [parent, child]";
+                                  two_bodies = "two names [parent, child]",
+                                 named_objects = "an object of objects by name",
+                                 named_points = "an object of points by name";
 inline constexpr std::string_view two_points =
     "two points [[x, y, z], [x, y, z]], on the first body and on the second";
 } // namespace expected
@@ -45,7 +47,10 @@ inline constexpr bool required = true;
 inline constexpr Field name{"name", expected::word, "", required}, type{"type", expected::word, "", required},
     bodies{"bodies", expected::two_bodies, "", required},
     points{"points", expected::two_points, "m", required}, gravity{"gravity", expected::point, "m/s^2"},
-    simulation{"simulation", expected::object};
+    simulation{"simulation", expected::object}, density{"density", expected::number, "kg/m^3"},
+    mass{"mass", expected::number, "kg"}, position{"position", expected::point, "m"},
+    inertia{"inertia", "three numbers [xx, yy, zz] or six [xx, yy, zz, xy, xz, yz]", "kg m^2"},
+    value{"value", expected::number, "", required};
 
 // Of a coordinate's value, of what it takes to move it, and of its rate.
 constexpr std::string_view value_unit(bool angle) {
@@ -76,6 +81,16 @@ using Standard = std::type_identity_t<std::remove_const_t<Value>>;
 template <class Part, class Of>
 concept PartOf = std::same_as<std::remove_const_t<Part>, Of>;
 
+template <class Visitor, PartOf<NamedParameter> Part>
+void visit_fields(Visitor& v, Part& parameter) {
+  v.describe(parameter.description);
+  Field value = fields::value;
+  value.unit = parameter.unit;
+  v.field(value, parameter.value);
+  v.field({"unit", "an SI unit, such as m, N/m or rad"}, parameter.unit, {});
+  v.field({"range", "two numbers [from, to]"}, parameter.range);
+}
+
 template <class Visitor, PartOf<Shape> Part>
 void visit_fields(Visitor& v, Part& shape) {
   using fields::required;
@@ -96,13 +111,14 @@ void visit_fields(Visitor& v, Part& shape) {
 
 template <class Visitor, PartOf<Body> Part>
 void visit_fields(Visitor& v, Part& body) {
-  using fields::required;
   v.field(fields::name, body.name);
   v.describe(body.description);
-  v.field({"mass", expected::number, "kg", required}, body.mass);
-  v.field({"position", expected::point, "m", required}, body.position);
-  v.field({"inertia", "three numbers [xx, yy, zz] or six [xx, yy, zz, xy, xz, yz]", "kg m^2"}, body.inertia,
-          {});
+  v.field(fields::density, body.density);
+  if (!body.density) { // else they follow from it
+    v.field(fields::mass, body.mass);
+    v.field(fields::position, body.position);
+    v.field(fields::inertia, body.inertia, {});
+  }
   v.field({"rotation", "a unit quaternion of four numbers [w, x, y, z]"}, body.rotation, Quat::Identity());
   v.field({"shapes", expected::list}, body.shapes, {});
 }
@@ -227,9 +243,11 @@ void visit_fields(Visitor& v, Part& view) {
 template <class Visitor, PartOf<Mechanism> Part>
 void visit_fields(Visitor& v, Part& mechanism) {
   using fields::required;
-  v.version({"flyball", "the version of the format, 1", "", required});
+  v.version({"flyball", "the version of the format, 1 or 2", "", required});
   v.field({"name", expected::text, "", required}, mechanism.name);
   v.describe(mechanism.description);
+  v.field({"parameters", expected::named_objects}, mechanism.parameters, {});
+  v.field({"points", expected::named_points}, mechanism.points, {});
   v.field(fields::gravity, mechanism.gravity, Vec3::Zero());
   v.field({"bodies", expected::list, "", required}, mechanism.bodies);
   v.field({"joints", expected::list, "", required}, mechanism.joints);

@@ -25,7 +25,36 @@ inline constexpr std::string_view ground_name = "ground";
 
 enum class ShapeType { sphere, box, cylinder, capsule };
 
-// How a body looks; no influence on the mechanics. World coordinates of the drawn pose.
+// A number given by an expression (see expression.hpp) of named parameters and points. `key` tells which: its
+// address after the part's name ("position.0"), in a shape "radius" or "from.2". The number itself is kept in
+// its place, as evaluate_formulas (formulas.hpp) left it.
+struct Formula {
+  std::string key;
+  std::string text;
+  bool operator==(const Formula&) const = default;
+};
+using Formulas = std::vector<Formula>; // each key once
+
+// A number with a name, used by expressions.
+struct NamedParameter {
+  std::string name;
+  std::string description;
+  double value = 0;                           // SI units
+  std::string unit;                           // an SI unit: "m", "N/m", "rad", "" of a plain number
+  std::optional<std::array<double, 2>> range; // SI units; where a slider goes
+  Formulas formulas{};                        // of "value": a dependent parameter
+  bool operator==(const NamedParameter&) const = default;
+};
+
+// A point of the drawn pose with a name, which parts stand at.
+struct NamedPoint {
+  std::string name;
+  Vec3 at = Vec3::Zero(); // m, world
+  Formulas formulas{};    // of "0", "1", "2"
+  bool operator==(const NamedPoint&) const = default;
+};
+
+// How a body looks, and with a density what it weighs. World coordinates of the drawn pose.
 struct Shape {
   ShapeType type = ShapeType::sphere;
   double radius = 0;                           // m; sphere, cylinder, capsule
@@ -34,6 +63,7 @@ struct Shape {
   std::optional<Vec3> at;                      // m; sphere, box: centre, default the mass centre
   std::optional<std::array<double, 3>> color;  // sRGB, 0 to 1; default from the palette
   std::string description{};
+  Formulas formulas{};
   bool operator==(const Shape&) const = default;
 };
 
@@ -46,9 +76,12 @@ struct Body {
                                     // axes, about the mass centre
   Quat rotation = Quat::Identity(); // body axes in the drawn pose
   std::vector<Shape> shapes;        // empty: derived from the joints
+  std::optional<double> density{};  // kg/m^3; given, mass, position and inertia follow from the shapes
+  Formulas formulas{};
   bool operator==(const Body& o) const {
     return name == o.name && description == o.description && mass == o.mass && position == o.position &&
-           inertia == o.inertia && rotation.coeffs() == o.rotation.coeffs() && shapes == o.shapes;
+           inertia == o.inertia && rotation.coeffs() == o.rotation.coeffs() && shapes == o.shapes &&
+           density == o.density && formulas == o.formulas;
   }
 };
 
@@ -111,6 +144,7 @@ struct Joint {
   std::array<std::string, 2> joints; // gear: a, b ("name", or "name.index" where a joint has several)
   double ratio = 1;                  // gear: q_b = ratio q_a + offset
   std::optional<double> offset;      // gear; default from the drawn values
+  Formulas formulas{};
   bool operator==(const Joint&) const = default;
 };
 
@@ -133,6 +167,7 @@ struct Force {
   ForceFrame frame = ForceFrame::world;                   // whether `vector` is in world or in body axes
   double linear = 0;                                      // N s/m; drag, in air at rest in the world
   double quadratic = 0;                                   // N s^2/m^2; drag
+  Formulas formulas{};
   bool operator==(const Force&) const = default;
 };
 
@@ -174,6 +209,8 @@ struct View {
 struct Mechanism {
   std::string name;
   std::string description;
+  std::vector<NamedParameter> parameters;
+  std::vector<NamedPoint> points;
   Vec3 gravity = Vec3::Zero(); // m/s^2
   std::vector<Body> bodies;
   std::vector<Joint> joints;
@@ -181,6 +218,7 @@ struct Mechanism {
   std::vector<Slider> sliders;
   Simulation simulation;
   View view;
+  Formulas formulas{}; // of gravity and of the simulation, by whole addresses
   bool operator==(const Mechanism&) const = default;
 };
 

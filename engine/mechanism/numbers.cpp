@@ -10,7 +10,8 @@ namespace {
 // The numbers among the fields that are visited; texts, choices and what is only seen have no address.
 class Collector {
  public:
-  explicit Collector(std::string prefix = {}) : prefix_(std::move(prefix)) {}
+  explicit Collector(std::string prefix = {}, bool rotation = false)
+      : prefix_(std::move(prefix)), rotation_(rotation) {}
 
   void describe(const std::string&) {}
   void type(const Field&, const auto&) {}
@@ -26,6 +27,9 @@ class Collector {
         {key(field), std::string(field.unit), place.value_or(stands_for), [&place](double v) { place = v; }});
   }
   void field(const Field& field, Vec3& place) { add(key(field), field, place); }
+  void field(const Field& field, std::optional<Vec3>& place) {
+    if (place) add(key(field), field, *place);
+  }
   void field(const Field& field, std::optional<Vec3>& place, const Vec3& stands_for) {
     for (int i = 0; i < 3; ++i)
       all_.push_back({key(field) + "." + std::to_string(i), std::string(field.unit),
@@ -49,7 +53,16 @@ class Collector {
   void field(const Field&, const std::optional<bool>&) {}
   void field(const Field&, bool, bool) {}
   void field(const Field&, ForceFrame, ForceFrame) {}
-  void field(const Field&, const Quat&, const Quat&) {}
+  void field(const Field&, const std::string&, const std::string&) {}
+  void field(const Field&, const std::optional<std::array<double, 2>>&) {}
+  void field(const Field&, const std::optional<std::array<double, 3>>&) {}
+  // One of them by itself would leave no rotation.
+  void field(const Field& field, Quat& rotation, const Quat&) {
+    if (!rotation_) return;
+    const std::array<double*, 4> places{&rotation.w(), &rotation.x(), &rotation.y(), &rotation.z()};
+    for (std::size_t i = 0; i < places.size(); ++i)
+      add(key(field) + "." + std::to_string(i), field, *places[i]);
+  }
   void field(const Field&, const std::vector<Shape>&, const std::vector<Shape>&) {}
 
   void field(const Field& field, std::optional<CoordinateSpring>& spring) { inside(field, spring); }
@@ -90,7 +103,7 @@ class Collector {
   }
 
   std::string prefix_, index_;
-  bool angle_ = true;
+  bool rotation_, angle_ = true;
   std::vector<Number> all_;
 };
 
@@ -100,6 +113,33 @@ std::vector<Number> numbers_of(Body& body) {
   Collector all;
   visit_fields(all, body);
   return all.take();
+}
+
+std::vector<Number> all_numbers_of(Body& body) {
+  Collector all({}, true);
+  visit_fields(all, body);
+  return all.take();
+}
+
+std::vector<Number> all_numbers_of(Shape& shape) {
+  Collector all;
+  visit_fields(all, shape);
+  return all.take();
+}
+
+std::vector<Number> numbers_of(NamedParameter& parameter) {
+  Collector all;
+  visit_fields(all, parameter);
+  return all.take();
+}
+
+std::vector<Number> numbers_of(NamedPoint& point) {
+  std::vector<Number> all;
+  for (int i = 0; i < 3; ++i) {
+    double& place = point.at[i];
+    all.push_back({std::to_string(i), "m", place, [&place](double v) { place = v; }});
+  }
+  return all;
 }
 
 std::vector<Number> numbers_of(const Mechanism& mechanism, Joint& joint) {

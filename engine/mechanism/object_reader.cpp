@@ -1,6 +1,8 @@
 #include "engine/mechanism/object_reader.hpp"
 
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/expression.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -62,8 +64,35 @@ bool ValueReader::boolean() const {
 }
 
 double ValueReader::number() const {
+  if (sink_.formulas && json_.is_string() && json_.get_ref<const std::string&>().starts_with('=')) {
+    sink_.formulas->push_back({key(), json_.get<std::string>().substr(1)});
+    return 0;
+  }
   if (!json_.is_number()) fail();
   return json_.get<double>();
+}
+
+Vec3 ValueReader::vec3() const {
+  if (sink_.formulas && json_.is_string()) {
+    const std::string point = json_.get<std::string>();
+    if (!is_expression_name(point)) fail("the name of a point or " + std::string(expected_));
+    const std::string its_key = key();
+    for (const int i : {0, 1, 2})
+      sink_.formulas->push_back({its_key + "." + std::to_string(i), point_coordinate(point, i)});
+    return Vec3::Zero();
+  }
+  return Vec3(numbers<3>().data());
+}
+
+// "spring[1].stiffness" of "joints.x.spring[1].stiffness", with dots for brackets.
+std::string ValueReader::key() const {
+  std::string key;
+  for (std::size_t i = sink_.path; i < path_.size(); ++i) {
+    const char c = path_[i];
+    if (c == ']' || ((c == '.' || c == '[') && key.empty())) continue;
+    key += c == '[' ? '.' : c;
+  }
+  return key;
 }
 
 const std::string& ValueReader::text() const {
@@ -77,7 +106,7 @@ std::vector<ValueReader> ValueReader::elements(std::size_t smallest, std::size_t
   std::vector<ValueReader> all;
   all.reserve(json_.size());
   for (std::size_t i = 0; i < json_.size(); ++i)
-    all.emplace_back(json_[i], element_path(path_, i, json_[i]), expected);
+    all.emplace_back(json_[i], element_path(path_, i, json_[i]), expected, sink_);
   return all;
 }
 
@@ -106,9 +135,9 @@ std::size_t ValueReader::word(std::span<const std::string_view> words) const {
   return static_cast<std::size_t>(place - words.begin());
 }
 
-ObjectReader::ObjectReader(const ValueReader& value, scene_keys::Keys keys, std::string_view noun,
-                           std::span<const scene_keys::Keys> relatives)
-    : json_(value.json()), path_(value.path()) {
+ObjectReader::ObjectReader(const ValueReader& value, FormulaSink sink, scene_keys::Keys keys,
+                           std::string_view noun, std::span<const scene_keys::Keys> relatives)
+    : json_(value.json()), path_(value.path()), sink_(sink) {
   if (!json_.is_object()) value.fail("an object");
   for (const auto& [key, ignored] : json_.items())
     if (key != description_key && !contains(keys, key)) fail_unknown(path_, key, keys, noun, relatives);
@@ -119,7 +148,7 @@ ObjectReader::ObjectReader(const ValueReader& value, scene_keys::Keys keys, std:
 }
 
 ValueReader ObjectReader::value(const Field& field) const {
-  return {json_.at(field.key), key_path(path_, field.key), field.expected};
+  return {json_.at(field.key), key_path(path_, field.key), field.expected, sink_};
 }
 
 std::string ObjectReader::description() const {

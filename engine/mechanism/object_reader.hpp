@@ -12,16 +12,26 @@
 
 namespace flyball {
 
+// Where the expressions of a part go as they are read.
+struct FormulaSink {
+  Formulas* formulas = nullptr;
+  std::size_t path = 0; // length of the part's own path, which keys do not repeat
+};
+
 // One value and its place.
 class ValueReader {
  public:
-  ValueReader(const Json& json, std::string path, std::string_view expected)
-      : json_(json), path_(std::move(path)), expected_(expected) {}
+  ValueReader(const Json& json, std::string path, std::string_view expected, FormulaSink sink = {})
+      : json_(json), path_(std::move(path)), expected_(expected), sink_(sink) {}
 
   const Json& json() const { return json_; }
   const std::string& path() const { return path_; }
+  const FormulaSink& sink() const { return sink_; }
+  // The same where no expression may stand.
+  ValueReader plain() const { return {json_, path_, expected_}; }
 
   bool boolean() const;
+  // Zero of an expression, which goes to the sink.
   double number() const;
   const std::string& text() const;
   // An array of `smallest` to `largest` elements.
@@ -36,7 +46,8 @@ class ValueReader {
       all[i] = each[i].number();
     return all;
   }
-  Vec3 vec3() const { return Vec3(numbers<3>().data()); }
+  // Zero of a named point.
+  Vec3 vec3() const;
   std::array<Vec3, 2> two_vec3() const;
   std::array<std::string, 2> two_texts() const;
   // Index of the word in the list.
@@ -50,14 +61,18 @@ class ValueReader {
   const Json& json_;
   std::string path_;
   std::string_view expected_;
+  FormulaSink sink_;
+
+  // The place in its part as an address has it: "spring.1.stiffness".
+  std::string key() const;
 };
 
 // One object, of which every key is known and none is missing.
 class ObjectReader {
  public:
   // `noun` is what messages call the object, as in "a revolute joint"; `relatives` are the keys of objects it
-  // may be mistaken for, such as joints of other types.
-  ObjectReader(const ValueReader& value, scene_keys::Keys keys, std::string_view noun,
+  // may be mistaken for, such as joints of other types; `sink` takes the expressions.
+  ObjectReader(const ValueReader& value, FormulaSink sink, scene_keys::Keys keys, std::string_view noun,
                std::span<const scene_keys::Keys> relatives = {});
 
   bool has(std::string_view key) const { return json_.contains(key); }
@@ -68,6 +83,7 @@ class ObjectReader {
  private:
   const Json& json_;
   const std::string& path_;
+  FormulaSink sink_;
 };
 
 // The word under `key` in an object whose other keys depend on it.

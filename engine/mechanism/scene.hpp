@@ -13,7 +13,8 @@ namespace flyball {
 // Reads and validates; throws SceneError naming the place and what was expected; for text that is not
 // JSON the place is the line and column.
 Mechanism read_scene(std::string_view text);
-// Reads without validating (see validate.hpp), for whoever wants to show or mend an unfinished mechanism.
+// Reads without validating (see validate.hpp), for whoever wants to show or mend an unfinished mechanism; the
+// numbers of expressions that cannot be evaluated are zero.
 Mechanism parse_scene(std::string_view text);
 // The same from a file ("-": standard input); the error's `where` starts with the file's path. Also throws
 // SceneError where the file cannot be read.

@@ -81,6 +81,9 @@ std::span<const std::string_view> words() {
 Keys of(const Mechanism&) {
   return of_only_type<Mechanism>();
 }
+Keys of(const NamedParameter&) {
+  return of_only_type<NamedParameter>();
+}
 Keys of(const Body&) {
   return of_only_type<Body>();
 }

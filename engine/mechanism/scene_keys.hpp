@@ -10,11 +10,13 @@ namespace flyball::scene_keys {
 
 using Keys = std::span<const Field>;
 
-// Version of the format that this program reads and writes.
-inline constexpr int version = 1;
+// Versions of the format that this program reads are those up to this one; it writes the lowest that has all
+// that a mechanism uses.
+inline constexpr int newest_version = 2;
 
 // Of objects such as this one, whose type matters only.
 Keys of(const Mechanism& mechanism);
+Keys of(const NamedParameter& parameter);
 Keys of(const Body& body);
 Keys of(const Shape& shape);
 Keys of(const Joint& joint);

@@ -1,6 +1,8 @@
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/expression.hpp"
 #include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/object_reader.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/scene_keys.hpp"
@@ -37,6 +39,9 @@ std::string noun(const Mechanism&) {
 std::string noun(const Body&) {
   return "a body";
 }
+std::string noun(const NamedParameter&) {
+  return "a parameter";
+}
 std::string noun(const CoordinateSpring&) {
   return "a spring";
 }
@@ -61,6 +66,19 @@ std::string noun(const Camera&) {
 
 // Mistakes of an object as a whole.
 void check(const ValueReader&, const auto&) {}
+// What a body weighs is given, or follows from its density.
+void check(const ValueReader& value, const Body& body) {
+  for (const Field& field : {fields::mass, fields::position, fields::inertia}) {
+    const bool there = value.json().contains(field.key);
+    const bool needed = field.key != fields::inertia.key;
+    if (there && body.density)
+      throw SceneError(key_path(value.path(), field.key),
+                       "expected none, since it follows from the density and the shapes");
+    if (!there && !body.density && needed)
+      throw SceneError(key_path(value.path(), field.key),
+                       "missing; a body needs it, or a density: " + std::string(field.expected));
+  }
+}
 void check(const ValueReader& value, const Stop& stop) {
   if (!stop.lower && !stop.upper) throw SceneError(value.path(), "expected lower, upper or both");
 }
@@ -97,8 +115,11 @@ void read(const ValueReader& value, std::array<Vec3, 2>& to) {
 void read(const ValueReader& value, std::array<std::string, 2>& to) {
   to = value.two_texts();
 }
+void read(const ValueReader& value, std::array<double, 2>& to) {
+  to = value.plain().numbers<2>();
+}
 void read(const ValueReader& value, std::array<double, 3>& to) {
-  to = value.numbers<3>();
+  to = value.plain().numbers<3>();
 }
 // An inertia tensor, maybe without its products.
 void read(const ValueReader& value, std::array<double, 6>& to) {
@@ -115,6 +136,31 @@ template <class Part>
 void read(const ValueReader& value, std::vector<Part>& to) {
   for (const ValueReader& element : value.elements())
     to.push_back(read_object<Part>(element));
+}
+
+// By name, in the file's order.
+template <class Named, class Read>
+void read_named(const ValueReader& value, std::vector<Named>& to, const Read& read_one) {
+  if (!value.json().is_object()) value.fail();
+  for (const auto& [name, json] : value.json().items()) {
+    const std::string path = key_path(value.path(), name);
+    if (!is_expression_name(name))
+      throw SceneError(path, "expected a name of letters, figures and _ that is no function's");
+    to.push_back(read_one(path, json));
+    to.back().name = name;
+  }
+}
+void read(const ValueReader& value, std::vector<NamedParameter>& to) {
+  read_named(value, to, [](const std::string& path, const Json& json) {
+    return read_object<NamedParameter>(ValueReader(json, path, expected::object));
+  });
+}
+void read(const ValueReader& value, std::vector<NamedPoint>& to) {
+  read_named(value, to, [](const std::string& path, const Json& json) {
+    NamedPoint point;
+    point.at = Vec3(ValueReader(json, path, expected::point, {&point.formulas, path.size()}).numbers<3>().data());
+    return point;
+  });
 }
 
 // The fields of one coordinate out of a joint's keys: one value, or with several coordinates an element each.
@@ -194,7 +240,10 @@ Part read_object(const ValueReader& value) {
     part.type = static_cast<decltype(part.type)>(read_type(value, keys::words_of(part.type), noun(&part)));
     relatives = keys::of_all_types(part);
   }
-  const ObjectReader object(value, keys::of(part), noun(part), relatives);
+  FormulaSink sink = value.sink();
+  if constexpr (requires { part.formulas; }) sink = {&part.formulas, value.path().size()};
+  if constexpr (std::is_same_v<Part, Slider> || std::is_same_v<Part, Camera>) sink = {};
+  const ObjectReader object(value, sink, keys::of(part), noun(part), relatives);
   PresentFields fields(object);
   visit_fields(fields, part);
   check(value, part);
@@ -206,8 +255,8 @@ void check_version(const Json& json) {
   constexpr std::string_view key = "flyball";
   if (!json.is_object() || !json.contains(key)) return;
   const ValueReader version(json.at(key), std::string(key), "a number");
-  if (!version.json().is_number() || version.number() != keys::version)
-    version.fail(std::to_string(keys::version) + ", the version of the format this program reads");
+  if (!version.json().is_number() || (version.number() != 1 && version.number() != keys::newest_version))
+    version.fail("1 or 2, the versions of the format that this program reads");
 }
 
 } // namespace
@@ -215,7 +264,12 @@ void check_version(const Json& json) {
 Mechanism parse_scene(std::string_view text) {
   const Json json = parse_json(text);
   check_version(json);
-  return read_object<Mechanism>(ValueReader(json, "", expected::object));
+  Mechanism mechanism = read_object<Mechanism>(ValueReader(json, "", expected::object));
+  try {
+    evaluate_formulas(mechanism);
+  } catch (const SceneError&) { // a mistake like others, see find_mistakes
+  }
+  return mechanism;
 }
 
 Mechanism read_scene(std::string_view text) {

@@ -1,6 +1,8 @@
 #include "engine/mechanism/validate.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/expression.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
@@ -76,13 +78,47 @@ void find_non_finite(Body body, const std::string& path, Mistakes& mistakes) {
   mistakes.expect(body.rotation.coeffs().allFinite(), path + ".rotation", "expected four finite numbers");
 }
 
+void find_non_finite(const Mechanism& mechanism, const NamedParameter& parameter, Mistakes& mistakes) {
+  const std::string path = "parameters." + parameter.name;
+  NamedParameter copy = parameter;
+  expect_finite(numbers_of(copy), path + ".", mistakes);
+  if (!is_expression_name(parameter.name) || point_index(mechanism, parameter.name) >= 0)
+    mistakes.add(path, "expected a name of letters, figures and _ that no point and no function has");
+  if (!parameter.range) return;
+  const auto [from, to] = *parameter.range;
+  mistakes.expect(std::isfinite(from) && std::isfinite(to) && from < to, path + ".range",
+                  "expected two finite numbers, the smaller one first");
+}
+
+void find_non_finite(const NamedPoint& point, Mistakes& mistakes) {
+  const std::string path = "points." + point.name;
+  mistakes.expect(point.at.allFinite() && point.at.cwiseAbs().maxCoeff() <= largest_number, path,
+                  "expected three finite numbers, no more than 1e30 in size");
+  if (!is_expression_name(point.name))
+    mistakes.add(path, "expected a name of letters, figures and _ that no function has");
+}
+
 template <class JointOrForce>
 void find_non_finite(const Mechanism& mechanism, JointOrForce part, const std::string& path,
                      Mistakes& mistakes) {
   expect_finite(numbers_of(mechanism, part), path + ".", mistakes);
 }
 
+void find_formula_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
+  if (used_of_version_2(mechanism).empty()) return;
+  try {
+    Mechanism copy = mechanism;
+    evaluate_formulas(copy);
+  } catch (const SceneError& error) {
+    mistakes.add(error.where(), error.expected());
+  }
+}
+
 void find_non_finite(const Mechanism& mechanism, Mistakes& mistakes) {
+  for (const NamedParameter& parameter : mechanism.parameters)
+    find_non_finite(mechanism, parameter, mistakes);
+  for (const NamedPoint& point : mechanism.points)
+    find_non_finite(point, mistakes);
   find_non_finite(mechanism.gravity, mistakes);
   for (std::size_t i = 0; i < mechanism.bodies.size(); ++i)
     find_non_finite(mechanism.bodies[i], part_path("bodies", i, mechanism.bodies[i].name), mistakes);
@@ -211,10 +247,13 @@ void find_two_body_mistakes(const Mechanism& mechanism, const BodyNumbers& numbe
 
 std::vector<SceneError> find_mistakes(const Mechanism& mechanism) {
   Mistakes mistakes;
+  find_name_mistakes(mechanism.parameters, "parameters", mistakes);
+  find_name_mistakes(mechanism.points, "points", mistakes);
   find_name_mistakes(mechanism.bodies, "bodies", mistakes);
   find_name_mistakes(mechanism.joints, "joints", mistakes);
   find_name_mistakes(mechanism.forces, "forces", mistakes);
   find_non_finite(mechanism, mistakes);
+  find_formula_mistakes(mechanism, mistakes);
   // What follows compares numbers and looks up names, and would only repeat these in other words.
   if (!mistakes.all().empty()) return mistakes.all();
   find_body_mistakes(mechanism, mistakes);

@@ -5,8 +5,12 @@
 namespace flyball {
 namespace {
 
-// The part with the number at `address` is again as it was.
+// The part with the number at `address` is again as it was, and all where expressions take from it.
 void put_back(const Mechanism& mechanism, const std::string& address, Mechanism& varied) {
+  if (!mechanism.parameters.empty() || !mechanism.points.empty()) {
+    varied = mechanism;
+    return;
+  }
   const std::size_t dot = std::min(address.find('.'), address.size() - 1);
   const std::string name = address.substr(dot + 1, address.find('.', dot + 1) - dot - 1);
   const auto copy = [](int part, const auto& from, auto& to) {
@@ -26,6 +30,9 @@ std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechan
   if (at.kkt().singular()) return {};
   const System& system = at.problem.system;
   Mechanism varied;
+  varied.parameters = mechanism.parameters;
+  varied.points = mechanism.points;
+  varied.formulas = mechanism.formulas;
   varied.gravity = mechanism.gravity;
   varied.bodies = mechanism.bodies;
   varied.joints = mechanism.joints;

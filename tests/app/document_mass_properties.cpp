@@ -1,5 +1,5 @@
 #include "app/document/create.hpp"
-#include "app/document/mass_properties.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 #include "tests/app/document_mechanisms.hpp"
 
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "app/document/create.hpp"
 #include "app/document/document.hpp"
 #include "app/document/finite.hpp"
-#include "app/document/mass_properties.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 #include "app/document/remove.hpp"
 #include "app/document/rename.hpp"
 #include "app/document/snap_points.hpp"

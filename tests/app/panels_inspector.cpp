@@ -2,7 +2,7 @@
 #include "robot.hpp"
 
 #include "app/document/create.hpp"
-#include "app/document/mass_properties.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/session/quantity.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"

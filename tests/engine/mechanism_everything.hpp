@@ -9,9 +9,13 @@
 namespace flyball::test {
 
 inline constexpr std::string_view everything = R"({
-  "flyball": 1,
+  "flyball": 2,
   "name": "Everything",
   "description": "all kinds of parts",
+  "parameters": {
+    "L": {"description": "reach", "value": 5, "unit": "m", "range": [0.5, 8]},
+    "half": {"value": "=L/2", "unit": "m"}},
+  "points": {"W": [0, 0, 8], "E": ["=L", "=W.y", 0.5]},
   "gravity": [0, -9.80665, 0],
   "bodies": [
     {"name": "table", "description": "turns", "mass": 2, "position": [0, 0.5, 0], "inertia": [1, 1.5, 1],
@@ -28,8 +32,9 @@ inline constexpr std::string_view everything = R"({
     {"name": "ball", "mass": 1, "position": [0, 0, 5]},
     {"name": "puck", "mass": 1, "position": [0, 0, 6]},
     {"name": "drone", "mass": 1, "position": [0, 0, 7]},
-    {"name": "plate", "mass": 1, "position": [0, 0, 8]},
-    {"name": "pinion", "mass": 1, "position": [0, 0, 9]}
+    {"name": "plate", "mass": "=2 kg * half / L", "position": "W"},
+    {"name": "pinion", "density": 1000,
+     "shapes": [{"type": "box", "size": ["=half", 0.1, "=L"], "at": "E"}]}
   ],
   "joints": [
     {"name": "spin", "type": "revolute", "bodies": ["ground", "table"], "at": [0, 0, 0], "axis": [0, 1, 0],
@@ -57,7 +62,7 @@ inline constexpr std::string_view everything = R"({
   ],
   "forces": [
     {"name": "coil", "description": "holds", "type": "spring", "bodies": ["ground", "arm"],
-     "points": [[0, 2, 0], [1, 1, 0]], "stiffness": 120, "free_length": 0.9, "damping": 1.5},
+     "points": [[0, 2, 0], [1, 1, 0]], "stiffness": "=24 N/m^2 * L", "free_length": 0.9, "damping": 1.5},
     {"name": "push", "type": "force", "body": "arm", "at": [1, 2, 3], "vector": [4, 5, 6], "frame": "body"},
     {"name": "turn", "type": "torque", "body": "arm", "vector": [7, 8, 9]},
     {"name": "air", "type": "drag", "body": "ball", "at": [0, 0, 5.5], "linear": 0.125, "quadratic": 0.375}
@@ -91,9 +96,19 @@ inline std::string edited(std::string_view find, std::string_view replace) {
 // Mistakes in the form of the file, which the schema must find too.
 inline constexpr Mistake mistakes_of_form[] = {
     // the version
-    {R"("flyball": 1,)", "", "flyball", "missing"},
-    {R"("flyball": 1)", R"("flyball": 2)", "flyball", "expected 1"},
-    {R"("flyball": 1)", R"("flyball": "1")", "flyball", "found \"1\""},
+    {R"("flyball": 2,)", "", "flyball", "missing"},
+    {R"("flyball": 2)", R"("flyball": 3)", "flyball", "expected 1 or 2"},
+    {R"("flyball": 2)", R"("flyball": "1")", "flyball", "found \"1\""},
+    // parameters, points and expressions
+    {R"("value": "=L/2", )", "", "parameters.half.value", "missing; a parameter needs it"},
+    {R"("value": "=L/2")", R"("value": "L/2")", "parameters.half.value", "expected a number, found \"L/2\""},
+    {R"("range": [0.5, 8])", R"("range": ["=L", 8])", "parameters.L.range", "expected a number, found \"=L\""},
+    {R"("half": {)", R"("a half": {)", "parameters.a half", "expected a name of letters"},
+    {R"("W": [0, 0, 8])", R"("W": [0, 0])", "points.W", "three numbers"},
+    {R"("at": [0, 0, 9])", R"("at": "a hole")", "joints.axle.at", "expected the name of a point or three"},
+    {R"("color": [0.5, 0.25, 1])", R"("color": [0.5, "=half", 1])", "bodies.table.shapes[0].color[1]",
+     "expected a number, found \"=half\""},
+    {R"("density": 1000)", R"("density": 1000, "mass": 1)", "bodies.pinion.mass", "follows from the density"},
     // unknown keys, at every level
     {R"("gravity")", R"("gravitation")", "gravitation", "unknown key of a scene"},
     {R"("gravity")", R"("Gravity")", "Gravity", "did you mean \"gravity\"?"},
@@ -123,7 +138,7 @@ inline constexpr Mistake mistakes_of_form[] = {
      "does not belong to a box"},
     // missing keys
     {R"("name": "Everything",)", "", "name", "missing; a scene needs it"},
-    {R"("mass": 2, )", "", "bodies.table.mass", "missing; a body needs it: a number"},
+    {R"("mass": 2, )", "", "bodies.table.mass", "missing; a body needs it, or a density: a number"},
     {R"("name": "slider", )", "", "bodies[2].name", "missing"},
     {R"("axis": [0, 0, 2], )", "", "joints.hinge.axis", "missing; a revolute joint needs it: a direction"},
     {R"("type": "fixed", )", "", "joints.weld.type", "missing; a joint needs it: revolute, prismatic"},

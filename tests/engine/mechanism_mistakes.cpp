@@ -119,8 +119,8 @@ constexpr Mistake mistakes_of_meaning[] = {
     {R"("duration": 20)", R"("duration": 0)", "simulation.duration", "above zero"},
     {R"("distance": 4)", R"("distance": -4)", "view.camera.distance", "above zero"},
     // connections
-    {R"({"name": "plate", "mass": 1,)",
-     R"({"name": "ball 2", "mass": 1, "position": [0, 0, 0]}, {"name": "plate", "mass": 1,)", "bodies.ball 2",
+    {R"({"name": "plate", "mass": "=2 kg)",
+     R"({"name": "ball 2", "mass": 1, "position": [0, 0, 0]}, {"name": "plate", "mass": "=2 kg)", "bodies.ball 2",
      "ball 2 is not connected"},
     {R"("cut": false)", R"("cut": true)", "joints.slide.cut", "without this joint slider is not connected"},
     // drives

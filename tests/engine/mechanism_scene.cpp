@@ -178,5 +178,5 @@ TEST_CASE("An unfinished mechanism can be parsed, its mistakes told together") {
 
 TEST_CASE("The version comes before all else") {
   CHECK_THROWS_WITH(read_scene(R"({"wheels": 3, "flyball": 7})"),
-                    "flyball: expected 1, the version of the format this program reads, found 7");
+                    "flyball: expected 1 or 2, the versions of the format that this program reads, found 7");
 }

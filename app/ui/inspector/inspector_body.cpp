@@ -1,4 +1,4 @@
-#include "app/document/mass_properties.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 #include "app/document/transform.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"

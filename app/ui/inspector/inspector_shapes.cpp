@@ -1,5 +1,5 @@
 // How a body looks: its shapes, their sizes and colours.
-#include "app/document/mass_properties.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 #include "app/render/icons.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"

@@ -1,6 +1,6 @@
-#include "app/document/mass_properties.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 
-#include <fmt/format.h>
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -117,7 +117,7 @@ void take(Body& body, const MassProperties& all, double mass) {
 bool take_mass_properties(Body& body, double density) {
   const std::optional<MassProperties> all = in_body_axes(body, density);
   // Without the last digit's dust: a block of 0.2 m by 7850 kg/m^3 has 62.8 kg.
-  if (all) take(body, *all, std::strtod(fmt::format("{:.15g}", all->mass).c_str(), nullptr));
+  if (all) take(body, *all, std::strtod(rounded_text(all->mass, 15).c_str(), nullptr));
   return all.has_value();
 }
 

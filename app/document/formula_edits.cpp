@@ -1,0 +1,279 @@
+#include "app/document/formula_edits.hpp"
+
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/numbers.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace flyball {
+namespace {
+
+// What is thrown leaves the mechanism as it was.
+template <class Change>
+void all_or_nothing(Mechanism& mechanism, const Change& change) {
+  Mechanism next = mechanism;
+  change(next);
+  evaluate_formulas(next);
+  mechanism = std::move(next);
+}
+
+void put(Mechanism& mechanism, const std::string& address, const std::string& text) {
+  const auto [formulas, key] = formula_place(mechanism, address);
+  if (!formulas) throw SceneError(address, "there is no such number");
+  std::erase_if(*formulas, [&key = key](const Formula& formula) { return formula.key == key; });
+  if (!text.empty()) formulas->push_back({key, text});
+}
+
+template <class Visit>
+void visit_formulas(Mechanism& mechanism, const Visit& visit) {
+  const auto all = [&](auto& parts) {
+    for (auto& part : parts)
+      visit(part.formulas);
+  };
+  all(mechanism.parameters);
+  all(mechanism.points);
+  visit(mechanism.formulas);
+  all(mechanism.bodies);
+  for (Body& body : mechanism.bodies)
+    all(body.shapes);
+  all(mechanism.joints);
+  all(mechanism.forces);
+}
+
+bool names(std::string_view text, std::string_view name) {
+  try {
+    const Expression expression(text);
+    return std::ranges::any_of(expression.names(), [&](const std::string& each) {
+      return std::string_view(each).substr(0, each.find('.')) == name;
+    });
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+void check_name(const Mechanism& mechanism, const std::string& name, const std::string& where) {
+  if (!is_expression_name(name))
+    throw SceneError(where, "expected a name of letters, figures and _ that is no function's");
+  if (parameter_index(mechanism, name) >= 0 || point_index(mechanism, name) >= 0)
+    throw SceneError(where, "expected a name of its own; there is a \"" + name + "\" already");
+}
+
+template <class Named>
+void rename_in(Mechanism& mechanism, std::vector<Named>& list, int index, const std::string& list_name,
+               const std::string& to) {
+  if (index < 0) throw SceneError(list_name, "there is no such name");
+  const std::string from = list[static_cast<std::size_t>(index)].name, path = list_name + "." + from;
+  if (to == from) return;
+  check_name(mechanism, to, path);
+  list[static_cast<std::size_t>(index)].name = to;
+  visit_formulas(mechanism, [&](Formulas& formulas) {
+    for (Formula& formula : formulas)
+      formula.text = renamed_in(formula.text, from, to);
+  });
+  for (Slider& slider : mechanism.sliders)
+    if (slider.parameter == path || slider.parameter.starts_with(path + "."))
+      slider.parameter.replace(0, path.size(), list_name + "." + to);
+}
+
+void forget(Mechanism& mechanism, const std::string& name, const std::string& path) {
+  visit_formulas(mechanism, [&](Formulas& formulas) {
+    std::erase_if(formulas, [&](const Formula& formula) { return names(formula.text, name); });
+  });
+  std::erase_if(mechanism.sliders, [&](const Slider& slider) {
+    return slider.parameter == path || slider.parameter.starts_with(path + ".");
+  });
+}
+
+bool near(double a, double b, double tolerance) {
+  return std::abs(a - b) <= tolerance * (1 + std::abs(b));
+}
+constexpr double rounding = 1e-12;
+// What is left of a residual by Newton's method is far below a hand's accuracy.
+constexpr double solved = 1e-9;
+
+double evaluated(const Mechanism& mechanism, const GivenNumber& given) {
+  return evaluate_expression(mechanism, given.text, given.unit, given.address);
+}
+
+// Dependent parameters and points first.
+void evaluate_names(Mechanism& mechanism) {
+  Mechanism named;
+  named.parameters = std::move(mechanism.parameters);
+  named.points = std::move(mechanism.points);
+  evaluate_formulas(named);
+  mechanism.parameters = std::move(named.parameters);
+  mechanism.points = std::move(named.points);
+}
+
+[[noreturn]] void refuse(const Mechanism& mechanism, const GivenNumber& given) {
+  std::string sources;
+  for (const std::string& source : sources_of(mechanism, given.text))
+    sources += (sources.empty() ? "; it rests on " : ", ") + source;
+  throw SceneError(given.address, "given by \"=" + given.text + "\", which this would not be" + sources);
+}
+
+// The numbers that expressions rest on, found by Newton's method so that the expressions have these values.
+void solve_for_sources(Mechanism& next, const std::vector<GivenNumber>& wanted, const GivenNumber& first) {
+  std::vector<std::string> sources;
+  for (const GivenNumber& given : wanted)
+    for (const std::string& source : sources_of(next, given.text))
+      if (std::ranges::find(sources, source) == sources.end()) sources.push_back(source);
+  if (sources.empty()) refuse(next, first);
+  const auto rows = static_cast<Eigen::Index>(wanted.size()), columns = static_cast<Eigen::Index>(sources.size());
+  Eigen::MatrixXd jacobian(rows, columns);
+  Eigen::VectorXd rest(rows);
+  Mechanism named;
+  named.parameters = next.parameters;
+  named.points = next.points;
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    bool done = true;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const GivenNumber& given = wanted[static_cast<std::size_t>(i)];
+      const double value = evaluated(named, given);
+      rest[i] = given.value - value;
+      done = done && near(value, given.value, rounding);
+      const std::vector<double> gradient = expression_gradient(named, given.text, sources);
+      jacobian.row(i) = Eigen::Map<const Eigen::RowVectorXd>(gradient.data(), columns);
+    }
+    if (!jacobian.allFinite()) refuse(next, first);
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian);
+    if (qr.rank() < columns) refuse(next, first); // several ways to do it
+    const Eigen::VectorXd step = qr.solve(rest);
+    if (done || step.norm() == 0) break;
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      const std::string& source = sources[static_cast<std::size_t>(k)];
+      set_parameter(named, source, get_parameter(named, source) + step[k]);
+    }
+  }
+  for (const GivenNumber& given : wanted)
+    if (!near(evaluated(named, given), given.value, solved)) refuse(next, first);
+  next.parameters = std::move(named.parameters);
+  next.points = std::move(named.points);
+}
+
+template <class Parts>
+void add_names(const std::string& list, const Parts& parts, std::unordered_set<std::string>& to) {
+  for (const auto& part : parts)
+    to.insert(list + "." + part.name);
+}
+
+// "bodies.arm" of "bodies.arm.shapes.0".
+std::string owner(const std::string& part) {
+  const std::size_t dot = part.find('.');
+  return dot == std::string::npos ? part : part.substr(0, part.find('.', dot + 1));
+}
+
+} // namespace
+
+void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text) {
+  all_or_nothing(mechanism, [&](Mechanism& next) { put(next, address, text); });
+}
+
+void name_number(Mechanism& mechanism, const std::string& address, const std::string& name) {
+  all_or_nothing(mechanism, [&](Mechanism& next) {
+    check_name(next, name, "parameters." + name);
+    NamedParameter parameter;
+    parameter.name = name;
+    parameter.value = get_parameter(next, address);
+    parameter.unit = parameter_unit(next, address);
+    if (const std::optional<std::string> formula = formula_at(next, address))
+      parameter.formulas = {{"value", *formula}};
+    next.parameters.push_back(std::move(parameter));
+    put(next, address, name);
+    // A slider of the number is one of the parameter.
+    for (Slider& slider : next.sliders)
+      if (slider.parameter == address) slider.parameter = "parameters." + name;
+  });
+}
+
+std::string free_name(const Mechanism& mechanism, const std::string& wish) {
+  std::string name = wish;
+  for (int i = 2; parameter_index(mechanism, name) >= 0 || point_index(mechanism, name) >= 0; ++i)
+    name = wish + std::to_string(i);
+  return name;
+}
+
+void rename_parameter(Mechanism& mechanism, const std::string& name, const std::string& to) {
+  all_or_nothing(mechanism, [&](Mechanism& next) {
+    rename_in(next, next.parameters, parameter_index(next, name), "parameters", to);
+  });
+}
+
+void rename_point(Mechanism& mechanism, const std::string& name, const std::string& to) {
+  all_or_nothing(mechanism,
+                 [&](Mechanism& next) { rename_in(next, next.points, point_index(next, name), "points", to); });
+}
+
+void remove_parameter(Mechanism& mechanism, const std::string& name) {
+  all_or_nothing(mechanism, [&](Mechanism& next) {
+    std::erase_if(next.parameters, [&](const NamedParameter& each) { return each.name == name; });
+    forget(next, name, "parameters." + name);
+  });
+}
+
+void remove_point(Mechanism& mechanism, const std::string& name) {
+  all_or_nothing(mechanism, [&](Mechanism& next) {
+    std::erase_if(next.points, [&](const NamedPoint& each) { return each.name == name; });
+    forget(next, name, "points." + name);
+  });
+}
+
+std::vector<std::string> users_of(const Mechanism& mechanism, std::string_view name) {
+  std::vector<std::string> users;
+  for (const GivenNumber& given : given_numbers(mechanism))
+    if (names(given.text, name)) users.push_back(given.address);
+  return users;
+}
+
+void settle_formulas(const Mechanism& before, Mechanism& next) {
+  if (used_of_version_2(next).empty()) return;
+  Mechanism settled = next;
+  drop_lost_formulas(settled);
+  evaluate_names(settled);
+  std::unordered_set<std::string> former;
+  add_names("bodies", before.bodies, former);
+  add_names("joints", before.joints, former);
+  add_names("forces", before.forces, former);
+  std::unordered_map<std::string, GivenNumber> given_before;
+  for (GivenNumber& given : given_numbers(before))
+    given_before.emplace(given.address, given);
+
+  std::unordered_set<std::string> moved_parts;
+  const GivenNumber* first = nullptr;
+  const std::vector<GivenNumber> all = given_numbers(settled);
+  for (const GivenNumber& given : all) {
+    if (given.part.starts_with("parameters.") || given.part.starts_with("points.")) continue;
+    const std::string part = owner(given.part);
+    const bool is_part = part.find('.') != std::string::npos && !part.starts_with("gravity");
+    if (is_part && !former.contains(part)) {
+      bool same = false;
+      try {
+        same = near(evaluated(settled, given), given.value, solved);
+      } catch (const SceneError&) { // of names that are not here
+      }
+      if (!same) put(settled, given.address, "");
+      continue;
+    }
+    const auto earlier = given_before.find(given.address);
+    if (earlier == given_before.end() || earlier->second.text != given.text ||
+        earlier->second.value == given.value || near(evaluated(settled, given), given.value, rounding))
+      continue;
+    moved_parts.insert(given.part);
+    if (!first) first = &given;
+  }
+  if (first) {
+    std::vector<GivenNumber> wanted;
+    for (const GivenNumber& given : all)
+      if (moved_parts.contains(given.part)) wanted.push_back(given);
+    solve_for_sources(settled, wanted, *first);
+  }
+  evaluate_formulas(settled);
+  next = std::move(settled);
+}
+
+} // namespace flyball

@@ -1,0 +1,37 @@
+// Edits of named parameters, points and expressions. All throw SceneError, and leave the mechanism as it was,
+// where they cannot be done.
+#pragma once
+
+#include "engine/mechanism/formulas.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flyball {
+
+// The number at an address is given by an expression from now on (without its "="), or, where that is empty,
+// stays by itself what it is.
+void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text);
+// A named parameter of the number's value and unit, by which the number is given from then on.
+void name_number(Mechanism& mechanism, const std::string& address, const std::string& name);
+// A name that no parameter or point has: the wish, or with a figure behind it.
+std::string free_name(const Mechanism& mechanism, const std::string& wish);
+
+// Expressions and sliders follow.
+void rename_parameter(Mechanism& mechanism, const std::string& name, const std::string& to);
+void rename_point(Mechanism& mechanism, const std::string& name, const std::string& to);
+// What it gave stays what it is, by itself where the expression cannot do without.
+void remove_parameter(Mechanism& mechanism, const std::string& name);
+void remove_point(Mechanism& mechanism, const std::string& name);
+// Addresses of the numbers whose expressions name it.
+std::vector<std::string> users_of(const Mechanism& mechanism, std::string_view name);
+
+// After an edit of `before` that has set numbers which expressions give: the numbers that these rest on are
+// changed so that it is so, where they are determined by it (dragging a joint that stands at a point moves
+// the point, and all else that stands there). Parts that are new keep their expressions where these mean
+// the same, as copies do that stand at the same place. Expressions are evaluated. Throws SceneError that
+// says what gives the number where it cannot be so.
+void settle_formulas(const Mechanism& before, Mechanism& next);
+
+} // namespace flyball

@@ -1,0 +1,388 @@
+#include "engine/mechanism/expression.hpp"
+
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+// How a function treats dimensions.
+enum class Kind {
+  number,     // of a number, a number
+  same,       // of one or two of the same dimension, that dimension
+  root,       // half the exponents
+  ratio,      // of two of the same dimension, a number
+};
+
+struct Function {
+  std::string_view name;
+  int arguments;
+  Kind kind;
+  Dual (*evaluate)(Dual a, Dual b);
+};
+
+Dual arc_tangent(Dual y, Dual x) {
+  const double square = x.value * x.value + y.value * y.value;
+  return {std::atan2(y.value, x.value), (x.value * y.rate - y.value * x.rate) / square};
+}
+Dual hypotenuse(Dual a, Dual b) {
+  const double length = std::hypot(a.value, b.value);
+  return {length, (a.value * a.rate + b.value * b.rate) / length};
+}
+
+constexpr std::array functions{
+    Function{"sin", 1, Kind::number,
+             [](Dual a, Dual) { return chained(a, std::sin(a.value), std::cos(a.value)); }},
+    Function{"cos", 1, Kind::number,
+             [](Dual a, Dual) { return chained(a, std::cos(a.value), -std::sin(a.value)); }},
+    Function{"tan", 1, Kind::number,
+             [](Dual a, Dual) {
+               const double t = std::tan(a.value);
+               return chained(a, t, 1 + t * t);
+             }},
+    Function{"asin", 1, Kind::number,
+             [](Dual a, Dual) { return chained(a, std::asin(a.value), 1 / std::sqrt(1 - a.value * a.value)); }},
+    Function{"acos", 1, Kind::number,
+             [](Dual a, Dual) { return chained(a, std::acos(a.value), -1 / std::sqrt(1 - a.value * a.value)); }},
+    Function{"atan", 1, Kind::number,
+             [](Dual a, Dual) { return chained(a, std::atan(a.value), 1 / (1 + a.value * a.value)); }},
+    Function{"atan2", 2, Kind::ratio, arc_tangent},
+    Function{"sinh", 1, Kind::number,
+             [](Dual a, Dual) { return chained(a, std::sinh(a.value), std::cosh(a.value)); }},
+    Function{"cosh", 1, Kind::number,
+             [](Dual a, Dual) { return chained(a, std::cosh(a.value), std::sinh(a.value)); }},
+    Function{"tanh", 1, Kind::number,
+             [](Dual a, Dual) {
+               const double t = std::tanh(a.value);
+               return chained(a, t, 1 - t * t);
+             }},
+    Function{"exp", 1, Kind::number,
+             [](Dual a, Dual) { return chained(a, std::exp(a.value), std::exp(a.value)); }},
+    Function{"log", 1, Kind::number,
+             [](Dual a, Dual) { return chained(a, std::log(a.value), 1 / a.value); }},
+    Function{"log10", 1, Kind::number,
+             [](Dual a, Dual) {
+               return chained(a, std::log10(a.value), 1 / (a.value * std::numbers::ln10));
+             }},
+    Function{"sqrt", 1, Kind::root,
+             [](Dual a, Dual) {
+               const double root = std::sqrt(a.value);
+               return chained(a, root, 1 / (2 * root));
+             }},
+    Function{"abs", 1, Kind::same,
+             [](Dual a, Dual) { return chained(a, std::abs(a.value), a.value < 0 ? -1. : 1.); }},
+    Function{"min", 2, Kind::same, [](Dual a, Dual b) { return b.value < a.value ? b : a; }},
+    Function{"max", 2, Kind::same, [](Dual a, Dual b) { return b.value > a.value ? b : a; }},
+    Function{"hypot", 2, Kind::same, hypotenuse},
+};
+
+bool begins_name(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+}
+bool continues_name(char c) {
+  return begins_name(c) || std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+bool is_figure(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+[[noreturn]] void fail_sum(std::string_view doing, const Measure& a, const Measure& b) {
+  throw ExpressionError(std::string(doing) + " " + dimension_text(a.dimension) + " and " +
+                        dimension_text(b.dimension));
+}
+
+// The measure of what takes both as the same.
+Measure common(std::string_view doing, const Measure& a, const Measure& b) {
+  if (a.plain) return b;
+  if (!b.plain && !(a.dimension == b.dimension)) fail_sum(doing, a, b);
+  return a;
+}
+
+} // namespace
+
+// Recursive descent.
+class ExpressionParser {
+ public:
+  ExpressionParser(std::string_view text, Expression& to) : text_(text), to_(to) {}
+
+  void run() {
+    sum();
+    skip_blanks();
+    if (at_ < text_.size()) fail("expected an operator, found \"" + std::string(text_.substr(at_, 20)) + "\"");
+  }
+
+ private:
+  using Operation = Expression::Operation;
+  static constexpr int deepest = 100;
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw ExpressionError("column " + std::to_string(at_ + 1) + ": " + what);
+  }
+  void skip_blanks() {
+    while (at_ < text_.size() && text_[at_] == ' ')
+      ++at_;
+  }
+  // Whether the next sign is one of these; it is taken.
+  char take(std::string_view signs) {
+    skip_blanks();
+    if (at_ == text_.size() || signs.find(text_[at_]) == std::string_view::npos) return 0;
+    return text_[at_++];
+  }
+  void put(Expression::Step step, int taken) {
+    values_ += 1 - taken;
+    if (values_ > static_cast<int>(Expression::most_values)) fail("expected a simpler expression");
+    to_.steps_.push_back(step);
+  }
+  void put(Operation operation, int taken) { put({.operation = operation}, taken); }
+
+  void sum() {
+    if (++depth_ > deepest) fail("expected fewer parentheses");
+    product();
+    while (const char sign = take("+-")) {
+      product();
+      put(sign == '+' ? Operation::add : Operation::subtract, 2);
+    }
+    --depth_;
+  }
+  void product() {
+    factor();
+    while (const char sign = take("*/")) {
+      factor();
+      put(sign == '*' ? Operation::multiply : Operation::divide, 2);
+    }
+  }
+  void factor() {
+    bool negative = false;
+    while (const char sign = take("+-"))
+      negative = negative != (sign == '-');
+    primary();
+    if (take("^")) {
+      if (++depth_ > deepest) fail("expected fewer powers");
+      factor();
+      --depth_;
+      put(Operation::power, 2);
+    }
+    if (negative) put(Operation::negate, 1);
+  }
+  void primary() {
+    skip_blanks();
+    if (at_ == text_.size()) fail("expected a number, a name or (, found the end");
+    const char c = text_[at_];
+    if (is_figure(c) || c == '.') return number();
+    if (begins_name(c)) return name();
+    if (!take("(")) fail("expected a number, a name or (, found \"" + std::string(1, c) + "\"");
+    sum();
+    if (!take(")")) fail("expected )");
+  }
+  void number() {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    if (error != std::errc() || !std::isfinite(value)) fail("expected a number");
+    at_ = static_cast<std::size_t>(end - text_.data());
+    Expression::Step step{.operation = Operation::number, .value = value, .measure = {{}, true}};
+    const std::size_t before = at_;
+    skip_blanks();
+    if (const auto read = read_unit(text_.substr(at_))) {
+      step.value *= read->unit.factor;
+      step.measure = {read->unit.dimension, false};
+      at_ += read->length;
+    } else if (at_ < text_.size() && begins_name(text_[at_])) {
+      fail("expected an operator or a unit, found \"" + std::string(word()) + "\"");
+    } else {
+      at_ = before;
+    }
+    put(step, 0);
+  }
+  std::string_view word() const {
+    std::size_t end = at_;
+    while (end < text_.size() && continues_name(text_[end]))
+      ++end;
+    return text_.substr(at_, end - at_);
+  }
+  void name() {
+    const std::size_t begin = at_;
+    const std::string_view found = word();
+    at_ += found.size();
+    if (take("(")) return call(found, begin);
+    if (found == "pi")
+      return put({.operation = Operation::number, .value = std::numbers::pi, .measure = {{}, true}}, 0);
+    std::string full(found);
+    if (at_ + 1 < text_.size() && text_[at_] == '.' && begins_name(text_[at_ + 1])) {
+      ++at_;
+      const std::string_view coordinate = word();
+      at_ += coordinate.size();
+      full += "." + std::string(coordinate);
+    }
+    const auto place = std::ranges::find(to_.names_, full);
+    const auto index = static_cast<std::size_t>(place - to_.names_.begin());
+    if (place == to_.names_.end()) to_.names_.push_back(full);
+    if (index > 1000) fail("expected fewer names");
+    to_.mentions_.push_back({index, begin});
+    put({.operation = Operation::name, .index = static_cast<std::uint16_t>(index)}, 0);
+  }
+  void call(std::string_view name, std::size_t begin) {
+    const auto function = std::ranges::find(functions, name, &Function::name);
+    if (function == functions.end()) {
+      std::vector<std::string_view> names;
+      for (const Function& each : functions)
+        names.push_back(each.name);
+      at_ = begin;
+      fail("there is no function \"" + std::string(name) + "\"" + did_you_mean(name, names) + "; expected " +
+           word_list(names));
+    }
+    sum();
+    for (int i = 1; i < function->arguments; ++i) {
+      if (!take(",")) fail("expected , and another argument of " + std::string(name));
+      sum();
+    }
+    if (!take(")")) fail("expected ) after the argument" + std::string(function->arguments > 1 ? "s" : ""));
+    put({.operation = Operation::call,
+         .index = static_cast<std::uint16_t>(function - functions.begin())},
+        function->arguments);
+  }
+
+  std::string_view text_;
+  Expression& to_;
+  std::size_t at_ = 0;
+  int depth_ = 0, values_ = 0;
+};
+
+Expression::Expression(std::string_view text) {
+  if (find_invalid_utf8(text) != std::string::npos) throw ExpressionError("expected UTF-8 text");
+  ExpressionParser(text, *this).run();
+}
+
+Dual Expression::evaluate(std::span<const Dual> values) const {
+  std::array<Dual, most_values> stack;
+  std::size_t top = 0; // the first free place
+  for (const Step& step : steps_) {
+    switch (step.operation) {
+    case Operation::number: stack[top++] = {step.value, 0}; continue;
+    case Operation::name: stack[top++] = values[step.index]; continue;
+    case Operation::negate: stack[top - 1] = -stack[top - 1]; continue;
+    case Operation::call: {
+      const Function& function = functions[step.index];
+      if (function.arguments == 2) --top;
+      stack[top - 1] = function.evaluate(stack[top - 1], stack[top]);
+      continue;
+    }
+    default: break;
+    }
+    const Dual b = stack[--top];
+    Dual& a = stack[top - 1];
+    switch (step.operation) {
+    case Operation::add: a = a + b; break;
+    case Operation::subtract: a = a - b; break;
+    case Operation::multiply: a = a * b; break;
+    case Operation::divide: a = a / b; break;
+    default: a = power(a, b); break;
+    }
+  }
+  return stack[0];
+}
+
+Measure Expression::measure(std::span<const Measure> names) const {
+  struct Entry {
+    Measure measure;
+    std::optional<double> number; // where it is one by itself: an exponent
+  };
+  std::vector<Entry> stack;
+  const auto pop = [&] {
+    const Entry entry = stack.back();
+    stack.pop_back();
+    return entry;
+  };
+  const auto expect_number = [](const Measure& m, const std::string& of) {
+    if (!m.plain && !(m.dimension == Dimension{}))
+      throw ExpressionError("expected a number or an angle as " + of + ", found " +
+                            dimension_text(m.dimension));
+  };
+  for (const Step& step : steps_) {
+    switch (step.operation) {
+    case Operation::number:
+      stack.push_back({step.measure, step.measure.plain ? std::optional(step.value) : std::nullopt});
+      continue;
+    case Operation::name: stack.push_back({names[step.index], {}}); continue;
+    case Operation::negate:
+      if (stack.back().number) stack.back().number = -*stack.back().number;
+      continue;
+    default: break;
+    }
+    if (step.operation == Operation::call) {
+      const Function& function = functions[step.index];
+      const Measure last = pop().measure;
+      const std::string name(function.name);
+      switch (function.kind) {
+      case Kind::number:
+        expect_number(last, "the argument of " + name);
+        stack.push_back({{{}, last.plain}, {}});
+        break;
+      case Kind::root: stack.push_back({{0.5 * last.dimension, last.plain}, {}}); break;
+      case Kind::same:
+      case Kind::ratio: {
+        const Measure both =
+            function.arguments == 2 ? common(name + " of", pop().measure, last) : last;
+        stack.push_back({function.kind == Kind::ratio ? Measure{{}, both.plain} : both, {}});
+        break;
+      }
+      }
+      continue;
+    }
+    const Entry b = pop(), a = pop();
+    Measure result;
+    std::optional<double> number;
+    switch (step.operation) {
+    case Operation::add: result = common("cannot add", a.measure, b.measure); break;
+    case Operation::subtract: result = common("cannot subtract", a.measure, b.measure); break;
+    case Operation::multiply:
+    case Operation::divide: {
+      const double sign = step.operation == Operation::multiply ? 1 : -1;
+      result = {a.measure.dimension + sign * b.measure.dimension, a.measure.plain && b.measure.plain};
+      if (a.number && b.number) number = sign > 0 ? *a.number * *b.number : *a.number / *b.number;
+      break;
+    }
+    default:
+      expect_number(b.measure, "an exponent");
+      if (a.measure.plain || a.measure.dimension == Dimension{})
+        result = {{}, a.measure.plain && b.measure.plain};
+      else if (b.number)
+        result = {*b.number * a.measure.dimension, false};
+      else
+        throw ExpressionError("expected a number as the exponent of " + dimension_text(a.measure.dimension));
+      break;
+    }
+    stack.push_back({result, number});
+  }
+  return stack.back().measure;
+}
+
+bool is_expression_name(std::string_view name) {
+  return !name.empty() && begins_name(name.front()) && std::ranges::all_of(name, continues_name) &&
+         find_invalid_utf8(name) == std::string::npos && name != "pi" &&
+         std::ranges::find(functions, name, &Function::name) == functions.end();
+}
+
+std::string renamed_in(std::string_view text, std::string_view from, std::string_view to) {
+  try {
+    const Expression expression(text);
+    std::string renamed;
+    std::size_t copied = 0;
+    for (const Expression::Mention& mention : expression.mentions()) {
+      const std::string_view name = expression.names()[mention.name];
+      if (name.substr(0, name.find('.')) != from) continue;
+      renamed += std::string(text.substr(copied, mention.begin - copied)) + std::string(to);
+      copied = mention.begin + from.size();
+    }
+    return renamed + std::string(text.substr(copied));
+  } catch (const ExpressionError&) {
+    return std::string(text);
+  }
+}
+
+} // namespace flyball

@@ -1,0 +1,76 @@
+// Expressions, as they stand where a number could: "L*cos(a) + 20 mm".
+//
+// Numbers with or without units, names, + - * / ^ (to the right first), parentheses, pi, and functions of the
+// usual names (see the README of this folder). Values are in SI units and radians. Dimensions are checked;
+// a number without unit counts as whatever it is added to, compared with or assigned to.
+#pragma once
+
+#include "engine/mechanism/dual.hpp"
+#include "engine/mechanism/unit.hpp"
+
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flyball {
+
+// What is wrong with an expression, in one sentence.
+class ExpressionError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Of a value: its dimension, or that it is a plain number, which fits any.
+struct Measure {
+  Dimension dimension;
+  bool plain = false;
+};
+
+class Expression {
+ public:
+  // Throws ExpressionError that names the column.
+  explicit Expression(std::string_view text);
+
+  // A place in the text where a name stands.
+  struct Mention {
+    std::size_t name = 0;  // among names()
+    std::size_t begin = 0; // of the name's first byte; a point's coordinate "A.x" is mentioned as "A"
+  };
+
+  // Each once, as they first appear: "L", "A.x".
+  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<Mention>& mentions() const { return mentions_; }
+
+  // Of values by name, as names() has them. No allocation. Not finite where it is undefined.
+  Dual evaluate(std::span<const Dual> values) const;
+  // Throws ExpressionError where dimensions do not fit.
+  Measure measure(std::span<const Measure> names) const;
+
+ private:
+  friend class ExpressionParser;
+  enum class Operation : std::uint8_t { number, name, negate, add, subtract, multiply, divide, power, call };
+  // One of a stack machine's: operands are taken from the stack, the result is put there.
+  struct Step {
+    Operation operation = Operation::number;
+    std::uint16_t index = 0; // of the name or function
+    double value = 0;        // of the number, in SI units
+    Measure measure{};       // of the number
+  };
+  static constexpr std::size_t most_values = 64; // on the stack at a time
+
+  std::vector<Step> steps_;
+  std::vector<std::string> names_;
+  std::vector<Mention> mentions_;
+};
+
+// Whether a parameter or point may be called so: a letter or _, then letters, figures and _; no function's
+// name and not pi.
+bool is_expression_name(std::string_view name);
+
+// The text with another name for a parameter or point; the text as it is where it is no expression.
+std::string renamed_in(std::string_view text, std::string_view from, std::string_view to);
+
+} // namespace flyball

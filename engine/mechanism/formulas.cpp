@@ -1,0 +1,431 @@
+#include "engine/mechanism/formulas.hpp"
+
+#include "engine/mechanism/mass_properties.hpp"
+#include "engine/mechanism/numbers.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <unordered_map>
+
+namespace flyball {
+namespace {
+
+constexpr std::array<std::string_view, 3> coordinate_letters{"x", "y", "z"};
+
+template <class Part>
+int index_by_name(const std::vector<Part>& parts, std::string_view name) {
+  const auto found = std::ranges::find(parts, name, &Part::name);
+  return found == parts.end() ? -1 : static_cast<int>(found - parts.begin());
+}
+
+// The names that expressions know, each with a number: parameters, then the coordinates of points.
+class Names {
+ public:
+  explicit Names(const Mechanism& mechanism) : mechanism_(mechanism) {
+    for (const NamedParameter& parameter : mechanism.parameters) {
+      numbers_.emplace(parameter.name, numbers_.size());
+      const std::optional<Unit> unit = parse_unit(parameter.unit);
+      if (!unit || unit->factor != 1)
+        throw SceneError("parameters." + parameter.name + ".unit",
+                         "expected an SI unit, such as m, N/m or rad, found \"" + parameter.unit + "\"");
+      measures_.push_back({unit->dimension, false});
+    }
+    for (const NamedPoint& point : mechanism.points)
+      for (const int i : {0, 1, 2}) {
+        numbers_.emplace(point_coordinate(point.name, i), numbers_.size());
+        measures_.push_back({{1, 0, 0}, false});
+      }
+    if (numbers_.size() != measures_.size())
+      throw SceneError("parameters", "expected names that no other parameter or point has");
+  }
+
+  std::size_t size() const { return measures_.size(); }
+  std::size_t point(std::size_t point, int i) const {
+    return mechanism_.parameters.size() + 3 * point + static_cast<std::size_t>(i);
+  }
+  // Their values by themselves.
+  std::vector<Dual> values() const {
+    std::vector<Dual> all;
+    for (const NamedParameter& parameter : mechanism_.parameters)
+      all.push_back({parameter.value, 0});
+    for (const NamedPoint& point : mechanism_.points)
+      for (const int i : {0, 1, 2})
+        all.push_back({point.at[i], 0});
+    return all;
+  }
+  std::string address(std::size_t number) const {
+    const std::size_t parameters = mechanism_.parameters.size();
+    if (number < parameters) return "parameters." + mechanism_.parameters[number].name;
+    const std::size_t coordinate = number - parameters;
+    return "points." + mechanism_.points[coordinate / 3].name + "." + std::to_string(coordinate % 3);
+  }
+  Measure measure(std::size_t number) const { return measures_[number]; }
+  std::size_t find(const std::string& name) const {
+    const auto found = numbers_.find(name);
+    if (found != numbers_.end()) return found->second;
+    if (point_index(mechanism_, name) >= 0)
+      throw ExpressionError("expected a coordinate of the point: " + name + ".x, " + name + ".y or " + name + ".z");
+    std::vector<std::string_view> known;
+    for (const auto& [each, number] : numbers_)
+      known.push_back(each);
+    std::ranges::sort(known);
+    throw ExpressionError("there is no parameter \"" + name + "\"" + did_you_mean(name, known) +
+                          (known.empty() ? "" : "; expected one of " + word_list(known)));
+  }
+
+ private:
+  const Mechanism& mechanism_;
+  std::unordered_map<std::string, std::size_t> numbers_;
+  std::vector<Measure> measures_;
+};
+
+// An expression with its names found.
+struct Compiled {
+  Expression expression;
+  std::vector<std::size_t> names; // by name of the expression
+
+  Compiled(std::string_view text, const Names& known) : expression(text) {
+    for (const std::string& name : expression.names())
+      names.push_back(known.find(name));
+  }
+  void expect_unit(std::string_view unit, const Names& known) const {
+    std::vector<Measure> measures;
+    for (const std::size_t name : names)
+      measures.push_back(known.measure(name));
+    const Measure found = expression.measure(measures);
+    const Dimension wanted = parse_unit(unit).value_or(Unit{}).dimension;
+    if (!found.plain && !(found.dimension == wanted))
+      throw ExpressionError("expected " + (unit.empty() ? "a number" : std::string(unit)) + ", found " +
+                            dimension_text(found.dimension));
+  }
+  Dual evaluate(const std::vector<Dual>& values) const {
+    std::vector<Dual> its;
+    its.reserve(names.size());
+    for (const std::size_t name : names)
+      its.push_back(values[name]);
+    const Dual value = expression.evaluate(its);
+    if (!std::isfinite(value.value)) throw ExpressionError("the value is not finite");
+    return value;
+  }
+};
+
+// Says at which place an expression is wrong.
+template <class Do>
+auto at_place(const std::string& where, std::string_view text, const Do& act) {
+  try {
+    return act();
+  } catch (const ExpressionError& error) {
+    throw SceneError(where, "\"=" + std::string(text) + "\": " + error.what());
+  }
+}
+
+std::string joined(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
+
+// Every part with expressions, beside parameters and points: its path, its expressions and its numbers.
+using PartVisitor =
+    std::function<void(const std::string&, Formulas&, const std::function<std::vector<Number>()>&)>;
+void visit_parts(Mechanism& m, const PartVisitor& visit) {
+  if (!m.formulas.empty())
+    visit("", m.formulas, [&] {
+      std::vector<Number> all = numbers_of_gravity(m.gravity);
+      std::ranges::move(numbers_of(m.simulation), std::back_inserter(all));
+      return all;
+    });
+  for (Body& body : m.bodies) {
+    const std::string path = "bodies." + body.name;
+    if (!body.formulas.empty()) visit(path, body.formulas, [&] { return all_numbers_of(body); });
+    for (std::size_t i = 0; i < body.shapes.size(); ++i)
+      if (Shape& shape = body.shapes[i]; !shape.formulas.empty())
+        visit(path + ".shapes." + std::to_string(i), shape.formulas, [&] { return all_numbers_of(shape); });
+  }
+  for (Joint& joint : m.joints)
+    if (!joint.formulas.empty())
+      visit("joints." + joint.name, joint.formulas, [&] { return numbers_of(m, joint); });
+  for (Force& force : m.forces)
+    if (!force.formulas.empty())
+      visit("forces." + force.name, force.formulas, [&] { return numbers_of(m, force); });
+}
+
+// Whether there is anything to evaluate.
+bool has_formulas(const Mechanism& m) {
+  const auto given = [](const auto& part) { return !part.formulas.empty(); };
+  return given(m) || !m.parameters.empty() || !m.points.empty() || std::ranges::any_of(m.joints, given) ||
+         std::ranges::any_of(m.forces, given) || std::ranges::any_of(m.bodies, [&](const Body& body) {
+           return body.density || given(body) || std::ranges::any_of(body.shapes, given);
+         });
+}
+
+// A dependent parameter or point's coordinate.
+struct Definition {
+  std::size_t name;
+  std::string where, text;
+  std::string unit;
+  double* place;
+  Compiled compiled;
+};
+
+std::vector<Definition> definitions_of(Mechanism& m, const Names& names) {
+  std::vector<Definition> all;
+  const auto define = [&](std::size_t name, const std::string& where, const std::string& text, std::string unit,
+                          double& place) {
+    at_place(where, text, [&] {
+      all.push_back({name, where, text, std::move(unit), &place, Compiled(text, names)});
+      all.back().compiled.expect_unit(all.back().unit, names);
+    });
+  };
+  for (std::size_t i = 0; i < m.parameters.size(); ++i)
+    for (const Formula& formula : m.parameters[i].formulas) {
+      const std::string where = "parameters." + m.parameters[i].name;
+      if (formula.key != "value") throw SceneError(where + "." + formula.key, "expected no expression here");
+      define(i, where, formula.text, m.parameters[i].unit, m.parameters[i].value);
+    }
+  for (std::size_t p = 0; p < m.points.size(); ++p)
+    for (const Formula& formula : m.points[p].formulas) {
+      const int i = std::clamp(std::atoi(formula.key.c_str()), 0, 2);
+      define(names.point(p, i), "points." + m.points[p].name + "[" + std::to_string(i) + "]", formula.text, "m",
+             m.points[p].at[i]);
+    }
+  return all;
+}
+
+// In an order in which each rests on those before it (Kahn 1962).
+std::vector<const Definition*> in_order(const std::vector<Definition>& all, std::size_t names) {
+  std::vector<const Definition*> of_name(names, nullptr);
+  for (const Definition& each : all)
+    of_name[each.name] = &each;
+  const auto rests_on = [&](const Definition& each) {
+    std::vector<std::size_t> on;
+    for (const std::size_t name : each.compiled.names)
+      if (of_name[name] != nullptr) on.push_back(name);
+    return on;
+  };
+  std::vector<std::size_t> open(names, 0);
+  std::vector<std::vector<const Definition*>> users(names);
+  std::vector<const Definition*> order;
+  for (const Definition& each : all) {
+    for (const std::size_t name : rests_on(each))
+      users[name].push_back(&each);
+    open[each.name] = rests_on(each).size();
+    if (open[each.name] == 0) order.push_back(&each);
+  }
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (const Definition* user : users[order[i]->name])
+      if (--open[user->name] == 0) order.push_back(user);
+  if (order.size() == all.size()) return order;
+  // Following what is open leads into a circle.
+  const Definition* at = &*std::ranges::find_if(all, [&](const Definition& d) { return open[d.name] > 0; });
+  std::vector<const Definition*> path;
+  while (std::ranges::find(path, at) == path.end()) {
+    path.push_back(at);
+    for (const std::size_t name : rests_on(*at))
+      if (open[name] > 0) {
+        at = of_name[name];
+        break;
+      }
+  }
+  std::string circle;
+  for (auto it = std::ranges::find(path, at); it != path.end(); ++it)
+    circle += (*it)->where + ", ";
+  throw SceneError(at->where, "\"=" + at->text + "\": expected no circle of expressions; this one goes through " +
+                                  circle + "and back");
+}
+
+} // namespace
+
+void evaluate_formulas(Mechanism& mechanism) {
+  if (!has_formulas(mechanism)) return;
+  const Names names(mechanism);
+  const std::vector<Definition> definitions = definitions_of(mechanism, names);
+  std::vector<Dual> values = names.values();
+  for (const Definition* each : in_order(definitions, names.size())) {
+    values[each->name] = at_place(each->where, each->text, [&] { return each->compiled.evaluate(values); });
+    *each->place = values[each->name].value;
+  }
+  visit_parts(mechanism, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
+    const std::vector<Number> numbers = numbers_of_part();
+    for (const Formula& formula : formulas) {
+      const std::string where = joined(path, formula.key);
+      const auto number = std::ranges::find(numbers, formula.key, &Number::key);
+      if (number == numbers.end())
+        throw SceneError(where, "\"=" + formula.text + "\": there is no such number");
+      at_place(where, formula.text, [&] {
+        const Compiled compiled(formula.text, names);
+        compiled.expect_unit(number->unit, names);
+        number->set(compiled.evaluate(values).value);
+      });
+    }
+  });
+  for (Body& body : mechanism.bodies)
+    if (body.density && !take_mass_properties(body, *body.density))
+      throw SceneError("bodies." + body.name + ".density",
+                       "expected shapes with a volume and a density above zero, from which the mass follows");
+}
+
+FormulaPlace formula_place(Mechanism& mechanism, std::string_view address) {
+  const auto next = [&address] {
+    const std::string_view segment = address.substr(0, address.find('.'));
+    address.remove_prefix(std::min(address.size(), segment.size() + 1));
+    return segment;
+  };
+  const std::string_view whole = address, list = next();
+  if (list == "gravity" || list == "simulation") return {&mechanism.formulas, std::string(whole)};
+  const std::string_view name = next();
+  const auto of = [&](auto& parts) -> FormulaPlace {
+    const int i = index_by_name(parts, name);
+    if (i < 0) return {};
+    return {&parts[static_cast<std::size_t>(i)].formulas, std::string(address)};
+  };
+  if (list == "parameters") {
+    address = "value";
+    return of(mechanism.parameters);
+  }
+  if (list == "points") return of(mechanism.points);
+  if (list == "joints") return of(mechanism.joints);
+  if (list == "forces") return of(mechanism.forces);
+  if (list != "bodies") return {};
+  if (!address.starts_with("shapes.")) return of(mechanism.bodies);
+  const int i = index_by_name(mechanism.bodies, name);
+  if (i < 0) return {};
+  next();
+  std::vector<Shape>& shapes = mechanism.bodies[static_cast<std::size_t>(i)].shapes;
+  const auto shape = static_cast<std::size_t>(std::max(std::atoi(std::string(next()).c_str()), 0));
+  if (shape >= shapes.size()) return {};
+  return {&shapes[shape].formulas, std::string(address)};
+}
+
+std::optional<std::string> formula_at(const Mechanism& mechanism, std::string_view address) {
+  // Only looked at.
+  const auto [formulas, key] = formula_place(const_cast<Mechanism&>(mechanism), address);
+  if (!formulas) return {};
+  const auto found = std::ranges::find(*formulas, key, &Formula::key);
+  return found == formulas->end() ? std::nullopt : std::optional(found->text);
+}
+
+std::vector<GivenNumber> given_numbers(const Mechanism& mechanism) {
+  std::vector<GivenNumber> all;
+  if (!has_formulas(mechanism)) return all;
+  for (const NamedParameter& parameter : mechanism.parameters)
+    for (const Formula& formula : parameter.formulas) {
+      const std::string address = "parameters." + parameter.name;
+      all.push_back({address, address, formula.text, parameter.value, parameter.unit});
+    }
+  for (const NamedPoint& point : mechanism.points)
+    for (const Formula& formula : point.formulas) {
+      const std::string part = "points." + point.name;
+      all.push_back({part, joined(part, formula.key), formula.text,
+                     point.at[std::clamp(std::atoi(formula.key.c_str()), 0, 2)], "m"});
+    }
+  Mechanism copy = mechanism;
+  visit_parts(copy, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
+    const std::vector<Number> numbers = numbers_of_part();
+    for (const Formula& formula : formulas)
+      if (const auto number = std::ranges::find(numbers, formula.key, &Number::key); number != numbers.end())
+        all.push_back({path, joined(path, formula.key), formula.text, number->value, number->unit});
+  });
+  return all;
+}
+
+void drop_lost_formulas(Mechanism& mechanism) {
+  visit_parts(mechanism, [](const std::string&, Formulas& formulas, const auto& numbers_of_part) {
+    const std::vector<Number> numbers = numbers_of_part();
+    std::erase_if(formulas, [&](const Formula& formula) {
+      return std::ranges::find(numbers, formula.key, &Number::key) == numbers.end();
+    });
+  });
+}
+
+std::vector<std::string> sources_of(const Mechanism& mechanism, std::string_view expression) {
+  std::vector<std::string> sources;
+  try {
+    Mechanism copy = mechanism;
+    const Names names(copy);
+    const std::vector<Definition> definitions = definitions_of(copy, names);
+    in_order(definitions, names.size()); // no circles
+    const auto add = [&](const auto& self, const Compiled& compiled) -> void {
+      for (const std::size_t name : compiled.names) {
+        const auto definition = std::ranges::find(definitions, name, &Definition::name);
+        if (definition != definitions.end())
+          self(self, definition->compiled);
+        else if (std::ranges::find(sources, names.address(name)) == sources.end())
+          sources.push_back(names.address(name));
+      }
+    };
+    add(add, Compiled(expression, names));
+  } catch (const SceneError&) {
+    return {};
+  } catch (const ExpressionError&) {
+    return {};
+  }
+  return sources;
+}
+
+std::vector<double> expression_gradient(const Mechanism& mechanism, std::string_view expression,
+                                        const std::vector<std::string>& sources) {
+  Mechanism copy = mechanism;
+  const Names names(copy);
+  const std::vector<Definition> definitions = definitions_of(copy, names);
+  const std::vector<const Definition*> order = in_order(definitions, names.size());
+  return at_place("", expression, [&] {
+    const Compiled compiled(expression, names);
+    std::vector<double> gradient;
+    for (const std::string& source : sources) {
+      std::vector<Dual> values = names.values();
+      for (std::size_t name = 0; name < names.size(); ++name)
+        values[name].rate = names.address(name) == source ? 1 : 0;
+      for (const Definition* each : order)
+        values[each->name] = each->compiled.evaluate(values);
+      gradient.push_back(compiled.evaluate(values).rate);
+    }
+    return gradient;
+  });
+}
+
+double evaluate_expression(const Mechanism& mechanism, std::string_view expression, std::string_view unit,
+                           const std::string& where) {
+  const Names names(mechanism);
+  return at_place(where, expression, [&] {
+    const Compiled compiled(expression, names);
+    compiled.expect_unit(unit, names);
+    return compiled.evaluate(names.values()).value;
+  });
+}
+
+std::string point_coordinate(std::string_view point, int i) {
+  return std::string(point) + "." + std::string(coordinate_letters[static_cast<std::size_t>(i)]);
+}
+
+int parameter_index(const Mechanism& mechanism, std::string_view name) {
+  return index_by_name(mechanism.parameters, name);
+}
+
+int point_index(const Mechanism& mechanism, std::string_view name) {
+  return index_by_name(mechanism.points, name);
+}
+
+std::string used_of_version_2(const Mechanism& mechanism) {
+  const auto first = [](const auto& part, const std::string& path) {
+    return part.formulas.empty() ? "" : joined(path, part.formulas.front().key);
+  };
+  if (!mechanism.parameters.empty()) return "parameters";
+  if (!mechanism.points.empty()) return "points";
+  if (!mechanism.formulas.empty()) return first(mechanism, "");
+  for (const Body& body : mechanism.bodies) {
+    const std::string path = "bodies." + body.name;
+    if (body.density) return path + ".density";
+    if (!body.formulas.empty()) return first(body, path);
+    for (const Shape& shape : body.shapes)
+      if (!shape.formulas.empty()) return first(shape, path + ".shapes");
+  }
+  for (const Joint& joint : mechanism.joints)
+    if (!joint.formulas.empty()) return first(joint, "joints." + joint.name);
+  for (const Force& force : mechanism.forces)
+    if (!force.formulas.empty()) return first(force, "forces." + force.name);
+  return {};
+}
+
+} // namespace flyball
