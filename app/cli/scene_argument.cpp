@@ -3,6 +3,7 @@
 #include "app/cli/report_error.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 
@@ -75,17 +76,37 @@ void add_points(CLI::App& command, std::vector<std::string>& points) {
 
 void SceneArgument::add_to(CLI::App& command) {
   command.add_option("scene", file, "Scene file (-: standard input)")->required();
-  command.add_option("--set", settings, "Change a number: address=value, such as joints.spin.drive.speed=12")
+  command.add_option("--set", settings, "Change a number: address=value, such as joints.spin.drive.speed=12, parameters.L=0.2 or "
+                 "parameters.L=\"20 cm\"")
       ->take_all()
       ->allow_extra_args(false);
 }
+
+namespace {
+
+// A number in SI units, or an expression with units and the scene's parameters: "18 cm", "2*L".
+double parse_value(const Mechanism& mechanism, const std::string& address, std::string_view text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc() && rest == end && std::isfinite(value)) return value;
+  const std::string unit = parameter_unit(mechanism, address);
+  if (text.starts_with('=')) text.remove_prefix(1);
+  return evaluate_expression(mechanism, text, unit, "--set " + address);
+}
+
+} // namespace
 
 Mechanism SceneArgument::load() const {
   Mechanism mechanism = load_scene(file);
   try {
     for (const std::string& text : settings) {
-      const auto [address, value] = parse_assignment("--set", text);
-      set_parameter(mechanism, address, value);
+      const std::size_t equals = text.find('=');
+      if (equals == std::string::npos || equals == 0)
+        throw SceneError("--set", "expected address=value, not \"" + text + "\"");
+      const std::string address = text.substr(0, equals);
+      set_parameter(mechanism, address,
+                    parse_value(mechanism, address, std::string_view(text).substr(equals + 1)));
     }
     if (!settings.empty()) validate(mechanism);
   } catch (const SceneError& error) {

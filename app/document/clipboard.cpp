@@ -1,5 +1,6 @@
 #include "app/document/clipboard.hpp"
 
+#include "app/document/formula_edits.hpp"
 #include "app/document/names.hpp"
 #include "app/document/references.hpp"
 #include "engine/mechanism/scene.hpp"
@@ -50,6 +51,8 @@ class Paste {
         joints_(to, PartKind::joint, "joint"), forces_(to, PartKind::force, "force") {}
 
   Selection run() {
+    add_missing(to_.parameters, from_.parameters);
+    add_missing(to_.points, from_.points);
     for (Body& body : from_.bodies) {
       body.name = bodies_.add(body.name);
       append(PartKind::body, to_.bodies, body);
@@ -75,6 +78,13 @@ class Paste {
   }
 
  private:
+  // Parameters and points that expressions of the text rest on.
+  template <class Named>
+  void add_missing(std::vector<Named>& there, const std::vector<Named>& pasted) const {
+    for (const Named& each : pasted)
+      if (parameter_index(to_, each.name) < 0 && point_index(to_, each.name) < 0) there.push_back(each);
+  }
+
   bool are_there(std::span<const std::string> bodies) const {
     return std::ranges::all_of(
         bodies, [&](const std::string& name) { return name == ground_name || bodies_.has(name); });
@@ -147,6 +157,17 @@ std::string copy_text(const Mechanism& mechanism, const Selection& selection) {
   for (const Force& force : mechanism.forces)
     if (selection.has({PartKind::force, force.name}) || is_held(bodies_of(force)))
       parts.forces.push_back(force);
+  // Parameters and points by which they are given, and those that these rest on.
+  parts.parameters = mechanism.parameters;
+  parts.points = mechanism.points;
+  const auto drop_unused = [&](auto& list) {
+    std::unordered_set<std::string> unused;
+    for (const auto& each : list)
+      if (users_of(parts, each.name).empty()) unused.insert(each.name);
+    return std::erase_if(list, [&](const auto& each) { return unused.contains(each.name); }) > 0;
+  };
+  while (drop_unused(parts.parameters) || drop_unused(parts.points)) {
+  }
   return write_scene(parts);
 }
 

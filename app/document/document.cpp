@@ -39,9 +39,13 @@ void Document::push(Step step) {
   steps_[position_].selection = selection_;
   steps_.resize(position_ + 1);
   selection_ = step.selection = existing(std::move(step.selection), *step.mechanism);
-  step.tried = step.explored.empty()
-                   ? step.mechanism
-                   : std::make_shared<const Mechanism>(with_explored(*step.mechanism, step.explored));
+  step.tried = step.mechanism;
+  try {
+    if (!step.explored.empty())
+      step.tried = std::make_shared<const Mechanism>(with_explored(*step.mechanism, step.explored));
+  } catch (const SceneError&) { // after an edit that leaves nothing to try them on
+    step.explored.clear();
+  }
   step.hues = step.mechanism == before || same_bodies(*before, *step.mechanism)
                   ? now().hues
                   : std::make_shared<const BodyHues>(carried_hues(*before, *now().hues, *step.mechanism));
@@ -81,7 +85,12 @@ void Document::take(std::string name, Mechanism next, Selection selection, std::
 void Document::edit_number(std::string name, const std::string& address, double value,
                            std::uint64_t gesture) {
   Mechanism next = stored();
-  set_parameter(next, address, value);
+  if (formula_at(next, address)) {
+    put_number(next, address, value);
+    settle_formulas(stored(), next);
+  } else {
+    set_parameter(next, address, value);
+  }
   const bool same = next == stored();
   Explored left = now().explored;
   std::erase_if(left, [&](const ExploredValue& each) { return each.address == address; });
@@ -99,6 +108,7 @@ void Document::explore(std::string name, const Explored& values, std::uint64_t g
   for (const ExploredValue& each : values)
     explore_value(next, stored(), each.address, each.value);
   if (next == now().explored) return;
+  if (!stored().parameters.empty() || !stored().points.empty()) with_explored(stored(), next); // may refuse
   push({.name = std::move(name),
         .mechanism = now().mechanism,
         .selection = selection_,

@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/formulas.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -56,12 +57,11 @@ void explore_value(Explored& explored, const Mechanism& mechanism, const std::st
 }
 
 Mechanism with_explored(Mechanism mechanism, const Explored& explored) {
-  for (const ExploredValue& each : explored) {
-    try {
-      set_parameter(mechanism, each.address, each.value);
-    } catch (const SceneError&) { // nothing there to be explored
-    }
-  }
+  std::vector<ParameterValue> there;
+  for (const ExploredValue& each : explored)
+    if (number_at(mechanism, each.address) && !formula_at(mechanism, each.address))
+      there.push_back({each.address, each.value});
+  set_parameters(mechanism, there);
   return mechanism;
 }
 

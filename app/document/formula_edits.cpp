@@ -174,6 +174,13 @@ void set_expression(Mechanism& mechanism, const std::string& address, const std:
   all_or_nothing(mechanism, [&](Mechanism& next) { put(next, address, text); });
 }
 
+void stand_at_point(Mechanism& mechanism, const std::string& vector, const std::string& point) {
+  all_or_nothing(mechanism, [&](Mechanism& next) {
+    for (const int i : {0, 1, 2})
+      put(next, vector + "." + std::to_string(i), point_coordinate(point, i));
+  });
+}
+
 void name_number(Mechanism& mechanism, const std::string& address, const std::string& name) {
   all_or_nothing(mechanism, [&](Mechanism& next) {
     check_name(next, name, "parameters." + name);

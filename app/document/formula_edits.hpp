@@ -13,6 +13,8 @@ namespace flyball {
 // The number at an address is given by an expression from now on (without its "="), or, where that is empty,
 // stays by itself what it is.
 void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text);
+// The same of a vector's three numbers ("joints.spin.at"): it stands at a named point.
+void stand_at_point(Mechanism& mechanism, const std::string& vector, const std::string& point);
 // A named parameter of the number's value and unit, by which the number is given from then on.
 void name_number(Mechanism& mechanism, const std::string& address, const std::string& name);
 // A name that no parameter or point has: the wish, or with a figure behind it.

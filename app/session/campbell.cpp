@@ -3,6 +3,7 @@
 
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/formulas.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -16,12 +17,6 @@ namespace {
 
 constexpr double no_time = 0.3; // s
 constexpr double turn = 2 * std::numbers::pi;
-
-// The mechanism but for the speed along the axis.
-Mechanism without_speed(Mechanism mechanism, const std::string& drive) {
-  set_parameter(mechanism, drive, 0);
-  return mechanism;
-}
 
 struct State {
   double speed = 0;
@@ -100,7 +95,15 @@ std::vector<std::string> drive_speeds(const Mechanism& mechanism) {
   for (const Joint& joint : mechanism.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
       const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
-      if (joint.coordinates[i].drive) speeds.push_back("joints." + joint.name + ".drive" + index + ".speed");
+      if (!joint.coordinates[i].drive) continue;
+      std::string address = "joints." + joint.name + ".drive" + index + ".speed";
+      // A speed that a named parameter is, is varied by this.
+      if (const std::optional<std::string> formula = formula_at(mechanism, address)) {
+        if (parameter_index(mechanism, *formula) < 0) continue;
+        address = "parameters." + *formula;
+        if (formula_at(mechanism, address)) continue;
+      }
+      if (std::ranges::find(speeds, address) == speeds.end()) speeds.push_back(address);
     }
   return speeds;
 }
@@ -130,7 +133,7 @@ void follow_campbell(Session& session) {
     campbell.task =
         std::make_unique<Background<FoundCampbell>>(session.options.mode, session.options.on_news);
   const std::array<double, 2> range = campbell_range(session);
-  campbell.asked = without_speed(session.mechanism(), drive);
+  campbell.asked = without_number(session.mechanism(), drive);
   campbell.asked_drive = drive;
   campbell.asked_from = range[0];
   campbell.asked_to = range[1];
@@ -176,7 +179,7 @@ void update_campbell(Session& session) {
   if (campbell.revision != session.document.revision() || !chosen) {
     campbell.revision = session.document.revision();
     campbell.current =
-        chosen && campbell.result && campbell.of == without_speed(session.mechanism(), campbell.asked_drive);
+        chosen && campbell.result && campbell.of == without_number(session.mechanism(), campbell.asked_drive);
   }
   if (campbell.task->running()) return;
   // The state was put on a branch that was not followed.
@@ -188,7 +191,7 @@ void update_campbell(Session& session) {
   }
   if (campbell.current) return;
   const bool new_question =
-      !chosen || !(campbell.asked == without_speed(session.mechanism(), campbell.asked_drive));
+      !chosen || !(campbell.asked == without_number(session.mechanism(), campbell.asked_drive));
   const bool quick = !campbell.result || campbell.result->run_time_s < no_time;
   if (new_question && (quick || !chosen)) follow_campbell(session);
 }

@@ -2,6 +2,7 @@
 
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/sweep.hpp"
 
@@ -36,7 +37,7 @@ MapChoice of_curves(MapChoice choice) {
 // The mechanism but for the two numbers along the axes.
 Mechanism without_place(Mechanism mechanism, const MapChoice& choice) {
   for (const MapAxis& axis : choice.axes)
-    set_parameter(mechanism, axis.address, 0);
+    mechanism = without_number(std::move(mechanism), axis.address);
   return mechanism;
 }
 

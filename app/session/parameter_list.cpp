@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/formulas.hpp"
 
 #include <fmt/format.h>
 
@@ -76,6 +77,8 @@ std::string what_of(const std::vector<std::string>& parts) {
   const auto axis = [](const std::string& index) {
     return std::string(1, "xyz"[static_cast<std::size_t>(std::atoi(index.c_str())) % 3]);
   };
+  if (parts.front() == "parameters") return "";
+  if (parts.front() == "points") return parts.size() > 2 ? axis(parts[2]) : "";
   if (parts.front() == "gravity") return parts.size() > 1 ? axis(parts[1]) : "";
   if (parts.size() > 3 && parts[2] == "inertia")
     return "inertia " +
@@ -110,7 +113,8 @@ ParameterControl named_control(const std::string& address, ParameterGroup group,
   const std::vector<std::string> parts = split(address);
   control.address = address;
   control.group = group;
-  control.name = parts.size() > 2 ? parts[1] : parts[0];
+  const bool named = parts.size() > 1 && parts[0] == "parameters";
+  control.name = parts.size() > 2 || named ? parts[1] : parts[0];
   control.what = what_of(parts);
   std::ranges::replace(control.what, '_', ' ');
   control.unit = std::move(unit);
@@ -136,10 +140,23 @@ struct FileParts {
   std::unordered_map<std::string_view, const Force*> forces;
 };
 
-// Of every drive and spring, in the scene's order.
+Range range_of(const Mechanism& mechanism, const std::string& address, double value, std::string_view unit) {
+  if (address.starts_with("parameters."))
+    if (const int i = parameter_index(mechanism, address.substr(address.find('.') + 1)); i >= 0)
+      if (const auto& range = mechanism.parameters[static_cast<std::size_t>(i)].range)
+        return {(*range)[0], (*range)[1], false};
+  return range_for(value, unit, is_stiffness(address));
+}
+
+// Of every named parameter, drive and spring, in the scene's order.
 std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, const Mechanism& file) {
   const FileParts saved(file);
   std::vector<ParameterControl> controls;
+  for (const NamedParameter& parameter : mechanism.parameters) {
+    const std::string address = "parameters." + parameter.name;
+    controls.push_back(named_control(address, ParameterGroup::named, parameter.unit, parameter.value,
+                                     number_at(file, address)));
+  }
   for (const Joint& joint : mechanism.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
       const Coordinate& coordinate = joint.coordinates[i];
@@ -174,11 +191,14 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
                                      was_spring ? std::optional(found->second->stiffness) : std::nullopt));
   }
   for (ParameterControl& control : controls) {
-    const Range range = range_for(control.file_value, control.unit, is_stiffness(control.address));
+    const Range range = range_of(mechanism, control.address, control.file_value, control.unit);
     control.from = range.from;
     control.to = range.to;
     control.log = range.log;
   }
+  std::erase_if(controls, [&](const ParameterControl& control) {
+    return formula_at(mechanism, control.address).has_value();
+  });
   return controls;
 }
 
@@ -190,7 +210,7 @@ std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, con
   for (const Slider& slider : mechanism.sliders) {
     // Of an unfinished mechanism, it may be of a number that is not there.
     const std::optional<double> value = number_at(mechanism, slider.parameter);
-    if (!value || !pinned.insert(slider.parameter).second) continue;
+    if (!value || formula_at(mechanism, slider.parameter) || !pinned.insert(slider.parameter).second) continue;
     ParameterControl& control = controls.emplace_back(
         named_control(slider.parameter, ParameterGroup::pinned, parameter_unit(mechanism, slider.parameter),
                       *value, number_at(file, slider.parameter)));
@@ -214,7 +234,8 @@ bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechan
   const std::optional<double> value = number_at(mechanism, address), saved = number_at(file, address);
   if (control == controls.end() || !value || saved != control->file_value) return false;
   // Springs and dampers of zero have no slider of their own.
-  const bool always = control->group == ParameterGroup::pinned || control->group == ParameterGroup::drives;
+  const bool always = control->group == ParameterGroup::pinned || control->group == ParameterGroup::named ||
+                      control->group == ParameterGroup::drives;
   if (!always && (*value == 0 || *saved == 0)) return false;
   control->value = *value;
   return true;
@@ -222,7 +243,7 @@ bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechan
 
 Slider slider_for(const Mechanism& mechanism, const std::string& address) {
   const Range range =
-      range_for(get_parameter(mechanism, address), parameter_unit(mechanism, address), is_stiffness(address));
+      range_of(mechanism, address, get_parameter(mechanism, address), parameter_unit(mechanism, address));
   Slider slider;
   slider.parameter = address;
   slider.from = range.from;
@@ -235,6 +256,7 @@ std::string parameter_phrase(std::string_view address) {
   const std::vector<std::string> parts = split(address);
   std::string what = what_of(parts);
   std::ranges::replace(what, '_', ' ');
+  if (what.empty()) return parts.size() > 1 ? parts[1] : parts[0];
   return what + " of " + (parts.size() > 2 ? parts[1] : parts[0]);
 }
 

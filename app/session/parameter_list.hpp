@@ -1,5 +1,5 @@
-// Which numbers of a mechanism get a slider: those pinned in the scene, every drive's speed and every
-// spring's stiffness; for the motion, every damper.
+// Which numbers of a mechanism get a slider: those pinned in the scene, every named parameter, every drive's
+// speed and every spring's stiffness; for the motion, every damper. None that an expression gives.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -10,7 +10,7 @@
 
 namespace flyball {
 
-enum class ParameterGroup { pinned, drives, springs, dampers };
+enum class ParameterGroup { pinned, named, drives, springs, dampers };
 
 struct ParameterControl {
   std::string address;

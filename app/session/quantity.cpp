@@ -161,11 +161,11 @@ class Parser {
   static Value power(const Value& base, double exponent) {
     Dimension dimension;
     if (!base.dimension.none()) {
-      const auto times = [&](int own) {
+      const auto times = [&](double own) {
         const double product = own * exponent;
         if (product != std::round(product) || std::abs(product) > 100)
           throw Mistake{"That power of a unit has no meaning."};
-        return static_cast<int>(product);
+        return product;
       };
       const Dimension& own = base.dimension;
       dimension = {times(own.length), times(own.mass), times(own.time), times(own.angle)};

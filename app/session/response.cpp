@@ -52,7 +52,10 @@ std::optional<ResponseRequest> wanted_now(const Session& session) {
   of.all = state.all;
   of.reactions = needs_reactions(state.quantity);
   Mechanism followed = session.mechanism();
-  set_parameter(followed, of.address, of.from);
+  try {
+    set_parameter(followed, of.address, of.from);
+  } catch (const SceneError&) { // no mechanism can be made there: the curve goes on from the present one
+  }
   // What moves no equilibrium begins no new curve.
   followed.sliders.clear();
   followed.view.camera.reset();

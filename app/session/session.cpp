@@ -201,8 +201,8 @@ void set_parameter_from(Session& session, const std::string& address, double val
       session.document.explore(step, {{address, value}}, session.gesture);
     else
       session.document.edit_number(step, address, value, session.gesture);
-  } catch (const SceneError&) {
-    return;
+  } catch (const SceneError& error) {
+    return show_error(session, error.what());
   }
   // What was solved last, or `start`, is where solving begins.
   if (session.document.revision() != revision)
@@ -238,7 +238,11 @@ void change_parameters(Session& session, const std::string& step, const Explored
         set_parameter(mechanism, each.address, each.value);
     });
   const std::uint64_t revision = session.document.revision();
-  session.document.explore(step, values, session.gesture);
+  try {
+    session.document.explore(step, values, session.gesture);
+  } catch (const SceneError& error) {
+    return show_error(session, error.what());
+  }
   if (session.document.revision() != revision) take_document(session, false, false);
 }
 

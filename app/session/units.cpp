@@ -12,83 +12,9 @@ namespace flyball {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180, turn = 2 * std::numbers::pi;
-constexpr Dimension length{.length = 1}, angle{.angle = 1}, time{.time = 1}, mass{.mass = 1},
-    turning{.time = -1, .angle = 1}, force{.length = 1, .mass = 1, .time = -2},
-    torque{.length = 2, .mass = 1, .time = -2};
-
-constexpr std::array units{
-    Unit{"m", 1, length},
-    Unit{"mm", 1e-3, length},
-    Unit{"cm", 1e-2, length},
-    Unit{"km", 1e3, length},
-    Unit{"um", 1e-6, length},
-    Unit{"µm", 1e-6, length},
-    Unit{"in", 0.0254, length},
-    Unit{"ft", 0.3048, length},
-    Unit{"rad", 1, angle},
-    Unit{"mrad", 1e-3, angle},
-    Unit{"deg", degree, angle},
-    Unit{"°", degree, angle},
-    Unit{"rev", turn, angle},
-    Unit{"s", 1, time},
-    Unit{"ms", 1e-3, time},
-    Unit{"min", 60, time},
-    Unit{"h", 3600, time},
-    Unit{"Hz", turn, turning}, // one turn a second
-    Unit{"rpm", turn / 60, turning},
-    Unit{"kg", 1, mass},
-    Unit{"g", 1e-3, mass},
-    Unit{"mg", 1e-6, mass},
-    Unit{"t", 1e3, mass},
-    Unit{"N", 1, force},
-    Unit{"mN", 1e-3, force},
-    Unit{"kN", 1e3, force},
-    Unit{"MN", 1e6, force},
-    // As many write them in one word.
-    Unit{"Nm", 1, torque},
-    Unit{"kNm", 1e3, torque},
-    Unit{"mNm", 1e-3, torque},
-    Unit{"Nmm", 1e-3, torque},
-    Unit{"Ncm", 1e-2, torque},
-    Unit{"Ns", 1, {.length = 1, .mass = 1, .time = -1}},
-    Unit{"Nms", 1, {.length = 2, .mass = 1, .time = -1}},
-};
-
-constexpr auto names = [] {
-  std::array<std::string_view, units.size()> all{};
-  std::ranges::transform(units, all.begin(), &Unit::name);
-  return all;
-}();
+constexpr double degree = std::numbers::pi / 180;
 
 } // namespace
-
-Dimension operator+(const Dimension& a, const Dimension& b) {
-  return {a.length + b.length, a.mass + b.mass, a.time + b.time, a.angle + b.angle};
-}
-
-Dimension operator*(const Dimension& a, int power) {
-  return {a.length * power, a.mass * power, a.time * power, a.angle * power};
-}
-
-std::optional<Unit> find_unit(std::string_view name) {
-  const auto found = std::ranges::find(units, name, &Unit::name);
-  return found == units.end() ? std::nullopt : std::optional(*found);
-}
-
-std::span<const std::string_view> unit_names() {
-  return names;
-}
-
-double times_unit(double number, double unit) {
-  const double parts = std::round(1 / unit);
-  const bool whole = unit < 1 && std::abs(1 / unit - parts) <= 1e-12 * parts;
-  if (!whole) return number * unit;
-  // 5.1 mm is 0.0051 m and not the neighbour that rounding twice may give.
-  const double quotient = number / parts;
-  const double tidy = std::strtod(fmt::format("{:.15g}", quotient).c_str(), nullptr);
-  return std::abs(tidy - quotient) <= 4e-16 * std::abs(quotient) ? tidy : quotient;
-}
 
 double ShownUnit::si(double shown) const {
   return times_unit(shown, inverse);

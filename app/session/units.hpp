@@ -1,35 +1,12 @@
-// Units that can be typed, those that numbers are shown in, and dimensions to tell a length from a mass.
+// The units that numbers are shown in.
 #pragma once
 
-#include <optional>
-#include <span>
+#include "engine/mechanism/unit.hpp"
+
 #include <string>
 #include <string_view>
 
 namespace flyball {
-
-// Exponents. The angle counts as one of its own, so that a speed of turning is no frequency of zero turns.
-struct Dimension {
-  int length = 0, mass = 0, time = 0, angle = 0;
-  bool operator==(const Dimension&) const = default;
-  bool none() const { return *this == Dimension{}; }
-};
-
-Dimension operator+(const Dimension& a, const Dimension& b); // of a product
-Dimension operator*(const Dimension& a, int power);
-
-struct Unit {
-  std::string_view name;
-  double factor = 1; // in SI units and radians
-  Dimension dimension;
-};
-
-std::optional<Unit> find_unit(std::string_view name);
-std::span<const std::string_view> unit_names();
-
-// `number` of a unit of so many SI units; divided where the unit is a whole part of one, so that 3 mm is the
-// number nearest to 0.003.
-double times_unit(double number, double unit);
 
 // What fields, results and plots show numbers in, as a person has chosen. Stiffness, damping and speeds along
 // a line go with the length. Files and CSV stay in SI units and radians.

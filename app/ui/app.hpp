@@ -89,7 +89,7 @@ struct PanelState {
   float parameters_height = 0; // what they needed in the last frame
   float inspector_share =
       0.55f; // of the height, for the inspector above the results, or the outline above it
-  bool pinned = true, springs = true, drives = true;
+  bool pinned = true, named = true, springs = true, drives = true;
   float study_share = 0.42f; // of the height, for the studies below the view
   bool dampers = true;
   bool legend = true; // of the view

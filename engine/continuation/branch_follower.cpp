@@ -2,6 +2,7 @@
 
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/report_forces.hpp"
 #include "engine/search/all_equilibria.hpp"
@@ -27,6 +28,20 @@ Mechanism with_parameter(const Mechanism& mechanism, const std::string& address,
   validate(m);
   return m;
 }
+
+namespace {
+
+// At the beginning of the range, or, where no mechanism can be made there, as it is.
+Mechanism begun(const Mechanism& mechanism, const std::string& address, double from) {
+  try {
+    return with_parameter(mechanism, address, from);
+  } catch (const SceneError&) {
+    const double present = get_parameter(mechanism, address);
+    return with_parameter(mechanism, address, present);
+  }
+}
+
+} // namespace
 
 Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates) {
   Eigen::VectorXd q;
@@ -60,8 +75,8 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
 
 BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
                                const BranchOptions& options)
-    : options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from))),
-      family_(system_, with_parameter(mechanism, address, from), address, std::abs(to - from),
+    : options_(options), system_(compile_for_drives(begun(mechanism, address, from))),
+      family_(system_, begun(mechanism, address, from), address, std::abs(to - from),
               system_.nv > options.dense_up_to && system_.conservative && system_.single_drives
                   ? system_.kkt_form
                   : KktForm::dense),
@@ -228,14 +243,22 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     }
     BranchState next;
     int iterations = 0;
-    const bool stepped = continuation_.step(state, length, next, iterations);
+    bool stepped = false;
+    std::string impossible; // of what the parameter would make
+    try {
+      stepped = continuation_.step(state, length, next, iterations);
+    } catch (const SceneError& error) {
+      impossible = error.what();
+    }
     const bool straight = stepped && next.tangent.dot(state.tangent) >= 0.97;
     const bool corner =
         stepped && !straight && length < tolerance::longest_corner; // no shorter step is straight
     if (!straight && !corner) {
       length /= 2;
       if (length > tolerance::least_branch_step) continue;
-      out.end = "the corrector fails: the loops lock or a part of the mechanism becomes singular";
+      out.end = impossible.empty()
+                    ? "the corrector fails: the loops lock or a part of the mechanism becomes singular"
+                    : "beyond it no mechanism can be made: " + impossible;
       break;
     }
     const double p = position(next.parameter);

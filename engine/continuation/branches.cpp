@@ -3,6 +3,7 @@
 #include "engine/continuation/branch_follower.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/messages.hpp"
@@ -230,7 +231,8 @@ class Diagram {
     return values;
   }
 
-  void from_all_equilibria(double value) {
+  // At a value of which a mechanism can be made.
+  void from_all_equilibria(double value) try {
     if (!going()) return;
     report_progress(options_.progress, "looking for other branches");
     Workspace& w = follower_.workspace();
@@ -256,6 +258,8 @@ class Diagram {
       }
       off_crossings(false);
     }
+  } catch (const SceneError&) {
+    if (mechanism_.parameters.empty() && mechanism_.points.empty()) throw;
   }
 
   // One branch of the two ways from one state.

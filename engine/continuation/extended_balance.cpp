@@ -4,6 +4,7 @@
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
@@ -64,8 +65,10 @@ Problem ExtendedBalance::judged() const {
 }
 
 void ExtendedBalance::set(const Eigen::VectorXd& parameters) {
+  std::vector<ParameterValue> values;
   for (std::size_t i = 0; i < addresses_.size(); ++i)
-    set_parameter(mechanism_, addresses_[i], parameters[static_cast<Eigen::Index>(i)]);
+    values.push_back({addresses_[i], parameters[static_cast<Eigen::Index>(i)]});
+  set_parameters(mechanism_, values);
   bind(system_, mechanism_, parameters_);
 }
 
@@ -106,10 +109,12 @@ void ExtendedBalance::evaluate_extended(const Unknowns& z, Eigen::VectorXd& forc
   force = w_.residual_extended.f.cast<double>().cwiseProduct(scaling_.column);
 }
 
-double ExtendedBalance::linearize(const ExtendedState& state) {
+double ExtendedBalance::linearize(const ExtendedState& state) try {
   if (form_ != KktForm::dense) return border(state);
   assemble(state, assembled_);
   return assembled_.matrix.allFinite() ? assembled_.residual : std::numeric_limits<double>::infinity();
+} catch (const SceneError&) { // expressions make no mechanism of these numbers
+  return std::numeric_limits<double>::infinity();
 }
 
 void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {

@@ -145,19 +145,36 @@ double get_parameter(const Mechanism& mechanism, std::string_view address) {
 }
 
 void set_parameter(Mechanism& mechanism, std::string_view address, double value) {
-  const Number number = find_number(mechanism, address);
-  if (!std::isfinite(value)) throw SceneError(std::string(address), "expected a finite number");
-  if (const std::optional<std::string> formula = formula_at(mechanism, address))
-    throw SceneError(std::string(address), "its value is given by \"=" + *formula + "\"" +
-                                               changeable_instead(mechanism, *formula));
-  number.set(value);
+  const ParameterValue one{std::string(address), value};
+  set_parameters(mechanism, {&one, 1});
+}
+
+void set_parameters(Mechanism& mechanism, std::span<const ParameterValue> values) {
+  std::vector<double> before;
+  const auto put_back = [&] {
+    for (std::size_t i = before.size(); i-- > 0;)
+      put_number(mechanism, values[i].address, before[i]);
+    evaluate_formulas(mechanism);
+  };
   try {
+    for (const auto& [address, value] : values) {
+      const Number number = find_number(mechanism, address);
+      if (!std::isfinite(value)) throw SceneError(address, "expected a finite number");
+      if (const std::optional<std::string> formula = formula_at(mechanism, address))
+        throw SceneError(address,
+                         "its value is given by \"=" + *formula + "\"" + changeable_instead(mechanism, *formula));
+      before.push_back(number.value);
+      number.set(value);
+    }
     evaluate_formulas(mechanism);
-  } catch (...) { // as it was
-    number.set(number.value);
-    evaluate_formulas(mechanism);
+  } catch (...) {
+    put_back();
     throw;
   }
+}
+
+void put_number(Mechanism& mechanism, std::string_view address, double value) {
+  find_number(mechanism, address).set(value);
 }
 
 std::string parameter_unit(const Mechanism& mechanism, std::string_view address) {

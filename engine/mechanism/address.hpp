@@ -5,11 +5,17 @@
 
 #include "engine/mechanism/mechanism.hpp"
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace flyball {
+
+struct ParameterValue {
+  std::string address;
+  double value = 0;
+};
 
 // The number at an address. Throws SceneError naming the part that does not exist and what does.
 double get_parameter(const Mechanism& mechanism, std::string_view address);
@@ -17,6 +23,10 @@ double get_parameter(const Mechanism& mechanism, std::string_view address);
 // SceneError like get_parameter, for a value that is not finite or of which an expression can make nothing, and
 // for a number that is itself given by an expression; the mechanism is then as it was.
 void set_parameter(Mechanism& mechanism, std::string_view address, double value);
+// The same of several numbers at once: expressions are evaluated with all of them.
+void set_parameters(Mechanism& mechanism, std::span<const ParameterValue> values);
+// Changes this number alone, even one that an expression gives; throws SceneError like get_parameter.
+void put_number(Mechanism& mechanism, std::string_view address, double value);
 // Unit of the number, as shown to a person: "rad/s", "N/m", "kg", "" where it has none.
 std::string parameter_unit(const Mechanism& mechanism, std::string_view address);
 // Every address that can be set, in the scene's order: of numbers that no expression gives.

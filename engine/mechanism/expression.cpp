@@ -189,8 +189,8 @@ class ExpressionParser {
     const std::size_t before = at_;
     skip_blanks();
     if (const auto read = read_unit(text_.substr(at_))) {
-      step.value *= read->unit.factor;
-      step.measure = {read->unit.dimension, false};
+      step.value = times_unit(step.value, read->unit.factor);
+      step.measure = {read->unit.dimension.without_angle(), false};
       at_ += read->length;
     } else if (at_ < text_.size() && begins_name(text_[at_])) {
       fail("expected an operator or a unit, found \"" + std::string(word()) + "\"");
@@ -323,7 +323,7 @@ Measure Expression::measure(std::span<const Measure> names) const {
         expect_number(last, "the argument of " + name);
         stack.push_back({{{}, last.plain}, {}});
         break;
-      case Kind::root: stack.push_back({{0.5 * last.dimension, last.plain}, {}}); break;
+      case Kind::root: stack.push_back({{last.dimension * 0.5, last.plain}, {}}); break;
       case Kind::same:
       case Kind::ratio: {
         const Measure both =
@@ -343,7 +343,7 @@ Measure Expression::measure(std::span<const Measure> names) const {
     case Operation::multiply:
     case Operation::divide: {
       const double sign = step.operation == Operation::multiply ? 1 : -1;
-      result = {a.measure.dimension + sign * b.measure.dimension, a.measure.plain && b.measure.plain};
+      result = {a.measure.dimension + b.measure.dimension * sign, a.measure.plain && b.measure.plain};
       if (a.number && b.number) number = sign > 0 ? *a.number * *b.number : *a.number / *b.number;
       break;
     }
@@ -352,7 +352,7 @@ Measure Expression::measure(std::span<const Measure> names) const {
       if (a.measure.plain || a.measure.dimension == Dimension{})
         result = {{}, a.measure.plain && b.measure.plain};
       else if (b.number)
-        result = {*b.number * a.measure.dimension, false};
+        result = {a.measure.dimension * *b.number, false};
       else
         throw ExpressionError("expected a number as the exponent of " + dimension_text(a.measure.dimension));
       break;

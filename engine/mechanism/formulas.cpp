@@ -1,5 +1,6 @@
 #include "engine/mechanism/formulas.hpp"
 
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/mass_properties.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
@@ -31,12 +32,12 @@ class Names {
       if (!unit || unit->factor != 1)
         throw SceneError("parameters." + parameter.name + ".unit",
                          "expected an SI unit, such as m, N/m or rad, found \"" + parameter.unit + "\"");
-      measures_.push_back({unit->dimension, false});
+      measures_.push_back({unit->dimension.without_angle(), false});
     }
     for (const NamedPoint& point : mechanism.points)
       for (const int i : {0, 1, 2}) {
         numbers_.emplace(point_coordinate(point.name, i), numbers_.size());
-        measures_.push_back({{1, 0, 0}, false});
+        measures_.push_back({{.length = 1}, false});
       }
     if (numbers_.size() != measures_.size())
       throw SceneError("parameters", "expected names that no other parameter or point has");
@@ -96,7 +97,7 @@ struct Compiled {
     for (const std::size_t name : names)
       measures.push_back(known.measure(name));
     const Measure found = expression.measure(measures);
-    const Dimension wanted = parse_unit(unit).value_or(Unit{}).dimension;
+    const Dimension wanted = parse_unit(unit).value_or(Unit{}).dimension.without_angle();
     if (!found.plain && !(found.dimension == wanted))
       throw ExpressionError("expected " + (unit.empty() ? "a number" : std::string(unit)) + ", found " +
                             dimension_text(found.dimension));
@@ -118,7 +119,9 @@ auto at_place(const std::string& where, std::string_view text, const Do& act) {
   try {
     return act();
   } catch (const ExpressionError& error) {
-    throw SceneError(where, "\"=" + std::string(text) + "\": " + error.what());
+    constexpr std::size_t longest = 60;
+    const std::string quoted(text.substr(0, longest));
+    throw SceneError(where, "\"=" + quoted + (text.size() > longest ? "..." : "") + "\": " + error.what());
   }
 }
 
@@ -328,6 +331,27 @@ std::vector<GivenNumber> given_numbers(const Mechanism& mechanism) {
         all.push_back({path, joined(path, formula.key), formula.text, number->value, number->unit});
   });
   return all;
+}
+
+Mechanism without_number(Mechanism mechanism, const std::string& address) {
+  put_number(mechanism, address, 0);
+  if (!has_formulas(mechanism)) return mechanism;
+  for (NamedParameter& parameter : mechanism.parameters)
+    if (!parameter.formulas.empty()) parameter.value = 0;
+  for (NamedPoint& point : mechanism.points)
+    for (const Formula& formula : point.formulas)
+      point.at[std::clamp(std::atoi(formula.key.c_str()), 0, 2)] = 0;
+  visit_parts(mechanism, [](const std::string&, Formulas& formulas, const auto& numbers_of_part) {
+    for (const Number& number : numbers_of_part())
+      if (std::ranges::find(formulas, number.key, &Formula::key) != formulas.end()) number.set(0);
+  });
+  for (Body& body : mechanism.bodies)
+    if (body.density) {
+      body.mass = 0;
+      body.position.setZero();
+      body.inertia = {};
+    }
+  return mechanism;
 }
 
 void drop_lost_formulas(Mechanism& mechanism) {

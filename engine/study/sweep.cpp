@@ -37,6 +37,8 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
     }
   }
 
+  // A mistake of one point is one of all, unless expressions make the mechanism from the numbers.
+  const bool geometry_varies = !mechanism.parameters.empty() || !mechanism.points.empty();
   std::atomic<std::size_t> next = 0, done = 0;
   std::atomic<bool> stop = false; // a failure
   const auto cancelled = [&] { return stop || (cancel && cancel->load(std::memory_order_relaxed)); };
@@ -46,10 +48,21 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
     try {
       Mechanism varied = mechanism;
       std::optional<Analysis> analysis;
+      std::vector<ParameterValue> values;
+      for (const Variation& variation : variations)
+        values.push_back({variation.address, get_parameter(varied, variation.address)});
       for (std::size_t i; !cancelled() && (i = next++) < total; ++done) {
         for (std::size_t v = 0; v < variations.size(); ++v)
-          set_parameter(varied, variations[v].address, points[i].parameters[v]);
-        validate(varied);
+          values[v].value = points[i].parameters[v];
+        try {
+          set_parameters(varied, values);
+          validate(varied);
+        } catch (const SceneError& error) {
+          if (!geometry_varies) throw;
+          points[i].solution.status = Status::infeasible; // a parameter of which no mechanism can be made
+          points[i].solution.message = error.what();
+          continue;
+        }
         if (analysis)
           analysis->update(varied);
         else

@@ -215,7 +215,7 @@ TEST_CASE("a pasted text may be as unfinished as it likes") {
 
   const Mechanism before = m;
   for (const char* text :
-       {"", "hello", "{}", "[1, 2]", R"({"flyball": 2, "name": "", "bodies": [], "joints": []})"})
+       {"", "hello", "{}", "[1, 2]", R"({"flyball": 3, "name": "", "bodies": [], "joints": []})"})
     CHECK_THROWS_AS(paste_text(m, text), SceneError);
   CHECK(m == before);
 }

@@ -34,7 +34,7 @@ inline constexpr std::string_view everything = R"({
     {"name": "drone", "mass": 1, "position": [0, 0, 7]},
     {"name": "plate", "mass": "=2 kg * half / L", "position": "W"},
     {"name": "pinion", "density": 1000,
-     "shapes": [{"type": "box", "size": ["=half", 0.1, "=L"], "at": "E"}]}
+     "shapes": [{"type": "capsule", "radius": "=half / 10", "from": "E", "to": [0, 0, "=L + 4 m"]}]}
   ],
   "joints": [
     {"name": "spin", "type": "revolute", "bodies": ["ground", "table"], "at": [0, 0, 0], "axis": [0, 1, 0],
@@ -62,7 +62,7 @@ inline constexpr std::string_view everything = R"({
   ],
   "forces": [
     {"name": "coil", "description": "holds", "type": "spring", "bodies": ["ground", "arm"],
-     "points": [[0, 2, 0], [1, 1, 0]], "stiffness": "=24 N/m^2 * L", "free_length": 0.9, "damping": 1.5},
+     "points": [[0, 2, 0], [1, 1, 0]], "stiffness": 120, "free_length": 0.9, "damping": "=0.3 N s/m^2 * L"},
     {"name": "push", "type": "force", "body": "arm", "at": [1, 2, 3], "vector": [4, 5, 6], "frame": "body"},
     {"name": "turn", "type": "torque", "body": "arm", "vector": [7, 8, 9]},
     {"name": "air", "type": "drag", "body": "ball", "at": [0, 0, 5.5], "linear": 0.125, "quadratic": 0.375}
@@ -102,7 +102,7 @@ inline constexpr Mistake mistakes_of_form[] = {
     // parameters, points and expressions
     {R"("value": "=L/2", )", "", "parameters.half.value", "missing; a parameter needs it"},
     {R"("value": "=L/2")", R"("value": "L/2")", "parameters.half.value", "expected a number, found \"L/2\""},
-    {R"("range": [0.5, 8])", R"("range": ["=L", 8])", "parameters.L.range", "expected a number, found \"=L\""},
+    {R"("range": [0.5, 8])", R"("range": ["=L", 8])", "parameters.L.range[0]", "expected a number, found \"=L\""},
     {R"("half": {)", R"("a half": {)", "parameters.a half", "expected a name of letters"},
     {R"("W": [0, 0, 8])", R"("W": [0, 0])", "points.W", "three numbers"},
     {R"("at": [0, 0, 9])", R"("at": "a hole")", "joints.axle.at", "expected the name of a point or three"},

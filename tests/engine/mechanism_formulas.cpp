@@ -5,7 +5,7 @@
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 
-#include <catch2/matchers/catch_matchers_string.hpp>
+#include "tests/catch.hpp"
 
 #include <complex>
 #include <functional>
@@ -13,7 +13,6 @@
 #include <random>
 
 using namespace flyball;
-using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -51,11 +50,12 @@ struct Built {
 };
 
 class Builder {
+  using C = std::complex<double>;
+
  public:
   explicit Builder(unsigned seed) : random_(seed) {}
 
   Built expression(int depth) {
-    using C = std::complex<double>;
     switch (depth == 0 ? below(3) : below(11)) {
     case 0: return {"x", [](C x) { return x; }};
     case 1: return {"y", [](C) { return C(1.7); }};
@@ -79,7 +79,6 @@ class Builder {
   }
 
  private:
-  using C = std::complex<double>;
   int below(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
   Built both(int depth, const std::string& sign, const std::function<C(C, C)>& act) {
     const Built a = expression(depth - 1), b = expression(depth - 1);
@@ -105,12 +104,12 @@ TEST_CASE("Expressions are arithmetic with units, the usual functions and names"
   CHECK(value_of("8 - 4 - 2", "") == 2);
   CHECK(value_of("(1 + 2) * 3", "") == 9);
   CHECK(value_of(" -+ 1e-3 ", "") == -1e-3);
-  CHECK(value_of("160 mm", "m") == 160 * 1e-3);
-  CHECK(value_of("160mm", "m") == 160 * 1e-3);
-  CHECK(value_of("L + 20 mm", "m") == 0.3 + 20 * 1e-3);
+  CHECK(value_of("160 mm", "m") == 0.16);
+  CHECK(value_of("160mm", "m") == 0.16);
+  CHECK(value_of("L + 20 mm", "m") == 0.3 + 0.02);
   CHECK(value_of("300 rpm", "rad/s") == 300 * (pi / 30));
   CHECK(value_of("180°", "rad") == 180 * (pi / 180));
-  CHECK(value_of("10 N/mm", "N/m") == 10 * (1 / 1e-3));
+  CHECK(value_of("10 N/mm", "N/m") == 10 / 1e-3);
   CHECK(value_of("3 kg m^2 / 2 s^2", "N m") == 1.5);
   CHECK(value_of("L*cos(a)", "m") == 0.3 * std::cos(0.5));
   CHECK(value_of("A.x - A.z", "m") == -2);
@@ -146,7 +145,7 @@ TEST_CASE("What is wrong with an expression is said by its place") {
   std::string powers = "2";
   for (int i = 0; i < 100'000; ++i)
     powers += "^2";
-  CHECK_THAT(mistake_in(powers, ""), ContainsSubstring("fewer powers"));
+  CHECK_THAT(mistake_in(powers, ""), ContainsSubstring("a simpler expression"));
   CHECK(value_of(std::string(100'001, '-') + "1", "") == -1);
 }
 
@@ -191,7 +190,7 @@ TEST_CASE("A mechanism's numbers follow from its parameters and points") {
   // The pivot moves with all that stands at it.
   set_parameter(m, "points.P.1", 1.2);
   CHECK(m.joints[0].at.y() == 1.2);
-  CHECK(m.bodies[0].shapes[0].to.y() == 1.2 + 30 * 1e-3);
+  CHECK(m.bodies[0].shapes[0].to.y() == 1.2 + 0.03);
 
   // The way from one expression to the number is exact, through dependent parameters and points.
   const double slope = expression_gradient(m, "S.y", {"parameters.L"}).front();

@@ -375,7 +375,12 @@ TEST_CASE("After a number was set the mistakes are those that a look at all part
       const double value = get_parameter(right, address);
       for (const double other : {0., 1e-300, -value, 0.5 * value + 0.1, 2e30, -2e30}) {
         Mechanism m = right;
-        set_parameter(m, address, other);
+        try {
+          set_parameter(m, address, other);
+        } catch (const SceneError&) { // expressions can make nothing of it
+          REQUIRE(m == right);
+          continue;
+        }
         const std::string all = mistakes_of(m);
         INFO(m.name << " " << address << " " << other);
         CHECK(text_of(find_mistakes(m, address)) == all);

@@ -121,6 +121,31 @@ double shown_density(const App& app, const Body& body, double density) {
   return std::abs(typed - density) <= 1e-13 * typed ? typed : density;
 }
 
+// Of a body that weighs what its shapes do.
+void density_rows(App& app, const Body& body) {
+  quantity_row(app, "Density",
+               {.name = "inspector/density",
+                .value = *body.density,
+                .unit = "kg/m^3",
+                .help = "Mass, mass centre and inertia follow from it and the shapes.",
+                .least = Least::above_zero,
+                .address = "bodies." + body.name + ".density"});
+  row(app, "Mass", short_text(body.mass, 9), "kg", "Follows from the density and the shapes.");
+}
+
+// Whether mass, mass centre and inertia are to follow.
+void density_tick(App& app, const Body& body) {
+  if (check_row(app, "inspector/by density", "By density", body.density.has_value(),
+                "Mass, mass centre and inertia follow from a density and the shapes, whatever moves these."))
+    edit_body(app, body.density ? "Take the density off" : "Mass by density", body.name, [](Body& same) {
+      same.density = same.density ? std::nullopt : density_of(same);
+      std::erase_if(same.formulas, [](const Formula& formula) {
+        return formula.key == "density" || formula.key == "mass" || formula.key.starts_with("position") ||
+               formula.key.starts_with("inertia");
+      });
+    });
+}
+
 void density_row(App& app, const Body& body) {
   const std::optional<double> density = density_of(body);
   if (!density) return;
@@ -162,6 +187,10 @@ bool follows_shapes(const App& app, const Body& body) {
 
 void mass_section(App& app, const Body& body) {
   if (!inspector_section(app, "inspector/mass section", "Mass", true)) return;
+  if (body.density) {
+    density_rows(app, body);
+    return density_tick(app, body);
+  }
   const bool follows = follows_shapes(app, body);
   QuantityField mass{.name = "inspector/mass",
                      .value = body.mass,
@@ -198,6 +227,7 @@ void mass_section(App& app, const Body& body) {
           if (same.name == part.name) take_uniform_mass(same, same.mass);
       });
     });
+  density_tick(app, body);
 }
 
 void rotation_section(App& app, const Body& body) {

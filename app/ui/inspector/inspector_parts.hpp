@@ -12,6 +12,7 @@ void force_inspector(App& app, const Force& force);
 void several_inspector(App& app);
 
 // Parts of them.
+void named_sections(App& app);
 void mass_section(App& app, const Body& body);
 void rotation_section(App& app, const Body& body);
 void shapes_section(App& app, const Body& body);

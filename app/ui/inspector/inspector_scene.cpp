@@ -76,6 +76,7 @@ void scene_inspector(App& app) {
                .help = "The acceleration of free fall, in the world's axes.",
                .address = "gravity"});
   gravity_buttons(app);
+  named_sections(app);
   simulation_rows(app);
   ImGui::Dummy({0, 2 * app.scale});
   paragraph(counted(mechanism.bodies.size(), "body", "bodies") + ", " +

@@ -196,6 +196,7 @@ void parameters_panel(App& app, const PanelRect& rect) {
   if (!app.parameters.empty()) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
     group(app, ParameterGroup::pinned, "parameters/pinned", "Pinned", app.panels.pinned);
+    group(app, ParameterGroup::named, "parameters/named", "Parameters", app.panels.named);
     group(app, ParameterGroup::drives, "parameters/drives", "Drive speeds", app.panels.drives);
     group(app, ParameterGroup::springs, "parameters/springs", "Spring constants", app.panels.springs);
     if (app.motion.on) // dampers move no steady state
@@ -210,7 +211,7 @@ void parameters_panel(App& app, const PanelRect& rect) {
     }
     app.panels.parameters_height = (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / app.scale;
   } else {
-    paragraph("Drive speeds and spring constants get a slider here, and every number that is pinned.",
+    paragraph("Drive speeds, spring constants and named parameters get a slider here, and every number that is pinned.",
               colors_of(app).dim);
   }
   ImGui::End();

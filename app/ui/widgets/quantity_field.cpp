@@ -1,5 +1,6 @@
 #include "app/ui/widgets/quantity_field.hpp"
 
+#include "app/document/formula_edits.hpp"
 #include "app/render/icons.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/session/quantity.hpp"
@@ -14,10 +15,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <numbers>
+#include <optional>
 
 namespace flyball {
 
@@ -57,7 +60,34 @@ Quantity typed_quantity(const App& app, const std::string& text, const QuantityF
   return typed_quantity(text, field.unit, shown_unit(field.unit, app.units).text);
 }
 
+// The expression that gives the number, or nothing.
+std::optional<std::string> formula_of(const App& app, const QuantityField& field) {
+  if (field.address.empty() || !field.various.empty()) return {};
+  return formula_at(app.mechanism(), field.address);
+}
+
+bool is_expression(const QuantityField& field, std::string_view text) {
+  return !field.address.empty() && text.starts_with('=');
+}
+
+// What a typed expression does; a point's name alone gives all three numbers of a vector.
+void set_typed_expression(Mechanism& mechanism, const QuantityField& field, const std::string& text) {
+  if (field.axis >= 0 && field.unit == "m" && point_index(mechanism, text) >= 0)
+    stand_at_point(mechanism, field.address.substr(0, field.address.rfind('.')), text);
+  else
+    set_expression(mechanism, field.address, text);
+}
+
 std::string mistake_in(const App& app, const std::string& text, const QuantityField& field) {
+  if (is_expression(field, text)) {
+    try {
+      Mechanism copy = app.document.stored();
+      set_typed_expression(copy, field, text.substr(1));
+      return too_small(get_parameter(copy, field.address), field.least);
+    } catch (const SceneError& error) {
+      return error.expected();
+    }
+  }
   const Quantity typed = typed_quantity(app, text, field);
   return typed ? too_small(typed.value, field.least) : typed.mistake;
 }
@@ -65,6 +95,25 @@ std::string mistake_in(const App& app, const std::string& text, const QuantityFi
 // A number without the dust of binary arithmetic.
 double rounded(double value) {
   return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr);
+}
+
+// What was typed: an expression, or a number by itself.
+void take_typed(App& app, const QuantityField& field, const std::string& typed) {
+  const std::string step = "Set " + parameter_phrase(field.address);
+  if (is_expression(field, typed))
+    return edit(app, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
+      set_typed_expression(mechanism, field, typed.substr(1));
+      std::erase_if(mechanism.sliders,
+                    [&](const Slider& each) { return formula_at(mechanism, each.parameter).has_value(); });
+    });
+  const double value = typed_quantity(app, typed, field).value;
+  if (formula_of(app, field))
+    return edit(app, step, [&](Mechanism& mechanism, Selection&) {
+      set_expression(mechanism, field.address, "");
+      set_parameter(mechanism, field.address, value);
+    });
+  if (field.set) return field.set(app, value);
+  set_number(app, field.address, value);
 }
 
 void set(App& app, const QuantityField& field, double value) {
@@ -135,18 +184,20 @@ std::string fitting_text(const App& app, double value, float room) {
 }
 
 // The number over the field at rest.
-void draw_resting(const App& app, const QuantityField& field, const Shown& shown, float padding) {
+void draw_resting(const App& app, const QuantityField& field, const Shown& shown, float padding, bool given) {
   const UiColors& colors = colors_of(app);
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   const float right = to.x - padding, gap = 5 * app.scale;
   const float unit_width = shown.unit.text.empty() ? 0 : ImGui::CalcTextSize(shown.unit.text.c_str()).x + gap;
-  const float room = right - from.x - padding - unit_width;
+  const float sign = given ? ImGui::CalcTextSize("=").x + gap : 0; // of an expression
+  const float room = right - from.x - padding - unit_width - sign;
   const std::string text = field.various.empty() ? fitting_text(app, shown.value, room) : std::string();
   const float y = from.y + (to.y - from.y - ImGui::GetFontSize()) / 2;
-  const float x = field.framed ? from.x + padding : right - unit_width - digits_width(app, text);
+  const float x = field.framed ? from.x + padding + sign : right - unit_width - digits_width(app, text);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(from, to, true);
   const ImVec4& color = field.standard ? colors.dim : colors.text;
+  if (given) list.AddText({x - sign, y}, packed(colors.accent), "=");
   if (!field.various.empty())
     list.AddText({x, y}, packed(colors.dim), field.various.c_str());
   else
@@ -157,7 +208,7 @@ void draw_resting(const App& app, const QuantityField& field, const Shown& shown
   list.PopClipRect();
 }
 
-std::string tooltip(const QuantityField& field, const Shown& shown) {
+std::string tooltip(const QuantityField& field, const Shown& shown, const std::optional<std::string>& formula) {
   std::string text = field.help;
   const auto line = [&](const std::string& more) { text += (text.empty() ? "" : "\n") + more; };
   if (field.various.empty()) {
@@ -171,12 +222,58 @@ std::string tooltip(const QuantityField& field, const Shown& shown) {
       exact += " = " + short_text(field.value * degrees / 6, 9) + " rpm";
     line(exact + (field.standard ? ", as the scene does not say otherwise" : ""));
   }
+  if (formula) line("=" + *formula);
   if (!field.address.empty()) line(field.address);
   return text;
 }
 
+// "m" for a mass, "stiffness" for a stiffness: a name to begin with.
+std::string suggested_name(const Mechanism& mechanism, const std::string& address) {
+  std::string last = parameter_phrase(address);
+  last = last.substr(0, last.find(" of "));
+  std::string name;
+  for (const char c : last)
+    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  return free_name(mechanism, is_expression_name(name) ? name : "p");
+}
+
+// Of a number of the scene, asked for by the right button or the menu key.
+void number_menu(App& app, const QuantityField& field, const std::optional<std::string>& formula, bool asked) {
+  if (field.address.empty() || !field.various.empty() || field.name.starts_with("parameters/")) return;
+  ImGui::PushID(field.name.c_str());
+  if (asked || takes_menu_key(app, field.name)) ImGui::OpenPopup("number");
+  if (ImGui::BeginPopup("number")) {
+    const std::string phrase = parameter_phrase(field.address);
+    if (!field.address.starts_with("parameters.")) {
+      if (ImGui::Selectable("Name this number"))
+        later(app, [address = field.address, phrase](App& changed) {
+          const std::string name = suggested_name(changed.document.stored(), address);
+          edit(changed, "Name " + phrase, [&](Mechanism& mechanism, Selection&) {
+            name_number(mechanism, address, name);
+          });
+          if (parameter_index(changed.mechanism(), name) >= 0)
+            changed.notice = "The " + phrase + " is the parameter " + name +
+                             " now, with a slider. It is renamed in the scene's inspector, where nothing is selected.";
+        });
+      note_widget(app.widgets, field.name + "/name it");
+    }
+    if (formula) {
+      if (ImGui::Selectable("Leave the value without its expression"))
+        later(app, [address = field.address, phrase](App& changed) {
+          edit(changed, "Take the expression off " + phrase,
+               [&](Mechanism& mechanism, Selection&) { set_expression(mechanism, address, ""); });
+        });
+      note_widget(app.widgets, field.name + "/take off");
+    }
+    if (ImGui::Selectable("Copy the address")) ImGui::SetClipboardText(field.address.c_str());
+    note_widget(app.widgets, field.name + "/copy address");
+    ImGui::EndPopup();
+  }
+  ImGui::PopID();
+}
+
 void pin_button(App& app, const QuantityField& field, bool row_hovered) {
-  if (field.address.empty()) return;
+  if (field.address.empty() || formula_of(app, field)) return;
   const bool pinned = is_pinned(app.mechanism(), field.address);
   const UiColors& colors = colors_of(app);
   const float side = ImGui::GetFrameHeight(), width = margin_width(app);
@@ -209,7 +306,7 @@ void scrub_label(App& app, const std::string& label, const QuantityField& field,
   const bool lit = draggable && (active || ImGui::IsItemHovered());
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   const Shown shown(app, field);
-  if (!active) help_on_hover(tooltip(field, shown).c_str());
+  if (!active) help_on_hover(tooltip(field, shown, formula_of(app, field)).c_str());
   Scrub& scrub = app.inspector.scrub;
   if (ImGui::IsItemActivated()) scrub = {name, shown.value, hand_step(shown.value, shown.unit.text), 0};
   if (active && draggable && scrub.name == name && ImGui::GetIO().MouseDelta.x != 0) {
@@ -272,18 +369,15 @@ void quantity_field(App& app, const QuantityField& field, float width) {
   const UiColors& colors = colors_of(app);
   const float height = ImGui::GetFrameHeight(), padding = 6 * app.scale;
   const Shown shown(app, field);
+  const std::optional<std::string> formula = formula_of(app, field);
   Stepping stepping{field, shown, app.inspector.typing};
   TextField text{.name = field.name,
-                 .text = field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text) : "",
+                 .text = formula            ? "=" + *formula
+                         : field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text)
+                                                 : "",
                  .check = [&app, field](const std::string& typed) { return mistake_in(app, typed, field); },
                  .take =
-                     [field](App& changed, const std::string& typed) {
-                       const double value = typed_quantity(changed, typed, field).value;
-                       if (field.set)
-                         field.set(changed, value);
-                       else
-                         set_number(changed, field.address, value);
-                     },
+                     [field](App& changed, const std::string& typed) { take_typed(changed, field, typed); },
                  .at_once = field.at_once,
                  .drawn_here = false,
                  .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
@@ -299,13 +393,15 @@ void quantity_field(App& app, const QuantityField& field, float width) {
   ImGui::PopStyleVar();
   ImGui::PopFont();
   if (bare) ImGui::PopStyleColor(2);
+  const bool asked = ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right);
   if (!typing) {
-    draw_resting(app, field, shown, padding);
-    help_on_hover(tooltip(field, shown).c_str());
+    draw_resting(app, field, shown, padding, formula.has_value());
+    help_on_hover(tooltip(field, shown, formula).c_str());
   } else if (stepping.stepped) {
     if (const Quantity typed = typed_quantity(app, app.inspector.typing.text, field))
       set(app, field, typed.value);
   }
+  number_menu(app, field, formula, asked);
 }
 
 void quantity_row(App& app, const std::string& label, const QuantityField& field,

@@ -1,0 +1,195 @@
+// Editing what parameters, points and expressions hold together.
+#include "app/document/clipboard.hpp"
+#include "app/document/copies.hpp"
+#include "app/document/document.hpp"
+#include "app/document/formula_edits.hpp"
+#include "app/document/rename.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "tests/catch.hpp"
+
+#include <cmath>
+#include <functional>
+
+using namespace flyball;
+
+namespace {
+
+Mechanism governor() {
+  return load_scene(FLYBALL_ASSETS "/scenes/governor_parametric.json");
+}
+
+// Edits as a hand does: the numbers alone.
+void change(Document& document, const std::function<void(Mechanism&)>& act) {
+  Mechanism next = document.stored();
+  act(next);
+  document.edit("Change", std::move(next), {});
+}
+
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+bool says(const std::string& text, const std::string& part) {
+  INFO(text);
+  const bool found = text.find(part) != std::string::npos;
+  CHECK(found);
+  return found;
+}
+
+} // namespace
+
+TEST_CASE("dragging a joint that stands at a point moves the point and all that stands there") {
+  Document document(governor());
+  change(document, [](Mechanism& m) { m.joints[0].at = {0.01, 0.25, 0.02}; });
+  const Mechanism& m = document.stored();
+  CHECK((m.points[0].at - Vec3(0.01, 0.25, 0.02)).norm() < 1e-15);
+  CHECK((m.joints[1].at - Vec3(0.01, 0.25, 0.02)).norm() < 1e-15);
+  CHECK((m.bodies[0].position - Vec3(0.01, 0.25, 0.02)).norm() < 1e-15);
+  CHECK(std::abs(m.bodies[0].shapes[0].to.y() - 0.28) < 1e-15);
+  CHECK(formula_at(m, "joints.spin.at.0") == "P.x");
+  CHECK(document.undo());
+  CHECK(document.stored() == governor());
+}
+
+TEST_CASE("a number that one parameter determines takes it along") {
+  Document document(governor());
+  document.edit_number("Mass", "bodies.ball1.mass", 2.5);
+  CHECK(document.stored().bodies[2].mass == 2.5);
+  CHECK(get_parameter(document.stored(), "parameters.m") == 2.5);
+  // Through a dependent parameter.
+  document.edit_number("Attachment", "parameters.c", 0.09);
+  CHECK(std::abs(get_parameter(document.stored(), "parameters.L") - 0.18) < 1e-15);
+}
+
+TEST_CASE("what expressions leave open, or never give, is refused with what holds it") {
+  Document document(governor());
+  const Mechanism before = document.stored();
+  // Higher by the pivot, or by the link, or by the arm?
+  says(refusal([&] { document.edit_number("Slide", "joints.slide.coordinate", 0.1); }),
+       "joints.slide.coordinate: given by \"=P.y - S.y\"");
+  says(refusal([&] { document.edit_number("Slide", "joints.slide.coordinate", 0.1); }),
+       "rests on points.P.1, parameters.l, parameters.L");
+  change(document, [](Mechanism& m) { set_expression(m, "bodies.ball2.mass", "2 kg"); });
+  says(refusal([&] { document.edit_number("Mass", "bodies.ball2.mass", 3); }), "given by \"=2 kg\"");
+  document.undo();
+  CHECK(document.stored() == before);
+  // A value that no arm makes.
+  says(refusal([&] { document.edit_number("Arm", "parameters.L", 0.5); }), "the value is not finite");
+  says(refusal([&] { document.explore("Arm", {{"parameters.L", 0.5}}); }), "the value is not finite");
+  CHECK(document.stored() == before);
+  CHECK(document.mechanism() == before);
+}
+
+TEST_CASE("numbers that are tried are evaluated, and put away again") {
+  Document document(governor());
+  document.explore("Arm", {{"parameters.L", 0.2}});
+  CHECK(document.mechanism().bodies[2].position.x() == 0.2);
+  CHECK(document.stored().bodies[2].position.x() == 0.16);
+  CHECK_FALSE(document.unsaved());
+  document.keep_explored();
+  CHECK(document.stored().bodies[2].position.x() == 0.2);
+  CHECK(find_mistakes(document.stored()).empty());
+}
+
+TEST_CASE("any number is given a name, and a name another") {
+  Mechanism m = governor();
+  name_number(m, "joints.slide.damping", "d");
+  CHECK(get_parameter(m, "parameters.d") == 30);
+  CHECK(parameter_unit(m, "parameters.d") == "N s/m");
+  CHECK(formula_at(m, "joints.slide.damping") == "d");
+  set_parameter(m, "parameters.d", 12);
+  CHECK(m.joints[3].coordinates[0].damping == 12);
+  says(refusal([&] { name_number(m, "bodies.spindle.mass", "L"); }), "expected a name of its own");
+  says(refusal([&] { name_number(m, "bodies.spindle.mass", "2L"); }), "letters, figures");
+
+  rename_parameter(m, "L", "arm");
+  CHECK(formula_at(m, "parameters.c") == "arm/2");
+  CHECK(m.sliders[1].parameter == "parameters.arm");
+  rename_point(m, "P", "pivot");
+  CHECK(formula_at(m, "points.B1.0") == "pivot.x - arm");
+  CHECK(users_of(m, "l") == std::vector<std::string>{"points.S.1"});
+  CHECK(read_scene(write_scene(m)) == m);
+
+  Mechanism without = m;
+  remove_parameter(without, "m");
+  CHECK(parameter_index(without, "m") < 0);
+  CHECK(without.bodies[1].mass == 1);
+  CHECK_FALSE(formula_at(without, "bodies.ball1.mass"));
+  CHECK(without.bodies == [&] {
+    Mechanism same = m;
+    for (Body& body : same.bodies) {
+      std::erase_if(body.formulas, [](const Formula& f) { return f.text == "m"; });
+      for (Shape& shape : body.shapes)
+        std::erase_if(shape.formulas, [](const Formula& f) { return f.text.find("(m /") != std::string::npos; });
+    }
+    return same.bodies;
+  }());
+}
+
+TEST_CASE("copies keep expressions where they mean the same") {
+  const Mechanism before = governor();
+  Document document(before);
+  Mechanism next = before;
+  Selection added = paste_text(next, copy_text(before, {{{PartKind::body, "ball1"}}}));
+  document.edit("Paste", next, added);
+  const Mechanism& pasted = document.stored();
+  REQUIRE(pasted.bodies.size() == 5);
+  const std::string name = pasted.bodies.back().name;
+  CHECK(formula_at(pasted, "bodies." + name + ".mass") == "m");
+  CHECK(formula_at(pasted, "bodies." + name + ".position.0") == "B1.x");
+
+  // Moved away, it keeps its mass and stands by itself.
+  next = pasted;
+  next.bodies.push_back(pasted.bodies.back());
+  next.bodies.back().name = "elsewhere";
+  next.bodies.back().position += Vec3(1, 0, 0);
+  document.edit("Copy", next, {});
+  CHECK(formula_at(document.stored(), "bodies.elsewhere.mass") == "m");
+  CHECK_FALSE(formula_at(document.stored(), "bodies.elsewhere.position.0"));
+  CHECK(formula_at(document.stored(), "bodies.elsewhere.position.1") == "B1.y");
+
+  // In another document, with what the expressions rest on.
+  Mechanism other = Document::empty_mechanism();
+  paste_text(other, copy_text(before, {{{PartKind::body, "ball1"}}}));
+  CHECK(formula_at(other, "bodies.ball1.mass") == "m");
+  CHECK(parameter_index(other, "L") >= 0);
+  CHECK(parameter_index(other, "k") < 0);
+  CHECK(other.bodies[0].position == before.bodies[1].position);
+
+  // There, where the names mean something else, the numbers stay.
+  Mechanism strange = Document::empty_mechanism();
+  strange.parameters.push_back({"m", "", 7, "kg", {}, {}});
+  Document there(strange);
+  next = strange;
+  added = paste_text(next, copy_text(before, {{{PartKind::body, "ball1"}}}));
+  there.edit("Paste", next, added);
+  CHECK(there.stored().bodies[0].mass == 1);
+  CHECK_FALSE(formula_at(there.stored(), "bodies.ball1.mass"));
+}
+
+TEST_CASE("another type of joint and other shapes leave no expression behind") {
+  Document document(governor());
+  change(document, [](Mechanism& m) {
+    m.joints[3].type = JointType::fixed;
+    m.joints[3].coordinates.clear();
+    m.bodies[1].shapes.erase(m.bodies[1].shapes.begin());
+  });
+  CHECK_FALSE(formula_at(document.stored(), "joints.slide.coordinate"));
+  CHECK(formula_at(document.stored(), "joints.slide.at.1") == "S.y");
+  CHECK(read_scene(write_scene(document.stored())) == document.stored());
+}
+
+TEST_CASE("a joint stands at a point at a stroke") {
+  Mechanism m = governor();
+  stand_at_point(m, "joints.spin.at", "S");
+  CHECK(m.joints[0].at == m.points[5].at);
+  says(refusal([&] { stand_at_point(m, "joints.spin.at", "nowhere"); }), "there is no parameter \"nowhere.x\"");
+  CHECK(m.joints[0].at == m.points[5].at);
+}
