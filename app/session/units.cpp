@@ -12,7 +12,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double degree = std::numbers::pi / 180, turn = 2 * std::numbers::pi;
 
 } // namespace
 

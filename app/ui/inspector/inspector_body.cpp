@@ -1,9 +1,10 @@
-#include "engine/mechanism/mass_properties.hpp"
 #include "app/document/transform.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/tools/joints_along.hpp"
 #include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 
 #include <fmt/format.h>
 
