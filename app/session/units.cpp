@@ -12,7 +12,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180, turn = 2 * std::numbers::pi;
+constexpr double degree = std::numbers::pi / 180, revolution = 2 * std::numbers::pi;
 constexpr Dimension length{.length = 1}, angle{.angle = 1}, time{.time = 1}, mass{.mass = 1},
     turning{.time = -1, .angle = 1}, force{.length = 1, .mass = 1, .time = -2},
     torque{.length = 2, .mass = 1, .time = -2};
@@ -30,13 +30,13 @@ constexpr std::array units{
     Unit{"mrad", 1e-3, angle},
     Unit{"deg", degree, angle},
     Unit{"°", degree, angle},
-    Unit{"rev", turn, angle},
+    Unit{"rev", revolution, angle},
     Unit{"s", 1, time},
     Unit{"ms", 1e-3, time},
     Unit{"min", 60, time},
     Unit{"h", 3600, time},
-    Unit{"Hz", turn, turning}, // one turn a second
-    Unit{"rpm", turn / 60, turning},
+    Unit{"Hz", revolution, turning}, // one turn a second
+    Unit{"rpm", revolution / 60, turning},
     Unit{"kg", 1, mass},
     Unit{"g", 1e-3, mass},
     Unit{"mg", 1e-6, mass},
@@ -125,7 +125,7 @@ ShownUnit shown_unit(std::string_view si, const DisplayUnits& units) {
     return units.angle == AngleUnit::degree ? ShownUnit{"°", 1, 1} : ShownUnit{"rad", degree, 1 / degree};
   if (si == "rad" && units.angle == AngleUnit::degree) return {"°", 1 / degree, degree};
   if (si == "rad/s" && units.speed == SpeedUnit::degree) return {"°/s", 1 / degree, degree};
-  if (si == "rad/s" && units.speed == SpeedUnit::rpm) return {"rpm", 60 / turn, turn / 60};
+  if (si == "rad/s" && units.speed == SpeedUnit::rpm) return {"rpm", 60 / revolution, revolution / 60};
   return {written_unit(si), 1, 1};
 }
 
