@@ -27,6 +27,9 @@ APP = {
 }
 # What draws has no place in these, nor in the engine.
 WITHOUT_DRAWING = ["app/platform", "app/document", "app/live", "app/plot", "app/session"]
+# What only some systems have is in these.
+OF_A_SYSTEM = ("app/platform/linux/", "engine/mechanism/posix/")
+SYSTEM = re.compile(r"^(sys/|(unistd|fcntl|poll|spawn|dlfcn|pthread|termios|dirent|pwd|glob|windows)\.h$)")
 DRAWING = re.compile(r"^(imgui|GL/|glad/|GLFW/|EGL/)")
 
 
@@ -44,6 +47,8 @@ def violations(source):
             for name in INCLUDE.findall(file.read_text()):
                 if DRAWING.match(name) and (top == "engine" or mine in WITHOUT_DRAWING):
                     found.append(f"{path}: {name}: nothing is drawn here")
+                if SYSTEM.match(name) and not path.startswith(OF_A_SYSTEM):
+                    found.append(f"{path}: {name}: of some systems only")
                 if not name.startswith(("engine/", "app/", "tests/")):
                     continue
                 theirs = folder_of(name)

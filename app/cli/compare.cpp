@@ -29,7 +29,7 @@ Json mark_json(const DirectMark& m) {
   return {{"iterations", m.iterations}, {"error", m.error}, {"run_time_s", m.run_time_s}};
 }
 
-Json to_json(const Comparison& c) {
+Json comparison_json(const Comparison& c) {
   Json out = {{"status", word(c.status)}, {"message", c.message}};
   Json reference = Json::array();
   for (const CoordinateSolution& q : c.reference)
@@ -127,7 +127,7 @@ std::string to_text(const Mechanism& mechanism, const Comparison& c) {
   return out;
 }
 
-struct Options {
+struct CompareCommand {
   SceneArgument scene;
   std::string csv, svg;
   int repeats = 5;
@@ -136,7 +136,7 @@ struct Options {
   bool json = false;
 };
 
-Ending run_compare(const Options& options) {
+Ending run_compare(const CompareCommand& options) {
   check_outputs(options.scene.file, {{"--csv", options.csv}, {"--svg", options.svg}});
   std::optional<ProgressBar> progress(std::in_place, "reading");
   const Mechanism mechanism = options.scene.load();
@@ -164,7 +164,7 @@ Ending run_compare(const Options& options) {
     write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison)));
   if (any && !options.csv.empty()) write_bytes(options.csv, comparison_csv(comparison));
   if (options.json)
-    print_json(with_warnings(to_json(comparison), mechanism));
+    print_json(with_warnings(comparison_json(comparison), mechanism));
   else if (options.csv != "-" && options.svg != "-") // else standard output is theirs
     print_text(to_text(mechanism, comparison));
   return end_with(comparison.status == Status::converged && comparison.complete, options.scene.file,
@@ -174,7 +174,7 @@ Ending run_compare(const Options& options) {
 } // namespace
 
 void add_compare(CLI::App& app, Ending& ending) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareCommand>();
   CLI::App* command =
       app.add_subcommand("compare", "Measure error against run time: direct solution and damped motion");
   options->scene.add_to(*command);

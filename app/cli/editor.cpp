@@ -1,7 +1,6 @@
 #include "app/cli/editor.hpp"
 
 #include "app/cli/command.hpp"
-#include "app/cli/end_signals.hpp"
 #include "app/cli/output.hpp"
 #include "app/cli/picture.hpp"
 #include "app/cli/report_error.hpp"
@@ -9,6 +8,7 @@
 #include "app/cli/window_keys.hpp"
 #include "app/cli/window_state.hpp"
 #include "app/platform/data_folder.hpp"
+#include "app/platform/end_signals.hpp"
 #include "app/platform/system_colors.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/render/window.hpp"

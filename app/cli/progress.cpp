@@ -1,5 +1,7 @@
 #include "app/cli/progress.hpp"
 
+#include "app/platform/terminal.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,12 +9,8 @@
 #include <cmath>
 #include <condition_variable>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <mutex>
 #include <string>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 namespace flyball::cli {
 
@@ -20,21 +18,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Whether standard error is a terminal on which a line can be drawn over.
-bool can_draw() {
-  const char* terminal = std::getenv("TERM");
-  return isatty(STDERR_FILENO) == 1 && !(terminal && std::strcmp(terminal, "dumb") == 0);
-}
-
-int terminal_columns() {
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
-
 } // namespace
 
 ProgressBar::ProgressBar(const char* phase) : phase_(phase) {
-  if (!can_draw()) return;
+  if (!terminal_columns()) return;
   thread_ = std::jthread([this](const std::stop_token& stop) {
     const auto begin = Clock::now();
     std::mutex mutex;
@@ -80,7 +67,7 @@ void ProgressBar::draw(double seconds) {
     text = fmt::format("{:.0f} %, ", std::floor(100 * std::min(part, 1.)));
   text += fmt::format("{:.0f} s", std::floor(seconds));
   std::string line(phase_.load());
-  const int room = terminal_columns() - static_cast<int>(line.size() + text.size()) - 6;
+  const int room = terminal_columns().value_or(80) - static_cast<int>(line.size() + text.size()) - 6;
   if (part >= 0 && room >= 10) {
     const int width = std::min(room, 40);
     const int filled = std::clamp(static_cast<int>(part * width), 0, width);

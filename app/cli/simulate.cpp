@@ -219,7 +219,7 @@ std::string run_text(const Mechanism& mechanism, const Run& run, const std::opti
          fmt::format("\n{} steps, {} evaluations, {:.1f} ms\n", s.steps, s.evaluations, s.run_time_s * 1e3);
 }
 
-struct Options {
+struct SimulateCommand {
   SceneArgument scene;
   std::optional<double> duration;
   double rate = 100, tolerance = 1e-10, step = 0;
@@ -246,7 +246,7 @@ std::vector<std::string> keys_of(const std::map<std::string, T>& map) {
   return keys;
 }
 
-SimulationOptions simulation_of(const Options& options, const Mechanism& mechanism) {
+SimulationOptions simulation_of(const SimulateCommand& options, const Mechanism& mechanism) {
   SimulationOptions wanted;
   wanted.duration = options.duration.value_or(mechanism.simulation.duration);
   wanted.rate = options.rate;
@@ -272,7 +272,7 @@ SimulationOptions simulation_of(const Options& options, const Mechanism& mechani
 }
 
 // Bad film options are told before anything is computed.
-MovieOptions movie_of(const Options& options, double duration) {
+MovieOptions movie_of(const SimulateCommand& options, double duration) {
   MovieOptions movie = options.movie;
   if (movie.file.empty()) return movie;
   read_size(options.size, largest_movie, movie.width, movie.height);
@@ -280,7 +280,7 @@ MovieOptions movie_of(const Options& options, double duration) {
   return movie;
 }
 
-Ending run_simulate(const Options& options) {
+Ending run_simulate(const SimulateCommand& options) {
   if (options.csv == "-" && options.json) throw SceneError("--csv -", "expected no --json beside it");
   check_outputs(
       options.scene.file,
@@ -342,7 +342,7 @@ Ending run_simulate(const Options& options) {
 } // namespace
 
 void add_simulate(CLI::App& app, Ending& ending) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateCommand>();
   CLI::App* command = app.add_subcommand("simulate", "Integrate the damped motion");
   options->scene.add_to(*command);
   command->add_option("--duration", options->duration, "Seconds (default: as the scene says)")

@@ -1,7 +1,8 @@
 #include "app/document/autosave.hpp"
 
 #include "app/document/file_watch.hpp"
-#include "app/document/process.hpp"
+#include "app/platform/access.hpp"
+#include "app/platform/process.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
 
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
-#include <unistd.h>
 
 namespace flyball {
 
@@ -35,7 +35,7 @@ std::string name_in_state(const fs::path& file) {
 }
 
 fs::path free_name(const fs::path& folder, const std::string& begin) {
-  const std::string name = begin + std::to_string(::getpid());
+  const std::string name = begin + std::to_string(process_number());
   std::error_code ignored;
   fs::path path = folder / (name + kept);
   for (int n = 2; fs::exists(path, ignored); ++n) // of a former process with our number
@@ -127,7 +127,7 @@ Autosave parse_autosave(std::string_view text) {
 std::vector<fs::path> autosave_places(const fs::path& file, const fs::path& state_folder) {
   std::vector<fs::path> places;
   // A folder that may not be written to is left alone; one that turns out so is found when writing.
-  if (!file.empty() && ::access(file.parent_path().c_str(), W_OK) == 0)
+  if (!file.empty() && !write_refusal(file.parent_path()))
     places.push_back(free_name(file.parent_path(), name_beside(file)));
   places.push_back(free_name(folder_in(state_folder), name_in_state(file)));
   return places;

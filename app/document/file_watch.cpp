@@ -3,8 +3,6 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
 
-#include <sys/stat.h>
-
 namespace flyball {
 
 namespace {
@@ -35,15 +33,6 @@ std::uint64_t text_hash(std::string_view text) {
   for (const char c : text)
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
   return hash;
-}
-
-std::optional<FileStamp> stamp_of(const std::filesystem::path& file) {
-  struct stat found {};
-  if (::stat(file.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return std::nullopt;
-  constexpr std::int64_t nanoseconds = 1'000'000'000;
-  return FileStamp{static_cast<std::uint64_t>(found.st_dev), static_cast<std::uint64_t>(found.st_ino),
-                   static_cast<std::uint64_t>(found.st_size),
-                   found.st_mtim.tv_sec * nanoseconds + found.st_mtim.tv_nsec};
 }
 
 FileWatch::FileWatch(std::filesystem::path file, std::string_view text)

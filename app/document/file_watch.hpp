@@ -1,6 +1,8 @@
 // Looks after the file of the open document, which other programs may change meanwhile.
 #pragma once
 
+#include "app/platform/file_stamp.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -15,15 +17,6 @@ std::filesystem::path resolved(const std::filesystem::path& file);
 
 // Equal texts have equal hashes, others almost certainly not.
 std::uint64_t text_hash(std::string_view text);
-
-// Differs whenever a file was written or replaced.
-struct FileStamp {
-  std::uint64_t device = 0, inode = 0, size = 0;
-  std::int64_t modified = 0; // ns since 1970
-  bool operator==(const FileStamp&) const = default;
-};
-// Nothing where there is no regular file.
-std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 
 class FileWatch {
  public:

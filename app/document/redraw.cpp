@@ -13,7 +13,7 @@ namespace {
 constexpr double no_motion = 1e-11;
 
 // Half the diagonal of what holds all bodies.
-double size_of(const Mechanism& mechanism) {
+double half_diagonal(const Mechanism& mechanism) {
   Eigen::AlignedBox3d box;
   for (const Body& body : mechanism.bodies)
     box.extend(body.position);
@@ -37,7 +37,7 @@ class Redraw {
  public:
   Redraw(const Mechanism& mechanism, const MechanismPose& pose) : before_(mechanism), pose_(pose) {
     out_.mechanism = mechanism;
-    const double size = size_of(mechanism);
+    const double size = half_diagonal(mechanism);
     for (std::size_t b = 0; b < mechanism.bodies.size(); ++b)
       motions_.push_back(motion_of(mechanism.bodies[b], pose.bodies[b], size));
   }

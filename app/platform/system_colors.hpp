@@ -1,13 +1,11 @@
 // Whether the desktop is light or dark. The one file that knows how to ask.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace flyball {
 
@@ -30,11 +28,6 @@ class SystemColors {
   std::unique_ptr<State> state_;
 };
 
-// What a program prints within the time, which is ended then or when `given_up` says so; nothing where it
-// cannot be run, fails or is late.
-std::optional<std::string> printed_by(const std::vector<std::string>& command,
-                                      std::chrono::milliseconds limit,
-                                      const std::function<bool()>& given_up = {});
 // Of the desktop portal's answers about color-scheme and contrast in org.freedesktop.appearance, as gdbus
 // prints them: "(<<uint32 1>>,)". Nothing where it has no preference.
 std::optional<DesktopColors> read_portal(std::string_view scheme, std::string_view contrast);

@@ -21,7 +21,7 @@ class EglDisplay {
 
   template <typename Function>
   void find(Function& function, const char* name) const {
-    library_.find(function, name);
+    find_function(library_, function, name);
   }
   EGLDisplay get() const { return display_; }
   EGLConfig config() const { return config_; }

@@ -1,6 +1,7 @@
 #include "app/render/fonts.hpp"
 
 #include "app/platform/data_folder.hpp"
+#include "app/platform/font_folders.hpp"
 #include "app/render/icons.hpp"
 
 #include <cmath>
@@ -19,24 +20,12 @@ constexpr ImWchar icon_ranges[] = {icon::first, icon::last, 0};
 
 // Those installed with the program, else where distributions keep the packages' fonts.
 std::string find_font(std::initializer_list<const char*> names) {
-  static constexpr const char* folders[] = {"/usr/share/fonts/opentype/inter/",
-                                            "/usr/share/fonts/truetype/inter/",
-                                            "/usr/share/fonts/inter/",
-                                            "/usr/share/fonts/truetype/jetbrains-mono/",
-                                            "/usr/share/fonts/jetbrains-mono/",
-                                            "/usr/share/fonts/truetype/font-awesome/",
-                                            "/usr/share/fonts-font-awesome/fonts/",
-                                            "/usr/share/fonts/truetype/dejavu/",
-                                            "/usr/share/fonts/dejavu/",
-                                            "/usr/share/fonts/TTF/"};
+  std::vector<std::filesystem::path> folders = font_folders();
+  folders.insert(folders.begin(), data_folder() / "fonts");
   std::error_code ignored;
-  for (const char* name : names) {
-    if (const std::filesystem::path own = data_folder() / "fonts" / name;
-        std::filesystem::exists(own, ignored))
-      return own.string();
-    for (const char* folder : folders)
-      if (std::string path = std::string(folder) + name; std::filesystem::exists(path, ignored)) return path;
-  }
+  for (const char* name : names)
+    for (const std::filesystem::path& folder : folders)
+      if (std::filesystem::exists(folder / name, ignored)) return (folder / name).string();
   return {};
 }
 

@@ -1,18 +1,12 @@
 #include "app/render/movie.hpp"
 
+#include "app/platform/access.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <utility>
 
 namespace flyball {
 
@@ -23,8 +17,8 @@ namespace fs = std::filesystem;
 // ffmpeg holds a whole GIF in memory to find its palette, at four bytes a pixel: 2 GB.
 constexpr double most_gif_pixels = 5e8;
 
-[[noreturn]] void fail(const fs::path& file, int error) {
-  throw SceneError(file.string(), std::string("cannot write: ") + std::strerror(error));
+[[noreturn]] void fail(const fs::path& file, const std::error_code& error) {
+  throw SceneError(file.string(), "cannot write: " + error.message());
 }
 
 std::string ending_of(const fs::path& file) {
@@ -40,8 +34,8 @@ std::string place_problem(const fs::path& file) {
   const fs::file_status status = fs::status(file, ignored);
   if (fs::is_directory(status)) return "it is a folder";
   if (fs::exists(status) && !fs::is_regular_file(status)) return "it is not a regular file";
-  if (fs::exists(status) && ::access(file.c_str(), W_OK) != 0) return std::strerror(errno);
-  return "";
+  const std::error_code refused = fs::exists(status) ? write_refusal(file) : std::error_code();
+  return refused ? refused.message() : "";
 }
 
 int even(int pixels) {
@@ -159,8 +153,8 @@ std::string movie_problem(const fs::path& file, const MovieFormat& format) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) return "there is no folder " + folder.string();
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    return "cannot write to the folder " + folder.string() + ": " + std::strerror(errno);
+  if (const std::error_code refused = write_refusal(folder))
+    return "cannot write to the folder " + folder.string() + ": " + refused.message();
   if (*kind != MovieKind::frames)
     if (const std::string problem = place_problem(file); !problem.empty()) return "cannot write: " + problem;
   return "";
@@ -177,9 +171,9 @@ MovieWriter::MovieWriter(const fs::path& file, const MovieFormat& format) : file
   else
     target_ = fs::weakly_canonical(target_, ignored);
   if (kind_ == MovieKind::frames)
-    part_.emplace(file, target_, PartFile::Kind::folder, 0777);
+    part_.emplace(file, target_, PartFile::Kind::folder);
   else
-    part_.emplace(file, target_, PartFile::Kind::file, 0666);
+    part_.emplace(file, target_, PartFile::Kind::file);
   try {
     if (kind_ != MovieKind::frames) encoder_.emplace(arguments_of(kind_, format, part_->path()));
   } catch (const std::runtime_error& error) {
@@ -230,17 +224,11 @@ bool MovieWriter::finish(double seconds) {
 }
 
 void MovieWriter::place_film() {
-  struct stat made {
-  }, old{};
-  if (::stat(part_->path().c_str(), &made) != 0) fail(file_, errno);
-  if (made.st_size == 0) throw SceneError(file_.string(), "ffmpeg has written nothing");
-  const int fd = ::open(part_->path().c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) fail(file_, errno);
-  const int error = ::fsync(fd) == 0 ? 0 : errno;
-  ::close(fd);
-  if (error != 0) fail(file_, error);
-  if (::stat(target_.c_str(), &old) == 0) ::chmod(part_->path().c_str(), old.st_mode & 07777U);
-  if (!part_->rename_to(target_)) fail(file_, errno);
+  std::error_code failed;
+  const std::uintmax_t size = fs::file_size(part_->path(), failed);
+  if (failed) fail(file_, failed);
+  if (size == 0) throw SceneError(file_.string(), "ffmpeg has written nothing");
+  part_->put_in_place();
   part_.reset();
 }
 
@@ -257,11 +245,12 @@ void MovieWriter::place_frames() {
   check_frames();
   for (std::size_t i = 0; i < added_; ++i) {
     const fs::path to = frame_file(target_, i, format_.frames);
-    if (::rename((part_->path() / to.filename()).c_str(), to.c_str()) == 0) continue;
-    const int error = errno;
+    std::error_code failed, ignored;
+    fs::rename(part_->path() / to.filename(), to, failed);
+    if (!failed) continue;
     for (std::size_t placed = 0; placed < i; ++placed)
-      ::unlink(frame_file(target_, placed, format_.frames).c_str());
-    fail(to, error);
+      fs::remove(frame_file(target_, placed, format_.frames), ignored);
+    fail(to, failed);
   }
   part_.reset();
 }

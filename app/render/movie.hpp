@@ -2,7 +2,7 @@
 // installed. What is made is beside its place until it is whole.
 #pragma once
 
-#include "app/render/encoder.hpp"
+#include "app/platform/encoder.hpp"
 #include "app/render/image.hpp"
 #include "engine/mechanism/part_file.hpp"
 

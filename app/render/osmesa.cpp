@@ -21,10 +21,10 @@ class OsmesaProvider final : public OffscreenProvider {
  public:
   OsmesaProvider() {
     if (!library_) throw GlError("there is no libOSMesa (package libosmesa6)");
-    library_.find(create_, "OSMesaCreateContextAttribs");
-    library_.find(make_current_, "OSMesaMakeCurrent");
-    library_.find(destroy_, "OSMesaDestroyContext");
-    library_.find(address_, "OSMesaGetProcAddress");
+    find_function(library_, create_, "OSMesaCreateContextAttribs");
+    find_function(library_, make_current_, "OSMesaMakeCurrent");
+    find_function(library_, destroy_, "OSMesaDestroyContext");
+    find_function(library_, address_, "OSMesaGetProcAddress");
     constexpr int attributes[] = {OSMESA_FORMAT,
                                   OSMESA_RGBA,
                                   OSMESA_DEPTH_BITS,

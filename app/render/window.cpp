@@ -1,9 +1,9 @@
 #include "app/render/window.hpp"
 
+#include "app/platform/runtime_library.hpp"
 #include "app/render/gl.hpp"
 
 #include <cstdlib>
-#include <dlfcn.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -70,12 +70,10 @@ bool display_available(std::string* reason) {
 void on_lost_display(std::function<void()> call) {
   lost_display() = std::move(call);
   // GLFW has loaded Xlib where it uses it.
-  void* xlib = ::dlopen("libX11.so.6", RTLD_NOW | RTLD_NOLOAD);
-  if (!xlib) return;
+  const RuntimeLibrary xlib({"libX11.so.6"}, RuntimeLibrary::Which::loaded);
   using Handler = int (*)(void*);
-  if (const auto set = reinterpret_cast<Handler (*)(Handler)>(::dlsym(xlib, "XSetIOErrorHandler")))
+  if (const auto set = xlib.find<Handler (*)(Handler)>("XSetIOErrorHandler"))
     set(lost_display() ? display_is_lost : nullptr);
-  ::dlclose(xlib);
 }
 
 Window::Window(const std::string& title, int width, int height) : state_(std::make_unique<State>()) {

@@ -4,9 +4,9 @@
 
 #include "app/document/autosave.hpp"
 #include "app/document/autosaver.hpp"
-#include "app/document/change_watch.hpp"
 #include "app/document/file_watch.hpp"
-#include "app/document/process.hpp"
+#include "app/platform/change_watch.hpp"
+#include "app/platform/process.hpp"
 
 #include <filesystem>
 #include <string>

@@ -15,7 +15,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double no_time = 0.3; // s
+constexpr double no_time_for_map = 0.3; // s
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -307,8 +307,8 @@ void update_map(Session& session) {
   map.revision = session.document.revision();
   const Mechanism now = without_place(session.mechanism(), map.choice);
   map.stale = !(map.cells_of == now);
-  const bool quick =
-      map.cells && map.cells->run_time_s < no_time && (!map.curves || map.curves->run_time_s < no_time);
+  const bool quick = map.cells && map.cells->run_time_s < no_time_for_map &&
+                     (!map.curves || map.curves->run_time_s < no_time_for_map);
   if (!map.stale || !quick) return;
   compute_map(session);
   map.stale = false;

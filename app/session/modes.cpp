@@ -10,9 +10,9 @@ namespace flyball {
 
 namespace {
 
-constexpr double no_time = 0.3; // s
+constexpr double no_time_for_modes = 0.3; // s
 constexpr int most_coordinates = 300;
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double full_turn = 2 * std::numbers::pi;
 
 FoundModes find(std::shared_ptr<const Mechanism> mechanism,
                 const std::vector<std::pair<std::string, double>>& start,
@@ -87,7 +87,7 @@ void update_modes(Session& session) {
     }
   if (session.mode == Mode::explore && converged(session) && modes.asked != session.answer.ticket) {
     const bool idle = !modes.task || !modes.task->running();
-    const bool quick = !modes.result || modes.result->run_time_s < no_time;
+    const bool quick = !modes.result || modes.result->run_time_s < no_time_for_modes;
     if (idle && quick) find_modes_again(session);
   }
   pose(session);
@@ -130,18 +130,18 @@ void advance_mode(Session& session, double seconds) {
   const VibrationMode* mode = moving_mode(session);
   if (!mode || !session.study.modes.playing) return;
   double& phase = session.study.modes.phase;
-  phase = std::fmod(phase + turn * seconds / shown_period(*mode), turn);
+  phase = std::fmod(phase + full_turn * seconds / shown_period(*mode), full_turn);
 }
 
 double shown_period(const VibrationMode& mode) {
   const std::optional<double> slower = shown_slower(mode);
-  return slower ? *slower * turn / mode.frequency : 2;
+  return slower ? *slower * full_turn / mode.frequency : 2;
 }
 
 std::optional<double> shown_slower(const VibrationMode& mode) {
   if (!mode.oscillates()) return std::nullopt;
   constexpr double shortest = 0.8, longest = 4; // s, of what can be watched as it is
-  const double period = turn / mode.frequency;
+  const double period = full_turn / mode.frequency;
   if (period >= shortest && period <= longest) return 1;
   // A round factor that brings it to about two seconds.
   const double wanted = 2 / period;

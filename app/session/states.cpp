@@ -9,7 +9,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double no_time = 0.3; // s
+constexpr double no_time_for_states = 0.3; // s
 
 FoundStates find_states(std::shared_ptr<const Mechanism> mechanism,
                         const Background<FoundStates>::Watch& watch) {
@@ -56,7 +56,8 @@ void update_states(Session& session) {
       }
     }
   if (session.mode != Mode::explore) return;
-  const bool quick = states.result && states.result->run_time_s < no_time && !states.task->running();
+  const bool quick =
+      states.result && states.result->run_time_s < no_time_for_states && !states.task->running();
   if (!states.task || (quick && states.asked != session.document.revision())) search_states(session);
 }
 

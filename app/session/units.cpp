@@ -12,7 +12,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180, turn = 2 * std::numbers::pi;
+constexpr double degree = std::numbers::pi / 180, revolution = 2 * std::numbers::pi;
 
 } // namespace
 
@@ -51,7 +51,7 @@ ShownUnit shown_unit(std::string_view si, const DisplayUnits& units) {
     return units.angle == AngleUnit::degree ? ShownUnit{"°", 1, 1} : ShownUnit{"rad", degree, 1 / degree};
   if (si == "rad" && units.angle == AngleUnit::degree) return {"°", 1 / degree, degree};
   if (si == "rad/s" && units.speed == SpeedUnit::degree) return {"°/s", 1 / degree, degree};
-  if (si == "rad/s" && units.speed == SpeedUnit::rpm) return {"rpm", 60 / turn, turn / 60};
+  if (si == "rad/s" && units.speed == SpeedUnit::rpm) return {"rpm", 60 / revolution, revolution / 60};
   return {written_unit(si), 1, 1};
 }
 

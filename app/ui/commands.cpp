@@ -91,7 +91,7 @@ void choose_none(App& app) {
   select(app, {});
 }
 
-const std::array table{
+const std::array all_commands{
     Command{.id = "file.new",
             .title = "New",
             .help = "An empty document.",
@@ -601,12 +601,12 @@ bool pressed(const Command& command, KeyPress key) {
 } // namespace
 
 std::span<const Command> commands() {
-  return table;
+  return all_commands;
 }
 
 const Command& command(std::string_view id) {
-  const auto found = std::ranges::find(table, id, &Command::id);
-  if (found == table.end()) throw std::out_of_range("no command " + std::string(id));
+  const auto found = std::ranges::find(all_commands, id, &Command::id);
+  if (found == all_commands.end()) throw std::out_of_range("no command " + std::string(id));
   return *found;
 }
 
@@ -651,7 +651,7 @@ bool keys_are_wanted(const App& app) {
 void act_on(App& app, const KeyPress& key) {
   // The first Escape gives the keys back to the view.
   if (key == plain(keys::escape) && std::exchange(app.commands.focus, {}).in_panel) return;
-  for (const Command& command : table)
+  for (const Command& command : all_commands)
     if (pressed(command, key) && is_enabled(app, command)) {
       if (may_command(app, key)) command.run(app);
       return;

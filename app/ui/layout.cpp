@@ -10,8 +10,8 @@ namespace flyball {
 
 namespace {
 
-constexpr float toolbar_height = 68, narrow = 1060; // points
-constexpr float key_step = 10;                      // points that a key moves a line between panels
+constexpr float toolbar_height = 68, narrow_width = 1060; // points
+constexpr float key_step = 10;                            // points that a key moves a line between panels
 constexpr float least_panel = 230, most_panel = 560, least_view = 240; // points
 
 float panel_width(float wanted, float room) {
@@ -95,7 +95,7 @@ Layout layout_of(const App& app, float width, float height) {
     below -= study;
     layout.study = {0, top + below, width, study};
   }
-  layout.stacked = width < narrow * s;
+  layout.stacked = width < narrow_width * s;
   if (layout.stacked) {
     const float panel = std::round(s * panel_width(app.panels.stacked_width, width / s - least_view));
     layout.view = {0, top, std::max(width - panel, 1.f), below};

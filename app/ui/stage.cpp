@@ -11,7 +11,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float text_size = 16; // points
+constexpr float interface_text_size = 16; // points
 constexpr int many_solids = 3000;
 constexpr std::chrono::milliseconds rest{250}; // without movement, until a draft is drawn in full
 
@@ -59,7 +59,7 @@ Stage::~Stage() {
 void Stage::set_scale(App& app, float scale) {
   ImGui::SetCurrentContext(context_.get());
   app.scale = scale;
-  app.fonts = load_fonts(*ImGui::GetIO().Fonts, text_size, scale);
+  app.fonts = load_fonts(*ImGui::GetIO().Fonts, interface_text_size, scale);
   ImGui::GetIO().FontDefault = app.fonts.text;
   renderer_.upload_fonts();
   apply_style(app.theme, scale);

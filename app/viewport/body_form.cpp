@@ -33,7 +33,7 @@ void draw_shape(Sketch& sketch, const Body& body, const Shape& shape, double uni
 }
 
 // Balls grow with the cube root of their mass, within reason.
-double ball_radius(const Assembly& assembly, const Body& body) {
+double body_ball_radius(const Assembly& assembly, const Body& body) {
   const double unit = assembly.scale.unit;
   if (!(assembly.middle_mass > 0) || !(body.mass > 0)) return 0.7 * unit;
   return 1.9 * unit * std::clamp(std::cbrt(body.mass / assembly.middle_mass), 0.8, 1.5);
@@ -157,11 +157,11 @@ void derive(Sketch& sketch, const Assembly& assembly, std::size_t index) {
   if (drawn.empty()) {
     if (slider > 0) return;
     if (std::any_of(attachments.begin(), attachments.end(), turns)) return draw_inertia(sketch, body, unit);
-    return sketch.sphere(hub, ball_radius(assembly, body));
+    return sketch.sphere(hub, body_ball_radius(assembly, body));
   }
   if (!(body.mass > 0) || slider > 0) return;
   const bool between = drawn.size() > 1 && distance_to_segment(hub, drawn[0], drawn[1]) < 0.5 * unit;
-  sketch.sphere(hub, between ? 0.8 * unit : ball_radius(assembly, body));
+  sketch.sphere(hub, between ? 0.8 * unit : body_ball_radius(assembly, body));
 }
 
 } // namespace

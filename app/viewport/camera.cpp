@@ -9,7 +9,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double nearest = 1e-12, farthest = 1e15; // m
+constexpr double nearest_plane = 1e-12, farthest_plane = 1e15; // m
 constexpr double steepest = std::numbers::pi / 2;
 
 // Horizontal axes of a view from azimuth 0: to the right and towards the viewer.
@@ -65,7 +65,7 @@ void ViewCamera::pan(double dx, double dy, ViewSize view) {
 }
 
 void ViewCamera::zoom(double factor, Vec2 cursor, ViewSize view) {
-  const double next = std::clamp(distance / factor, nearest, farthest);
+  const double next = std::clamp(distance / factor, nearest_plane, farthest_plane);
   const double x = cursor.x() - 0.5 * view.width, y = 0.5 * view.height - cursor.y();
   target += (1 - next / distance) * pixel_size(view) * (x * right() + y * screen_up());
   distance = next;
@@ -95,7 +95,7 @@ void ViewCamera::fit(const Bounds& bounds, ViewSize view, double margin) {
       far_enough = std::max({far_enough, ahead + margin * std::abs(d.dot(x)) / tan_x,
                              ahead + margin * std::abs(d.dot(y)) / tan_y});
     }
-    distance = std::clamp(std::max(far_enough, 1e-3 * radius), nearest, farthest);
+    distance = std::clamp(std::max(far_enough, 1e-3 * radius), nearest_plane, farthest_plane);
     if (orthographic) return;
     Vec2 low(1e300, 1e300), high(-1e300, -1e300);
     for (const Vec3& corner : corners) {

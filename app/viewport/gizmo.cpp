@@ -16,7 +16,7 @@ constexpr double arrow_from = 12, arrow_to = 76, patch_from = 22, patch_to = 36,
 constexpr double shortest_arrow = 16; // points in the picture; a shorter one points at the viewer
 constexpr double flattest_patch = 0.2, flattest_ring = 0.2; // sine of the angle between plane and view
 constexpr int ring_steps = 72;
-constexpr double reach = 6; // points around a line that still count as on it
+constexpr double line_reach = 6; // points around a line that still count as on it
 
 constexpr std::array arrows{Handle::x, Handle::y, Handle::z};
 constexpr std::array patches{Handle::yz, Handle::zx, Handle::xy};
@@ -207,7 +207,7 @@ std::vector<HandleShape> handle_shapes(const Gizmo& gizmo) {
 
 Handle handle_at(const std::vector<HandleShape>& shapes, Vec2 cursor, double point) {
   Handle best = Handle::none;
-  double nearest = reach * point;
+  double nearest = line_reach * point;
   for (const HandleShape& shape : shapes) {
     double distance = std::numeric_limits<double>::infinity();
     switch (shape.form) {
@@ -217,7 +217,7 @@ Handle handle_at(const std::vector<HandleShape>& shapes, Vec2 cursor, double poi
       break;
     case HandleForm::patch:
       // Behind the arrows.
-      if (inside(shape.line, cursor)) distance = 0.6 * reach * point;
+      if (inside(shape.line, cursor)) distance = 0.6 * line_reach * point;
       break;
     case HandleForm::arrow:
     case HandleForm::ring: distance = distance_to(shape.line, cursor); break;

@@ -7,7 +7,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double rounding = 1e-9; // beside the largest
+constexpr double load_rounding = 1e-9; // beside the largest
 
 constexpr std::array all_kinds{LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::weight,
                                LoadKind::applied,  LoadKind::drag,  LoadKind::inertia};
@@ -25,7 +25,7 @@ LoadScales::LoadScales(const std::vector<Load>& loads, bool in_proportion, doubl
     for (const bool moment : {false, true})
       most[moment ? 1 : 0] = std::max(most[moment ? 1 : 0], of(largest_, kind, moment));
   // Moments of a mechanism that has none are rounding of its forces at their arms.
-  const std::array least{rounding * most[0], rounding * std::max(most[1], most[0] * longest)};
+  const std::array least{load_rounding * most[0], load_rounding * std::max(most[1], most[0] * longest)};
   for (const LoadKind kind : all_kinds)
     for (const std::size_t moment : {0, 1}) {
       const auto k = static_cast<std::size_t>(kind);
@@ -36,7 +36,7 @@ LoadScales::LoadScales(const std::vector<Load>& loads, bool in_proportion, doubl
 
 double LoadScales::length(LoadKind kind, bool moment, double size) const {
   const double full = of(full_, kind, moment);
-  if (!(full > 0) || !(size > rounding * full)) return 0;
+  if (!(full > 0) || !(size > load_rounding * full)) return 0;
   const double share = size / full;
   return longest_ * (in_proportion_ ? share : std::cbrt(share));
 }

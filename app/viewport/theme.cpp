@@ -4,15 +4,15 @@ namespace flyball {
 
 namespace {
 
-constexpr std::array<Color, 6> hues = {okabe_ito::green,  okabe_ito::sky_blue,   okabe_ito::purple,
-                                       okabe_ito::yellow, okabe_ito::vermillion, rgb(0x7B8794)};
+constexpr std::array<Color, 6> base_hues = {okabe_ito::green,  okabe_ito::sky_blue,   okabe_ito::purple,
+                                            okabe_ito::yellow, okabe_ito::vermillion, rgb(0x7B8794)};
 
 // Each hue, then each in a darker shade.
-constexpr std::array<Color, 12> body_colors = [] {
+constexpr std::array<Color, 12> graded_hues = [] {
   std::array<Color, 12> all;
-  for (std::size_t i = 0; i < hues.size(); ++i) {
-    all[i] = hues[i];
-    all[i + hues.size()] = mix(hues[i], okabe_ito::black, 0.38f);
+  for (std::size_t i = 0; i < base_hues.size(); ++i) {
+    all[i] = base_hues[i];
+    all[i + base_hues.size()] = mix(base_hues[i], okabe_ito::black, 0.38f);
   }
   return all;
 }();
@@ -31,7 +31,7 @@ constexpr Palette light = {
     .slack = rgb(0x8C949D),
     .cut = rgb(0xA8487E),
     .force = rgb(0x30363D),
-    .bodies = body_colors,
+    .bodies = graded_hues,
     .axis_x = okabe_ito::vermillion,
     .axis_y = okabe_ito::green,
     .axis_z = okabe_ito::blue,
@@ -51,14 +51,14 @@ constexpr Palette dark = {
     .slack = rgb(0x9AA3AD),
     .cut = rgb(0xE08DBB),
     .force = rgb(0xE6EBF0),
-    .bodies = body_colors,
+    .bodies = graded_hues,
     .axis_x = rgb(0xE8762B),
     .axis_y = rgb(0x1DB58A),
     .axis_z = rgb(0x4DA6E8),
 };
 
 // Each hue, then each in a lighter shade: a darker one would be too near to black.
-constexpr std::array<Color, 12> light_body_colors = [] {
+constexpr std::array<Color, 12> light_graded_hues = [] {
   constexpr std::array<Color, 6> light_hues = {rgb(0x1FD6A0), rgb(0x56B4E9), rgb(0xE58DC0),
                                                rgb(0xF0E442), rgb(0xFF8A3D), rgb(0xB4BEC8)};
   std::array<Color, 12> all;
@@ -83,7 +83,7 @@ constexpr Palette high_contrast = {
     .slack = rgb(0xC8C8C8),
     .cut = rgb(0xFF9BD2),
     .force = rgb(0xFFFFFF),
-    .bodies = light_body_colors,
+    .bodies = light_graded_hues,
     .axis_x = rgb(0xFF8A3D),
     .axis_y = rgb(0x2EE6A8),
     .axis_z = rgb(0x5CB8FF),

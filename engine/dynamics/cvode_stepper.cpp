@@ -45,7 +45,7 @@ int project(sundials::Real t, N_Vector y, N_Vector correction, sundials::Real, N
   return 0;
 }
 
-std::string clause(int flag) {
+std::string cvode_clause(int flag) {
   switch (flag) {
   case CV_ERR_FAILURE: return "no step is short enough for the tolerance";
   case CV_CONV_FAILURE: return "the implicit step finds no solution, however short";
@@ -133,7 +133,7 @@ class CvodeStepper : public Stepper {
         if (found[static_cast<std::size_t>(i)] != 0) out.events.push_back(i);
     } else if (flag < 0) {
       out.kind = StepOutcome::failed;
-      out.message = clause(flag);
+      out.message = cvode_clause(flag);
     }
     return out;
   }

@@ -12,7 +12,7 @@
 namespace flyball {
 namespace {
 
-std::size_t at(int i) {
+std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
@@ -42,13 +42,13 @@ void Recorder::lay_out() {
     track.count = r.count;
     track.angle = r.angle;
     if (r.cut >= 0) {
-      const JointType type = system.cuts[at(r.cut)].type;
+      const JointType type = system.cuts[index(r.cut)].type;
       track.dependent = true;
       track.rotation = is_rotation_vector(type, r.index);
       track.turns = r.angle && !track.rotation;
     } else {
-      const CoordinateInfo& c = system.coordinates[at(r.coordinate)];
-      const Link& link = system.links[at(c.link)];
+      const CoordinateInfo& c = system.coordinates[index(r.coordinate)];
+      const Link& link = system.links[index(c.link)];
       track.driven = link.drive >= 0;
       track.rotation = link.type == LinkType::spherical;
       track.turns = turns_freely(system, model_->parameters, c.link);
@@ -57,8 +57,8 @@ void Recorder::lay_out() {
   }
   for (std::size_t d = 0; d < system.drives.size(); ++d) {
     if (system.drives[d].motor != static_cast<int>(d)) continue;
-    const Link& link = system.links[at(system.drives[d].link)];
-    const TreeJoint& joint = system.tree_joints[at(link.tree_joint)];
+    const Link& link = system.links[index(system.drives[d].link)];
+    const TreeJoint& joint = system.tree_joints[index(link.tree_joint)];
     run_.drives.push_back(
         {joint.name, link.coordinate, coordinate_count(joint.type), link.type == LinkType::revolute, {}});
   }
@@ -70,8 +70,8 @@ void Recorder::lay_out() {
 }
 
 void Recorder::name(const StopElement& stop, StopEvent& event) const {
-  const Link& link = model_->system.links[at(stop.link)];
-  event.joint = model_->system.tree_joints[at(link.tree_joint)].name;
+  const Link& link = model_->system.links[index(stop.link)];
+  event.joint = model_->system.tree_joints[index(link.tree_joint)].name;
   event.index = link.coordinate + stop.component;
 }
 
@@ -87,19 +87,19 @@ void Recorder::record_coordinates(double t) {
     CoordinateTrack& track = run_.coordinates[i];
     if (r.cut >= 0) {
       if (measured != r.cut) {
-        const CutParameters& numbers = model_->parameters.cuts[at(r.cut)];
-        joint = joint_coordinates(system.cuts[at(r.cut)], numbers, equations_->kinematics());
-        velocity = relative_velocity(system.cuts[at(r.cut)], numbers, equations_->kinematics());
+        const CutParameters& numbers = model_->parameters.cuts[index(r.cut)];
+        joint = joint_coordinates(system.cuts[index(r.cut)], numbers, equations_->kinematics());
+        velocity = relative_velocity(system.cuts[index(r.cut)], numbers, equations_->kinematics());
         measured = r.cut;
       }
       const double rate = joint.rate.row(r.index) * velocity;
-      track.value.push_back(go_on_from(track, joint.value[at(r.index)], rate));
+      track.value.push_back(go_on_from(track, joint.value[index(r.index)], rate));
       track.rate.push_back(rate);
       continue;
     }
-    const CoordinateInfo& c = system.coordinates[at(r.coordinate)];
-    const Link& link = system.links[at(c.link)];
-    const LinkParameters& p = model_->parameters.links[at(c.link)];
+    const CoordinateInfo& c = system.coordinates[index(r.coordinate)];
+    const Link& link = system.links[index(c.link)];
+    const LinkParameters& p = model_->parameters.links[index(c.link)];
     if (link.drive >= 0) {
       track.value.push_back(p.drawn + (p.start + p.speed * t));
       track.rate.push_back(p.speed);
@@ -143,7 +143,7 @@ bool Recorder::has_jacobi() {
   const System& system = model_->system;
   const Parameters& p = model_->parameters;
   for (const BodyForceElement& e : system.body_forces) {
-    const Force& f = model_->mechanism.forces[at(e.force)];
+    const Force& f = model_->mechanism.forces[index(e.force)];
     if (e.link >= 0 && (f.type != ForceType::force || f.frame != ForceFrame::world)) return false;
   }
   if (system.drives.empty() || p.phase_free) return true;
@@ -161,7 +161,7 @@ bool Recorder::has_jacobi() {
   for (int phase = 0; phase < 5; ++phase) {
     double slowest = 0;
     for (const DrivenCoordinate& d : system.drives)
-      if (const double speed = std::abs(p.links[at(d.link)].speed); speed > 0)
+      if (const double speed = std::abs(p.links[index(d.link)].speed); speed > 0)
         slowest = slowest == 0 ? speed : std::min(slowest, speed);
     const double t = slowest > 0 ? 1.3 * phase / slowest : 0;
     all_q.head(system.nq) = q;
@@ -215,7 +215,7 @@ void Recorder::record_reactions() {
       continue;
     }
     for (std::size_t c = 0; c < system.cuts.size(); ++c)
-      if (model_->mechanism.joints[at(system.cuts[c].joint)].name == track.joint) push(forces.cuts[c]);
+      if (model_->mechanism.joints[index(system.cuts[c].joint)].name == track.joint) push(forces.cuts[c]);
   }
 }
 
@@ -246,7 +246,7 @@ void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
     for (std::size_t e = 0; e < system.drives.size(); ++e)
       if (system.drives[e].motor == static_cast<int>(d))
         torque += equations_->drive_force(static_cast<int>(e)) *
-                  model_->parameters.links[at(system.drives[e].link)].gear_ratio;
+                  model_->parameters.links[index(system.drives[e].link)].gear_ratio;
     run_.drives[motor++].torque.push_back(torque);
   }
   RunStatistics& s = run_.statistics;

@@ -15,7 +15,7 @@ int project(sundials::Real t, N_Vector y, void* data) {
   return ode.project(t, sundials::data(y)) ? 0 : sundials::failure(ode);
 }
 
-std::string clause(int flag) {
+std::string runge_kutta_clause(int flag) {
   switch (flag) {
   case ARK_ERR_FAILURE: return "no step is short enough for the tolerance";
   case ARK_RHSFUNC_FAIL:
@@ -94,7 +94,7 @@ class RungeKuttaStepper : public Stepper {
       out.time = time_;
       if (flag < 0) {
         out.kind = StepOutcome::failed;
-        out.message = clause(flag);
+        out.message = runge_kutta_clause(flag);
         return out;
       }
       if (flag == ARK_ROOT_RETURN) {

@@ -6,8 +6,9 @@
 namespace flyball {
 namespace {
 
-constexpr double no_force = 1e-8; // of the terms it is made of
-constexpr double enough = 1e-6;   // of the terms of each equation: Newton's iteration corrects the rest
+constexpr double no_force_in_step = 1e-8; // of the terms it is made of
+constexpr double enough_for_step =
+    1e-6; // of the terms of each equation: Newton's iteration corrects the rest
 
 } // namespace
 
@@ -39,7 +40,7 @@ bool SparseStep::nothing_acts(const MotionPoint& point, const std::vector<int>& 
                               const std::vector<bool>& unconstrained) {
   take_in(point, none_);
   for (const int v : coordinates)
-    if (std::abs(residual_.f[v]) > no_force * magnitudes_.force[v]) return false;
+    if (std::abs(residual_.f[v]) > no_force_in_step * magnitudes_.force[v]) return false;
   assemble(1, 1);
   return bodies_.unconstrained() == unconstrained;
 }
@@ -68,7 +69,7 @@ void SparseStep::solve(const Eigen::VectorXd& b_q, Eigen::VectorXd& s) {
   products_.stiffness(scaled_, product_);
   force_ -= product_;
   bodies_.assemble_rhs(force_, none_, reduced_);
-  if (reduced_.size() > 0) factors_.solve(reduced_, enough);
+  if (reduced_.size() > 0) factors_.solve(reduced_, enough_for_step);
   change_.setZero(s.size());
   bodies_.extract_solution(reduced_, change_);
   s += change_.cwiseProduct(column);

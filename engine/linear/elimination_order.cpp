@@ -9,7 +9,7 @@
 namespace flyball {
 namespace {
 
-std::size_t at(int i) {
+std::size_t node(int i) {
   return static_cast<std::size_t>(i);
 }
 
@@ -27,14 +27,14 @@ std::vector<int> minimum_degree(int size, const std::vector<Eigen::Triplet<char>
 
 std::vector<int> elimination_order(const SparsePattern& pattern) {
   const int size = pattern.size, motions = pattern.motions;
-  std::vector<std::vector<int>> tied(at(size - motions)); // motions, by multiplier
+  std::vector<std::vector<int>> tied(node(size - motions)); // motions, by multiplier
   std::vector<Eigen::Triplet<char>> edges;
   for (std::size_t e = 0; e < pattern.rows.size(); ++e) {
     const auto [j, i] = std::minmax(pattern.rows[e], pattern.columns[e]);
     if (i < motions)
       edges.emplace_back(i, j);
     else
-      tied[at(i - motions)].push_back(j);
+      tied[node(i - motions)].push_back(j);
   }
   for (std::vector<int>& all : tied) {
     std::ranges::sort(all);
@@ -44,26 +44,26 @@ std::vector<int> elimination_order(const SparsePattern& pattern) {
         edges.emplace_back(all[a], all[b]);
   }
   const std::vector<int> motion = minimum_degree(motions, edges);
-  std::vector<int> place(at(motions));
+  std::vector<int> place(node(motions));
   for (int p = 0; p < motions; ++p)
-    place[at(motion[at(p)])] = p;
+    place[node(motion[node(p)])] = p;
 
-  std::vector<std::vector<int>> next(at(motions) + 1); // multipliers, by the place that they follow
+  std::vector<std::vector<int>> next(node(motions) + 1); // multipliers, by the place that they follow
   for (int u = motions; u < size; ++u) {
-    std::vector<int>& places = tied[at(u - motions)];
+    std::vector<int>& places = tied[node(u - motions)];
     for (int& m : places)
-      m = place[at(m)];
+      m = place[node(m)];
     std::ranges::sort(places);
     int last = places.empty() ? motions - 1 : places.front();
     for (const int p : places)
       if (p == last + 1) ++last;
-    next[at(last + 1)].push_back(u);
+    next[node(last + 1)].push_back(u);
   }
   std::vector<int> order;
-  order.reserve(at(size));
+  order.reserve(node(size));
   for (int p = -1; p < motions; ++p) {
-    if (p >= 0) order.push_back(motion[at(p)]);
-    order.insert(order.end(), next[at(p + 1)].begin(), next[at(p + 1)].end());
+    if (p >= 0) order.push_back(motion[node(p)]);
+    order.insert(order.end(), next[node(p + 1)].begin(), next[node(p + 1)].end());
   }
   return order;
 }

@@ -14,7 +14,7 @@ namespace {
 // K along the rows; not so much that what rounding leaves of it elsewhere would count.
 constexpr double augmentation = 10;
 
-std::size_t at(int i) {
+std::size_t slot_at(int i) {
   return static_cast<std::size_t>(i);
 }
 
@@ -59,14 +59,14 @@ struct SparseFactorization::State {
   void substitute(Eigen::VectorXd& x);
 
   double gradient(const Entry& e) const {
-    return upper.empty() || e.below ? lower[at(e.slot)] : upper[at(e.slot)];
+    return upper.empty() || e.below ? lower[slot_at(e.slot)] : upper[slot_at(e.slot)];
   }
   // Calls work(i, j, slot) for every entry of the lower triangle.
   template <class Work>
   void for_entries(const Work& work) const {
     for (int j = 0; j < pattern.size; ++j)
-      for (int e = columns.start[at(j)]; e < columns.start[at(j) + 1]; ++e)
-        work(columns.row[at(e)], j, at(e));
+      for (int e = columns.start[slot_at(j)]; e < columns.start[slot_at(j) + 1]; ++e)
+        work(columns.row[slot_at(e)], j, slot_at(e));
   }
 };
 
@@ -76,13 +76,13 @@ void SparseFactorization::State::analyse() {
   const std::vector<int> post = Multifrontal::postorder(columns);
   std::vector<int> reordered(order.size());
   for (std::size_t p = 0; p < post.size(); ++p)
-    reordered[p] = order[at(post[p])];
+    reordered[p] = order[slot_at(post[p])];
   order = std::move(reordered);
   lay_out();
   find_rows();
   slot.resize(pattern.rows.size());
   for (std::size_t e = 0; e < slot.size(); ++e) {
-    const int i = place[at(pattern.rows[e])], j = place[at(pattern.columns[e])];
+    const int i = place[slot_at(pattern.rows[e])], j = place[slot_at(pattern.columns[e])];
     const int found = find_slot(std::max(i, j), std::min(i, j));
     slot[e] = !pattern.symmetric && i < j ? -1 - found : found;
   }
@@ -93,21 +93,21 @@ void SparseFactorization::State::analyse() {
 
 // The augmented matrix's entries in this order.
 void SparseFactorization::State::lay_out() {
-  const auto n = at(pattern.size);
+  const auto n = slot_at(pattern.size);
   place.resize(n);
   for (std::size_t p = 0; p < n; ++p)
-    place[at(order[p])] = static_cast<int>(p);
+    place[slot_at(order[p])] = static_cast<int>(p);
   std::vector<std::vector<int>> rows(n), tied(n);
   for (std::size_t e = 0; e < pattern.rows.size(); ++e) {
     const auto [first, second] = std::minmax(pattern.rows[e], pattern.columns[e]);
-    const auto [j, i] = std::minmax(place[at(first)], place[at(second)]);
-    rows[at(j)].push_back(i);
-    if (second >= pattern.motions) tied[at(second)].push_back(place[at(first)]);
+    const auto [j, i] = std::minmax(place[slot_at(first)], place[slot_at(second)]);
+    rows[slot_at(j)].push_back(i);
+    if (second >= pattern.motions) tied[slot_at(second)].push_back(place[slot_at(first)]);
   }
   for (const std::vector<int>& all : tied)
     for (const int i : all)
       for (const int j : all)
-        if (j <= i) rows[at(j)].push_back(i);
+        if (j <= i) rows[slot_at(j)].push_back(i);
   columns.start.assign(1, 0);
   columns.row.clear();
   for (std::size_t j = 0; j < n; ++j) {
@@ -120,16 +120,16 @@ void SparseFactorization::State::lay_out() {
 }
 
 int SparseFactorization::State::find_slot(int i, int j) const {
-  const auto begin = columns.row.begin() + columns.start[at(j)];
-  const auto end = columns.row.begin() + columns.start[at(j) + 1];
+  const auto begin = columns.row.begin() + columns.start[slot_at(j)];
+  const auto end = columns.row.begin() + columns.start[slot_at(j) + 1];
   return static_cast<int>(std::lower_bound(begin, end, i) - columns.row.begin());
 }
 
 void SparseFactorization::State::find_rows() {
-  std::vector<std::vector<int>> tied(at(pattern.size - pattern.motions));
+  std::vector<std::vector<int>> tied(slot_at(pattern.size - pattern.motions));
   for (std::size_t e = 0; e < pattern.rows.size(); ++e)
     if (const auto [motion, row] = std::minmax(pattern.rows[e], pattern.columns[e]); row >= pattern.motions)
-      tied[at(row - pattern.motions)].push_back(place[at(motion)]);
+      tied[slot_at(row - pattern.motions)].push_back(place[slot_at(motion)]);
   first_entry.assign(1, 0);
   entries.clear();
   multiplier.clear();
@@ -138,7 +138,7 @@ void SparseFactorization::State::find_rows() {
     std::vector<int>& all = tied[r];
     std::ranges::sort(all);
     all.erase(std::ranges::unique(all).begin(), all.end());
-    const int m = place[at(pattern.motions) + r];
+    const int m = place[slot_at(pattern.motions) + r];
     for (std::size_t a = 0; a < all.size(); ++a) {
       const bool below = all[a] < m;
       entries.push_back({all[a], below ? find_slot(m, all[a]) : find_slot(all[a], m), below});
@@ -159,9 +159,9 @@ void SparseFactorization::State::equilibrate() {
   std::ranges::fill(upper, 0);
   for (std::size_t e = 0; e < slot.size(); ++e)
     if (slot[e] >= 0)
-      lower[at(slot[e])] += given[e];
+      lower[slot_at(slot[e])] += given[e];
     else
-      upper[at(-1 - slot[e])] += given[e];
+      upper[slot_at(-1 - slot[e])] += given[e];
   scale.setOnes(pattern.size);
   for (int pass = 0;; ++pass) {
     largest.setZero(pattern.size);
@@ -193,8 +193,8 @@ void SparseFactorization::State::augment(std::vector<double>& with_lower,
   for (std::size_t r = 0; r < multiplier.size(); ++r)
     for (int a = first_entry[r]; a < first_entry[r + 1]; ++a)
       for (int b = first_entry[r]; b <= a; ++b) {
-        const std::size_t e = at(*product++);
-        const double added = augmentation * gradient(entries[at(a)]) * gradient(entries[at(b)]);
+        const std::size_t e = slot_at(*product++);
+        const double added = augmentation * gradient(entries[slot_at(a)]) * gradient(entries[slot_at(b)]);
         with_lower[e] += added;
         if (!upper.empty()) with_upper[e] += added;
       }
@@ -221,9 +221,10 @@ double SparseFactorization::State::leave(const Eigen::VectorXd& x) {
 // By the augmented matrix, whose right-hand side has rho J^T times that of the rows more.
 void SparseFactorization::State::substitute(Eigen::VectorXd& x) {
   for (std::size_t r = 0; r < multiplier.size(); ++r)
-    if (const double closing = augmentation * x[multiplier[r]]; closing != 0 && !left_out[at(multiplier[r])])
+    if (const double closing = augmentation * x[multiplier[r]];
+        closing != 0 && !left_out[slot_at(multiplier[r])])
       for (int e = first_entry[r]; e < first_entry[r + 1]; ++e)
-        x[entries[at(e)].motion] += closing * gradient(entries[at(e)]);
+        x[entries[slot_at(e)].motion] += closing * gradient(entries[slot_at(e)]);
   factors.solve(x);
 }
 
@@ -257,9 +258,9 @@ void SparseFactorization::factor(const SparsePattern& pattern, const std::vector
   std::vector<double> with_lower = s.lower, with_upper = s.upper;
   s.augment(with_lower, with_upper);
   s.factors.factor(with_lower, with_upper, pattern.size > 0 ? zero * s.largest.maxCoeff() : 0);
-  s.left_out.assign(at(pattern.size), false);
+  s.left_out.assign(slot_at(pattern.size), false);
   for (int i = 0; i < s.factors.nullity(); ++i)
-    if (const int u = s.factors.null_unknown(i); u >= 0) s.left_out[at(u)] = true;
+    if (const int u = s.factors.null_unknown(i); u >= 0) s.left_out[slot_at(u)] = true;
   s.factored = true;
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 3> coordinate_letters{"x", "y", "z"};
 
 template <class Part>
-int index_by_name(const std::vector<Part>& parts, std::string_view name) {
+int index_of_named(const std::vector<Part>& parts, std::string_view name) {
   const auto found = std::ranges::find(parts, name, &Part::name);
   return found == parts.end() ? -1 : static_cast<int>(found - parts.begin());
 }
@@ -125,7 +125,7 @@ auto at_place(const std::string& where, std::string_view text, const Do& act) {
   }
 }
 
-std::string joined(const std::string& path, const std::string& key) {
+std::string joined_path(const std::string& path, const std::string& key) {
   return path.empty() ? key : path + "." + key;
 }
 
@@ -252,7 +252,7 @@ void evaluate_formulas(Mechanism& mechanism) {
   visit_parts(mechanism, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
     const std::vector<Number> numbers = numbers_of_part();
     for (const Formula& formula : formulas) {
-      const std::string where = joined(path, formula.key);
+      const std::string where = joined_path(path, formula.key);
       const auto number = std::ranges::find(numbers, formula.key, &Number::key);
       if (number == numbers.end())
         throw SceneError(where, "\"=" + formula.text + "\": there is no such number");
@@ -279,7 +279,7 @@ FormulaPlace formula_place(Mechanism& mechanism, std::string_view address) {
   if (list == "gravity" || list == "simulation") return {&mechanism.formulas, std::string(whole)};
   const std::string_view name = next();
   const auto of = [&](auto& parts) -> FormulaPlace {
-    const int i = index_by_name(parts, name);
+    const int i = index_of_named(parts, name);
     if (i < 0) return {};
     return {&parts[static_cast<std::size_t>(i)].formulas, std::string(address)};
   };
@@ -292,7 +292,7 @@ FormulaPlace formula_place(Mechanism& mechanism, std::string_view address) {
   if (list == "forces") return of(mechanism.forces);
   if (list != "bodies") return {};
   if (!address.starts_with("shapes.")) return of(mechanism.bodies);
-  const int i = index_by_name(mechanism.bodies, name);
+  const int i = index_of_named(mechanism.bodies, name);
   if (i < 0) return {};
   next();
   std::vector<Shape>& shapes = mechanism.bodies[static_cast<std::size_t>(i)].shapes;
@@ -320,7 +320,7 @@ std::vector<GivenNumber> given_numbers(const Mechanism& mechanism) {
   for (const NamedPoint& point : mechanism.points)
     for (const Formula& formula : point.formulas) {
       const std::string part = "points." + point.name;
-      all.push_back({part, joined(part, formula.key), formula.text,
+      all.push_back({part, joined_path(part, formula.key), formula.text,
                      point.at[std::clamp(std::atoi(formula.key.c_str()), 0, 2)], "m"});
     }
   Mechanism copy = mechanism;
@@ -328,7 +328,7 @@ std::vector<GivenNumber> given_numbers(const Mechanism& mechanism) {
     const std::vector<Number> numbers = numbers_of_part();
     for (const Formula& formula : formulas)
       if (const auto number = std::ranges::find(numbers, formula.key, &Number::key); number != numbers.end())
-        all.push_back({path, joined(path, formula.key), formula.text, number->value, number->unit});
+        all.push_back({path, joined_path(path, formula.key), formula.text, number->value, number->unit});
   });
   return all;
 }
@@ -424,16 +424,16 @@ std::string point_coordinate(std::string_view point, int i) {
 }
 
 int parameter_index(const Mechanism& mechanism, std::string_view name) {
-  return index_by_name(mechanism.parameters, name);
+  return index_of_named(mechanism.parameters, name);
 }
 
 int point_index(const Mechanism& mechanism, std::string_view name) {
-  return index_by_name(mechanism.points, name);
+  return index_of_named(mechanism.points, name);
 }
 
 std::string used_of_version_2(const Mechanism& mechanism) {
   const auto first = [](const auto& part, const std::string& path) {
-    return part.formulas.empty() ? "" : joined(path, part.formulas.front().key);
+    return part.formulas.empty() ? "" : joined_path(path, part.formulas.front().key);
   };
   if (!mechanism.parameters.empty()) return "parameters";
   if (!mechanism.points.empty()) return "points";

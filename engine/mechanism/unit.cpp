@@ -8,79 +8,76 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <vector>
 
 namespace flyball {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180, turn = 2 * std::numbers::pi;
-constexpr Dimension length{.length = 1}, angle{.angle = 1}, time{.time = 1}, mass{.mass = 1},
-    turning{.time = -1, .angle = 1}, force{.length = 1, .mass = 1, .time = -2},
-    torque{.length = 2, .mass = 1, .time = -2}, power{.length = 2, .mass = 1, .time = -3},
-    pressure{.length = -1, .mass = 1, .time = -2};
-
-constexpr std::array units{
-    Unit{"m", 1, length},
-    Unit{"mm", 1e-3, length},
-    Unit{"cm", 1e-2, length},
-    Unit{"km", 1e3, length},
-    Unit{"um", 1e-6, length},
-    Unit{"µm", 1e-6, length},
-    Unit{"in", 0.0254, length},
-    Unit{"ft", 0.3048, length},
-    Unit{"rad", 1, angle},
-    Unit{"mrad", 1e-3, angle},
-    Unit{"deg", degree, angle},
-    Unit{"°", degree, angle},
-    Unit{"rev", turn, angle},
-    Unit{"s", 1, time},
-    Unit{"ms", 1e-3, time},
-    Unit{"min", 60, time},
-    Unit{"h", 3600, time},
-    Unit{"Hz", turn, turning}, // one turn a second
-    Unit{"rpm", turn / 60, turning},
-    Unit{"kg", 1, mass},
-    Unit{"g", 1e-3, mass},
-    Unit{"mg", 1e-6, mass},
-    Unit{"t", 1e3, mass},
-    Unit{"lb", 0.45359237, mass},
-    Unit{"N", 1, force},
-    Unit{"mN", 1e-3, force},
-    Unit{"kN", 1e3, force},
-    Unit{"MN", 1e6, force},
-    Unit{"lbf", 4.4482216152605, force},
-    Unit{"J", 1, torque},
-    Unit{"kJ", 1e3, torque},
-    Unit{"W", 1, power},
-    Unit{"kW", 1e3, power},
-    Unit{"Pa", 1, pressure},
-    Unit{"kPa", 1e3, pressure},
-    Unit{"MPa", 1e6, pressure},
-    Unit{"GPa", 1e9, pressure},
-    Unit{"bar", 1e5, pressure},
-    // As many write them in one word.
-    Unit{"Nm", 1, torque},
-    Unit{"kNm", 1e3, torque},
-    Unit{"mNm", 1e-3, torque},
-    Unit{"Nmm", 1e-3, torque},
-    Unit{"Ncm", 1e-2, torque},
-    Unit{"Ns", 1, {.length = 1, .mass = 1, .time = -1}},
-    Unit{"Nms", 1, {.length = 2, .mass = 1, .time = -1}},
-};
-
-constexpr auto names = [] {
-  std::array<std::string_view, units.size()> all{};
-  std::ranges::transform(units, all.begin(), &Unit::name);
+std::span<const Unit> units() {
+  constexpr double degree = std::numbers::pi / 180, turn = 2 * std::numbers::pi;
+  constexpr Dimension length{.length = 1}, angle{.angle = 1}, time{.time = 1}, mass{.mass = 1},
+      turning{.time = -1, .angle = 1}, force{.length = 1, .mass = 1, .time = -2},
+      torque{.length = 2, .mass = 1, .time = -2}, power{.length = 2, .mass = 1, .time = -3},
+      pressure{.length = -1, .mass = 1, .time = -2};
+  static constexpr std::array all{
+      Unit{"m", 1, length},
+      Unit{"mm", 1e-3, length},
+      Unit{"cm", 1e-2, length},
+      Unit{"km", 1e3, length},
+      Unit{"um", 1e-6, length},
+      Unit{"µm", 1e-6, length},
+      Unit{"in", 0.0254, length},
+      Unit{"ft", 0.3048, length},
+      Unit{"rad", 1, angle},
+      Unit{"mrad", 1e-3, angle},
+      Unit{"deg", degree, angle},
+      Unit{"°", degree, angle},
+      Unit{"rev", turn, angle},
+      Unit{"s", 1, time},
+      Unit{"ms", 1e-3, time},
+      Unit{"min", 60, time},
+      Unit{"h", 3600, time},
+      Unit{"Hz", turn, turning}, // one turn a second
+      Unit{"rpm", turn / 60, turning},
+      Unit{"kg", 1, mass},
+      Unit{"g", 1e-3, mass},
+      Unit{"mg", 1e-6, mass},
+      Unit{"t", 1e3, mass},
+      Unit{"lb", 0.45359237, mass},
+      Unit{"N", 1, force},
+      Unit{"mN", 1e-3, force},
+      Unit{"kN", 1e3, force},
+      Unit{"MN", 1e6, force},
+      Unit{"lbf", 4.4482216152605, force},
+      Unit{"J", 1, torque},
+      Unit{"kJ", 1e3, torque},
+      Unit{"W", 1, power},
+      Unit{"kW", 1e3, power},
+      Unit{"Pa", 1, pressure},
+      Unit{"kPa", 1e3, pressure},
+      Unit{"MPa", 1e6, pressure},
+      Unit{"GPa", 1e9, pressure},
+      Unit{"bar", 1e5, pressure},
+      // As many write them in one word.
+      Unit{"Nm", 1, torque},
+      Unit{"kNm", 1e3, torque},
+      Unit{"mNm", 1e-3, torque},
+      Unit{"Nmm", 1e-3, torque},
+      Unit{"Ncm", 1e-2, torque},
+      Unit{"Ns", 1, {.length = 1, .mass = 1, .time = -1}},
+      Unit{"Nms", 1, {.length = 2, .mass = 1, .time = -1}},
+  };
   return all;
-}();
+}
 
-bool is_letter(char c) {
+bool is_unit_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
 }
 
 // One symbol with its exponent at the beginning of a text.
 std::optional<UnitPrefix> read_symbol(std::string_view text) {
   std::size_t end = 0;
-  while (end < text.size() && is_letter(text[end]))
+  while (end < text.size() && is_unit_letter(text[end]))
     ++end;
   // More letters or figures make a name of it: "m1" is no metre.
   if (end < text.size() && (std::isdigit(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_'))
@@ -104,11 +101,18 @@ std::optional<UnitPrefix> read_symbol(std::string_view text) {
 } // namespace
 
 std::optional<Unit> find_unit(std::string_view name) {
-  const auto found = std::ranges::find(units, name, &Unit::name);
-  return found == units.end() ? std::nullopt : std::optional(*found);
+  const std::span<const Unit> all = units();
+  const auto found = std::ranges::find(all, name, &Unit::name);
+  return found == all.end() ? std::nullopt : std::optional(*found);
 }
 
 std::span<const std::string_view> unit_names() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> all;
+    for (const Unit& unit : units())
+      all.push_back(unit.name);
+    return all;
+  }();
   return names;
 }
 

@@ -7,8 +7,8 @@
 namespace flyball {
 namespace {
 
-constexpr double alike = 1e-9;     // relative difference of entries that counts as none
-constexpr double rounding = 1e-13; // of the terms that an entry is made of
+constexpr double alike = 1e-9;           // relative difference of entries that counts as none
+constexpr double entry_rounding = 1e-13; // of the terms that an entry is made of
 
 // |a - b| entry by entry, against the sizes of both rows and columns and the rounding of what they are made
 // of.
@@ -20,7 +20,7 @@ bool same_entries(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const Eige
   for (Eigen::Index j = 0; j < a.cols(); ++j)
     for (Eigen::Index i = 0; i < a.rows(); ++i)
       if (!(std::abs(a(i, j) - b(i, j)) <=
-            alike * std::sqrt(rows[i] * columns[j]) + rounding * std::sqrt(terms[i] * terms[j])))
+            alike * std::sqrt(rows[i] * columns[j]) + entry_rounding * std::sqrt(terms[i] * terms[j])))
         return false;
   return true;
 }

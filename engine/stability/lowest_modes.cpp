@@ -16,7 +16,7 @@ constexpr double good = 1e-8;      // largest residual of a mode
 constexpr double infinite = 1e-13; // of the largest 1/s: then s is infinite
 // Of the rate that eigenvalues are sought about: what rounding leaves of a double zero, a direction that
 // nothing resists and its rate.
-constexpr double nothing = 1e-6;
+constexpr double no_stiffness = 1e-6;
 constexpr int more = 3;        // asked for beyond the modes wanted
 constexpr int most_rates = 12; // tried where there are directions without stiffness
 
@@ -134,7 +134,7 @@ std::optional<Pairs> undamped_pairs(ShiftedMotion& motion, Eigen::Index count, d
     motion.solve(force, step);
     const Eigen::VectorXcd shape = (step / step.norm()).cast<Complex>();
     out.complete_to = unit / std::sqrt(std::abs(value));
-    if (std::abs(square) <= nothing * nothing * motion.rate() * motion.rate()) {
+    if (std::abs(square) <= no_stiffness * no_stiffness * motion.rate() * motion.rate()) {
       out.pairs.push_back({0, shape});
     } else if (square < 0) {
       out.pairs.push_back({Complex(0, std::sqrt(-square)), shape});
@@ -199,7 +199,7 @@ void merge_zeros(std::vector<Pair>& pairs, double rate) {
   constexpr double own = 1e-3;
   std::vector<Eigen::VectorXcd> shapes; // orthonormal
   std::erase_if(pairs, [&](Pair& pair) {
-    if (!(std::abs(pair.s) <= nothing * rate)) return false;
+    if (!(std::abs(pair.s) <= no_stiffness * rate)) return false;
     pair.s = 0;
     Eigen::VectorXcd rest = pair.shape;
     for (const Eigen::VectorXcd& shape : shapes)

@@ -99,11 +99,11 @@ void fill_composites(const System& system, const Parameters& p, const Kinematics
   }
 }
 
-struct Wrench {
+struct LinearizedWrench {
   Vec3 moment, force;
 };
 
-Wrench times_inertia(const CompositeBody& b, const Vec3& w, const Vec3& v) {
+LinearizedWrench times_inertia(const CompositeBody& b, const Vec3& w, const Vec3& v) {
   return {b.inertia * w + b.first_moment.cross(v), b.mass * v - b.first_moment.cross(w)};
 }
 
@@ -126,7 +126,7 @@ void fill_tree(const System& system, const Kinematics<double>& k, const std::vec
     const int nearest = nearest_free(system, link.parent);
     for (int j = link.v; j < link.v + column_count(link); ++j) {
       const ScrewRates& own = screws[static_cast<std::size_t>(j)];
-      const Wrench u = wrench_of(l, own);
+      const LinearizedWrench u = wrench_of(l, own);
       for (int i = link.v; i < link.v + column_count(link); ++i) {
         const ScrewRates& s = screws[static_cast<std::size_t>(i)];
         out(i, j) += s.sw.dot(u.moment) + s.sv.dot(u.force);
@@ -148,12 +148,12 @@ void fill_tree(const System& system, const Kinematics<double>& k, const std::vec
 }
 
 // The covectors S^T I and S^T B of a link's coordinate, about its own origin; B acts on angular rates alone.
-struct Row {
-  Wrench inertia;
+struct LinearizedRow {
+  LinearizedWrench inertia;
   Vec3 b;
 };
 
-double apply_inertia(const Row& row, const Vec3& w, const Vec3& v, const Vec3& arm) {
+double apply_inertia(const LinearizedRow& row, const Vec3& w, const Vec3& v, const Vec3& arm) {
   return w.dot(row.inertia.moment + arm.cross(row.inertia.force)) + v.dot(row.inertia.force);
 }
 
@@ -243,16 +243,17 @@ void linearize(const System& system, const Parameters& p, const Eigen::VectorXd&
       system, k, out.screws, out.stiffness,
       [&](std::size_t l, const ScrewRates& s) {
         const CompositeBody& b = out.composites[l];
-        Wrench u = times_inertia(b, s.ddw, s.ddv);
+        LinearizedWrench u = times_inertia(b, s.ddw, s.ddv);
         u.moment += s.sw.cross(residual.moment[l]) + s.sv.cross(residual.force[l]) + b.b * s.dw;
         u.force += s.sw.cross(residual.force[l]) - 2 * b.momentum.cross(s.dw);
         return u;
       },
       [&](std::size_t l, const ScrewRates& s) {
         const CompositeBody& b = out.composites[l];
-        return Row{times_inertia(b, s.sw, s.sv), b.b.transpose() * s.sw - 2 * s.sv.cross(b.momentum)};
+        return LinearizedRow{times_inertia(b, s.sw, s.sv),
+                             b.b.transpose() * s.sw - 2 * s.sv.cross(b.momentum)};
       },
-      [](const Row& row, const ScrewRates& s, const Vec3& arm) {
+      [](const LinearizedRow& row, const ScrewRates& s, const Vec3& arm) {
         return apply_inertia(row, s.ddw, s.ddv, arm) + s.dw.dot(row.b);
       });
   for (std::size_t l = 0; l < system.links.size(); ++l) {
@@ -275,13 +276,13 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
   out.velocity.setZero(system.nv, system.nv);
   const auto inertia_row = [&](std::size_t l, const ScrewRates& s) {
     const CompositeBody& b = out.composites[l];
-    return Row{times_inertia(b, s.sw, s.sv), b.b.transpose() * s.sw - 2 * s.sv.cross(b.momentum)};
+    return LinearizedRow{times_inertia(b, s.sw, s.sv), b.b.transpose() * s.sw - 2 * s.sv.cross(b.momentum)};
   };
   fill_tree(
       system, k, out.screws, out.mass,
       [&](std::size_t l, const ScrewRates& s) { return times_inertia(out.composites[l], s.sw, s.sv); },
       inertia_row,
-      [](const Row& row, const ScrewRates& s, const Vec3& arm) {
+      [](const LinearizedRow& row, const ScrewRates& s, const Vec3& arm) {
         return apply_inertia(row, s.sw, s.sv, arm);
       });
   if (p.moving)
@@ -289,13 +290,13 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
         system, k, out.screws, out.velocity,
         [&](std::size_t l, const ScrewRates& s) {
           const CompositeBody& b = out.composites[l];
-          Wrench u = times_inertia(b, 2 * s.dw, 2 * s.dv);
+          LinearizedWrench u = times_inertia(b, 2 * s.dw, 2 * s.dv);
           u.moment += b.b * s.sw;
           u.force -= 2 * b.momentum.cross(s.sw);
           return u;
         },
         inertia_row,
-        [](const Row& row, const ScrewRates& s, const Vec3& arm) {
+        [](const LinearizedRow& row, const ScrewRates& s, const Vec3& arm) {
           return 2 * apply_inertia(row, s.dw, s.dv, arm) + s.sw.dot(row.b);
         });
   add_damping(system, p, q, k, out.velocity);

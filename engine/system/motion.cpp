@@ -110,7 +110,7 @@ LinkRates rates_of(const Kinematics<double>& k, const std::vector<LinkRates>& ca
 }
 
 // A cut joint's row with the parts its rates are made of. d = b - a, u fixed in end a, w in end b.
-struct Row {
+struct MovingRow {
   const LinkState<double>&a, &b; // the motion of the configuration
   LinkRates sa, sb;              // the field
   Vec3 pa, pb, u, w;
@@ -129,8 +129,8 @@ struct Row {
   }
 };
 
-Row row_of(const CutJoint& cut, const CutParameters& f, const ConstraintRow& row, const Kinematics<double>& k,
-           const std::vector<LinkRates>& carried) {
+MovingRow row_of(const CutJoint& cut, const CutParameters& f, const ConstraintRow& row,
+                 const Kinematics<double>& k, const std::vector<LinkRates>& carried) {
   const LinkState<double>&a = k.at(cut.ends.a), &b = k.at(cut.ends.b);
   return {a,
           b,
@@ -142,7 +142,7 @@ Row row_of(const CutJoint& cut, const CutParameters& f, const ConstraintRow& row
           b.R * f.frame[static_cast<std::size_t>(row.w)]};
 }
 
-double rate(const Row& r, RowType type) {
+double rate(const MovingRow& r, RowType type) {
   switch (type) {
   case RowType::distance: return r.d().normalized().dot(r.velocity());
   case RowType::point: return r.u.dot(r.velocity()) + r.sa.w.cross(r.u).dot(r.d());
@@ -152,7 +152,7 @@ double rate(const Row& r, RowType type) {
   return 0;
 }
 
-double acceleration(const Row& r, RowType type) {
+double acceleration(const MovingRow& r, RowType type) {
   switch (type) {
   case RowType::distance: {
     const double length = r.d().norm();
@@ -161,10 +161,10 @@ double acceleration(const Row& r, RowType type) {
   }
   case RowType::point:
     return r.a.w.cross(r.u).dot(r.velocity()) + r.u.dot(r.acceleration()) +
-           Row::turned(r.sa, r.a.w, r.u).dot(r.d()) + r.sa.w.cross(r.u).dot(r.motion());
+           MovingRow::turned(r.sa, r.a.w, r.u).dot(r.d()) + r.sa.w.cross(r.u).dot(r.motion());
   case RowType::direction:
-    return Row::turned(r.sa, r.a.w, r.u).dot(r.w) + r.sa.w.cross(r.u).dot(r.b.w.cross(r.w)) +
-           r.a.w.cross(r.u).dot(r.sb.w.cross(r.w)) + r.u.dot(Row::turned(r.sb, r.b.w, r.w));
+    return MovingRow::turned(r.sa, r.a.w, r.u).dot(r.w) + r.sa.w.cross(r.u).dot(r.b.w.cross(r.w)) +
+           r.a.w.cross(r.u).dot(r.sb.w.cross(r.w)) + r.u.dot(MovingRow::turned(r.sb, r.b.w, r.w));
   case RowType::gear: break;
   }
   return 0;

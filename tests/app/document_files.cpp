@@ -1,10 +1,10 @@
 // Recent files, a watched file, and what is kept of unsaved work.
 #include "app/document/autosave.hpp"
 #include "app/document/autosaver.hpp"
-#include "app/document/change_watch.hpp"
 #include "app/document/file_watch.hpp"
-#include "app/document/process.hpp"
 #include "app/document/recent_files.hpp"
+#include "app/platform/change_watch.hpp"
+#include "app/platform/process.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/scene.hpp"

@@ -1,4 +1,5 @@
 // Light or dark as the desktop is, without waiting for it.
+#include "app/platform/printed_by.hpp"
 #include "app/platform/system_colors.hpp"
 #include "tests/catch.hpp"
 

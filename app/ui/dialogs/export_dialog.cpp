@@ -12,19 +12,19 @@ namespace flyball {
 
 namespace {
 
-constexpr int smallest = 16, largest = 8192; // pixels
+constexpr int smallest_picture = 16, largest_picture = 8192; // pixels
 
-constexpr std::array sizes{PictureSize{"720p", "1280 × 720", 1280, 720},
-                           PictureSize{"1080p", "1920 × 1080", 1920, 1080},
-                           PictureSize{"4k", "3840 × 2160", 3840, 2160}};
+constexpr std::array picture_sizes{PictureSize{"720p", "1280 × 720", 1280, 720},
+                                   PictureSize{"1080p", "1920 × 1080", 1920, 1080},
+                                   PictureSize{"4k", "3840 × 2160", 3840, 2160}};
 
-void save(App& app) {
+void save_picture(App& app) {
   DialogState& dialog = app.dialog;
   const std::filesystem::path file = typed_file(app, ".png");
   if (!may_replace(app, file)) return;
-  app.export_request =
-      ExportRequest{file, std::clamp(dialog.width, smallest, largest),
-                    std::clamp(dialog.height, smallest, largest), dialog.panels, dialog.loads};
+  app.export_request = ExportRequest{file, std::clamp(dialog.width, smallest_picture, largest_picture),
+                                     std::clamp(dialog.height, smallest_picture, largest_picture),
+                                     dialog.panels, dialog.loads};
   close_dialog();
 }
 
@@ -46,7 +46,7 @@ void export_dialog(App& app) {
   DialogState& dialog = app.dialog;
   bool accepted = path_field(app, "export", "Name");
 
-  size_fields(app, "export", sizes, 80, dialog.width, dialog.height);
+  size_fields(app, "export", picture_sizes, 80, dialog.width, dialog.height);
   ImGui::SetCursorPosX(80 * app.scale);
   ImGui::Checkbox("With the panels", &dialog.panels);
   note_widget(app.widgets, "export/panels");
@@ -55,8 +55,8 @@ void export_dialog(App& app) {
   note_widget(app.widgets, "export/loads");
   help_on_hover("Arrows of what acts, and their legend; with one body selected, its free-body diagram.");
 
-  const bool fits =
-      std::min(dialog.width, dialog.height) >= smallest && std::max(dialog.width, dialog.height) <= largest;
+  const bool fits = std::min(dialog.width, dialog.height) >= smallest_picture &&
+                    std::max(dialog.width, dialog.height) <= largest_picture;
   if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app).bad);
   const std::filesystem::path file = typed_file(app, ".png");
   const bool replaces = file == app.file_dialogs.replacing;
@@ -65,7 +65,7 @@ void export_dialog(App& app) {
   ImGui::BeginDisabled(!fits || dialog.path.empty());
   accepted = text_button(app, "export/save", replaces ? "Replace" : "Save", true) || accepted;
   ImGui::EndDisabled();
-  if (accepted && fits && !dialog.path.empty()) save(app);
+  if (accepted && fits && !dialog.path.empty()) save_picture(app);
   ImGui::SameLine();
   if (text_button(app, "export/cancel", "Cancel") || escape_pressed()) close_dialog();
   end_dialog();

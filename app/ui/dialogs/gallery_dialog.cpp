@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float pad = 8, gap = 12;  // points
-constexpr int about_lines = 3;      // below a name
-constexpr float about_size = 0.88f; // of the text's
+constexpr float card_pad = 8, card_gap = 12; // points
+constexpr int about_lines = 3;               // below a name
+constexpr float about_size = 0.88f;          // of the text's
 
 std::string first_sentence(const std::string& text) {
   return text.substr(0, std::min(text.find(". "), text.size()) + 1);
@@ -49,7 +49,7 @@ float about_height(const App& app) {
 }
 
 float card_height(const App& app) {
-  return (scene_picture_height + 2 * pad) * app.scale + ImGui::GetTextLineHeight() + about_height(app);
+  return (scene_picture_height + 2 * card_pad) * app.scale + ImGui::GetTextLineHeight() + about_height(app);
 }
 
 // As many words as there is room for.
@@ -90,11 +90,11 @@ bool show_card(App& app, int i, float width) {
                          IM_COL32_WHITE, 6 * s, ImDrawFlags_RoundCornersTop);
   list.AddRect(from, to, packed(chosen ? colors.accent : colors.border), 6 * s, 0,
                std::max(1.f, std::round((chosen ? 2.f : 1.f) * s)));
-  const ImVec2 text(from.x + pad * s, bottom + 5 * s);
-  const float room = width - 2 * pad * s;
+  const ImVec2 text(from.x + card_pad * s, bottom + 5 * s);
+  const float room = width - 2 * card_pad * s;
   ImFont* font = app.fonts.text;
   const float size = std::round(about_size * font->FontSize);
-  list.PushClipRect(from, {to.x - pad * s, to.y}, true);
+  list.PushClipRect(from, {to.x - card_pad * s, to.y}, true);
   list.AddText(app.fonts.strong, app.fonts.strong->FontSize, text, packed(colors.text),
                card.mechanism.name.c_str());
   const ImVec2 about(text.x, text.y + ImGui::GetTextLineHeight() + 2 * s);
@@ -129,10 +129,10 @@ void gallery_dialog(App& app) {
   GalleryState& gallery = app.file_dialogs.gallery;
   const float s = app.scale;
   gallery.showing = false;
-  if (!begin_dialog(app, Dialog::gallery, "Examples", 3 * scene_picture_width + 2 * gap + 47)) return;
+  if (!begin_dialog(app, Dialog::gallery, "Examples", 3 * scene_picture_width + 2 * card_gap + 47)) return;
   gallery.showing = true;
   const int count = static_cast<int>(gallery.cards.size());
-  const float between = gap * s;
+  const float between = card_gap * s;
   const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
   const int columns =
       std::max(1, static_cast<int>((room + between) / (scene_picture_width * s * 0.8f + between)));

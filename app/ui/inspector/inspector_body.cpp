@@ -18,7 +18,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
+constexpr double degrees_in_radian = 180 / std::numbers::pi;
 
 Selection only(const Body& body) {
   return {{{PartKind::body, body.name}}};
@@ -26,7 +26,7 @@ Selection only(const Body& body) {
 
 // Rx, then Ry, then Rz, about the world's axes (deg).
 Quat turned(const Vec3& turns) {
-  const Vec3 angles = turns / degrees;
+  const Vec3 angles = turns / degrees_in_radian;
   return Quat(Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
               Eigen::AngleAxisd(angles.x(), Vec3::UnitX()));
 }
@@ -37,7 +37,7 @@ Vec3 turns_of(const Quat& rotation) {
   const bool locked = std::abs(r(2, 0)) > 1 - 1e-12; // x and z turn about the same axis then
   const double x = locked ? 0 : std::atan2(r(2, 1), r(2, 2));
   const double z = locked ? std::atan2(-r(0, 1), r(1, 1)) : std::atan2(r(1, 0), r(0, 0));
-  Vec3 turns = Vec3(x, y, z) * degrees;
+  Vec3 turns = Vec3(x, y, z) * degrees_in_radian;
   for (double& turn : turns)
     turn = std::strtod(fmt::format("{:.9f}", turn).c_str(), nullptr) + 0.0; // no negative zero
   return turns;

@@ -26,7 +26,7 @@ std::string title_of(const App& app) {
 }
 
 // The title, and at the right a way to be rid of what it names.
-void title(App& app) {
+void panel_title(App& app) {
   const float start = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::AlignTextToFramePadding();
   ImGui::PushFont(app.fonts.strong);
@@ -58,7 +58,7 @@ void inspector_panel(App& app, const PanelRect& rect) {
   begin_panel("inspector", rect);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, ImGui::GetStyle().FramePadding.y});
-  title(app);
+  panel_title(app);
   contents(app);
   ImGui::PopStyleVar(2);
   ImGui::End();

@@ -13,10 +13,11 @@ namespace flyball {
 
 namespace {
 
-constexpr double turn = 24, closer = 1.15; // points of a drag, as far as one press turns; a press of plus
+constexpr double turn_by_key = 24,
+                 closer = 1.15; // points of a drag, as far as one press turns; a press of plus
 
 bool steer_by_key(App& app, const KeyPress& key, ViewSize size) {
-  const double by = turn * static_cast<double>(app.scale) * (key.ctrl ? 3 : 1);
+  const double by = turn_by_key * static_cast<double>(app.scale) * (key.ctrl ? 3 : 1);
   const double dx = (key.key == keys::right ? by : 0) - (key.key == keys::left ? by : 0);
   const double dy = (key.key == keys::down ? by : 0) - (key.key == keys::up ? by : 0);
   ViewCamera& camera = app.view.camera;

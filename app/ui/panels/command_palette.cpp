@@ -12,7 +12,7 @@ namespace flyball {
 
 namespace {
 
-constexpr const char* title = "palette";
+constexpr const char* palette_title = "palette";
 
 // The title with what was typed of it marked; returns its width.
 float draw_title(App& app, const PaletteEntry& entry, ImVec2 at) {
@@ -67,7 +67,7 @@ void command_palette(App& app) {
   const float s = app.scale;
   const bool appearing = std::exchange(state.palette_wanted, false);
   if (appearing) {
-    ImGui::OpenPopup(title);
+    ImGui::OpenPopup(palette_title);
     state.search.clear();
     state.chosen = 0;
   }
@@ -84,7 +84,7 @@ void command_palette(App& app) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {12 * s, 12 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   state.palette_showing =
-      ImGui::BeginPopup(title, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+      ImGui::BeginPopup(palette_title, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar(2);
   if (!state.palette_showing) return;
 

@@ -22,20 +22,20 @@ namespace flyball {
 
 namespace {
 
-constexpr std::size_t searchable = 15; // parts, from which on there is a field to search them
+constexpr std::size_t searchable_parts = 15; // parts, from which on there is a field to search them
 constexpr std::size_t most_mistakes = 4;
 
 struct SectionWords {
   PartKind kind;
   const char *list, *title;
 };
-constexpr std::array sections{SectionWords{PartKind::body, "bodies", "Bodies"},
-                              SectionWords{PartKind::joint, "joints", "Joints"},
-                              SectionWords{PartKind::force, "forces", "Forces"}};
+constexpr std::array outline_sections{SectionWords{PartKind::body, "bodies", "Bodies"},
+                                      SectionWords{PartKind::joint, "joints", "Joints"},
+                                      SectionWords{PartKind::force, "forces", "Forces"}};
 
 std::string widget_of(const Part& part) {
-  const auto* words = std::ranges::find(sections, part.kind, &SectionWords::kind);
-  return words == sections.end() ? "" : std::string("outline/") + words->list + "/" + part.name;
+  const auto* words = std::ranges::find(outline_sections, part.kind, &SectionWords::kind);
+  return words == outline_sections.end() ? "" : std::string("outline/") + words->list + "/" + part.name;
 }
 
 bool matches(std::string_view name, std::string_view search) {
@@ -86,7 +86,7 @@ std::string kind_words(const Mechanism& mechanism, PartId id) {
 // In order, those of closed sections left out.
 std::vector<PartId> open_rows(const Outline& outline) {
   std::vector<PartId> rows;
-  for (std::size_t i = 0; i < sections.size(); ++i)
+  for (std::size_t i = 0; i < outline_sections.size(); ++i)
     if (const std::vector<PartId>& listed = outline.kept().listed[i]; outline.open[i])
       rows.insert(rows.end(), listed.begin(), listed.end());
   return rows;
@@ -100,11 +100,11 @@ void keep_rows(App& app) {
   kept.theme = app.theme;
   kept.search = search;
   kept.colours = body_colors(app.document.hues(), app.theme);
-  for (std::size_t i = 0; i < sections.size(); ++i) {
+  for (std::size_t i = 0; i < outline_sections.size(); ++i) {
     kept.listed[i].clear();
-    const int count = static_cast<int>(count_of(app.mechanism(), sections[i].kind));
+    const int count = static_cast<int>(count_of(app.mechanism(), outline_sections[i].kind));
     for (int k = 0; k < count; ++k)
-      if (const PartId id{sections[i].kind, k};
+      if (const PartId id{outline_sections[i].kind, k};
           search.empty() || matches(name_of(app.mechanism(), id), search))
         kept.listed[i].push_back(id);
   }
@@ -257,7 +257,7 @@ void part_row(Outline& outline, PartId id) {
 
 void part_section(Outline& outline, std::size_t section) {
   App& app = outline.app;
-  const SectionWords& words = sections[section];
+  const SectionWords& words = outline_sections[section];
   const std::size_t count = count_of(outline.mechanism(), words.kind);
   if (count == 0) return;
   const std::vector<PartId>& shown = outline.kept().listed[section];
@@ -286,7 +286,7 @@ void part_section(Outline& outline, std::size_t section) {
 
 void search_field(App& app) {
   const Mechanism& mechanism = app.mechanism();
-  if (mechanism.bodies.size() + mechanism.joints.size() + mechanism.forces.size() < searchable) {
+  if (mechanism.bodies.size() + mechanism.joints.size() + mechanism.forces.size() < searchable_parts) {
     app.inspector.search.clear();
     return;
   }
@@ -328,7 +328,7 @@ void outline_panel(App& app, const PanelRect& rect) {
   for (std::size_t i = 0; i < app.mistakes.size(); ++i)
     if (Part part = part_of(app.mechanism(), app.mistakes[i]); part.kind != PartKind::none)
       outline.mistakes.emplace(std::move(part), i);
-  for (std::size_t i = 0; i < sections.size(); ++i)
+  for (std::size_t i = 0; i < outline_sections.size(); ++i)
     part_section(outline, i);
   const bool none = app.mechanism().bodies.empty() && app.mechanism().joints.empty();
   if (none) paragraph("The parts of the mechanism are listed here.", colors_of(app).dim);

@@ -10,7 +10,7 @@ namespace flyball {
 
 namespace {
 
-constexpr std::array mouse{
+constexpr std::array mouse_lines{
     NavigationLine{"Click", "Select; Ctrl adds"},
     NavigationLine{"Alt+drag", "Pull a body"},
     NavigationLine{"Right click", "Context menu"},
@@ -115,7 +115,7 @@ void shortcut_sheet(App& app) {
     if (begin_lines("mouse")) {
       for (const NavigationLine& entry : navigation_lines(app.navigation))
         line(app, entry.keys, entry.does);
-      for (const NavigationLine& entry : mouse)
+      for (const NavigationLine& entry : mouse_lines)
         line(app, entry.keys, entry.does);
       ImGui::EndTable();
     }

@@ -20,12 +20,12 @@ struct Direction {
   double azimuth, elevation; // rad
 };
 
-constexpr double right_angle = std::numbers::pi / 2;
+constexpr double half_pi = std::numbers::pi / 2;
 constexpr std::array directions{
     Direction{"toolbar/front", "Front", "Look from the front (1)", 0, 0},
-    Direction{"toolbar/side", "Side", "Look from the right (2)", right_angle, 0},
-    Direction{"toolbar/top", "Top", "Look from above (3)", 0, right_angle},
-    Direction{"toolbar/iso", "Iso", "Look from the front, right and above (4)", right_angle / 2,
+    Direction{"toolbar/side", "Side", "Look from the right (2)", half_pi, 0},
+    Direction{"toolbar/top", "Top", "Look from above (3)", 0, half_pi},
+    Direction{"toolbar/iso", "Iso", "Look from the front, right and above (4)", half_pi / 2,
               isometric_elevation},
 };
 
@@ -38,7 +38,7 @@ constexpr std::array factors{Factor{10, "10×"},    Factor{5, "5×"},       Fact
                              Factor{0.1, "0.1×"},  Factor{0.05, "0.05×"}, Factor{0.02, "0.02×"},
                              Factor{0.01, "0.01×"}};
 
-void gap(const App& app) {
+void space_between_groups(const App& app) {
   const float s = app.scale;
   ImGui::SameLine(0, 8 * s);
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -72,7 +72,7 @@ void file_buttons(App& app) {
   command_button(app, "file.open", icon::folder_open);
   command_button(app, "file.save", icon::save);
   command_button(app, "file.export", icon::camera);
-  gap(app);
+  space_between_groups(app);
   command_button(app, "edit.undo", icon::undo);
   command_button(app, "edit.redo", icon::redo);
 }
@@ -172,15 +172,15 @@ void toolbar_panel(App& app, const PanelRect& rect) {
   ImGui::PopStyleVar();
   menu_bar(app);
   file_buttons(app);
-  gap(app);
+  space_between_groups(app);
   mode_switch(app);
-  gap(app);
+  space_between_groups(app);
   if (app.mode == Mode::explore) {
     play_buttons(app);
-    gap(app);
+    space_between_groups(app);
   }
   direction_buttons(app);
-  gap(app);
+  space_between_groups(app);
   toggle(app, "toolbar/ghost", "Ghost",
          app.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)",
          app.view.ghost);

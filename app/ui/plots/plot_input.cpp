@@ -10,9 +10,9 @@ namespace flyball {
 
 namespace {
 
-constexpr double tremble = 4; // points that a click may move
-constexpr double reach = 9;   // points within which a data point or the marker is meant
-constexpr double step = 1.18; // of one notch of the wheel
+constexpr double tremble = 4;       // points that a click may move
+constexpr double point_reach = 9;   // points within which a data point or the marker is meant
+constexpr double wheel_step = 1.18; // of one notch of the wheel
 
 void zoom_with_wheel(const PlotFrame& frame, bool along_x, bool along_y) {
   if (!ImGui::IsItemHovered()) return;
@@ -20,7 +20,7 @@ void zoom_with_wheel(const PlotFrame& frame, bool along_x, bool along_y) {
   const float notches = ImGui::GetIO().MouseWheel;
   if (notches == 0) return;
   const PixelPoint at = pointer_in(frame.pen);
-  const double factor = std::pow(step, -static_cast<double>(notches));
+  const double factor = std::pow(wheel_step, -static_cast<double>(notches));
   if (along_x) zoom_plot(frame.view, frame.layout, 0, at[0], factor);
   if (along_y) zoom_plot(frame.view, frame.layout, 1, at[1], factor);
 }
@@ -40,7 +40,7 @@ bool on_marker(const PlotFrame& frame, const PixelPoint& at) {
   if (!frame.plot.marker) return false;
   const double x = frame.layout.x.pixel(frame.plot.marker->x), y = frame.layout.y.pixel(frame.plot.marker->y);
   return frame.layout.area.grown(1).contains(x, y) &&
-         std::hypot(at[0] - x, at[1] - y) <= reach * frame.layout.scale;
+         std::hypot(at[0] - x, at[1] - y) <= point_reach * frame.layout.scale;
 }
 
 PlotHit hit_of(const PlotNear& near) {
@@ -124,7 +124,7 @@ void end_drag(const PlotFrame& frame) {
   if (!view.dragged && view.button == 0) {
     const auto [x, y] = view.drag_from;
     frame.events.clicked_at = place_of(frame, view.drag_from);
-    const double within = reach * frame.layout.scale;
+    const double within = point_reach * frame.layout.scale;
     auto near = nearest_point(frame.plot, view.look, frame.layout, x, y, within);
     // Between the points of a line it is the line that is meant.
     if (!near) near = nearest_along(frame.plot, view.look, frame.layout, x, y);
@@ -216,7 +216,7 @@ std::optional<PixelPoint> take_plot_input(const PlotFrame& frame) {
     frame.view.cursor = frame.layout.x.value(at[0]);
     if (on_marker(frame, at)) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (const auto near = nearest_point(frame.plot, frame.view.look, frame.layout, at[0], at[1],
-                                        reach * frame.layout.scale))
+                                        point_reach * frame.layout.scale))
       frame.events.hovered = hit_of(*near);
   }
   take_axis(frame, true);

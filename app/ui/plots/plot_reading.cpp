@@ -12,7 +12,7 @@ namespace flyball {
 
 namespace {
 
-struct Line {
+struct ReadingLine {
   std::string name, value, unit;
   std::optional<ImU32> color{}; // of a dot before it
 };
@@ -27,14 +27,14 @@ std::string value_at(const PlotRuler& ruler, double value) {
   return reading_text(value, std::isfinite(pixel) ? resolution(ruler, pixel) : 0);
 }
 
-Line axis_line(const PlotFrame& frame, int axis, double value) {
+ReadingLine axis_line(const PlotFrame& frame, int axis, double value) {
   const PlotAxis& a = axis_of(frame.plot, axis);
   return {a.label.empty() ? (axis == 0 ? "x" : "y") : a.label, value_at(frame.layout.ruler(axis), value),
           a.unit};
 }
 
 // The mark under the pointer says what it is, also where its label found no room.
-void add_mark(const PlotFrame& frame, const PixelPoint& at, std::vector<Line>& lines) {
+void add_mark(const PlotFrame& frame, const PixelPoint& at, std::vector<ReadingLine>& lines) {
   for (const PlotPlaced& placed : frame.layout.marks) {
     const PlotMark& mark = frame.plot.marks[placed.index];
     if (mark.label.empty() || std::hypot(placed.x - at[0], placed.y - at[1]) > 9 * frame.layout.scale)
@@ -49,12 +49,12 @@ void dot(const PlotFrame& frame, double x, double y, ImU32 color) {
   draw_shape(frame.pen, PlotShape::circle, x, y, 6, color);
 }
 
-std::vector<Line> lines_at(const PlotFrame& frame, const PixelPoint& at) {
+std::vector<ReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& at) {
   const PlotLayout& layout = frame.layout;
   const auto color_of = [&](std::size_t curve) {
     return packed_color(curve_color(frame.plot.curves[curve].color, frame.pen.ground));
   };
-  std::vector<Line> lines;
+  std::vector<ReadingLine> lines;
   add_mark(frame, at, lines);
   // Points of measurements are read themselves; lines where the pointer is along x.
   if (const auto& hit = frame.events.hovered; hit && frame.plot.curves[hit->curve].shape != PlotShape::none) {
@@ -87,7 +87,7 @@ std::vector<Line> lines_at(const PlotFrame& frame, const PixelPoint& at) {
   return lines;
 }
 
-void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<Line>& lines) {
+void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<ReadingLine>& lines) {
   const UiFonts& fonts = frame.app.fonts;
   const UiColors& colors = colors_of(frame.app);
   const float s = frame.app.scale, pad = 7 * s, gap = 10 * s, line = std::round(1.2f * fonts.text->FontSize);
@@ -96,7 +96,7 @@ void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<L
   };
   float names = 0, values = 0, units = 0;
   bool dots = false;
-  for (const Line& l : lines) {
+  for (const ReadingLine& l : lines) {
     dots = dots || l.color;
     names = std::max(names, width(fonts.text, l.name) - (l.value.empty() ? gap : 0));
     values = std::max(values, width(fonts.digits, l.value));
@@ -122,7 +122,7 @@ void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<L
                std::max(1.f, std::round(s)));
   float top = y + pad;
   const float drop = digits_drop(frame.app);
-  for (const Line& l : lines) {
+  for (const ReadingLine& l : lines) {
     if (l.color) list.AddCircleFilled({x + pad + 4 * s, top + fonts.text->FontSize / 2}, 3.5f * s, *l.color);
     list.AddText(fonts.text, fonts.text->FontSize, {x + pad + indent, top},
                  packed(l.value.empty() ? colors.text : colors.dim), l.name.c_str());

@@ -15,7 +15,7 @@ namespace flyball {
 
 namespace {
 
-constexpr int smallest = 160, largest = 8192; // pixels
+constexpr int smallest_plot = 160, largest_plot = 8192; // pixels
 
 const char* extension_of(PlotFile kind) {
   return kind == PlotFile::png ? ".png" : kind == PlotFile::svg ? ".svg" : ".csv";
@@ -31,7 +31,7 @@ void number(App& app, const char* name, int& value) {
 
 bool fits(const PlotSave& save) {
   return save.kind == PlotFile::csv ||
-         (std::ranges::min(save.pixels) >= smallest && std::ranges::max(save.pixels) <= largest);
+         (std::ranges::min(save.pixels) >= smallest_plot && std::ranges::max(save.pixels) <= largest_plot);
 }
 
 void size_fields(App& app, PlotSave& save) {
@@ -86,7 +86,7 @@ void show_plot_dialog(App& app, const std::string& name, PlotSave save) {
   // Twice as fine as the screen, for print.
   const double finer = save.kind == PlotFile::png ? 2 : 1;
   const auto pixels = [&](double points) {
-    return std::clamp(static_cast<int>(finer * points), smallest, largest);
+    return std::clamp(static_cast<int>(finer * points), smallest_plot, largest_plot);
   };
   save.pixels = {pixels(save.width), pixels(save.height)};
   show_folder(app, usual_folder(app));

@@ -14,7 +14,7 @@ namespace flyball {
 
 namespace {
 
-constexpr const char* letters = "xyz";
+constexpr const char* letters_of_axes = "xyz";
 
 Color color_of(const App& app, Handle handle) {
   const int axis = axis_of(handle);
@@ -131,7 +131,7 @@ std::string moved_text(const Grab& grab, double step, const DisplayUnits& units)
   std::string text;
   for (int i = 0; i < 3; ++i) {
     if (!free[static_cast<std::size_t>(i)]) continue;
-    text += std::string(text.empty() ? "" : "  ") + "Δ" + letters[i] + " ";
+    text += std::string(text.empty() ? "" : "  ") + "Δ" + letters_of_axes[i] + " ";
     if (!grab.typed.empty()) return text + typed_text(grab.typed, shown_unit("m", units).text);
     text += length_text(grab.by[i], step, units);
   }

@@ -37,7 +37,7 @@ constexpr std::array buttons{
 };
 
 constexpr float top = 56, bottom = 92; // points of the view that the caption and the axes need
-constexpr float side = 26, pad = 4, group_gap = 7;
+constexpr float button_side = 26, strip_pad = 4, group_gap = 7;
 
 // What it is and how to call it, beside the strip.
 void tell(const App& app, const char* id) {
@@ -61,7 +61,7 @@ void tell(const App& app, const char* id) {
 template <class Draw>
 bool glyph_button(App& app, const char* name, bool on, const Draw& draw) {
   const UiColors& colors = colors_of(app);
-  const float s = app.scale, width = side * s;
+  const float s = app.scale, width = button_side * s;
   const ImVec2 from = ImGui::GetCursorScreenPos(), to(from.x + width, from.y + width);
   const bool pressed = ImGui::InvisibleButton(name, {width, width});
   note_widget(app.widgets, name);
@@ -80,10 +80,10 @@ void tool_strip(App& app, const PanelRect& view) {
   const UiColors& colors = colors_of(app);
   const float s = app.scale;
   // In a low view the groups stand in as many columns as they need.
-  const float room = std::max(view.height / s - top - bottom, 4 * side + 2 * pad);
+  const float room = std::max(view.height / s - top - bottom, 4 * button_side + 2 * strip_pad);
   ImGui::SetNextWindowPos({std::round(view.x + 10 * s), std::round(view.y + top * s)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {pad * s, pad * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {strip_pad * s, strip_pad * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
   ImGui::Begin("tools", nullptr,
@@ -94,18 +94,18 @@ void tool_strip(App& app, const PanelRect& view) {
   const ImVec2 origin = ImGui::GetCursorScreenPos();
   float x = 0, y = 0;
   const auto place = [&](bool separated) {
-    if (y + side + 2 * pad > room) {
-      x += side + pad;
+    if (y + button_side + 2 * strip_pad > room) {
+      x += button_side + strip_pad;
       y = 0;
     } else if (separated && y > 0) {
       const float line = origin.y + s * (y + group_gap / 2);
       ImGui::GetWindowDrawList()->AddLine({origin.x + s * (x + 3), line},
-                                          {origin.x + s * (x + side - 3), line}, packed(colors.border),
+                                          {origin.x + s * (x + button_side - 3), line}, packed(colors.border),
                                           std::max(1.f, std::round(s)));
       y += group_gap;
     }
     ImGui::SetCursorScreenPos({origin.x + x * s, origin.y + y * s});
-    y += side;
+    y += button_side;
   };
   for (const ToolButton& button : buttons) {
     place(button.separated);

@@ -86,7 +86,7 @@ void edit_grabbed(App& app, const std::function<void(Mechanism&)>& change) {
   app.gesture = gesture;
 }
 
-void turn(App& app, const ViewInput& input, const Gizmo& gizmo) {
+void turn_by_gizmo(App& app, const ViewInput& input, const Gizmo& gizmo) {
   Grab& grab = *app.tool.grab;
   const auto turned_by = turned(gizmo, grab.handle, grab.from, input.ray());
   if (turned_by) grab.swept += std::remainder(*turned_by - grab.swept, 2 * std::numbers::pi);
@@ -147,7 +147,7 @@ void hold(App& app, const ViewInput& input, const Gizmo& gizmo) {
     return;
   }
   if (is_ring(app.tool.grab->handle))
-    turn(app, input, gizmo);
+    turn_by_gizmo(app, input, gizmo);
   else
     move(app, input, gizmo);
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {

@@ -12,7 +12,7 @@ namespace flyball {
 
 namespace {
 
-bool is_letter(char c) {
+bool is_typed_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;
 }
 
@@ -33,7 +33,7 @@ bool take_typed_key(std::string& typed, const KeyPress& key) {
     return true;
   }
   if (typed.empty()) return false;
-  if (is_letter(c)) // keys are told as capitals
+  if (is_typed_letter(c)) // keys are told as capitals
     typed += key.shift ? c : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   else if (others.find(c) != std::string_view::npos)
     typed += c;
@@ -41,7 +41,7 @@ bool take_typed_key(std::string& typed, const KeyPress& key) {
 }
 
 std::string typed_text(const std::string& typed, const std::string& unit) {
-  return typed + "_" + (std::ranges::any_of(typed, is_letter) ? "" : " " + unit);
+  return typed + "_" + (std::ranges::any_of(typed, is_typed_letter) ? "" : " " + unit);
 }
 
 std::optional<double> typed_length(const std::string& typed, const DisplayUnits& units,

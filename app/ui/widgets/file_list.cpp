@@ -1,5 +1,6 @@
 #include "app/ui/widgets/file_list.hpp"
 
+#include "app/platform/access.hpp"
 #include "app/render/icons.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
-#include <unistd.h>
 
 namespace flyball {
 
@@ -23,7 +23,7 @@ bool is_folder(const fs::path& path) {
 }
 
 bool may_write(const fs::path& folder) {
-  return is_folder(folder) && ::access(folder.c_str(), W_OK) == 0;
+  return is_folder(folder) && !write_refusal(folder);
 }
 
 fs::path home_folder() {

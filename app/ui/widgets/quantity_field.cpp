@@ -39,11 +39,11 @@ std::string too_small(double value, Least least) {
 }
 
 // The field's number as it is shown and typed, in the unit that the person has chosen.
-struct Shown {
+struct ShownNumber {
   ShownUnit unit;
   double value = 0;
 
-  Shown(const App& app, const QuantityField& field)
+  ShownNumber(const App& app, const QuantityField& field)
       : unit(shown_unit(field.unit, app.units)), value(unit.shown(field.value)) {}
 };
 
@@ -128,7 +128,7 @@ void set(App& app, const QuantityField& field, double value) {
 
 struct Stepping {
   const QuantityField& field;
-  const Shown& shown;
+  const ShownNumber& shown;
   Typing& typing;
   bool stepped = false;
 };
@@ -184,7 +184,7 @@ std::string fitting_text(const App& app, double value, float room) {
 }
 
 // The number over the field at rest.
-void draw_resting(const App& app, const QuantityField& field, const Shown& shown, float padding, bool given) {
+void draw_resting(const App& app, const QuantityField& field, const ShownNumber& shown, float padding, bool given) {
   const UiColors& colors = colors_of(app);
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   const float right = to.x - padding, gap = 5 * app.scale;
@@ -208,7 +208,7 @@ void draw_resting(const App& app, const QuantityField& field, const Shown& shown
   list.PopClipRect();
 }
 
-std::string tooltip(const QuantityField& field, const Shown& shown, const std::optional<std::string>& formula) {
+std::string tooltip(const QuantityField& field, const ShownNumber& shown, const std::optional<std::string>& formula) {
   std::string text = field.help;
   const auto line = [&](const std::string& more) { text += (text.empty() ? "" : "\n") + more; };
   if (field.various.empty()) {
@@ -305,7 +305,7 @@ void scrub_label(App& app, const std::string& label, const QuantityField& field,
   const bool active = ImGui::IsItemActive(), draggable = field.various.empty();
   const bool lit = draggable && (active || ImGui::IsItemHovered());
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-  const Shown shown(app, field);
+  const ShownNumber shown(app, field);
   if (!active) help_on_hover(tooltip(field, shown, formula_of(app, field)).c_str());
   Scrub& scrub = app.inspector.scrub;
   if (ImGui::IsItemActivated()) scrub = {name, shown.value, hand_step(shown.value, shown.unit.text), 0};
@@ -368,7 +368,7 @@ float label_width(const App& app) {
 void quantity_field(App& app, const QuantityField& field, float width) {
   const UiColors& colors = colors_of(app);
   const float height = ImGui::GetFrameHeight(), padding = 6 * app.scale;
-  const Shown shown(app, field);
+  const ShownNumber shown(app, field);
   const std::optional<std::string> formula = formula_of(app, field);
   Stepping stepping{field, shown, app.inspector.typing};
   TextField text{.name = field.name,

@@ -11,14 +11,14 @@ namespace flyball {
 
 namespace {
 
-constexpr double patience = 0.15;   // s: what was told a moment ago stays while the next is solved
-constexpr float small_text = 0.87f; // of the panel's
+constexpr double answer_patience = 0.15; // s: what was told a moment ago stays while the next is solved
+constexpr float small_text = 0.87f;      // of the panel's
 // Round-off: of the rate that moves most, and over a change of the number by as much as itself (rad or parts
 // of the reach).
 constexpr double nothing = 1e-9;
 
 // The size (m) of the mechanism as drawn.
-double reach(const Mechanism& mechanism) {
+double size_of_change(const Mechanism& mechanism) {
   Vec3 low = Vec3::Constant(1e300), high = -low;
   const auto add = [&](const Vec3& at) {
     low = low.cwiseMin(at);
@@ -44,7 +44,7 @@ std::string signed_text(double value) {
 }
 
 bool has_rates(const App& app) {
-  return converged(app) && (!solving(app) || app.waited <= patience);
+  return converged(app) && (!solving(app) || app.waited <= answer_patience);
 }
 
 const std::vector<ShownRate>& kept_rates(App& app, const ParameterControl& control) {
@@ -65,7 +65,7 @@ std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
   const auto found = std::ranges::find(solution.sensitivities, address, &Sensitivity::address);
   const auto control = std::ranges::find(app.parameters, address, &ParameterControl::address);
   if (found == solution.sensitivities.end() || control == app.parameters.end()) return out;
-  const double size = reach(*app.answer.mechanism);
+  const double size = size_of_change(*app.answer.mechanism);
   // Rates come in the order of the coordinates: each is looked for from where the last was found.
   auto from = solution.coordinates.begin();
   for (const Sensitivity::Rate& rate : found->rates) {

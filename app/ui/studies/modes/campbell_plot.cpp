@@ -12,7 +12,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double full_turn = 2 * std::numbers::pi;
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 // Eigenvalues less than this are zero (1/s).
@@ -40,7 +40,7 @@ void add(Segment& segment, bool stable, const std::array<double, 2>& at) {
   mine.push_back(at);
 }
 
-void gap(Segment& segment) {
+void break_line(Segment& segment) {
   for (auto* points : {&segment.stable, &segment.unstable})
     if (!points->empty()) points->push_back({no_value, no_value});
 }
@@ -68,7 +68,7 @@ void add_lines(Plot& plot, const ResponseBranch& branch,
       const auto stands = [&](std::size_t k) {
         return k < lines.size() && l < lines[k].size() && std::abs(lines[k][l].imag()) <= zero;
       };
-      if (i > 0 && !swings(i - 1)) gap(segment);
+      if (i > 0 && !swings(i - 1)) break_line(segment);
       if (i > 0 && stands(i - 1)) add(segment, stable, foot(i - 1));
       add(segment, stable, {branch.points[i].parameter, lines[i][l].imag() * factor});
       if (stands(i + 1)) add(segment, stable, foot(i + 1));
@@ -167,7 +167,7 @@ void draw_campbell(App& app) {
   drawn.made_hertz = drawn.hertz;
   drawn.made_chosen = chosen;
   Plot plot;
-  const double factor = drawn.hertz ? 1 / turn : 1;
+  const double factor = drawn.hertz ? 1 / full_turn : 1;
   const FoundCampbell& found = *campbell.result;
   const std::string unit = parameter_unit(app.mechanism(), found.drive);
   plot.x = {.label = parameter_phrase(found.drive),

@@ -179,7 +179,7 @@ void progress_bar(App& app) {
   help_on_hover(("Computed so far: " + words + ".").c_str());
 }
 
-void choices(App& app) {
+void motion_choices(App& app) {
   const bool computing = computing_motion(app);
   if (text_button(app, "motion/run", computing ? "Restart" : "Run again", true)) anew(app);
   if (computing) {
@@ -345,7 +345,7 @@ void motion_panel(App& app) {
   const float s = app.scale;
   ImGui::BeginChild("choices", {motion_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-  choices(app);
+  motion_choices(app);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);

@@ -10,7 +10,7 @@ namespace flyball {
 
 namespace {
 
-struct Shown {
+struct ShownRun {
   std::string title, unit; // in SI units
   // One curve for each of these, by name in the legend.
   struct Line {
@@ -53,9 +53,9 @@ std::string point_title(const PointQuantity& quantity, std::size_t component, co
   return (quantity.track == &PointTrack::velocity ? "speed of " : "acceleration of ") + whose;
 }
 
-Shown shown_point(const PointTrack& track, const PointQuantity& quantity, std::size_t component) {
+ShownRun shown_point(const PointTrack& track, const PointQuantity& quantity, std::size_t component) {
   const std::vector<Vec3>& vectors = track.*quantity.track;
-  Shown out{point_title(quantity, component, track.point), quantity.unit, {}};
+  ShownRun out{point_title(quantity, component, track.point), quantity.unit, {}};
   out.lines.push_back({"", {}});
   std::vector<double>& values = out.lines.front().values;
   values.reserve(vectors.size());
@@ -71,8 +71,8 @@ std::vector<double> changes(std::vector<double> values) {
 }
 
 // The quantity in one run; no lines where the run has none of that name.
-Shown shown_quantity(const Run& run, const std::string& key) {
-  Shown out;
+ShownRun shown_quantity(const Run& run, const std::string& key) {
+  ShownRun out;
   for (const CoordinateTrack& c : run.coordinates) {
     const std::string name = coordinate_label(c);
     if (key == "value " + name) return {name, c.angle ? "rad" : "m", {{"", c.value}}};
@@ -166,7 +166,7 @@ Plot motion_plot(const App& app, const std::string& quantity) {
   for (const MotionRun& motion : app.motion.runs) {
     if (!motion.wanted || !motion.run) continue;
     const Run& run = *motion.run;
-    const Shown shown = shown_quantity(run, quantity);
+    const ShownRun shown = shown_quantity(run, quantity);
     if (!shown.title.empty()) {
       plot.y.label = shown.title;
       plot.y.unit = shown.unit;

@@ -16,12 +16,12 @@ namespace flyball {
 
 namespace {
 
-constexpr int smallest = 16;  // pixels
-constexpr float column = 148; // points, where the fields of quantity rows begin, too
+constexpr int smallest_movie = 16;   // pixels
+constexpr float fields_column = 148; // points, where the fields of quantity rows begin, too
 
-constexpr std::array sizes{PictureSize{"360p", "640 × 360", 640, 360},
-                           PictureSize{"720p", "1280 × 720", 1280, 720},
-                           PictureSize{"1080p", "1920 × 1080", 1920, 1080}};
+constexpr std::array movie_sizes{PictureSize{"360p", "640 × 360", 640, 360},
+                                 PictureSize{"720p", "1280 × 720", 1280, 720},
+                                 PictureSize{"1080p", "1920 × 1080", 1920, 1080}};
 
 struct Ending {
   const char* name;
@@ -54,7 +54,7 @@ void ending_buttons(App& app) {
   const bool able = ffmpeg_available();
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("As");
-  ImGui::SameLine(column * app.scale);
+  ImGui::SameLine(fields_column * app.scale);
   for (const Ending& each : endings) {
     const bool now = movie_kind(file) == movie_kind("film" + std::string(each.ending));
     const bool possible = able || movie_kind("film" + std::string(each.ending)) == MovieKind::frames;
@@ -98,7 +98,7 @@ std::string problem_of(const App& app, const MotionRun& shown, const MovieReques
                        std::size_t frames) {
   if (!shown.finished) return "The run is still being computed.";
   if (!(request.from < request.to) && !app.movie.whole) return "It ends before it begins.";
-  if (std::min(request.width, request.height) < smallest) return "At least 16 pixels a side.";
+  if (std::min(request.width, request.height) < smallest_movie) return "At least 16 pixels a side.";
   return movie_problem(request.file, {request.width, request.height, request.rate, frames});
 }
 
@@ -125,7 +125,7 @@ void choices(App& app, const MotionRun& shown) {
   MovieState& movie = app.movie;
   bool accepted = path_field(app, "movie", "Name");
   ending_buttons(app);
-  size_fields(app, "movie", sizes, column, movie.width, movie.height);
+  size_fields(app, "movie", movie_sizes, fields_column, movie.width, movie.height);
   time_fields(app, *shown.run);
 
   const MovieRequest request = request_of(app);

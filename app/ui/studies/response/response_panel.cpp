@@ -272,7 +272,7 @@ void design_rows(App& app) {
   design_answer(app);
 }
 
-void choices(App& app) {
+void response_choices(App& app) {
   if (app.parameters.empty()) {
     paragraph("There is nothing to vary: no drive, no spring, no pinned number.", colors_of(app).dim);
     return;
@@ -297,7 +297,7 @@ void response_panel(App& app) {
   const float s = app.scale;
   ImGui::BeginChild("choices", {response_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-  choices(app);
+  response_choices(app);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);

@@ -15,13 +15,13 @@ namespace flyball {
 
 namespace {
 
-constexpr float words_width = 292;           // points
+constexpr float states_words_width = 292;    // points
 constexpr std::size_t most_coordinates = 48; // columns; Dear ImGui takes 64
-constexpr ImGuiTableFlags table_flags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
-                                        ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings |
-                                        ImGuiTableFlags_SizingFixedFit;
+constexpr ImGuiTableFlags states_table_flags =
+    ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
+    ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;
 
-std::string counted(std::size_t count, const char* one, const char* many) {
+std::string number_of(std::size_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
@@ -29,7 +29,7 @@ std::string counted(std::size_t count, const char* one, const char* many) {
 void summary(App& app, const std::vector<Solution>& all) {
   const UiColors& colors = colors_of(app);
   ImGui::PushFont(app.fonts.strong);
-  paragraph(all.empty() ? "No equilibrium was found" : counted(all.size(), "equilibrium", "equilibria"),
+  paragraph(all.empty() ? "No equilibrium was found" : number_of(all.size(), "equilibrium", "equilibria"),
             colors.text);
   ImGui::PopFont();
   note_widget(app.widgets, "states/count");
@@ -54,7 +54,7 @@ void summary(App& app, const std::vector<Solution>& all) {
 void search_bounds(App& app, const FoundStates& found) {
   const UiColors& colors = colors_of(app);
   heading(app, "How it was searched");
-  paragraph(counted(static_cast<std::size_t>(found.all.starts), "run", "runs") +
+  paragraph(number_of(static_cast<std::size_t>(found.all.starts), "run", "runs") +
                 " of Newton-Raphson, from starts spread over these ranges and deflated at what was found. No "
                 "such search is complete.",
             colors.dim);
@@ -69,7 +69,7 @@ void search_bounds(App& app, const FoundStates& found) {
     row(app, "Run time", duration_text(found.run_time_s, app.options.numbers), "");
 }
 
-void words(App& app) {
+void states_words(App& app) {
   StatesState& states = app.study.states;
   const UiColors& colors = colors_of(app);
   if (states.task && states.task->running()) {
@@ -95,19 +95,19 @@ struct Column {
   float width = 0; // pixels
 };
 
-float digits_width(const App& app, const std::string& text) {
+float value_width(const App& app, const std::string& text) {
   const ImFont* font = app.fonts.digits;
   return font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x;
 }
 
 // One equilibrium as it is written into the table.
-struct Line {
+struct StateLine {
   std::string potential;
   std::vector<std::string> values, details; // of the free coordinates; details: in SI with the error
 };
 
-Line line_of(const Solution& solution, const NumberStyle& numbers, const DisplayUnits& units) {
-  Line line;
+StateLine line_of(const Solution& solution, const NumberStyle& numbers, const DisplayUnits& units) {
+  StateLine line;
   line.potential = solution.potential ? short_text(*solution.potential, 8) : "–";
   for (const CoordinateSolution& c : solution.coordinates) {
     if (c.driven || line.values.size() == most_coordinates) continue;
@@ -137,7 +137,7 @@ void header(App& app, const std::vector<Column>& columns) {
   }
 }
 
-void state_row(App& app, std::size_t index, const Solution& solution, const Line& line, bool shown) {
+void state_row(App& app, std::size_t index, const Solution& solution, const StateLine& line, bool shown) {
   const UiColors& colors = colors_of(app);
   ImGui::TableNextRow();
   if (shown) {
@@ -176,7 +176,7 @@ void state_row(App& app, std::size_t index, const Solution& solution, const Line
 }
 
 std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
-                               const std::vector<Line>& lines) {
+                               const std::vector<StateLine>& lines) {
   const float s = app.scale;
   std::vector<Column> columns{
       {"", "", 24 * s},
@@ -191,19 +191,19 @@ std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
   for (std::size_t i = 2; i < columns.size(); ++i) {
     float& width = columns[i].width;
     width = ImGui::CalcTextSize(columns[i].title.c_str()).x;
-    for (const Line& line : lines)
+    for (const StateLine& line : lines)
       if (i == 2 || i - 3 < line.values.size())
-        width = std::max(width, digits_width(app, i == 2 ? line.potential : line.values[i - 3]));
+        width = std::max(width, value_width(app, i == 2 ? line.potential : line.values[i - 3]));
     width += 14 * s;
   }
   return columns;
 }
 
-void table(App& app) {
+void states_table(App& app) {
   const StatesState& states = app.study.states;
   if (!states.result || states.result->all.equilibria.empty()) return;
   const std::vector<Solution>& all = states.result->all.equilibria;
-  std::vector<Line> lines;
+  std::vector<StateLine> lines;
   lines.reserve(all.size());
   for (const Solution& solution : all)
     lines.push_back(line_of(solution, app.options.numbers, app.units));
@@ -212,7 +212,7 @@ void table(App& app) {
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {6 * app.scale, 3 * app.scale});
   ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors_of(app).panel);
   ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors_of(app).border);
-  if (ImGui::BeginTable("states", static_cast<int>(columns.size()), table_flags,
+  if (ImGui::BeginTable("states", static_cast<int>(columns.size()), states_table_flags,
                         ImGui::GetContentRegionAvail())) {
     ImGui::TableSetupScrollFreeze(2, 1);
     for (const Column& column : columns)
@@ -239,15 +239,15 @@ void table(App& app) {
 
 void states_panel(App& app) {
   const float s = app.scale;
-  ImGui::BeginChild("words", {words_width * s, 0});
+  ImGui::BeginChild("words", {states_words_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
-  words(app);
+  states_words(app);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("table", {0, 0}, false,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  table(app);
+  states_table(app);
   ImGui::EndChild();
 }
 

@@ -1,4 +1,4 @@
-#include "app/document/process.hpp"
+#include "app/platform/process.hpp"
 
 #include <fstream>
 #include <sstream>
@@ -34,8 +34,12 @@ std::string start_of(const std::string& number) {
 
 } // namespace
 
+unsigned process_number() {
+  return static_cast<unsigned>(::getpid());
+}
+
 std::string this_process() {
-  const std::string number = std::to_string(::getpid());
+  const std::string number = std::to_string(process_number());
   return machine() + ":" + number + ":" + start_of(number);
 }
 

@@ -1,10 +1,11 @@
-#include "app/render/encoder.hpp"
+#include "app/platform/encoder.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
@@ -104,7 +105,30 @@ class SpawnActions {
   posix_spawnattr_t attributes_{};
 };
 
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
 } // namespace
+
+struct Encoder::State {
+  pid_t child = -1; // -1: has ended
+  int status = 0;   // of its end, as waitpid() tells
+  int input = -1;   // the pipe to it; -1: closed
+  std::vector<char> waiting;
+  std::size_t sent = 0;                                        // of these
+  std::unique_ptr<std::FILE, CloseFile> words{std::tmpfile()}; // its standard error
+
+  explicit State(const std::vector<std::string>& arguments);
+  ~State();
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  void close_input();
+  bool flush(double seconds);
+  bool ended(double seconds);
+  [[noreturn]] void fail();
+};
 
 bool ffmpeg_available() {
   const char* const path = std::getenv("PATH");
@@ -120,60 +144,51 @@ bool ffmpeg_available() {
   return false;
 }
 
-Encoder::Encoder(const std::vector<std::string>& arguments) : words_(std::tmpfile()) {
-  if (!words_) fail_with("keep what ffmpeg says", errno);
+Encoder::State::State(const std::vector<std::string>& arguments) {
+  if (!words) fail_with("keep what ffmpeg says", errno);
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail_with("make a pipe", errno);
-  input_ = ends[1];
-  ::fcntl(input_, F_SETFL, O_NONBLOCK); // of this end alone
-  std::vector<std::string> words{"ffmpeg"};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+  input = ends[1];
+  ::fcntl(input, F_SETFL, O_NONBLOCK); // of this end alone
+  std::vector<std::string> line{"ffmpeg"};
+  line.insert(line.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
-  for (std::string& word : words)
+  for (std::string& word : line)
     argv.push_back(word.data());
   argv.push_back(nullptr);
-  const SpawnActions actions(ends[0], ::fileno(words_.get()));
+  const SpawnActions actions(ends[0], ::fileno(words.get()));
   const int error =
-      ::posix_spawnp(&child_, "ffmpeg", actions.files(), actions.attributes(), argv.data(), environ);
+      ::posix_spawnp(&child, "ffmpeg", actions.files(), actions.attributes(), argv.data(), environ);
   ::close(ends[0]);
   if (error == 0) return;
-  child_ = -1;
+  child = -1;
   close_input();
   fail_with("start ffmpeg", error);
 }
 
-Encoder::~Encoder() {
+Encoder::State::~State() {
   close_input();
-  if (child_ < 0) return;
-  ::kill(child_, SIGKILL);
-  while (::waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
+  if (child < 0) return;
+  ::kill(child, SIGKILL);
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
 }
 
-void Encoder::close_input() {
-  if (input_ >= 0) ::close(std::exchange(input_, -1));
+void Encoder::State::close_input() {
+  if (input >= 0) ::close(std::exchange(input, -1));
 }
 
-void Encoder::send(std::vector<char> bytes) {
-  if (sent_ == waiting_.size()) {
-    waiting_ = std::move(bytes);
-    sent_ = 0;
-  } else {
-    waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
-  }
-}
-
-bool Encoder::flush(double seconds) {
+bool Encoder::State::flush(double seconds) {
   const Deadline deadline(seconds);
   const WithoutSigpipe quiet;
-  while (sent_ < waiting_.size()) {
-    const ssize_t count = ::write(input_, waiting_.data() + sent_, waiting_.size() - sent_);
+  while (sent < waiting.size()) {
+    const ssize_t count = ::write(input, waiting.data() + sent, waiting.size() - sent);
     if (count >= 0) {
-      sent_ += static_cast<std::size_t>(count);
+      sent += static_cast<std::size_t>(count);
     } else if (errno == EAGAIN) {
       const double left = deadline.left();
       if (left <= 0) return false;
-      pollfd ready{input_, POLLOUT, 0};
+      pollfd ready{input, POLLOUT, 0};
       ::poll(&ready, 1, static_cast<int>(std::min(1000 * left + 1, 1000.)));
     } else if (errno != EINTR) {
       fail();
@@ -182,22 +197,13 @@ bool Encoder::flush(double seconds) {
   return true;
 }
 
-bool Encoder::finish(double seconds) {
-  const Deadline deadline(seconds);
-  if (input_ >= 0 && !flush(seconds)) return false;
-  close_input();
-  if (!ended(deadline.left())) return false;
-  if (!WIFEXITED(status_) || WEXITSTATUS(status_) != 0) fail();
-  return true;
-}
-
 // Whether the child has ended, waiting at most so long.
-bool Encoder::ended(double seconds) {
+bool Encoder::State::ended(double seconds) {
   const Deadline deadline(seconds);
-  while (child_ >= 0) {
-    const pid_t which = ::waitpid(child_, &status_, WNOHANG);
-    if (which == child_)
-      child_ = -1;
+  while (child >= 0) {
+    const pid_t which = ::waitpid(child, &status, WNOHANG);
+    if (which == child)
+      child = -1;
     else if (which < 0 && errno != EINTR)
       fail_with("wait for ffmpeg", errno);
     else if (deadline.left() <= 0)
@@ -209,22 +215,22 @@ bool Encoder::ended(double seconds) {
 }
 
 // With the last lines of what it has said.
-void Encoder::fail() {
+void Encoder::State::fail() {
   close_input();
   constexpr double patience = 5; // s, for it to say why and go
   std::string how = " stopped";
   if (ended(patience)) {
-    if (WIFSIGNALED(status_))
-      how = " was ended by signal " + std::to_string(WTERMSIG(status_));
-    else if (WEXITSTATUS(status_) != 0)
-      how = " failed with exit code " + std::to_string(WEXITSTATUS(status_));
+    if (WIFSIGNALED(status))
+      how = " was ended by signal " + std::to_string(WTERMSIG(status));
+    else if (WEXITSTATUS(status) != 0)
+      how = " failed with exit code " + std::to_string(WEXITSTATUS(status));
     else
       how = " ended before it had all frames";
   }
   std::string said;
   std::array<char, 4096> buffer{};
-  std::rewind(words_.get());
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), words_.get()))
+  std::rewind(words.get());
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), words.get()))
     said.append(buffer.data(), count);
   constexpr std::size_t most = 400;
   if (said.size() > most) {
@@ -234,6 +240,33 @@ void Encoder::fail() {
   while (!said.empty() && std::string_view(" \r\n").find(said.back()) != std::string_view::npos)
     said.pop_back();
   throw std::runtime_error("ffmpeg" + how + (said.empty() ? "" : ": " + said));
+}
+
+Encoder::Encoder(const std::vector<std::string>& arguments) : state_(std::make_unique<State>(arguments)) {}
+Encoder::~Encoder() = default;
+
+void Encoder::send(std::vector<char> bytes) {
+  State& s = *state_;
+  if (s.sent == s.waiting.size()) {
+    s.waiting = std::move(bytes);
+    s.sent = 0;
+  } else {
+    s.waiting.insert(s.waiting.end(), bytes.begin(), bytes.end());
+  }
+}
+
+bool Encoder::flush(double seconds) {
+  return state_->flush(seconds);
+}
+
+bool Encoder::finish(double seconds) {
+  const Deadline deadline(seconds);
+  State& s = *state_;
+  if (s.input >= 0 && !s.flush(seconds)) return false;
+  s.close_input();
+  if (!s.ended(deadline.left())) return false;
+  if (!WIFEXITED(s.status) || WEXITSTATUS(s.status) != 0) s.fail();
+  return true;
 }
 
 } // namespace flyball

@@ -10,5 +10,7 @@ namespace flyball {
 std::string this_process();
 // False for names of another machine or of before its last start, too.
 bool is_running(const std::string& process);
+// The number in it, which other processes have had before or have on other machines.
+unsigned process_number();
 
 } // namespace flyball

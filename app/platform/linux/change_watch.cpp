@@ -1,4 +1,4 @@
-#include "app/document/change_watch.hpp"
+#include "app/platform/change_watch.hpp"
 
 #include <array>
 #include <atomic>

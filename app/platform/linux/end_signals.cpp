@@ -1,4 +1,4 @@
-#include "app/cli/end_signals.hpp"
+#include "app/platform/end_signals.hpp"
 
 #include <array>
 #include <cerrno>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace flyball::cli {
+namespace flyball {
 
 namespace {
 
@@ -18,6 +18,27 @@ constexpr std::array ends{SIGINT, SIGTERM, SIGHUP};
 // destructor.
 std::array<int, 2> ends_of_pipe{-1, -1};
 std::array<struct sigaction, ends.size()> former{};
+
+// The signal that came, while they are put off.
+std::atomic<int> put_off = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "or a signal's handler may not touch it");
+
+// Those that are not ignored, as under nohup.
+void handle_with(void (*handler)(int), int flags) {
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    struct sigaction noted {};
+    noted.sa_handler = handler;
+    noted.sa_flags = flags;
+    sigemptyset(&noted.sa_mask);
+    sigaction(ends[i], nullptr, &former[i]);
+    if (former[i].sa_handler != SIG_IGN) sigaction(ends[i], &noted, nullptr);
+  }
+}
+
+void handle_as_before() {
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    sigaction(ends[i], &former[i], nullptr);
+}
 
 void send(int number) {
   const auto byte = static_cast<unsigned char>(number);
@@ -53,20 +74,12 @@ EndSignals::EndSignals(std::function<void()> wake, std::function<void()> keep, d
     : wake_(std::move(wake)), keep_(std::move(keep)), patience_(patience) {
   if (::pipe2(ends_of_pipe.data(), O_CLOEXEC | O_NONBLOCK) != 0) return; // they end the program as usual
   thread_ = std::thread([this] { listen(); });
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    struct sigaction noted {};
-    noted.sa_handler = note;
-    noted.sa_flags = SA_RESTART;
-    sigemptyset(&noted.sa_mask);
-    sigaction(ends[i], nullptr, &former[i]);
-    if (former[i].sa_handler != SIG_IGN) sigaction(ends[i], &noted, nullptr);
-  }
+  handle_with(note, SA_RESTART);
 }
 
 EndSignals::~EndSignals() {
   if (!thread_.joinable()) return;
-  for (std::size_t i = 0; i < ends.size(); ++i)
-    sigaction(ends[i], &former[i], nullptr);
+  handle_as_before();
   send(0);
   thread_.join();
   for (int& end : ends_of_pipe)
@@ -88,4 +101,18 @@ void EndSignals::listen() {
   take_usual_course(next > 0 ? next : signal);
 }
 
-} // namespace flyball::cli
+EndSignalsPutOff::EndSignalsPutOff() {
+  put_off = 0;
+  handle_with([](int signal) { put_off = signal; }, 0);
+}
+
+EndSignalsPutOff::~EndSignalsPutOff() {
+  handle_as_before();
+  if (put_off != 0) std::raise(put_off);
+}
+
+bool EndSignalsPutOff::came_one() {
+  return put_off != 0;
+}
+
+} // namespace flyball

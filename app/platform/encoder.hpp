@@ -2,15 +2,13 @@
 // PATH. Never waits longer than it is told to, so that a window can feed it between frames.
 #pragma once
 
-#include <cstdio>
 #include <memory>
 #include <string>
-#include <sys/types.h>
 #include <vector>
 
 namespace flyball {
 
-// Whether there is an ffmpeg on PATH.
+// Whether there is an ffmpeg on PATH, and programs can be started at all.
 bool ffmpeg_available();
 
 class Encoder {
@@ -30,19 +28,8 @@ class Encoder {
   bool finish(double seconds);
 
  private:
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  void close_input();
-  bool ended(double seconds);
-  [[noreturn]] void fail();
-
-  pid_t child_ = -1; // -1: has ended
-  int status_ = 0;   // of its end, as waitpid() tells
-  int input_ = -1;   // the pipe to it; -1: closed
-  std::vector<char> waiting_;
-  std::size_t sent_ = 0;                        // of these
-  std::unique_ptr<std::FILE, CloseFile> words_; // its standard error
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 } // namespace flyball

@@ -6,7 +6,7 @@
 #include <functional>
 #include <thread>
 
-namespace flyball::cli {
+namespace flyball {
 
 // While it lives, SIGINT, SIGTERM and SIGHUP (unless they are ignored, as under nohup) are noted rather than
 // end the program at once. Only one at a time.
@@ -33,4 +33,16 @@ class EndSignals {
   std::thread thread_;
 };
 
-} // namespace flyball::cli
+// Puts signals to end off until what is under way has been tidied up; then they take their usual course. Only
+// one at a time.
+class EndSignalsPutOff {
+ public:
+  EndSignalsPutOff();
+  ~EndSignalsPutOff();
+  EndSignalsPutOff(const EndSignalsPutOff&) = delete;
+  EndSignalsPutOff& operator=(const EndSignalsPutOff&) = delete;
+
+  static bool came_one();
+};
+
+} // namespace flyball

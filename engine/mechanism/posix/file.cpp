@@ -15,7 +15,6 @@
 #include <poll.h>
 #include <sys/stat.h>
 #include <thread>
-#include <tuple>
 #include <unistd.h>
 #include <utility>
 
@@ -107,33 +106,14 @@ fs::path follow_links(const fs::path& file) {
   fail(file, "write", ELOOP);
 }
 
-void replace(const fs::path& file, const fs::path& target, const struct stat* old, std::string_view bytes) {
-  PartFile part(file, target, PartFile::Kind::file, 0666);
-  const int fd = part.descriptor();
-  // The owner first, as a new one takes special permissions away; where only root may give one, at least the
-  // group.
-  if (old != nullptr && (old->st_uid != ::geteuid() || old->st_gid != ::getegid()) &&
-      ::fchown(fd, old->st_uid, old->st_gid) != 0)
-    std::ignore = ::fchown(fd, static_cast<uid_t>(-1), old->st_gid);
-  if (old != nullptr && ::fchmod(fd, old->st_mode & 07777U) != 0) fail(file, "write", errno);
-  write_all(file, fd, bytes);
-  if (::fsync(fd) != 0) fail(file, "write", errno);
-  if (!part.close()) fail(file, "write", errno);
-  if (!part.rename_to(target)) fail(file, "write", errno);
-  // The rename itself outlives a power cut only once the folder is on disk; where a file system cannot do
-  // that, the file is whole all the same.
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (directory.get() >= 0) ::fsync(directory.get());
-}
-
 // Writes a regular file, or one that is not there yet.
-void replace_regular(const fs::path& file, const fs::path& target, const struct stat* old,
-                     std::string_view bytes) {
+void replace_regular(const fs::path& file, const fs::path& target, bool exists, std::string_view bytes) {
   // A file marked read-only is meant to stay; renaming over it would not ask.
-  if (old != nullptr && ::access(target.c_str(), W_OK) != 0) fail(file, "write", errno);
+  if (exists && ::access(target.c_str(), W_OK) != 0) fail(file, "write", errno);
   if (!target.has_filename()) fail(file, "write", ENOENT);
-  replace(file, target, old, bytes);
+  PartFile part(file, target, PartFile::Kind::file);
+  part.write(bytes);
+  part.put_in_place();
 }
 
 // What a path stands for, through links; nothing where there is nothing.
@@ -184,7 +164,7 @@ void write_bytes(const fs::path& file, std::string_view bytes) {
   struct stat old {};
   const bool exists = ::stat(target.c_str(), &old) == 0;
   if (exists && S_ISDIR(old.st_mode)) fail(file, "write", EISDIR);
-  if (!exists || S_ISREG(old.st_mode)) return replace_regular(file, target, exists ? &old : nullptr, bytes);
+  if (!exists || S_ISREG(old.st_mode)) return replace_regular(file, target, exists, bytes);
   Descriptor out(open_for_writing(file, target, S_ISFIFO(old.st_mode)));
   write_all(file, out.get(), bytes);
   if (!out.close()) fail(file, "write", errno);
@@ -197,7 +177,7 @@ void replace_file(const fs::path& file, std::string_view bytes) {
   if (exists && S_ISDIR(old.st_mode)) fail(file, "write", EISDIR);
   if (own_descriptor(file, STDOUT_FILENO) >= 0 || (exists && !S_ISREG(old.st_mode)))
     throw SceneError(file.string(), "cannot write: it is no regular file, but a pipe or a device");
-  replace_regular(file, target, exists ? &old : nullptr, bytes);
+  replace_regular(file, target, exists, bytes);
 }
 
 bool same_file(const fs::path& input, const fs::path& output) {
