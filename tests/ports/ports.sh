@@ -2,18 +2,37 @@
 # Compiles the engine and what the window works on for a system that has no libraries here: objects alone, with
 # the headers of this one's packages, which are the same everywhere.
 #
-#   tests/ports/ports.sh windows|web OUTPUT_FOLDER      77 where there is no such compiler
+#   tests/ports/ports.sh windows|web OUTPUT_FOLDER
+#
+# Exits with 77 where there is no such compiler, or its library is older than C++20, as that of Debian 12's
+# Emscripten.
 set -euo pipefail
 
 case ${1-} in
   windows) compiler=x86_64-w64-mingw32-g++-posix files=elsewhere objects=-Wa,-mbig-obj ;;
-  web) compiler=em++ files=posix objects= ;;
+  web) compiler=em++ files=posix objects=-fexperimental-library ;;
   *) echo "ports.sh: expected windows or web" >&2 && exit 2 ;;
 esac
 command -v "$compiler" >/dev/null || { echo "there is no $compiler" && exit 77; }
 top=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 mkdir -p "$2/headers"
 cd "$2"
+
+# The youngest of what is used of the standard library.
+if ! "$compiler" -std=c++20 "$objects" -fsyntax-only -x c++ - 2>/dev/null <<'END'; then
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <thread>
+int main() {
+  char text[32];
+  std::to_chars(text, text + 32, 0.1);
+  return std::ranges::all_of(std::string_view(text), [](char c) { return c != 0; }) + std::jthread().joinable();
+}
+END
+  echo "$compiler has not all of C++20's library"
+  exit 77
+fi
 
 for package in nlohmann fmt sundials cvode arkode nvector sunmatrix sunlinsol sunnonlinsol Spectra; do
   ln -sfn "/usr/include/$package" "headers/$package"
@@ -28,7 +47,7 @@ compile() {
   for folder in "$@"; do
     printf '#include "%s"\n' "$top/$folder"/*.cpp
   done >"$name.cpp"
-  "$compiler" -std=c++20 -O0 -w ${objects:+$objects} -I"$top" -isystem headers -c "$name.cpp" -o "$name.o" 2>"$name.log" ||
+  "$compiler" -std=c++20 -O0 -w "$objects" -I"$top" -isystem headers -c "$name.cpp" -o "$name.o" 2>"$name.log" ||
     { echo "$1: $(grep -m 3 'error' "$name.log")" && return 1; }
 }
 rooms=(engine/{linear,system,kkt,solve,stability,search,report,continuation,dynamics,study}

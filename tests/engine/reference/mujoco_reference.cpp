@@ -16,7 +16,7 @@ namespace flyball::reference {
 
 namespace {
 
-std::size_t at(int i) {
+std::size_t index_of(int i) {
   return static_cast<std::size_t>(i);
 }
 
@@ -73,9 +73,9 @@ std::string numbers(const Vec3& v) {
 }
 
 void write_body(std::ostream& out, const Mechanism& mechanism, const Tree& tree, const Tree::Link& link) {
-  const Body& body = mechanism.bodies[at(link.to)];
-  const Joint& joint = mechanism.joints[at(link.joint)];
-  const Vec3 base = link.from < 0 ? Vec3(Vec3::Zero()) : mechanism.bodies[at(link.from)].position;
+  const Body& body = mechanism.bodies[index_of(link.to)];
+  const Joint& joint = mechanism.joints[index_of(link.joint)];
+  const Vec3 base = link.from < 0 ? Vec3(Vec3::Zero()) : mechanism.bodies[index_of(link.from)].position;
   const auto& [xx, yy, zz, xy, xz, yz] = body.inertia;
   Mat3 inertia;
   inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
@@ -88,7 +88,7 @@ void write_body(std::ostream& out, const Mechanism& mechanism, const Tree& tree,
   out << "<inertial pos=\"0 0 0\" mass=\"" << body.mass << "\" diaginertia=\""
       << numbers(principal.eigenvalues()) << "\" quat=\"" << q.w() << ' ' << numbers(q.vec()) << "\"/>\n";
   for (const Part& part : parts_of(joint, link.reversed)) {
-    const Coordinate& c = joint.coordinates[at(part.index)];
+    const Coordinate& c = joint.coordinates[index_of(part.index)];
     const Vec3 anchor = joint.at - body.position;
     out << "<joint name=\"" << part_name(joint, part) << "\" pos=\"" << numbers(anchor) << '"';
     if (part.kind == Part::Kind::ball) {
@@ -114,7 +114,7 @@ bool mujoco_can_hold(const Mechanism& mechanism) {
   }
   for (const Joint& joint : mechanism.joints)
     for (int i = 0; i < coordinate_count(joint.type); ++i) {
-      const Coordinate& c = joint.coordinates[at(i)];
+      const Coordinate& c = joint.coordinates[index_of(i)];
       if (c.stop || (is_rotation_vector(joint.type, i) && (c.spring || c.damping > 0))) return false;
     }
   return true;
@@ -168,7 +168,7 @@ std::map<std::string, VectorR> mujoco_inverse(const Mechanism& mechanism, const 
   // Calls `visit(joint, part, reversed, position address, velocity address, rotation of a ball)`.
   const auto each_part = [&](auto&& visit) {
     for (const Tree::Link& link : tree.links) {
-      const Joint& joint = mechanism.joints[at(link.joint)];
+      const Joint& joint = mechanism.joints[index_of(link.joint)];
       const std::vector<Real> q = joint_values(joint, state);
       for (const Part& part : parts_of(joint, link.reversed)) {
         const int id = mj_name2id(model.get(), mjOBJ_JOINT, part_name(joint, part).c_str());
@@ -176,8 +176,8 @@ std::map<std::string, VectorR> mujoco_inverse(const Mechanism& mechanism, const 
         if (part.kind == Part::Kind::ball) {
           Vec3R r, drawn;
           for (int i = 0; i < 3; ++i) {
-            r[i] = q[at(part.index + i)];
-            drawn[i] = joint.coordinates[at(part.index + i)].drawn;
+            r[i] = q[index_of(part.index + i)];
+            drawn[i] = joint.coordinates[index_of(part.index + i)].drawn;
           }
           turned = rotation_exp(r) * rotation_exp(drawn).transpose();
           if (link.reversed) turned.transposeInPlace();
@@ -187,7 +187,7 @@ std::map<std::string, VectorR> mujoco_inverse(const Mechanism& mechanism, const 
     }
   };
   each_part([&](const Tree::Link& link, const Part& part, int position, int velocity, const Mat3R& turned) {
-    const int first = tree.first[at(link.joint)] + part.index;
+    const int first = tree.first[index_of(link.joint)] + part.index;
     if (part.kind == Part::Kind::ball) {
       const QuatR quaternion(turned);
       data->qpos[position] = static_cast<double>(quaternion.w());
@@ -195,15 +195,15 @@ std::map<std::string, VectorR> mujoco_inverse(const Mechanism& mechanism, const 
         data->qpos[position + 1 + i] = static_cast<double>(quaternion.vec()[i]);
       return;
     }
-    data->qpos[position] =
-        static_cast<double>(joint_values(mechanism.joints[at(link.joint)], state)[at(part.index)]);
-    data->qvel[velocity] = static_cast<double>(tree.coordinates[at(first)].speed);
+    data->qpos[position] = static_cast<double>(
+        joint_values(mechanism.joints[index_of(link.joint)], state)[index_of(part.index)]);
+    data->qvel[velocity] = static_cast<double>(tree.coordinates[index_of(first)].speed);
   });
   mj_inverse(model.get(), data.get());
 
   std::map<std::string, VectorR> forces;
   each_part([&](const Tree::Link& link, const Part& part, int, int velocity, const Mat3R& turned) {
-    const Joint& joint = mechanism.joints[at(link.joint)];
+    const Joint& joint = mechanism.joints[index_of(link.joint)];
     VectorR& f = forces[joint.name];
     if (f.size() == 0) f = VectorR::Zero(coordinate_count(joint.type));
     if (part.kind != Part::Kind::ball) {
@@ -232,7 +232,7 @@ std::vector<Pose> mujoco_motion(const Mechanism& mechanism,
   for (const auto& [name, rate] : rates) {
     const CoordinateReference c = find_coordinate(mechanism, name);
     if (c.joint < 0) throw std::invalid_argument("no coordinate " + name);
-    const std::string part = mechanism.joints[at(c.joint)].name + "_" + std::to_string(c.coordinate);
+    const std::string part = mechanism.joints[index_of(c.joint)].name + "_" + std::to_string(c.coordinate);
     data->qvel[model->jnt_dofadr[mj_name2id(model.get(), mjOBJ_JOINT, part.c_str())]] = rate;
   }
   for (long i = 0; i < steps; ++i)

@@ -8,7 +8,7 @@ namespace flyball::reference {
 
 namespace {
 
-std::size_t at(int i) {
+std::size_t number_of(int i) {
   return static_cast<std::size_t>(i);
 }
 
@@ -23,7 +23,7 @@ const RigidMotion& motion_of(const Mechanism& mechanism, const std::string& body
                              std::span<const RigidMotion> motions) {
   static const RigidMotion ground;
   const int i = index_of(mechanism, body);
-  return i < 0 ? ground : motions[at(i)];
+  return i < 0 ? ground : motions[number_of(i)];
 }
 
 // The joint's unit axes as drawn: `axis`, and two directions that complete it to a right-handed frame, the
@@ -53,7 +53,7 @@ Vec3R three(std::span<const Real> values, std::size_t first) {
 Vec3R drawn_rotation(const Joint& joint, std::size_t first) {
   Vec3R r;
   for (int i = 0; i < 3; ++i)
-    r[i] = joint.coordinates[first + at(i)].drawn;
+    r[i] = joint.coordinates[first + number_of(i)].drawn;
   return r;
 }
 
@@ -101,14 +101,14 @@ struct Groups {
 
   explicit Groups(std::size_t bodies) : parent(bodies + 1) { std::iota(parent.begin(), parent.end(), 0); }
   int root(int body) {
-    std::size_t i = body < 0 ? parent.size() - 1 : at(body);
+    std::size_t i = body < 0 ? parent.size() - 1 : number_of(body);
     while (parent[i] != static_cast<int>(i))
-      i = at(parent[i]);
+      i = number_of(parent[i]);
     return static_cast<int>(i);
   }
   bool join(int a, int b) {
     const int ra = root(a), rb = root(b);
-    parent[at(ra)] = rb;
+    parent[number_of(ra)] = rb;
     return ra != rb;
   }
 };
@@ -118,8 +118,8 @@ void spread_drives(const Mechanism& mechanism, Tree& tree) {
   const auto coordinate = [&](const std::string& name) -> TreeCoordinate* {
     const CoordinateReference r = find_coordinate(mechanism, name);
     if (r.joint < 0) throw std::invalid_argument("no coordinate " + name);
-    const int first = tree.first[at(r.joint)];
-    return first < 0 ? nullptr : &tree.coordinates[at(first + r.coordinate)];
+    const int first = tree.first[number_of(r.joint)];
+    return first < 0 ? nullptr : &tree.coordinates[number_of(first + r.coordinate)];
   };
   for (bool changed = true; changed;) {
     changed = false;
@@ -142,25 +142,25 @@ Tree span_tree(const Mechanism& mechanism, const std::vector<std::string>& cut_j
   Tree tree;
   std::vector<int> waiting;
   for (int j = 0; j < static_cast<int>(mechanism.joints.size()); ++j) {
-    const Joint& joint = mechanism.joints[at(j)];
+    const Joint& joint = mechanism.joints[number_of(j)];
     const bool cut = joint.type == JointType::distance || joint.type == JointType::gear ||
                      std::find(cut_joints.begin(), cut_joints.end(), joint.name) != cut_joints.end();
     tree.first.push_back(cut ? -1 : static_cast<int>(tree.coordinates.size()));
     (cut ? tree.cut : waiting).push_back(j);
     if (cut) continue;
     for (int i = 0; i < coordinate_count(joint.type); ++i) {
-      const auto& drive = joint.coordinates[at(i)].drive;
+      const auto& drive = joint.coordinates[number_of(i)].drive;
       tree.coordinates.push_back(
           {j, i, is_rotation_vector(joint.type, i), drive.has_value(), drive ? drive->speed : 0});
     }
   }
   std::vector<bool> placed(mechanism.bodies.size(), false);
-  const auto is_placed = [&](int body) { return body < 0 || placed[at(body)]; };
+  const auto is_placed = [&](int body) { return body < 0 || placed[number_of(body)]; };
   for (bool progress = true; progress && !waiting.empty();) {
     progress = false;
     std::vector<int> later;
     for (const int j : waiting) {
-      const Joint& joint = mechanism.joints[at(j)];
+      const Joint& joint = mechanism.joints[number_of(j)];
       const int parent = index_of(mechanism, joint.bodies[0]), child = index_of(mechanism, joint.bodies[1]);
       if (is_placed(parent) && is_placed(child))
         throw std::invalid_argument("joint " + joint.name + " closes a loop and is not cut");
@@ -170,7 +170,7 @@ Tree span_tree(const Mechanism& mechanism, const std::vector<std::string>& cut_j
       }
       const bool reversed = is_placed(child);
       tree.links.push_back({j, reversed ? child : parent, reversed ? parent : child, reversed});
-      placed[at(tree.links.back().to)] = true;
+      placed[number_of(tree.links.back().to)] = true;
       progress = true;
     }
     waiting = later;
@@ -199,7 +199,7 @@ std::vector<std::string> default_cuts(const Mechanism& mechanism) {
 std::vector<Real> joint_values(const Joint& joint, const ReferenceState& state) {
   const auto found = state.coordinates.find(joint.name);
   if (found != state.coordinates.end()) {
-    if (found->second.size() != at(coordinate_count(joint.type)))
+    if (found->second.size() != number_of(coordinate_count(joint.type)))
       throw std::invalid_argument("wrong number of coordinates for " + joint.name);
     return found->second;
   }
@@ -213,13 +213,13 @@ std::vector<RigidMotion> move_bodies(const Mechanism& mechanism, const Tree& tre
                                      const ReferenceState& state, const VectorR& rates) {
   std::vector<RigidMotion> motions(mechanism.bodies.size());
   for (const Tree::Link& link : tree.links) {
-    const Joint& joint = mechanism.joints[at(link.joint)];
+    const Joint& joint = mechanism.joints[number_of(link.joint)];
     std::vector<Real> rate;
     for (int i = 0; i < coordinate_count(joint.type); ++i)
-      rate.push_back(rates[tree.first[at(link.joint)] + i]);
+      rate.push_back(rates[tree.first[number_of(link.joint)] + i]);
     const RigidMotion displacement = joint_displacement(joint, joint_values(joint, state), rate);
-    const RigidMotion base = link.from < 0 ? RigidMotion() : motions[at(link.from)];
-    motions[at(link.to)] = base * (link.reversed ? displacement.inverse() : displacement);
+    const RigidMotion base = link.from < 0 ? RigidMotion() : motions[number_of(link.from)];
+    motions[number_of(link.to)] = base * (link.reversed ? displacement.inverse() : displacement);
   }
   return motions;
 }
@@ -228,8 +228,8 @@ ReferenceState advance(const Mechanism& mechanism, const Tree& tree, const Refer
                        const VectorR& step) {
   ReferenceState result = state;
   for (const Tree::Link& link : tree.links) {
-    const Joint& joint = mechanism.joints[at(link.joint)];
-    const int first = tree.first[at(link.joint)];
+    const Joint& joint = mechanism.joints[number_of(link.joint)];
+    const int first = tree.first[number_of(link.joint)];
     std::vector<Real> values = joint_values(joint, state);
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!is_rotation_vector(joint.type, static_cast<int>(i))) {
