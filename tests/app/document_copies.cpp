@@ -6,6 +6,8 @@
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/app/document_mechanisms.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <cmath>
 
@@ -13,10 +15,6 @@ using namespace flyball;
 using namespace flyball::test;
 
 namespace {
-
-Mechanism governor() {
-  return load_scene(FLYBALL_ASSETS "/scenes/governor.json");
-}
 
 // Spindle, collar, one ball.
 Mechanism half_governor() {
@@ -27,13 +25,6 @@ Mechanism half_governor() {
 }
 
 const Selection ball1{{{PartKind::body, "ball1"}}};
-
-double value(const Solution& solution, const std::string& joint) {
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (c.joint == joint) return c.value;
-  FAIL("no coordinate " << joint << ": " << solution.message);
-  return NAN;
-}
 
 const Joint& joint(const Mechanism& m, std::string_view name) {
   const int i = joint_index(m, name);

@@ -6,6 +6,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <limits>
 
@@ -17,7 +18,7 @@ constexpr const char* speed = "joints.spin.drive.speed";
 constexpr const char* mass = "bodies.collar.mass";
 
 Document governor() {
-  return Document(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  return Document(shipped("governor"));
 }
 
 double shown(const Document& document, const char* address) {

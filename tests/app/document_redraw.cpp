@@ -6,8 +6,8 @@
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/solve/assembly_drag.hpp"
+#include "tests/support/scenes.hpp"
 
-#include <filesystem>
 #include <map>
 
 using namespace flyball;
@@ -132,10 +132,9 @@ TEST_CASE("a random mechanism pulled along its joints is the same mechanism") {
 }
 
 TEST_CASE("so is a shipped scene") {
-  for (const auto& entry : std::filesystem::directory_iterator(FLYBALL_ASSETS "/scenes")) {
-    if (entry.path().extension() != ".json" || entry.path().stem() == "schema") continue;
-    INFO(entry.path());
-    const Mechanism m = load_scene(entry.path().string());
+  for (const std::string& file : shipped_files()) {
+    INFO(file);
+    const Mechanism m = load_scene(file);
     Dice dice(7);
     for (int i = 0; i < 3; ++i)
       check_same_mechanism(m, pull_somewhere(m, dice));
@@ -143,9 +142,9 @@ TEST_CASE("so is a shipped scene") {
 }
 
 TEST_CASE("what no pull moves keeps its digits, and a pull back takes everything back") {
-  const Mechanism shipped = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism given = shipped("governor");
   // Its links are given with five digits, so that it is not drawn quite closed.
-  const Mechanism m = redrawn(shipped, AssemblyDrag(shipped).pose()).mechanism;
+  const Mechanism m = redrawn(given, AssemblyDrag(given).pose()).mechanism;
   AssemblyDrag drag(m);
   CHECK(is_drawn_in(m, drag.pose()));
   CHECK(redrawn(m, drag.pose()).mechanism == m);

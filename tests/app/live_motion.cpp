@@ -5,6 +5,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -13,10 +14,6 @@
 using namespace flyball;
 
 namespace {
-
-Mechanism shipped(const std::string& name) {
-  return load_scene(std::string(FLYBALL_ASSETS) + "/scenes/" + name + ".json");
-}
 
 std::shared_ptr<const Mechanism> shared(const Mechanism& mechanism) {
   return std::make_shared<const Mechanism>(mechanism);

@@ -3,6 +3,7 @@
 #include "app/live/live_motion.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -90,8 +91,7 @@ TEST_CASE("many that are closed while they run are all joined") {
 }
 
 TEST_CASE("solvers and motions are closed while they compute") {
-  const auto mechanism =
-      std::make_shared<const Mechanism>(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  const auto mechanism = std::make_shared<const Mechanism>(shipped("governor"));
   for (int i = 0; i < 5; ++i) {
     LiveSolver solver(LiveSolver::Mode::background);
     solver.ask({.mechanism = mechanism, .another = true});

@@ -5,6 +5,7 @@
 #include "robot.hpp"
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <set>
@@ -115,7 +116,7 @@ TEST_CASE("arrows turn along where that is exact, and the legend says where they
   CHECK((reaction() - at_first).norm() > 0.2 * at_first.norm());
   CHECK(loads_missing(app).empty());
   robot.key(' ');
-  open_scene(app, FLYBALL_ASSETS "/scenes/rate_gyro.json");
+  open_scene(app, shipped_file("rate_gyro"));
   robot.frames(3);
   CHECK(!shown_scene(app)->loads.empty());
   robot.key(' ');

@@ -6,6 +6,8 @@
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -21,7 +23,7 @@ constexpr PixelSize wide{1280, 900};
 
 struct MapRobot : Robot {
   explicit MapRobot(const std::string& scene = "governor") : Robot(wide) {
-    open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    open_scene(app, shipped_file(scene));
     frames(3);
     key('P');
     frames(3);
@@ -33,9 +35,7 @@ double solved(Mechanism m, const MapChoice& choice, double x, double y) {
   set_parameter(m, choice.axes[0].address, x);
   set_parameter(m, choice.axes[1].address, y);
   const Solution solution = Analysis(m).solve();
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (solution.status == Status::converged && c.joint == choice.coordinate) return c.value;
-  return NAN;
+  return solution.status == Status::converged ? value(solution, choice.coordinate) : NAN;
 }
 
 } // namespace
@@ -81,7 +81,7 @@ TEST_CASE("every place of the map is what a solve of its own gives") {
 
 TEST_CASE("unstable places are hatched, which is neither read off nor written to a file") {
   Robot plain(wide);
-  open_scene(plain.app, FLYBALL_ASSETS "/scenes/watt_governor.json");
+  open_scene(plain.app, shipped_file("watt_governor"));
   // A torque that turns along has no potential: then the answer is the state nearest to the drawn pose, and
   // that is unstable at high speeds.
   edit(plain.app, "Twist", [](Mechanism& m, Selection&) {
@@ -209,7 +209,7 @@ TEST_CASE("on the curve of a constant value the coordinate has it") {
 
 TEST_CASE("a map in the background tells its progress, can be stopped, and goes with its tab") {
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
-  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  open_scene(app, shipped_file("governor"));
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 3000 && !until(); ++i) {
       update(app, 0.01, {400, 300});

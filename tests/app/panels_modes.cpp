@@ -6,6 +6,7 @@
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ constexpr PixelSize wide{1280, 900};
 
 struct ModesRobot : Robot {
   explicit ModesRobot(const std::string& scene) : Robot(wide) {
-    open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    open_scene(app, shipped_file(scene));
     frames(3);
     key('O');
     frames(3);

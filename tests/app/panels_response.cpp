@@ -8,6 +8,8 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -23,21 +25,15 @@ namespace {
 constexpr PixelSize wide{1280, 900};
 const std::string speed = "joints.spin.drive.speed", stiffness = "joints.slide.spring.stiffness";
 
-double coordinate(const std::vector<CoordinateSolution>& all, const std::string& name) {
-  const auto found = std::ranges::find(all, name, &CoordinateSolution::joint);
-  REQUIRE(found != all.end());
-  return found->value;
-}
-
 double present(const App& app, const std::string& name) {
   REQUIRE(converged(app));
-  return coordinate(app.answer.solution.coordinates, name);
+  return value(app.answer.solution, name);
 }
 
 // The response is asked for with the key C.
 struct ResponseRobot : Robot {
   explicit ResponseRobot(const std::string& scene = "") : Robot(wide) {
-    if (!scene.empty()) open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    if (!scene.empty()) open_scene(app, shipped_file(scene));
     frames(2);
     key('C');
     frames(3);
@@ -386,7 +382,7 @@ TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
     }
   }
   // Where there is no steady state there is nothing to tell.
-  open_scene(app, FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  open_scene(app, shipped_file("conical_pendulum"));
   robot.frames(2);
   CHECK_FALSE(shown_rates(app, speed).empty());
   CHECK(app.widgets.count("parameters/" + speed + "/rate") == 1);

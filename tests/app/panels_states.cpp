@@ -5,6 +5,8 @@
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,19 +21,13 @@ constexpr PixelSize wide{1280, 900};
 
 struct StatesRobot : Robot {
   explicit StatesRobot(const std::string& scene = "conical_pendulum") : Robot(wide) {
-    open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    open_scene(app, shipped_file(scene));
     frames(3);
     key('E');
     frames(3);
   }
   const std::vector<Solution>& all() { return app.study.states.result->all.equilibria; }
 };
-
-double value(const Solution& solution, const std::string& joint) {
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (c.joint == joint) return c.value;
-  return NAN;
-}
 
 } // namespace
 
@@ -125,7 +121,7 @@ TEST_CASE("after a change the list is that of the mechanism as it is") {
 
 TEST_CASE("a search in the background can be stopped, and what was found before stays") {
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
-  open_scene(app, FLYBALL_ASSETS "/scenes/chain20.json");
+  open_scene(app, shipped_file("chain20"));
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 3000 && !until(); ++i) {
       update(app, 0.01, {400, 300});

@@ -2,6 +2,8 @@
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <chrono>
 #include <thread>
@@ -11,14 +13,11 @@ using namespace flyball;
 namespace {
 
 constexpr const char* speed = "joints.spin.drive.speed";
-constexpr const char* governor = FLYBALL_ASSETS "/scenes/governor.json";
+const std::string governor = test::shipped_file("governor");
 
 double collar(const Session& session) {
   REQUIRE(converged(session));
-  for (const CoordinateSolution& c : session.answer.solution.coordinates)
-    if (c.joint == "slide") return c.value;
-  FAIL("no collar");
-  return 0;
+  return test::value(session.answer.solution, "slide");
 }
 
 // A window's loop without the window, until `done`.
