@@ -64,25 +64,25 @@ std::optional<std::size_t> branch_through(const std::vector<ResponseBranch>& bra
 }
 
 FoundCampbell follow(const Mechanism& mechanism, const std::string& drive, double from, double to,
-                     const State& state, const Background<FoundCampbell>::Watch& watch) {
+                     const State& state, const TaskContext<FoundCampbell>& context) {
   const auto begin = std::chrono::steady_clock::now();
   FoundCampbell found{.drive = drive, .from = from, .to = to, .diagram = {}, .lines = {}};
   BranchOptions options;
   options.largest_step = 0.007; // lines that are smooth where they are zoomed
-  options.cancel = &watch.cancel;
-  options.progress = watch.progress;
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
   found.diagram = follow_branches(mechanism, drive, from, to, options);
   // Nothing may connect the state with what the drawn pose leads to.
   const bool inside = state.speed >= std::min(from, to) && state.speed <= std::max(from, to);
   if (inside && !state.coordinates.empty() && !branch_through(found.diagram.branches, state) &&
-      !watch.cancel) {
+      !context.cancel) {
     options.all = true;
     options.all_at = {state.speed};
     found.diagram = follow_branches(mechanism, drive, from, to, options);
   }
   for (const ResponseBranch& branch : found.diagram.branches)
     found.lines.push_back(track_eigenvalues(branch.points));
-  found.cancelled = watch.cancel;
+  found.cancelled = context.cancel;
   found.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return found;
 }
@@ -138,8 +138,8 @@ void follow_campbell(Session& session) {
   const State state = present(session, drive);
   campbell.asked_ticket = session.answer.ticket;
   campbell.task->start([mechanism = session.document.shared(), drive, range,
-                        state](const Background<FoundCampbell>::Watch& watch) {
-    return follow(*mechanism, drive, range[0], range[1], state, watch);
+                        state](const TaskContext<FoundCampbell>& context) {
+    return follow(*mechanism, drive, range[0], range[1], state, context);
   });
 }
 
@@ -151,7 +151,7 @@ void update_campbell(Session& session) {
       if (news->result && news->result->cancelled) {
         campbell.problem = "Following the branches was stopped.";
       } else if (news->result) {
-        campbell.result = std::move(news->result);
+        campbell.result = std::move(*news->result);
         campbell.of = campbell.asked;
         ++campbell.results;
         campbell.revision = 0;

@@ -11,12 +11,12 @@ void begin_comparison(Session& session) {
   state.problem.clear();
   state.of = session.document.shared();
   state.task->start([mechanism = session.document.shared(),
-                     repeats = state.repeats](const Background<Comparison>::Watch& watch) {
+                     repeats = state.repeats](const TaskContext<Comparison>& context) {
     CompareOptions options;
     options.repeats = repeats;
-    options.cancel = &watch.cancel;
+    options.cancel = &context.cancel;
     options.progress = [&](std::size_t done, std::size_t all) {
-      watch.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
+      context.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
     };
     return compare(*mechanism, options);
   });
@@ -28,7 +28,7 @@ void update_comparison(Session& session) {
   if (!news) return;
   state.problem = news->problem;
   if (!news->result) return;
-  state.result = std::move(news->result);
+  state.result = std::move(*news->result);
   ++state.results;
 }
 

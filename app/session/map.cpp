@@ -49,7 +49,7 @@ MapCell cell_of(const Solution& solution, const std::string& coordinate) {
 }
 
 FoundCells find_cells(const Mechanism& mechanism, const MapChoice& choice,
-                      const Background<FoundCells>::Watch& watch) {
+                      const TaskContext<FoundCells>& context) {
   const auto begin = std::chrono::steady_clock::now();
   FoundCells found{.choice = choice, .cells = {}};
   // The last moves fastest.
@@ -59,10 +59,10 @@ FoundCells find_cells(const Mechanism& mechanism, const MapChoice& choice,
   const std::vector<SweepPoint> points = sweep(
       mechanism, variations, 0,
       [&](std::size_t done, std::size_t all) {
-        watch.progress({"solving", static_cast<double>(done) / static_cast<double>(all)});
+        context.progress({"solving", static_cast<double>(done) / static_cast<double>(all)});
       },
-      &watch.cancel);
-  found.cancelled = watch.cancel;
+      &context.cancel);
+  found.cancelled = context.cancel;
   found.cells.reserve(points.size());
   for (const SweepPoint& point : points)
     found.cells.push_back(cell_of(point.solution, choice.coordinate));
@@ -71,7 +71,7 @@ FoundCells find_cells(const Mechanism& mechanism, const MapChoice& choice,
 }
 
 FoundCurves find_curves(const Mechanism& mechanism, const MapChoice& choice,
-                        const Background<FoundCurves>::Watch& watch) {
+                        const TaskContext<FoundCurves>& context) {
   const auto begin = std::chrono::steady_clock::now();
   FoundCurves found;
   std::array<PlaneAxis, 2> axes;
@@ -79,15 +79,15 @@ FoundCurves find_curves(const Mechanism& mechanism, const MapChoice& choice,
     axes[i] = {choice.axes[i].address, choice.axes[i].from, choice.axes[i].to};
   const double share = choice.folds && choice.level ? 0.5 : 1;
   PlaneOptions options;
-  options.cancel = &watch.cancel;
-  options.progress = [&](const Progress& now) { watch.progress({now.phase, share * now.part}); };
+  options.cancel = &context.cancel;
+  options.progress = [&](const Progress& now) { context.progress({now.phase, share * now.part}); };
   if (choice.folds) found.folds = fold_curves(mechanism, axes[0], axes[1], options);
   options.progress = [&](const Progress& now) {
-    watch.progress({now.phase, 1 - share + share * std::max(0., now.part)});
+    context.progress({now.phase, 1 - share + share * std::max(0., now.part)});
   };
   if (choice.level)
     found.level = coordinate_curves(mechanism, axes[0], axes[1], choice.coordinate, *choice.level, options);
-  found.cancelled = watch.cancel;
+  found.cancelled = context.cancel;
   found.run_time_s = seconds_since(begin);
   return found;
 }
@@ -100,8 +100,8 @@ void compute_cells(Session& session) {
   map.cells_of = without_place(session.mechanism(), map.choice);
   map.problem.clear();
   map.cells_task->start([mechanism = session.document.shared(),
-                         choice = map.asked_cells](const Background<FoundCells>::Watch& watch) {
-    return find_cells(*mechanism, choice, watch);
+                         choice = map.asked_cells](const TaskContext<FoundCells>& context) {
+    return find_cells(*mechanism, choice, context);
   });
 }
 
@@ -119,8 +119,8 @@ void compute_curves(Session& session) {
     map.curves_task =
         std::make_unique<Background<FoundCurves>>(session.options.mode, session.options.on_news);
   map.curves_task->start([mechanism = session.document.shared(),
-                          choice = map.asked_curves](const Background<FoundCurves>::Watch& watch) {
-    return find_curves(*mechanism, choice, watch);
+                          choice = map.asked_curves](const TaskContext<FoundCurves>& context) {
+    return find_curves(*mechanism, choice, context);
   });
 }
 
@@ -181,7 +181,7 @@ void take(Session& session) {
       if (news->result && news->result->cancelled) {
         map.problem = "Computing the map was stopped.";
       } else if (news->result) {
-        map.cells = std::move(news->result);
+        map.cells = std::move(*news->result);
         ++map.version;
       }
     }
@@ -189,7 +189,7 @@ void take(Session& session) {
     if (auto news = map.curves_task->take()) {
       if (!news->problem.empty()) map.problem = news->problem;
       if (news->result) {
-        map.curves = std::move(news->result);
+        map.curves = std::move(*news->result);
         ++map.version;
       }
     }

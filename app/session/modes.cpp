@@ -16,7 +16,7 @@ constexpr double turn = 2 * std::numbers::pi;
 
 FoundModes find(std::shared_ptr<const Mechanism> mechanism,
                 const std::vector<std::pair<std::string, double>>& start,
-                const Background<FoundModes>::Watch& watch) {
+                const TaskContext<FoundModes>& context) {
   const auto begin = std::chrono::steady_clock::now();
   FoundModes found;
   found.analysis = std::make_unique<Analysis>(std::move(mechanism));
@@ -26,8 +26,8 @@ FoundModes find(std::shared_ptr<const Mechanism> mechanism,
   SolveOptions options;
   options.nearest = true;
   options.start = start;
-  options.cancel = &watch.cancel;
-  options.progress = watch.progress;
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
   const Solution solution = found.analysis->solve(options);
   if (solution.status != Status::converged) throw std::runtime_error(solution.message);
   found.modes = found.analysis->modes();
@@ -66,7 +66,7 @@ void find_modes_again(Session& session) {
   modes.problem.clear();
   modes.task->start(
       [mechanism = session.answer.mechanism, start = start_values(session.answer.solution.coordinates)](
-          const Background<FoundModes>::Watch& watch) { return find(mechanism, start, watch); });
+          const TaskContext<FoundModes>& context) { return find(mechanism, start, context); });
 }
 
 void update_modes(Session& session) {
@@ -81,7 +81,7 @@ void update_modes(Session& session) {
       } else {
         // A mode keeps its place among as many others; where there are others it is not the same.
         if (!modes.result || modes.result->modes.size() != news->result->modes.size()) modes.chosen.reset();
-        modes.result = std::move(news->result);
+        modes.result = std::move(*news->result);
       }
       modes.of = modes.asked;
     }

@@ -2,7 +2,7 @@
 // before a person asks for the motion.
 #pragma once
 
-#include "app/live/live_motion.hpp"
+#include "app/live/motion.hpp"
 #include "engine/dynamics/settled.hpp"
 
 #include <array>
@@ -18,10 +18,9 @@ struct Session;
 // One of two runs: with the dampers on, and off.
 struct MotionRun {
   bool wanted = true;
-  std::unique_ptr<LiveMotion> live;
-  std::uint64_t asked = 0;        // ticket; 0: nothing asked for yet
-  std::uint64_t answered = 0;     // the newest ticket of which anything has come
-  std::shared_ptr<const Run> run; // may still be that of an earlier request; null: none
+  std::unique_ptr<Background<Motion>> task;
+  bool told = false;              // anything has come of what was asked for last
+  std::shared_ptr<const Run> run; // until then of an earlier request; null: none
   bool finished = false;
   std::string problem; // why there is no run, or no more of it
 };

@@ -75,10 +75,10 @@ void follow(Session& session, ResponseRequest of) {
   const double present = get_parameter(session.mechanism(), of.address);
   state.task->start(
       [of = std::move(of), through = std::move(through),
-       present](const Background<ResponseResult>::Watch& watch) {
+       present](const TaskContext<ResponseResult>& context) {
         BranchOptions options = follow_options(of, present);
-        options.cancel = &watch.cancel;
-        options.progress = watch.progress;
+        options.cancel = &context.cancel;
+        options.progress = context.progress;
         ResponseResult result;
         std::optional<ResponseDiagram> diagram;
         if (through && !of.all)
@@ -90,14 +90,15 @@ void follow(Session& session, ResponseRequest of) {
         result.of = of;
         return result;
       },
-      after);
+      after ? Background<ResponseResult>::Running::finished : Background<ResponseResult>::Running::cancelled);
 }
 
 void take_result(ResponseState& state) {
   auto news = state.task ? state.task->take() : std::nullopt;
   if (!news) return;
   state.problem = news->problem;
-  state.result = std::move(news->result);
+  state.result.reset();
+  if (news->result) state.result = std::move(*news->result);
   if (state.result && state.result->diagram.status != Status::converged) {
     state.problem = state.result->diagram.message;
     state.result.reset();
@@ -122,7 +123,8 @@ void take_design(Session& session) {
   auto news = state.design.task ? state.design.task->take() : std::nullopt;
   if (!news) return;
   state.design.problem = news->problem;
-  state.design.answer = std::move(news->result);
+  state.design.answer.reset();
+  if (news->result) state.design.answer = std::move(*news->result);
   if (state.design.answer)
     std::ranges::stable_sort(state.design.answer->found.solutions, {}, [&](const DesignSolution& s) {
       return std::pair(s.at.stable != true, away(session, s.at));
@@ -373,16 +375,17 @@ void find_design(Session& session) {
       wanted.answer && wanted.answer->coordinate == wanted.coordinate && wanted.answer->value == wanted.value;
   wanted.task->start(
       [of = std::move(*of), coordinate = wanted.coordinate,
-       value = wanted.value](const Background<ResponseDesign::Answer>::Watch& watch) {
+       value = wanted.value](const TaskContext<ResponseDesign::Answer>& context) {
         DesignOptions options;
         options.largest_step = largest_step(of);
-        options.cancel = &watch.cancel;
-        options.progress = watch.progress;
+        options.cancel = &context.cancel;
+        options.progress = context.progress;
         return ResponseDesign::Answer{
             of, coordinate, value,
             design(*of.mechanism, of.address, of.from, of.to, coordinate, value, options)};
       },
-      after);
+      after ? Background<ResponseDesign::Answer>::Running::finished
+            : Background<ResponseDesign::Answer>::Running::cancelled);
   take_design(session);
 }
 

@@ -11,18 +11,17 @@ namespace {
 
 constexpr double no_time = 0.3; // s
 
-FoundStates find_states(std::shared_ptr<const Mechanism> mechanism,
-                        const Background<FoundStates>::Watch& watch) {
+FoundStates find_states(std::shared_ptr<const Mechanism> mechanism, const TaskContext<FoundStates>& context) {
   const auto begin = std::chrono::steady_clock::now();
   FoundStates found;
-  report_progress(watch.progress, "preparing");
+  report_progress(context.progress, "preparing");
   Analysis analysis(std::move(mechanism));
   SolveOptions options;
   options.details = false;
-  options.cancel = &watch.cancel;
-  options.progress = watch.progress;
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
   found.all = analysis.solve_all(options);
-  found.cancelled = watch.cancel;
+  found.cancelled = context.cancel;
   found.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return found;
 }
@@ -36,8 +35,8 @@ void search_states(Session& session) {
     states.task = std::make_unique<Background<FoundStates>>(session.options.mode, session.options.on_news);
   states.asked = session.document.revision();
   states.problem.clear();
-  states.task->start([mechanism = session.document.shared()](const Background<FoundStates>::Watch& watch) {
-    return find_states(mechanism, watch);
+  states.task->start([mechanism = session.document.shared()](const TaskContext<FoundStates>& context) {
+    return find_states(mechanism, context);
   });
 }
 
@@ -50,7 +49,7 @@ void update_states(Session& session) {
       if (news->result && news->result->cancelled) {
         states.problem = "The search was stopped.";
       } else if (news->result) {
-        states.result = std::move(news->result);
+        states.result = std::move(*news->result);
         states.of = states.asked;
         ++states.lists;
       }

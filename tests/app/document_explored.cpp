@@ -11,6 +11,7 @@
 #include <limits>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 

@@ -22,6 +22,7 @@
 #include <unistd.h>
 
 using namespace flyball;
+using namespace flyball::test;
 using flyball::test::TemporaryFolder;
 namespace fs = std::filesystem;
 

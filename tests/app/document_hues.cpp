@@ -16,6 +16,7 @@
 #include <set>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <tuple>
 
 using namespace flyball;
+using namespace flyball::test;
 
 TEST_CASE("a value has the digits its error supports") {
   const NumberStyle style;

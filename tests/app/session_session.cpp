@@ -9,6 +9,7 @@
 #include <thread>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <optional>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 

@@ -19,6 +19,7 @@
 #include <unistd.h>
 
 using namespace flyball;
+using namespace flyball::test;
 namespace fs = std::filesystem;
 
 namespace {
