@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flyball {
 
@@ -61,7 +62,6 @@ void ask(Session& session, bool go_on) {
     run.told = run.finished = false;
     run.problem.clear();
   }
-  ++motion.version;
 }
 
 // The value of a track at a time, between samples.
@@ -129,7 +129,7 @@ void show_motion(Session& session, bool on) {
     session.motion.on = false;
     session.motion.poses.clear();
     session.motion.settled.reset();
-    ++session.motion.version;
+    session.motion.shown = {};
     play(session, false);
     rewind(session);
     return;
@@ -187,28 +187,24 @@ void update_motion(Session& session) {
     run.run = taken->result ? std::move(taken->result->run) : nullptr;
     if (run.run && run.run->status == RunStatus::diverged) run.problem = run.run->message;
   }
-  if (news) {
-    ++motion.version;
-    session.moved_time = true; // the drives may stand elsewhere in the new run, see steady_time()
-  }
+  if (news) session.moved_time = true; // the drives may stand elsewhere in the new run, see steady_time()
   const MotionRun* shown = shown_motion(session);
   if (!shown) {
     motion.poses.clear();
     motion.settled.reset();
+    motion.shown = {};
     return;
   }
   const Run& run = *shown->run;
-  if (motion.posed != session.playback.time || motion.posed_version != motion.version) {
+  const MotionState::Of before = std::exchange(
+      motion.shown, {.run = shown->run, .time = session.playback.time, .answer = session.answer.ticket});
+  if (before.run != shown->run || before.time != session.playback.time)
     motion.poses = poses_at(run, session.playback.time);
-    motion.posed = session.playback.time;
-  }
-  if (motion.posed_version != motion.version || motion.settled_ticket != session.answer.ticket) {
+  if (before.run != shown->run || before.answer != session.answer.ticket) {
     motion.settled.reset();
     if (run.damped && converged(session) && !solving(session))
       motion.settled = find_settled(run, session.answer.solution);
-    motion.settled_ticket = session.answer.ticket;
   }
-  motion.posed_version = motion.version;
 }
 
 void advance_motion(Session& session, double seconds) {

@@ -40,12 +40,14 @@ struct MotionState {
   bool beside = false; // in a view of its own
 
   std::array<MotionRun, 2> runs; // damped, undamped
-  std::uint64_t version = 1;     // of what the plots show
   std::vector<Pose> poses;       // of the shown run at playback.time; empty: none
-  double posed = -1;             // s, the time of these poses
-  std::uint64_t posed_version = 0;
   std::optional<Settled> settled;
-  std::uint64_t settled_ticket = 0; // of the answer it was found for
+  // What these two are of.
+  struct Of {
+    std::shared_ptr<const Run> run;
+    double time = -1;         // s
+    std::uint64_t answer = 0; // its ticket
+  } shown;
 };
 
 // The motion begins, and plays; or everything of it goes.

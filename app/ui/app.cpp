@@ -78,9 +78,9 @@ void look_from(App& app, double azimuth, double elevation) {
 void update(App& app, double seconds, ViewSize view) {
   update(app, seconds);
   // What is closed is looked at afresh when it is opened again.
-  if (app.study.open != Study::response) app.plots.response = {};
-  if (app.study.open != Study::map) app.plots.map = {};
-  if (app.study.open != Study::modes) {
+  if (app.study.open != StudyKind::response) app.plots.response = {};
+  if (app.study.open != StudyKind::map) app.plots.map = {};
+  if (app.study.open != StudyKind::modes) {
     const bool hertz = app.plots.campbell.hertz;
     app.plots.campbell = {};
     app.plots.campbell.hertz = hertz;

@@ -20,14 +20,10 @@ void choose_units(App& app, const DisplayUnits& units) {
   if (app.units == units) return;
   app.units = units;
   keep_settings(app.options.state, settings_of(app));
-  // Plots are in these units; how a person has looked at them was in others.
-  app.plots.response.plotted = 0;
+  // How a person has looked at the plots was in other units.
   fit_plot(app.plots.response.view);
-  app.plots.map.made_version = 0;
   fit_plot(app.plots.map.view);
-  app.plots.campbell.made_result = 0;
   fit_plot(app.plots.campbell.view);
-  ++app.motion.version;
   for (MotionPlot& plot : app.plots.motion)
     fit_plot(plot.view);
 }

@@ -44,12 +44,12 @@ std::vector<RunawayCoordinate> holdable(const App& app) {
 }
 
 void show_how_it_moves(App& app) {
-  if (app.study.open == Study::motion && app.motion.on) {
+  if (app.study.open == StudyKind::motion && app.motion.on) {
     set_mode(app, Mode::explore);
     restart_motion(app);
   } else {
-    if (app.study.open == Study::motion) app.study.open = Study::none; // open_study() would close it
-    open_study(app, Study::motion);
+    if (app.study.open == StudyKind::motion) app.study.open = StudyKind::none; // open_study() would close it
+    open_study(app, StudyKind::motion);
   }
 }
 

@@ -47,7 +47,7 @@ TEST_CASE("without being asked for there is no motion, no integrator and no pane
   CHECK_FALSE(robot.app.motion.on);
   for (const MotionRun& run : robot.app.motion.runs)
     CHECK_FALSE(run.live);
-  CHECK_FALSE(robot.app.study.compare.task);
+  CHECK_FALSE(robot.app.study.compare.measured.asked);
   CHECK(robot.app.widgets.count("motion/play") == 0);
   CHECK(robot.app.widgets.count("study/motion") == 0);
   CHECK(robot.app.widgets.count("parameters/joints.slide.damping") == 0);
@@ -89,7 +89,7 @@ TEST_CASE("a closed panel takes everything of the motion with it") {
     CHECK_FALSE(run.live);
   CHECK(robot.app.motion.poses.empty());
   CHECK(robot.app.playback.time == 0);
-  CHECK(robot.app.study.open == Study::none);
+  CHECK(robot.app.study.open == StudyKind::none);
 }
 
 TEST_CASE("the motion is paused, stepped and scrubbed") {
@@ -289,7 +289,7 @@ TEST_CASE("while a motion is computed it is told how much of it there is") {
   };
   wait([&] { return app.answer.ticket != 0; });
   app.motion.duration = 1000;
-  open_study(app, Study::motion);
+  open_study(app, StudyKind::motion);
   CHECK(computed_motion(app) == 0.);
   wait([&] { return app.widgets.contains("motion/progress"); });
   wait([&] { return computed_motion(app).value_or(0) > 0; });
@@ -312,13 +312,13 @@ TEST_CASE("building ends the motion") {
 TEST_CASE("the comparison is measured and drawn") {
   Robot robot(wide);
   App& app = robot.app;
-  open_study(app, Study::compare);
+  open_study(app, StudyKind::compare);
   robot.frames(2);
   app.study.compare.repeats = 1;
   robot.click("compare/run");
   robot.frames(2);
-  REQUIRE(app.study.compare.result);
-  const Comparison& c = *app.study.compare.result;
+  REQUIRE(app.study.compare.measured.found);
+  const Comparison& c = app.study.compare.measured.found->result;
   CHECK(c.status == Status::converged);
   REQUIRE(c.best);
   CHECK(c.best->ratio() > 1);

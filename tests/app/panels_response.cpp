@@ -78,8 +78,8 @@ std::vector<double> crossings(const Plot& plot, const std::string& name, double 
 
 TEST_CASE("without being asked for there is no response curve") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.study.response.task);
-  CHECK_FALSE(robot.app.study.response.result);
+  CHECK_FALSE(robot.app.study.response.curve.asked);
+  CHECK_FALSE(robot.app.study.response.curve.found);
   CHECK(robot.app.widgets.count("plot/response/area") == 0);
 }
 
@@ -87,9 +87,9 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
   ResponseRobot robot;
   ResponseState& state = robot.state();
   const ResponseView& drawn = robot.drawn();
-  REQUIRE(state.result);
-  CHECK(state.address == speed);
-  CHECK(state.quantity == "value slide");
+  REQUIRE(state.curve.found);
+  CHECK(state.choice.address == speed);
+  CHECK(state.choice.quantity == "value slide");
   CHECK(drawn.plot.y.unit == "m");
   Analysis analysis(robot.app.mechanism());
   for (const double at : {2.0, 9.0, 11.0174, 16.0, 25.0}) {
@@ -104,8 +104,8 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
     CHECK(found[0] == Approx(coordinate(solution.coordinates, "slide")).margin(5e-4));
   }
   // At its points the curve is exact.
-  for (std::size_t i = 0; i < state.result->lines[0].points.size(); i += 7) {
-    const ResponsePoint& point = state.result->lines[0].points[i];
+  for (std::size_t i = 0; i < state.curve.found->result.lines[0].points.size(); i += 7) {
+    const ResponsePoint& point = state.curve.found->result.lines[0].points[i];
     Mechanism mechanism = robot.app.mechanism();
     set_parameter(mechanism, speed, point.parameter);
     analysis.update(mechanism);
@@ -148,16 +148,18 @@ TEST_CASE("the varied slider moves the marker alone, another one the curve") {
   ResponseState& state = robot.state();
   const ResponseView& drawn = robot.drawn();
   const double x = drawn.plot.marker->x;
-  const std::uint64_t version = state.version, made = drawn.plots_made;
+  const auto curve = state.curve.found;
+  const std::uint64_t version = drawn.plot.version;
   robot.drag("parameters/" + speed, {0.37f, 0.5f}, {0.6f, 0.5f});
-  CHECK(state.version == version);
-  CHECK(drawn.plots_made == made);
+  CHECK(state.curve.found == curve);
+  CHECK(drawn.plot.version == version);
   CHECK(drawn.plot.marker->x > x + 2);
   CHECK(drawn.plot.marker->y == Approx(present(app, "slide")));
 
   const double before = crossings(drawn.plot, "stable", 20).at(0);
   robot.drag("parameters/" + stiffness, {0.5f, 0.5f}, {0.7f, 0.5f});
-  CHECK(state.version > version);
+  CHECK(state.curve.found != curve);
+  CHECK(drawn.plot.version > version);
   CHECK(std::abs(crossings(drawn.plot, "stable", 20).at(0) - before) > 1e-3);
   CHECK(crossings(drawn.plot, "stable", drawn.plot.marker->x).at(0) ==
         Approx(drawn.plot.marker->y).margin(5e-4));
@@ -193,7 +195,7 @@ TEST_CASE("the conical pendulum: drawn as a fork, and dragged onto the unstable 
   App& app = robot.app;
   ResponseState& state = robot.state();
   const ResponseView& drawn = robot.drawn();
-  REQUIRE(state.result);
+  REQUIRE(state.curve.found);
   REQUIRE(drawn.plot.marks.size() == 1);
   CHECK_THAT(drawn.plot.marks[0].label, ContainsSubstring("branch point 3.742"));
   CHECK_THAT(drawn.plot.marks[0].label, ContainsSubstring("rad/s"));
@@ -260,11 +262,11 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
   const ResponseView& drawn = robot.drawn();
   robot.click("response/parameter");
   robot.click("response/parameter/stiffness of slide");
-  CHECK(state.address == stiffness);
+  CHECK(state.choice.address == stiffness);
   CHECK(drawn.plot.x.logarithmic);
   CHECK(drawn.plot.x.unit == "N/m");
-  CHECK(state.from == 50);
-  CHECK(state.to == 20000);
+  CHECK(state.choice.from == 50);
+  CHECK(state.choice.to == 20000);
   CHECK(drawn.plot.marker->x == 1000);
   // A click between two points of the curve is one on the curve.
   const double y = crossings(drawn.plot, "stable", 3000).at(0);
@@ -276,7 +278,7 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
   robot.type("5 kN/m");
   robot.key(key_enter);
   robot.frames(2);
-  CHECK(state.to == 5000);
+  CHECK(state.choice.to == 5000);
   for (const PlotCurve& curve : drawn.plot.curves)
     for (const auto& point : curve.points)
       CHECK(point[0] <= 5000 * (1 + 1e-12));
@@ -303,18 +305,17 @@ TEST_CASE("a closed response takes everything with it but what was chosen") {
   robot.click("response/quantity");
   robot.click("response/quantity/value arm1");
   robot.click("study/close");
-  CHECK(robot.app.study.open == Study::none);
-  CHECK_FALSE(state.task);
-  CHECK_FALSE(state.result);
-  CHECK_FALSE(state.asked);
+  CHECK(robot.app.study.open == StudyKind::none);
+  CHECK_FALSE(state.curve.asked);
+  CHECK_FALSE(state.curve.found);
   CHECK(drawn.plot.curves.empty());
   CHECK(drawn.pieces.empty());
   change_parameter(robot.app, stiffness, 900);
   robot.frames(2);
-  CHECK_FALSE(state.task);
+  CHECK_FALSE(state.curve.asked);
   robot.key('C');
   robot.frames(2);
-  CHECK(state.quantity == "value arm1");
+  CHECK(state.choice.quantity == "value arm1");
   CHECK_FALSE(drawn.plot.curves.empty());
 }
 
@@ -328,8 +329,8 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   robot.type("0.12 m");
   robot.key(key_enter);
   robot.frames(2);
-  REQUIRE(state.design.answer);
-  const DesignAnswer& answer = state.design.answer->found;
+  REQUIRE(state.design.answer.found);
+  const DesignAnswer& answer = state.design.answer.found->result;
   // Arms that point up have such speeds of their own; first comes what is stable and like the present state.
   REQUIRE_FALSE(answer.solutions.empty());
   CHECK(answer.solutions[0].at.stable == true);
@@ -347,12 +348,12 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   // With another spring there is another answer, without asking again.
   change_parameter(app, stiffness, 800);
   robot.frames(3);
-  REQUIRE_FALSE(state.design.answer->found.solutions.empty());
-  CHECK(std::abs(state.design.answer->found.solutions[0].parameter - found) > 0.1);
+  REQUIRE_FALSE(state.design.answer.found->result.solutions.empty());
+  CHECK(std::abs(state.design.answer.found->result.solutions[0].parameter - found) > 0.1);
   // What is never reached is told.
   state.design.value = 5;
   robot.click("response/find");
-  CHECK(state.design.answer->found.solutions.empty());
+  CHECK(state.design.answer.found->result.solutions.empty());
   CHECK(app.widgets.count("response/never") == 1);
 }
 

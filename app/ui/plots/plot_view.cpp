@@ -79,6 +79,11 @@ PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Pl
   return events;
 }
 
+void replace_plot(Plot& plot, Plot next) {
+  next.version = plot.version + 1;
+  plot = std::move(next);
+}
+
 void fit_plot(PlotView& view) {
   view.look.range = {};
 }
