@@ -1,6 +1,7 @@
 #include "app/session/varied_mechanism.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
 
 #include <utility>
 
@@ -10,8 +11,12 @@ const SharedMechanism& VariedMechanism::of(const std::shared_ptr<const Mechanism
                                            const Explored& numbers) {
   if (from_ == mechanism && numbers_ == numbers) return varied_;
   Mechanism varied = *mechanism;
-  for (const ExploredValue& number : numbers)
-    set_parameter(varied, number.address, number.value);
+  for (const ExploredValue& number : numbers) {
+    try {
+      set_parameter(varied, number.address, number.value);
+    } catch (const SceneError&) { // what cannot be varied counts as it is
+    }
+  }
   varied.sliders.clear();
   varied.view.camera.reset();
   varied.simulation = {};

@@ -181,9 +181,12 @@ void update(App& app, double seconds, ViewSize view);
 // The whole interface, between ImGui::NewFrame and ImGui::Render.
 void build_gui(App& app);
 
-// What the 3-D view shows. Refers to the app: use before it changes.
+// The mechanism that the 3-D view shows.
+const std::shared_ptr<const Mechanism>& shown_mechanism(const App& app);
+// What the 3-D view shows. Refers to the app: use before it changes. The stage makes one a frame; what is
+// drawn over the view reads app.view.scene, which was made of it.
 ViewFrame view_frame(const App& app);
 // What the view beside it shows: the motion alone.
-ViewFrame motion_frame(const App& app);
+ViewFrame motion_frame(const App& app, ViewFrame frame);
 
 } // namespace flyball

@@ -85,13 +85,13 @@ void add_load_rows(App& app, std::vector<LegendRow>& rows) {
     rows.push_back({.mark = LegendMark::note, .words = std::move(words)});
   };
   if (const std::string missing = loads_missing(app); !missing.empty()) return note(missing);
-  const ViewFrame frame = view_frame(app);
-  if (!frame.loads) return;
-  const ViewScene& scene = *shown_scene(app);
-  const bool diagram = frame.loads_body >= 0;
+  const ShownScene& shown = app.view.scene;
+  if (!shown.scene || !shown.source.loads) return;
+  const ViewScene& scene = *shown.scene;
+  const bool diagram = shown.source.loads_body >= 0;
   const double pixel = app.view.camera.pixel_size(app.view.size);
   if (diagram)
-    note("Free body: " + frame.mechanism->bodies[static_cast<std::size_t>(frame.loads_body)].name +
+    note("Free body: " + shown.mechanism->bodies[static_cast<std::size_t>(shown.source.loads_body)].name +
          ", adds up to zero");
   const std::size_t before = rows.size();
   for (const LoadKind kind : {LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::weight,

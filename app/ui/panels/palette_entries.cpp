@@ -147,7 +147,7 @@ Part part_of_address(const std::string& address) {
 }
 
 void fit_part(App& app, const Part& part) {
-  const PartId id = find_part(*view_frame(app).mechanism, part);
+  const PartId id = find_part(*shown_mechanism(app), part);
   const SceneList& scene = shown_scene(app)->solid;
   Bounds bounds;
   for (const Instance& instance : scene.instances)

@@ -42,7 +42,7 @@ WidgetRect draw_line(const App& app, const PanelRect& rect, const std::string& t
 void part_label(App& app) {
   const PartId part = app.view.hovered;
   if (places(app.tool.tool)) return;
-  const Mechanism& m = *view_frame(app).mechanism;
+  const Mechanism& m = *shown_mechanism(app);
   const auto i = static_cast<std::size_t>(part.index);
   std::string name, what;
   if (part.kind == PartKind::body && i < m.bodies.size()) {
