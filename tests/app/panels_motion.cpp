@@ -46,7 +46,7 @@ TEST_CASE("without being asked for there is no motion, no integrator and no pane
   Robot robot(wide);
   CHECK_FALSE(robot.app.motion.on);
   for (const MotionRun& run : robot.app.motion.runs)
-    CHECK_FALSE(run.live);
+    CHECK_FALSE(run.task);
   CHECK_FALSE(robot.app.study.compare.measured.asked);
   CHECK(robot.app.widgets.count("motion/play") == 0);
   CHECK(robot.app.widgets.count("study/motion") == 0);
@@ -86,7 +86,7 @@ TEST_CASE("a closed panel takes everything of the motion with it") {
   robot.click("study/close");
   CHECK_FALSE(robot.app.motion.on);
   for (const MotionRun& run : robot.app.motion.runs)
-    CHECK_FALSE(run.live);
+    CHECK_FALSE(run.task);
   CHECK(robot.app.motion.poses.empty());
   CHECK(robot.app.playback.time == 0);
   CHECK(robot.app.study.open == StudyKind::none);
