@@ -58,7 +58,7 @@ TEST_CASE("no map before it is asked for, and a closed one is gone but for what 
 TEST_CASE("every place of the map is what a solve of its own gives") {
   MapRobot robot;
   const MapCells& cells = robot.map().cells.found->result;
-  const MapChoice& choice = found.choice;
+  const MapChoice& choice = robot.map().cells.found->of.choice;
   CHECK(choice.axes[0].address == "joints.spin.drive.speed");
   const auto columns = static_cast<std::size_t>(choice.axes[0].count);
   REQUIRE(cells.size() == columns * static_cast<std::size_t>(choice.axes[1].count));

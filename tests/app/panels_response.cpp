@@ -101,7 +101,7 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
     const std::vector<double> found =
         crossings(drawn.plot, solution.stable == true ? "stable" : "unstable", at);
     REQUIRE(found.size() == 1);
-    CHECK(found[0] == Approx(coordinate(solution.coordinates, "slide")).margin(5e-4));
+    CHECK(found[0] == Approx(value(solution.coordinates, "slide")).margin(5e-4));
   }
   // At its points the curve is exact.
   for (std::size_t i = 0; i < state.curve.found->result.lines[0].points.size(); i += 7) {
@@ -109,8 +109,8 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
     Mechanism mechanism = robot.app.mechanism();
     set_parameter(mechanism, speed, point.parameter);
     analysis.update(mechanism);
-    CHECK(coordinate(analysis.solve({}).coordinates, "slide") ==
-          Approx(coordinate(point.coordinates, "slide")).margin(1e-9));
+    CHECK(value(analysis.solve({}).coordinates, "slide") ==
+          Approx(value(point.coordinates, "slide")).margin(1e-9));
   }
 }
 
@@ -335,13 +335,13 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   REQUIRE_FALSE(answer.solutions.empty());
   CHECK(answer.solutions[0].at.stable == true);
   for (const char* arm : {"arm1", "arm2"})
-    CHECK(coordinate(answer.solutions[0].at.coordinates, arm) == Approx(present(app, arm)).margin(0.5));
+    CHECK(value(answer.solutions[0].at.coordinates, arm) == Approx(present(app, arm)).margin(0.5));
   const double found = answer.solutions[0].parameter;
   // Solved at that speed, the collar is there.
   Mechanism mechanism = app.mechanism();
   set_parameter(mechanism, speed, found);
   Analysis analysis(mechanism);
-  CHECK(coordinate(analysis.solve({}).coordinates, "slide") == Approx(0.12).margin(1e-12));
+  CHECK(value(analysis.solve({}).coordinates, "slide") == Approx(0.12).margin(1e-12));
   robot.click("response/solution/1");
   CHECK(get_parameter(app.mechanism(), speed) == found);
   CHECK(present(app, "slide") == Approx(0.12).margin(1e-12));
@@ -376,7 +376,7 @@ TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
     const auto above = solved(at + step), below = solved(at - step);
     for (const ShownRate& rate : rates) {
       const bool angle = rate.name != "slide";
-      const double expected = (coordinate(above, rate.name) - coordinate(below, rate.name)) / (2 * step) *
+      const double expected = (value(above, rate.name) - value(below, rate.name)) / (2 * step) *
                               (angle ? 180 / std::numbers::pi : 1);
       CHECK(rate.value == Approx(expected).epsilon(1e-6));
       CHECK(rate.unit == std::string(angle ? "°" : "m") + (address == speed ? "/(rad/s)" : "/(N/m)"));
