@@ -32,7 +32,7 @@ App::App(AppOptions chosen)
                .scenes = std::move(chosen.scenes),
                .numbers = chosen.numbers,
                .state = std::move(chosen.state)}),
-      theme(chosen.theme), system_theme(chosen.theme) {
+      system_theme(chosen.theme) {
   const Settings settings = read_settings(options.state);
   panels.legend = settings.legend;
   navigation = settings.navigation;

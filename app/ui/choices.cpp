@@ -35,10 +35,10 @@ void choose_navigation(App& app, Navigation navigation) {
 
 namespace {
 
-void show_theme(App& app, Theme theme) {
-  if (app.theme == theme) return;
-  app.theme = theme;
-  apply_style(theme, app.scale);
+void show_theme(Ui& ui, Theme theme) {
+  if (ui.theme == theme) return;
+  ui.theme = theme;
+  apply_style(theme, ui.scale);
 }
 
 } // namespace

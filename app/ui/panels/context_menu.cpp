@@ -34,11 +34,11 @@ void command_items(App& app, std::initializer_list<const char*> ids) {
     command_item(app, id);
 }
 
-void menu_title(App& app, const std::string& name, const std::string& what) {
-  ImGui::PushFont(app.fonts.strong);
+void menu_title(Ui& ui, const std::string& name, const std::string& what) {
+  ImGui::PushFont(ui.fonts.strong);
   ImGui::TextUnformatted(name.c_str());
   ImGui::PopFont();
-  note_widget(app.widgets, "view/menu/title");
+  note_widget(ui.widgets, "view/menu/title");
   if (!what.empty()) {
     ImGui::SameLine();
     ImGui::TextDisabled("%s", what.c_str());

@@ -11,9 +11,9 @@ namespace flyball {
 
 namespace {
 
-std::string motion_words(const App& app) {
-  if (moving_mode(app)) return "Swinging in mode " + std::to_string(*app.study.modes.chosen + 1);
-  return motion_words(app, shown_motion(app));
+std::string motion_words(const Session& session) {
+  if (moving_mode(session)) return "Swinging in mode " + std::to_string(*session.study.modes.chosen + 1);
+  return motion_words(session, shown_motion(session));
 }
 
 // A dashed frame, as the drawn pose has.

@@ -147,11 +147,11 @@ void error_line(App& app, const PanelRect& rect) {
 namespace {
 
 // "speed of spin 15 rad/s is tried", or how many are.
-std::string tried_text(const App& app) {
-  const Explored& explored = app.document.explored();
+std::string tried_text(const Session& session) {
+  const Explored& explored = session.document.explored();
   if (explored.size() > 1) return std::to_string(explored.size()) + " explored values";
   const ShownUnit unit =
-      shown_unit(parameter_unit(app.document.stored(), explored.front().address), app.units);
+      shown_unit(parameter_unit(session.document.stored(), explored.front().address), session.units);
   return "Explored: " + parameter_phrase(explored.front().address) + " " +
          short_text(unit.shown(explored.front().value), 9) + (unit.text.empty() ? "" : " " + unit.text);
 }

@@ -37,8 +37,8 @@ PlotCurve hatching(const MapCells& cells, const std::vector<double>& x, const st
   return hatch;
 }
 
-std::string axis_unit(const App& app, const MapAxis& axis) {
-  return parameter_unit(app.mechanism(), axis.address);
+std::string axis_unit(const Session& session, const MapAxis& axis) {
+  return parameter_unit(session.mechanism(), axis.address);
 }
 
 void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level) {

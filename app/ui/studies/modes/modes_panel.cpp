@@ -136,7 +136,7 @@ void list(App& app, const FoundModes& found, float height) {
 }
 
 // "swing ± 8.6°": the coordinate that moves most.
-std::string largest_movement(const App& app, const VibrationMode& mode) {
+std::string largest_movement(const Session& session, const VibrationMode& mode) {
   const ModeAmplitude* angle = nullptr;
   const ModeAmplitude* slide = nullptr;
   for (const ModeAmplitude& a : mode.amplitudes) {
@@ -146,8 +146,8 @@ std::string largest_movement(const App& app, const VibrationMode& mode) {
   // An angle of 1 is as much as a slide can be, for the largest is 1 in radians or reaches.
   const ModeAmplitude* most = angle && (std::abs(angle->value) > 0.5 || !slide) ? angle : slide;
   if (!most) return {};
-  const double movement = app.study.modes.amplitude * std::abs(most->value);
-  const ShownUnit unit = coordinate_unit(most->angle, app.units);
+  const double movement = session.study.modes.amplitude * std::abs(most->value);
+  const ShownUnit unit = coordinate_unit(most->angle, session.units);
   return coordinate_label(*most) + " ± " + short_text(unit.shown(movement), 3) +
          (unit.text == "°" ? "" : " ") + unit.text;
 }
