@@ -1,26 +1,20 @@
 // Solving in the background while a person moves a slider: requests go in, answers come out as values, and
-// whoever asks never waits, nor does whoever closes it: a solve that nobody wants any more is cancelled and
-// left to come to its end by itself.
+// whoever asks never waits, nor does whoever closes it.
 //
-// The newest request wins. One that has not begun is replaced; one that runs is cancelled, unless the one
-// before it was cancelled too: a person who keeps dragging sees an answer every other solve, however long
-// a solve takes.
+// The newest request wins; one that runs is cancelled, unless the one before it was cancelled, too: a person
+// who keeps dragging sees an answer every other solve, however long a solve takes.
 #pragma once
 
-#include "app/live/worker.hpp"
+#include "app/live/background.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/grip.hpp"
 
-#include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -62,17 +56,10 @@ struct LivePoses {
 
 class LiveSolver {
  public:
-  enum class Mode {
-    background, // on a thread of its own
-    immediate,  // before ask() returns: for pictures and tests, which come out the same every time
-  };
+  using Mode = BackgroundWorker::Mode;
 
-  // `on_news` is called on the background thread whenever there is something to take, and not after this
-  // object is gone.
-  explicit LiveSolver(Mode mode, std::function<void()> on_news = {});
-  ~LiveSolver();
-  LiveSolver(const LiveSolver&) = delete;
-  LiveSolver& operator=(const LiveSolver&) = delete;
+  // As of a BackgroundWorker.
+  explicit LiveSolver(Mode mode, const std::function<void()>& on_news = {});
 
   // Returns the request's ticket: 1, 2, ...
   std::uint64_t ask(LiveRequest request);
@@ -81,12 +68,22 @@ class LiveSolver {
   std::optional<LiveAnswer> take_answer();
   std::optional<LivePoses> take_poses();
   // Whether an answer to the newest request is still to come.
-  bool busy() const;
+  bool busy() const { return answers_.running(); }
 
  private:
-  struct State;
-  std::shared_ptr<State> state_; // shared with the thread, which may come to its end later
-  Worker thread_;
+  // What requests want that may never be answered themselves, so that the next one has it done: each with the
+  // ticket of the last that wanted it.
+  struct Wishes {
+    std::uint64_t another = 0, cold = 0, started = 0; // cold: not warm
+    std::vector<std::pair<std::string, double>> start{};
+  };
+  class Solver;
+
+  std::uint64_t tickets_ = 0;
+  Wishes wishes_;
+  std::shared_ptr<Solver> solver_; // shared with the threads
+  Background<LiveAnswer> answers_;
+  Background<LivePoses> poses_;
 };
 
 } // namespace flyball

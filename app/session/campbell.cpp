@@ -6,7 +6,6 @@
 #include "engine/mechanism/formulas.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -15,7 +14,6 @@ namespace flyball {
 
 namespace {
 
-constexpr double no_time = 0.3; // s
 constexpr double turn = 2 * std::numbers::pi;
 
 struct State {
@@ -58,27 +56,25 @@ std::optional<std::size_t> branch_through(const std::vector<ResponseBranch>& bra
   return best;
 }
 
-FoundCampbell follow(const Mechanism& mechanism, const std::string& drive, double from, double to,
-                     const State& state, const Background<FoundCampbell>::Watch& watch) {
-  const auto begin = std::chrono::steady_clock::now();
-  FoundCampbell found{.drive = drive, .from = from, .to = to, .diagram = {}, .lines = {}};
+FoundCampbell follow(const Mechanism& mechanism, const CampbellRequest& request, const State& state,
+                     const TaskContext<FoundCampbell>& context) {
+  FoundCampbell found;
+  const double from = request.from, to = request.to;
   BranchOptions options;
   options.largest_step = 0.007; // lines that are smooth where they are zoomed
-  options.cancel = &watch.cancel;
-  options.progress = watch.progress;
-  found.diagram = follow_branches(mechanism, drive, from, to, options);
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
+  found.diagram = follow_branches(mechanism, request.drive, from, to, options);
   // Nothing may connect the state with what the drawn pose leads to.
   const bool inside = state.speed >= std::min(from, to) && state.speed <= std::max(from, to);
   if (inside && !state.coordinates.empty() && !branch_through(found.diagram.branches, state) &&
-      !watch.cancel) {
+      !context.cancel) {
     options.all = true;
     options.all_at = {state.speed};
-    found.diagram = follow_branches(mechanism, drive, from, to, options);
+    found.diagram = follow_branches(mechanism, request.drive, from, to, options);
   }
   for (const ResponseBranch& branch : found.diagram.branches)
     found.lines.push_back(track_eigenvalues(branch.points));
-  found.cancelled = watch.cancel;
-  found.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return found;
 }
 
@@ -86,6 +82,13 @@ FoundCampbell follow(const Mechanism& mechanism, const std::string& drive, doubl
 State present(const Session& session, const std::string& drive) {
   if (!converged(session) || solving(session)) return {};
   return {get_parameter(session.mechanism(), drive), session.answer.solution.coordinates};
+}
+
+CampbellRequest wanted_now(Session& session) {
+  const std::string drive = campbell_drive(session);
+  const std::array<double, 2> range = campbell_range(session);
+  return {drive, range[0], range[1],
+          session.study.modes.campbell.varied.of(session.document.shared(), {{drive, 0}})};
 }
 
 } // namespace
@@ -129,77 +132,51 @@ void follow_campbell(Session& session) {
   CampbellState& campbell = session.study.modes.campbell;
   const std::string drive = campbell_drive(session);
   if (drive.empty() || !session.mistakes.empty()) return;
-  if (!campbell.task)
-    campbell.task =
-        std::make_unique<Background<FoundCampbell>>(session.options.mode, session.options.on_news);
-  const std::array<double, 2> range = campbell_range(session);
-  campbell.asked = without_number(session.mechanism(), drive);
-  campbell.asked_drive = drive;
-  campbell.asked_from = range[0];
-  campbell.asked_to = range[1];
-  campbell.problem.clear();
-  const State state = present(session, drive);
   campbell.asked_ticket = session.answer.ticket;
-  campbell.task->start([mechanism = session.document.shared(), drive, range,
-                        state](const Background<FoundCampbell>::Watch& watch) {
-    return follow(*mechanism, drive, range[0], range[1], state, watch);
-  });
+  campbell.diagram.ask(session.options, wanted_now(session),
+                       [mechanism = session.document.shared(), state = present(session, drive)](
+                           const CampbellRequest& request, const TaskContext<FoundCampbell>& context) {
+                         return follow(*mechanism, request, state, context);
+                       });
 }
 
 void update_campbell(Session& session) {
   CampbellState& campbell = session.study.modes.campbell;
-  if (campbell.task)
-    if (auto news = campbell.task->take()) {
-      campbell.problem = news->problem;
-      if (news->result && news->result->cancelled) {
-        campbell.problem = "Following the branches was stopped.";
-      } else if (news->result) {
-        campbell.result = std::move(news->result);
-        campbell.of = campbell.asked;
-        ++campbell.results;
-        campbell.revision = 0;
-        if (campbell.result->diagram.branches.empty()) campbell.problem = campbell.result->diagram.message;
-      }
-    }
+  auto& diagram = campbell.diagram;
+  if (diagram.take("Following the branches was stopped.") && diagram.found && diagram.problem.empty() &&
+      diagram.found->result.diagram.branches.empty())
+    diagram.problem = diagram.found->result.diagram.message;
   // The drive may have been taken away.
   const std::vector<std::string> speeds = drive_speeds(session.mechanism());
-  if (campbell.result && std::ranges::find(speeds, campbell.result->drive) == speeds.end())
-    campbell.result.reset();
-  if (campbell.result && !solving(session) &&
-      (campbell.judged_result != campbell.results || campbell.judged_ticket != session.answer.ticket)) {
+  if (diagram.found && std::ranges::find(speeds, diagram.found->of.drive) == speeds.end())
+    diagram.found.reset();
+  if (diagram.found && !solving(session) &&
+      (campbell.judged != diagram.found || campbell.judged_ticket != session.answer.ticket)) {
     campbell.on_branch = campbell_branch(session).has_value();
-    campbell.judged_result = campbell.results;
+    campbell.judged = diagram.found;
     campbell.judged_ticket = session.answer.ticket;
   }
   if (session.mode != Mode::explore || speeds.empty() || !session.mistakes.empty()) return;
-  if (!campbell.task) return follow_campbell(session);
-  const std::array<double, 2> range = campbell_range(session);
-  const bool chosen = campbell.asked_drive == campbell_drive(session) && campbell.asked_from == range[0] &&
-                      campbell.asked_to == range[1];
-  if (campbell.revision != session.document.revision() || !chosen) {
-    campbell.revision = session.document.revision();
-    campbell.current =
-        chosen && campbell.result && campbell.of == without_number(session.mechanism(), campbell.asked_drive);
-  }
-  if (campbell.task->running()) return;
+  if (!diagram.asked) return follow_campbell(session);
+  const CampbellRequest wanted = wanted_now(session);
+  campbell.current = diagram.is_of(wanted);
+  if (diagram.running()) return;
   // The state was put on a branch that was not followed.
   if (campbell.current && !campbell.on_branch && campbell.asked_ticket != session.answer.ticket) {
-    const State state = present(session, campbell.asked_drive);
-    const bool inside = state.speed >= range[0] && state.speed <= range[1];
-    if (inside && !state.coordinates.empty() && campbell.result->run_time_s < no_time)
-      return follow_campbell(session);
+    const State state = present(session, wanted.drive);
+    const bool inside = state.speed >= wanted.from && state.speed <= wanted.to;
+    if (inside && !state.coordinates.empty() && diagram.quick()) return follow_campbell(session);
   }
-  if (campbell.current) return;
-  const bool new_question =
-      !chosen || !(campbell.asked == without_number(session.mechanism(), campbell.asked_drive));
-  const bool quick = !campbell.result || campbell.result->run_time_s < no_time;
-  if (new_question && (quick || !chosen)) follow_campbell(session);
+  if (campbell.current || diagram.asked == wanted) return;
+  const bool same_axis = diagram.asked->drive == wanted.drive && diagram.asked->from == wanted.from &&
+                         diagram.asked->to == wanted.to;
+  if (!same_axis || !diagram.found || diagram.quick()) follow_campbell(session);
 }
 
 std::optional<std::size_t> campbell_branch(const Session& session) {
-  const CampbellState& campbell = session.study.modes.campbell;
-  if (!campbell.result) return std::nullopt;
-  return branch_through(campbell.result->diagram.branches, present(session, campbell.result->drive));
+  const auto& found = session.study.modes.campbell.diagram.found;
+  if (!found) return std::nullopt;
+  return branch_through(found->result.diagram.branches, present(session, found->of.drive));
 }
 
 } // namespace flyball

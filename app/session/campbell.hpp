@@ -2,12 +2,13 @@
 // is shown. Nothing of it is made before a person asks.
 #pragma once
 
-#include "app/live/background.hpp"
+#include "app/session/study.hpp"
+#include "app/session/varied_mechanism.hpp"
 #include "engine/continuation/branches.hpp"
 
 #include <array>
 #include <complex>
-#include <memory>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,33 +17,31 @@ namespace flyball {
 
 struct Session;
 
+struct CampbellRequest {
+  std::string drive;         // address of the speed along the axis
+  double from = 0, to = 0;   // its range
+  SharedMechanism mechanism; // with that speed 0
+  bool operator==(const CampbellRequest&) const = default;
+};
+
 struct FoundCampbell {
-  std::string drive;       // address of the speed along the axis
-  double from = 0, to = 0; // its range
   ResponseDiagram diagram;
   // By branch, point and line: see track_eigenvalues().
   std::vector<std::vector<std::vector<std::complex<double>>>> lines;
-  bool cancelled = false;
-  double run_time_s = 0;
 };
 
 struct CampbellState {
-  std::unique_ptr<Background<FoundCampbell>> task;
-  std::optional<FoundCampbell> result;
+  Study<CampbellRequest, FoundCampbell> diagram;
   // As chosen. An empty drive is the first; both ends 0: as the speed's slider.
   std::string drive;
   double from = 0, to = 0;
-  // As last followed: also the mechanism with that speed 0, and that of the result.
-  std::string asked_drive;
-  double asked_from = 0, asked_to = 0;
-  Mechanism asked, of;
-  std::uint64_t revision = 0;     // of the document when `current` was found
-  bool current = false;           // the result is of the mechanism as it is
+  VariedMechanism varied;
+  bool current = false;           // the diagram is of the mechanism as it is
   std::uint64_t asked_ticket = 0; // of the answer when it was asked for
-  bool on_branch = true;          // the result holds the branch of the state that is shown,
-  std::uint64_t judged_result = 0, judged_ticket = 0; // of this result and this answer
-  std::string problem;
-  std::uint64_t results = 0; // so far
+  // Whether the diagram holds the branch of the state that is shown, and of which two that was found.
+  bool on_branch = true;
+  std::shared_ptr<const void> judged;
+  std::uint64_t judged_ticket = 0;
 };
 
 // Addresses of the drives' speeds.

@@ -4,42 +4,36 @@
 
 namespace flyball {
 
+namespace {
+
+Comparison measure(const CompareRequest& request, const TaskContext<Comparison>& context) {
+  CompareOptions options;
+  options.repeats = request.repeats;
+  options.cancel = &context.cancel;
+  options.progress = [&](std::size_t done, std::size_t all) {
+    context.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
+  };
+  return compare(*request.mechanism, options);
+}
+
+} // namespace
+
 void begin_comparison(Session& session) {
   CompareState& state = session.study.compare;
-  if (!state.task)
-    state.task = std::make_unique<Background<Comparison>>(session.options.mode, session.options.on_news);
-  state.problem.clear();
-  state.of = session.document.shared();
-  state.task->start([mechanism = session.document.shared(),
-                     repeats = state.repeats](const Background<Comparison>::Watch& watch) {
-    CompareOptions options;
-    options.repeats = repeats;
-    options.cancel = &watch.cancel;
-    options.progress = [&](std::size_t done, std::size_t all) {
-      watch.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
-    };
-    return compare(*mechanism, options);
-  });
+  state.measured.ask(session.options, {{session.document.shared()}, state.repeats}, measure);
 }
 
 void update_comparison(Session& session) {
-  CompareState& state = session.study.compare;
-  auto news = state.task ? state.task->take() : std::nullopt;
-  if (!news) return;
-  state.problem = news->problem;
-  if (!news->result) return;
-  state.result = std::move(news->result);
-  ++state.results;
+  session.study.compare.measured.take();
 }
 
 bool comparing(const Session& session) {
-  const CompareState& state = session.study.compare;
-  return state.task && state.task->running();
+  return session.study.compare.measured.running();
 }
 
 bool comparison_is_current(const Session& session) {
-  const CompareState& state = session.study.compare;
-  return state.result && (state.of == session.document.shared() || *state.of == session.mechanism());
+  const auto& found = session.study.compare.measured.found;
+  return found && found->of.mechanism == SharedMechanism{session.document.shared()};
 }
 
 } // namespace flyball

@@ -2,24 +2,21 @@
 // measured before a person asks.
 #pragma once
 
-#include "app/live/background.hpp"
+#include "app/session/shared_mechanism.hpp"
+#include "app/session/study.hpp"
 #include "engine/study/compare.hpp"
-
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <string>
 
 namespace flyball {
 
 struct Session;
 
+struct CompareRequest {
+  SharedMechanism mechanism;
+  int repeats = 0;
+};
+
 struct CompareState {
-  std::unique_ptr<Background<Comparison>> task; // made when it is first asked for
-  std::optional<Comparison> result;
-  std::uint64_t results = 0;           // so far
-  std::shared_ptr<const Mechanism> of; // what was compared
-  std::string problem;
+  Study<CompareRequest, Comparison> measured;
   int repeats = 5;
 };
 

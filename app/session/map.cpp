@@ -2,24 +2,16 @@
 
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/sweep.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 namespace flyball {
 
 namespace {
-
-constexpr double no_time_for_map = 0.3; // s
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 // What the cells depend on, and what the curves do.
 MapChoice of_cells(MapChoice choice) {
@@ -34,13 +26,6 @@ MapChoice of_curves(MapChoice choice) {
   return choice;
 }
 
-// The mechanism but for the two numbers along the axes.
-Mechanism without_place(Mechanism mechanism, const MapChoice& choice) {
-  for (const MapAxis& axis : choice.axes)
-    mechanism = without_number(std::move(mechanism), axis.address);
-  return mechanism;
-}
-
 MapCell cell_of(const Solution& solution, const std::string& coordinate) {
   MapCell cell{std::numeric_limits<double>::quiet_NaN(), std::nullopt};
   if (solution.status != Status::converged) return cell;
@@ -49,10 +34,8 @@ MapCell cell_of(const Solution& solution, const std::string& coordinate) {
   return cell;
 }
 
-FoundCells find_cells(const Mechanism& mechanism, const MapChoice& choice,
-                      const Background<FoundCells>::Watch& watch) {
-  const auto begin = std::chrono::steady_clock::now();
-  FoundCells found{.choice = choice, .cells = {}};
+MapCells find_cells(const Mechanism& mechanism, const MapChoice& choice,
+                    const TaskContext<MapCells>& context) {
   // The last moves fastest.
   const std::array variations{
       Variation{choice.axes[1].address, choice.axes[1].from, choice.axes[1].to, choice.axes[1].count},
@@ -60,69 +43,64 @@ FoundCells find_cells(const Mechanism& mechanism, const MapChoice& choice,
   const std::vector<SweepPoint> points = sweep(
       mechanism, variations, 0,
       [&](std::size_t done, std::size_t all) {
-        watch.progress({"solving", static_cast<double>(done) / static_cast<double>(all)});
+        context.progress({"solving", static_cast<double>(done) / static_cast<double>(all)});
       },
-      &watch.cancel);
-  found.cancelled = watch.cancel;
-  found.cells.reserve(points.size());
+      &context.cancel);
+  MapCells cells;
+  cells.reserve(points.size());
   for (const SweepPoint& point : points)
-    found.cells.push_back(cell_of(point.solution, choice.coordinate));
-  found.run_time_s = seconds_since(begin);
-  return found;
+    cells.push_back(cell_of(point.solution, choice.coordinate));
+  return cells;
 }
 
-FoundCurves find_curves(const Mechanism& mechanism, const MapChoice& choice,
-                        const Background<FoundCurves>::Watch& watch) {
-  const auto begin = std::chrono::steady_clock::now();
-  FoundCurves found;
+MapCurves find_curves(const Mechanism& mechanism, const MapChoice& choice,
+                      const TaskContext<MapCurves>& context) {
+  MapCurves found;
   std::array<PlaneAxis, 2> axes;
   for (std::size_t i = 0; i < 2; ++i)
     axes[i] = {choice.axes[i].address, choice.axes[i].from, choice.axes[i].to};
   const double share = choice.folds && choice.level ? 0.5 : 1;
   PlaneOptions options;
-  options.cancel = &watch.cancel;
-  options.progress = [&](const Progress& now) { watch.progress({now.phase, share * now.part}); };
+  options.cancel = &context.cancel;
+  options.progress = [&](const Progress& now) { context.progress({now.phase, share * now.part}); };
   if (choice.folds) found.folds = fold_curves(mechanism, axes[0], axes[1], options);
   options.progress = [&](const Progress& now) {
-    watch.progress({now.phase, 1 - share + share * std::max(0., now.part)});
+    context.progress({now.phase, 1 - share + share * std::max(0., now.part)});
   };
   if (choice.level)
     found.level = coordinate_curves(mechanism, axes[0], axes[1], choice.coordinate, *choice.level, options);
-  found.cancelled = watch.cancel;
-  found.run_time_s = seconds_since(begin);
   return found;
+}
+
+// The mechanism but for the two numbers along the axes.
+const SharedMechanism& without_place(Session& session) {
+  MapState& map = session.study.map;
+  return map.varied.of(session.document.shared(),
+                       {{map.choice.axes[0].address, 0}, {map.choice.axes[1].address, 0}});
 }
 
 void compute_cells(Session& session) {
   MapState& map = session.study.map;
-  if (!map.cells_task)
-    map.cells_task = std::make_unique<Background<FoundCells>>(session.options.mode, session.options.on_news);
-  map.asked_cells = of_cells(map.choice);
-  map.cells_of = without_place(session.mechanism(), map.choice);
-  map.problem.clear();
-  map.cells_task->start([mechanism = session.document.shared(),
-                         choice = map.asked_cells](const Background<FoundCells>::Watch& watch) {
-    return find_cells(*mechanism, choice, watch);
-  });
+  map.cells.ask(session.options, {of_cells(map.choice), without_place(session)},
+                [mechanism = session.document.shared()](const MapRequest& request,
+                                                        const TaskContext<MapCells>& context) {
+                  return find_cells(*mechanism, request.choice, context);
+                });
 }
 
 void compute_curves(Session& session) {
   MapState& map = session.study.map;
-  map.asked_curves = of_curves(map.choice);
-  map.curves_of = without_place(session.mechanism(), map.choice);
+  MapRequest request{of_curves(map.choice), without_place(session)};
   if (!map.choice.folds && !map.choice.level) {
-    map.curves_task.reset();
-    map.curves.reset();
-    ++map.version;
+    map.curves = {};
+    map.curves.asked = std::move(request); // and answered
     return;
   }
-  if (!map.curves_task)
-    map.curves_task =
-        std::make_unique<Background<FoundCurves>>(session.options.mode, session.options.on_news);
-  map.curves_task->start([mechanism = session.document.shared(),
-                          choice = map.asked_curves](const Background<FoundCurves>::Watch& watch) {
-    return find_curves(*mechanism, choice, watch);
-  });
+  map.curves.ask(
+      session.options, std::move(request),
+      [mechanism = session.document.shared()](const MapRequest& of, const TaskContext<MapCurves>& context) {
+        return find_curves(*mechanism, of.choice, context);
+      });
 }
 
 bool known(const Mechanism& mechanism, const std::string& address) {
@@ -174,28 +152,6 @@ bool choose(Session& session) {
   return false;
 }
 
-void take(Session& session) {
-  MapState& map = session.study.map;
-  if (map.cells_task)
-    if (auto news = map.cells_task->take()) {
-      if (!news->problem.empty()) map.problem = news->problem;
-      if (news->result && news->result->cancelled) {
-        map.problem = "Computing the map was stopped.";
-      } else if (news->result) {
-        map.cells = std::move(news->result);
-        ++map.version;
-      }
-    }
-  if (map.curves_task)
-    if (auto news = map.curves_task->take()) {
-      if (!news->problem.empty()) map.problem = news->problem;
-      if (news->result) {
-        map.curves = std::move(news->result);
-        ++map.version;
-      }
-    }
-}
-
 } // namespace
 
 std::vector<std::string> map_addresses(const Session& session) {
@@ -244,71 +200,70 @@ void compute_map(Session& session) {
 }
 
 void cancel_map(Session& session) {
-  if (session.study.map.cells_task) session.study.map.cells_task->cancel();
-  if (session.study.map.curves_task) session.study.map.curves_task->cancel();
+  session.study.map.cells.stop();
+  session.study.map.curves.stop();
 }
 
 void close_map(Session& session) {
   MapState fresh;
   fresh.choice = session.study.map.choice;
-  fresh.version = session.study.map.version + 1;
   session.study.map = std::move(fresh);
 }
 
 bool computing_map(const Session& session) {
+  return session.study.map.cells.running() || session.study.map.curves.running();
+}
+
+std::string map_problem(const Session& session) {
   const MapState& map = session.study.map;
-  return (map.cells_task && map.cells_task->running()) || (map.curves_task && map.curves_task->running());
+  for (const std::string& problem : {map.refusal, map.cells.problem, map.curves.problem})
+    if (!problem.empty()) return problem;
+  return "";
 }
 
 Progress map_progress(const Session& session) {
   const MapState& map = session.study.map;
   double all = 0, done = 0;
   const char* phase = "";
-  const auto add = [&](const auto& task) {
-    if (!task) return;
-    const bool running = task->running();
+  const auto add = [&](const auto& study) {
+    if (!study.asked) return;
+    const bool running = study.running();
     all += 1;
-    done += running ? task->progress().part : 1;
-    if (running) phase = task->progress().phase;
+    done += running ? study.progress().part : 1;
+    if (running) phase = study.progress().phase;
   };
-  add(map.curves_task);
-  add(map.cells_task);
+  add(map.curves);
+  add(map.cells);
   return {phase, all > 0 ? done / all : 1};
 }
 
 double map_seconds(const Session& session) {
   const MapState& map = session.study.map;
-  double longest = 0;
-  const auto add = [&](const auto& task) {
-    if (task && task->running()) longest = std::max(longest, task->seconds());
-  };
-  add(map.curves_task);
-  add(map.cells_task);
-  return longest;
+  return std::max(map.curves.running() ? map.curves.seconds() : 0,
+                  map.cells.running() ? map.cells.seconds() : 0);
 }
 
 void update_map(Session& session) {
-  if (session.study.open != Study::map) return;
+  if (session.study.open != StudyKind::map) return;
   MapState& map = session.study.map;
-  take(session);
+  map.cells.take("Computing the map was stopped.");
+  map.curves.take();
   if (session.mode != Mode::explore || !session.mistakes.empty() || !session.answer.ticket) return;
+  map.refusal.clear();
   if (!choose(session)) {
-    map.problem = "A map is over two numbers and shows a free coordinate, and there are not as many here.";
+    map.refusal = "A map is over two numbers and shows a free coordinate, and there are not as many here.";
     return;
   }
   // What is shown may be over numbers that are there no more.
-  if (map.cells && !std::ranges::all_of(map.cells->choice.axes, [&](const MapAxis& axis) {
+  if (map.cells.found && !std::ranges::all_of(map.cells.found->of.choice.axes, [&](const MapAxis& axis) {
         return known(session.mechanism(), axis.address);
       }))
-    map.cells.reset();
-  if (!map.cells_task || of_cells(map.choice) != map.asked_cells) compute_cells(session);
-  if (of_curves(map.choice) != map.asked_curves) compute_curves(session);
-  if (map.revision == session.document.revision() || computing_map(session)) return;
-  map.revision = session.document.revision();
-  const Mechanism now = without_place(session.mechanism(), map.choice);
-  map.stale = !(map.cells_of == now);
-  const bool quick = map.cells && map.cells->run_time_s < no_time_for_map &&
-                     (!map.curves || map.curves->run_time_s < no_time_for_map);
+    map.cells.found.reset();
+  if (!map.cells.asked || of_cells(map.choice) != map.cells.asked->choice) compute_cells(session);
+  if (!map.curves.asked || of_curves(map.choice) != map.curves.asked->choice) compute_curves(session);
+  if (computing_map(session)) return;
+  map.stale = map.cells.asked->mechanism != without_place(session);
+  const bool quick = map.cells.quick() && (!map.curves.found || map.curves.quick());
   if (!map.stale || !quick) return;
   compute_map(session);
   map.stale = false;

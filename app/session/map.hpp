@@ -2,7 +2,8 @@
 // a person asks.
 #pragma once
 
-#include "app/live/background.hpp"
+#include "app/session/study.hpp"
+#include "app/session/varied_mechanism.hpp"
 #include "engine/solve/solution.hpp"
 #include "engine/study/fold_curve.hpp"
 
@@ -32,36 +33,30 @@ struct MapChoice {
   bool operator==(const MapChoice&) const = default;
 };
 
+// What of it the cells depend on, or the curves.
+struct MapRequest {
+  MapChoice choice;
+  SharedMechanism mechanism; // with the two numbers 0
+  bool operator==(const MapRequest&) const = default;
+};
+
 struct MapCell {
   double value = 0; // rad or m; not a number where there is no steady state
   std::optional<bool> stable;
 };
+using MapCells = std::vector<MapCell>; // the first axis fastest
 
-struct FoundCells {
-  MapChoice choice;
-  std::vector<MapCell> cells; // the first axis fastest
-  bool cancelled = false;
-  double run_time_s = 0;
-};
-
-struct FoundCurves {
+struct MapCurves {
   std::optional<PlaneCurves> folds, level;
-  bool cancelled = false;
-  double run_time_s = 0;
 };
 
 struct MapState {
   MapChoice choice;
-  std::unique_ptr<Background<FoundCells>> cells_task;
-  std::unique_ptr<Background<FoundCurves>> curves_task;
-  std::optional<FoundCells> cells;
-  std::optional<FoundCurves> curves;
-  MapChoice asked_cells, asked_curves; // what of the choice they depend on, as last computed
-  Mechanism cells_of, curves_of;       // with the two parameters 0
-  std::uint64_t revision = 0;          // of the document when `stale` was found
-  bool stale = false;                  // computed before the last changes
-  std::string problem;
-  std::uint64_t version = 1; // of what was found
+  std::string refusal; // why there can be no map
+  Study<MapRequest, MapCells> cells;
+  Study<MapRequest, MapCurves> curves;
+  VariedMechanism varied;
+  bool stale = false; // computed before the last changes
 };
 
 // Takes what was computed; computes what was chosen, and anew after changes where that takes no time to speak
@@ -72,6 +67,8 @@ void cancel_map(Session& session);
 // Everything goes but what was chosen.
 void close_map(Session& session);
 bool computing_map(const Session& session);
+// Why there is none, or not of what is chosen; "" where there is.
+std::string map_problem(const Session& session);
 Progress map_progress(const Session& session);
 double map_seconds(const Session& session); // since it was begun
 

@@ -2,7 +2,6 @@
 
 #include "app/session/session.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -10,14 +9,12 @@ namespace flyball {
 
 namespace {
 
-constexpr double no_time_for_modes = 0.3; // s
 constexpr int most_coordinates = 300;
 constexpr double full_turn = 2 * std::numbers::pi;
 
 FoundModes find(std::shared_ptr<const Mechanism> mechanism,
                 const std::vector<std::pair<std::string, double>>& start,
-                const Background<FoundModes>::Watch& watch) {
-  const auto begin = std::chrono::steady_clock::now();
+                const TaskContext<FoundModes>& context) {
   FoundModes found;
   found.analysis = std::make_unique<Analysis>(std::move(mechanism));
   if (const int free = found.analysis->summary().free_coordinates; free > most_coordinates)
@@ -26,13 +23,12 @@ FoundModes find(std::shared_ptr<const Mechanism> mechanism,
   SolveOptions options;
   options.nearest = true;
   options.start = start;
-  options.cancel = &watch.cancel;
-  options.progress = watch.progress;
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
   const Solution solution = found.analysis->solve(options);
   if (solution.status != Status::converged) throw std::runtime_error(solution.message);
   found.modes = found.analysis->modes();
   found.evidence = found.analysis->stability_evidence();
-  found.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return found;
 }
 
@@ -44,52 +40,41 @@ void pose(Session& session) {
     modes.poses.clear();
     return;
   }
-  const ModesState::Posed now{modes.of, *modes.chosen, modes.amplitude, modes.phase, steady_time(session)};
+  const ModesState::Posed now{modes.list.found->of, *modes.chosen, modes.amplitude, modes.phase,
+                              steady_time(session)};
   if (!modes.poses.empty() && now == modes.posed) return;
-  modes.poses = modes.result->analysis->mode_poses(*mode, modes.amplitude, modes.phase, now.time);
+  modes.poses = modes.list.found->result.analysis->mode_poses(*mode, modes.amplitude, modes.phase, now.time);
   modes.posed = now;
 }
 
 } // namespace
 
 bool modes_are_current(const Session& session) {
-  const ModesState& modes = session.study.modes;
-  return modes.result && modes.of == session.answer.ticket && converged(session);
+  return session.study.modes.list.is_of({session.answer.ticket}) && converged(session);
 }
 
 void find_modes_again(Session& session) {
-  ModesState& modes = session.study.modes;
   if (!converged(session)) return;
-  if (!modes.task)
-    modes.task = std::make_unique<Background<FoundModes>>(session.options.mode, session.options.on_news);
-  modes.asked = session.answer.ticket;
-  modes.problem.clear();
-  modes.task->start(
+  session.study.modes.list.ask(
+      session.options, {session.answer.ticket},
       [mechanism = session.answer.mechanism, start = start_values(session.answer.solution.coordinates)](
-          const Background<FoundModes>::Watch& watch) { return find(mechanism, start, watch); });
+          const ModesRequest&, const TaskContext<FoundModes>& context) {
+        return find(mechanism, start, context);
+      });
 }
 
 void update_modes(Session& session) {
-  if (session.study.open != Study::modes) return;
+  if (session.study.open != StudyKind::modes) return;
   ModesState& modes = session.study.modes;
-  if (modes.task)
-    if (auto news = modes.task->take()) {
-      modes.problem = news->problem;
-      if (!news->result) {
-        modes.result.reset();
-        modes.chosen.reset();
-      } else {
-        // A mode keeps its place among as many others; where there are others it is not the same.
-        if (!modes.result || modes.result->modes.size() != news->result->modes.size()) modes.chosen.reset();
-        modes.result = std::move(news->result);
-      }
-      modes.of = modes.asked;
-    }
-  if (session.mode == Mode::explore && converged(session) && modes.asked != session.answer.ticket) {
-    const bool idle = !modes.task || !modes.task->running();
-    const bool quick = !modes.result || modes.result->run_time_s < no_time_for_modes;
-    if (idle && quick) find_modes_again(session);
+  const std::size_t before = modes.list.found ? modes.list.found->result.modes.size() : 0;
+  if (modes.list.take()) {
+    if (!modes.list.problem.empty()) modes.list.found.reset();
+    // A mode keeps its place among as many others; where there are others it is not the same.
+    if (!modes.list.found || modes.list.found->result.modes.size() != before) modes.chosen.reset();
   }
+  if (session.mode == Mode::explore && converged(session) && !modes.list.running() &&
+      modes.list.asked != ModesRequest{session.answer.ticket} && (!modes.list.found || modes.list.quick()))
+    find_modes_again(session);
   pose(session);
   update_campbell(session);
 }
@@ -101,13 +86,12 @@ void close_modes(Session& session) {
   fresh.campbell.drive = campbell.drive;
   fresh.campbell.from = campbell.from;
   fresh.campbell.to = campbell.to;
-  fresh.campbell.results = campbell.results;
   session.study.modes = std::move(fresh);
 }
 
 bool finding_modes(const Session& session) {
   const ModesState& modes = session.study.modes;
-  return (modes.task && modes.task->running()) || (modes.campbell.task && modes.campbell.task->running());
+  return modes.list.running() || modes.campbell.diagram.running();
 }
 
 void choose_mode(Session& session, std::optional<std::size_t> mode) {
@@ -121,9 +105,11 @@ void choose_mode(Session& session, std::optional<std::size_t> mode) {
 
 const VibrationMode* moving_mode(const Session& session) {
   const ModesState& modes = session.study.modes;
-  if (session.study.open != Study::modes || session.mode != Mode::explore || !modes.chosen) return nullptr;
-  if (!modes.result || *modes.chosen >= modes.result->modes.size() || !converged(session)) return nullptr;
-  return &modes.result->modes[*modes.chosen];
+  if (session.study.open != StudyKind::modes || session.mode != Mode::explore || !modes.chosen)
+    return nullptr;
+  const auto& found = modes.list.found;
+  if (!found || *modes.chosen >= found->result.modes.size() || !converged(session)) return nullptr;
+  return &found->result.modes[*modes.chosen];
 }
 
 void advance_mode(Session& session, double seconds) {

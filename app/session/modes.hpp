@@ -2,8 +2,8 @@
 // before a person asks.
 #pragma once
 
-#include "app/live/background.hpp"
 #include "app/session/campbell.hpp"
+#include "app/session/study.hpp"
 #include "engine/report/analysis.hpp"
 
 #include <memory>
@@ -19,22 +19,22 @@ struct FoundModes {
   std::vector<VibrationMode> modes;
   std::optional<StabilityEvidence> evidence;
   std::unique_ptr<Analysis> analysis; // which stands in the state, for poses along a mode
-  double run_time_s = 0;
+};
+
+struct ModesRequest {
+  std::uint64_t answer = 0; // whose state it is, by its ticket
+  bool operator==(const ModesRequest&) const = default;
 };
 
 struct ModesState {
-  std::unique_ptr<Background<FoundModes>> task;
-  std::optional<FoundModes> result;
-  std::uint64_t asked = 0, of = 0; // tickets of the answers: last asked for, and of the result
-  std::string problem;
-
+  Study<ModesRequest, FoundModes> list;
   std::optional<std::size_t> chosen; // of the modes
   double amplitude = 0.15;           // of the largest coordinate: rad, or parts of the mechanism's reach
   double phase = 0;                  // rad
   bool playing = false;
   std::vector<Pose> poses; // along the chosen mode; empty: none
   struct Posed {
-    std::uint64_t of = 0;
+    ModesRequest of;
     std::size_t mode = 0;
     double amplitude = 0, phase = 0, time = 0;
     bool operator==(const Posed&) const = default;

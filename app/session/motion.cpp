@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flyball {
 
@@ -50,18 +51,17 @@ void ask(Session& session, bool go_on) {
     MotionRun& run = motion.runs[i];
     const bool damped = i == 0;
     if (!run.wanted || (!damped && !dampers && motion.runs[0].wanted) || !fit_to_run(session)) {
-      run = {.wanted = run.wanted, .live = nullptr, .run = nullptr, .problem = {}};
+      run = {.wanted = run.wanted, .task = nullptr, .run = nullptr, .problem = {}};
       continue;
     }
-    if (!run.live) run.live = std::make_unique<LiveMotion>(session.options.mode, session.options.on_news);
-    const SimulationOptions options = options_of(session, damped);
-    run.asked = go_on && run.run
-                    ? run.live->go_on(session.document.shared(), options, run.run, session.playback.time)
-                    : run.live->start(session.document.shared(), options);
-    run.finished = false;
+    if (!run.task)
+      run.task = std::make_unique<Background<Motion>>(session.options.mode, session.options.on_news);
+    run.task->start([request = MotionRequest{session.document.shared(), options_of(session, damped),
+                                             go_on ? run.run : nullptr, session.playback.time}](
+                        const TaskContext<Motion>& context) { return compute_motion(request, context); });
+    run.told = run.finished = false;
     run.problem.clear();
   }
-  ++motion.version;
 }
 
 // The value of a track at a time, between samples.
@@ -93,7 +93,7 @@ const MotionRun* shown_motion(const Session& session) {
 
 bool computing_motion(const Session& session) {
   return session.motion.on && std::ranges::any_of(session.motion.runs, [](const MotionRun& run) {
-           return run.asked != 0 && run.live && !run.finished;
+           return run.task && !run.finished;
          });
 }
 
@@ -101,9 +101,9 @@ std::optional<double> computed_motion(const Session& session) {
   if (!computing_motion(session)) return std::nullopt;
   double least = session.motion.duration;
   for (const MotionRun& motion : session.motion.runs) {
-    if (motion.asked == 0 || !motion.live || motion.finished) continue;
+    if (!motion.task || motion.finished) continue;
     // Until something of the new run has come, what there is may be another's.
-    const bool any = motion.answered == motion.asked && motion.run && !motion.run->time.empty();
+    const bool any = motion.told && motion.run && !motion.run->time.empty();
     least = std::min(least, any ? motion.run->time.back() - motion.run->time.front() : 0);
   }
   return least;
@@ -125,11 +125,11 @@ void show_motion(Session& session, bool on) {
   if (on == session.motion.on) return;
   if (!on) {
     for (MotionRun& run : session.motion.runs)
-      run = {.wanted = run.wanted, .live = nullptr, .run = nullptr, .problem = {}};
+      run = {.wanted = run.wanted, .task = nullptr, .run = nullptr, .problem = {}};
     session.motion.on = false;
     session.motion.poses.clear();
     session.motion.settled.reset();
-    ++session.motion.version;
+    session.motion.shown = {};
     play(session, false);
     rewind(session);
     return;
@@ -148,7 +148,7 @@ void restart_motion(Session& session) {
 
 void stop_motion(Session& session) {
   for (MotionRun& run : session.motion.runs)
-    if (run.live) run.live->stop();
+    if (run.task) run.task->cancel();
 }
 
 void follow_motion(Session& session, bool another) {
@@ -179,38 +179,32 @@ void update_motion(Session& session) {
   if (!motion.on) return;
   bool news = false;
   for (MotionRun& run : motion.runs) {
-    if (!run.live) continue;
-    std::optional<MotionNews> taken = run.live->take();
-    if (!taken || taken->ticket != run.asked) continue;
-    news = true;
-    run.answered = taken->ticket;
-    run.finished = taken->finished;
-    run.problem = taken->error.value_or("");
-    run.run = std::move(taken->run);
+    const auto taken = run.task ? run.task->take() : std::nullopt;
+    if (!taken) continue;
+    news = run.told = true;
+    run.finished = !taken->result || taken->result->finished;
+    run.problem = taken->result ? taken->result->problem : taken->problem;
+    run.run = taken->result ? std::move(taken->result->run) : nullptr;
     if (run.run && run.run->status == RunStatus::diverged) run.problem = run.run->message;
   }
-  if (news) {
-    ++motion.version;
-    session.moved_time = true; // the drives may stand elsewhere in the new run, see steady_time()
-  }
+  if (news) session.moved_time = true; // the drives may stand elsewhere in the new run, see steady_time()
   const MotionRun* shown = shown_motion(session);
   if (!shown) {
     motion.poses.clear();
     motion.settled.reset();
+    motion.shown = {};
     return;
   }
   const Run& run = *shown->run;
-  if (motion.posed != session.playback.time || motion.posed_version != motion.version) {
+  const MotionState::Of before = std::exchange(
+      motion.shown, {.run = shown->run, .time = session.playback.time, .answer = session.answer.ticket});
+  if (before.run != shown->run || before.time != session.playback.time)
     motion.poses = poses_at(run, session.playback.time);
-    motion.posed = session.playback.time;
-  }
-  if (motion.posed_version != motion.version || motion.settled_ticket != session.answer.ticket) {
+  if (before.run != shown->run || before.answer != session.answer.ticket) {
     motion.settled.reset();
     if (run.damped && converged(session) && !solving(session))
       motion.settled = find_settled(run, session.answer.solution);
-    motion.settled_ticket = session.answer.ticket;
   }
-  motion.posed_version = motion.version;
 }
 
 void advance_motion(Session& session, double seconds) {

@@ -2,7 +2,7 @@
 // before a person asks for the motion.
 #pragma once
 
-#include "app/live/live_motion.hpp"
+#include "app/live/motion.hpp"
 #include "engine/dynamics/settled.hpp"
 
 #include <array>
@@ -18,10 +18,9 @@ struct Session;
 // One of two runs: with the dampers on, and off.
 struct MotionRun {
   bool wanted = true;
-  std::unique_ptr<LiveMotion> live;
-  std::uint64_t asked = 0;        // ticket; 0: nothing asked for yet
-  std::uint64_t answered = 0;     // the newest ticket of which anything has come
-  std::shared_ptr<const Run> run; // may still be that of an earlier request; null: none
+  std::unique_ptr<Background<Motion>> task;
+  bool told = false;              // anything has come of what was asked for last
+  std::shared_ptr<const Run> run; // until then of an earlier request; null: none
   bool finished = false;
   std::string problem; // why there is no run, or no more of it
 };
@@ -41,12 +40,14 @@ struct MotionState {
   bool beside = false; // in a view of its own
 
   std::array<MotionRun, 2> runs; // damped, undamped
-  std::uint64_t version = 1;     // of what the plots show
   std::vector<Pose> poses;       // of the shown run at playback.time; empty: none
-  double posed = -1;             // s, the time of these poses
-  std::uint64_t posed_version = 0;
   std::optional<Settled> settled;
-  std::uint64_t settled_ticket = 0; // of the answer it was found for
+  // What these two are of.
+  struct Of {
+    std::shared_ptr<const Run> run;
+    double time = -1;         // s
+    std::uint64_t answer = 0; // its ticket
+  } shown;
 };
 
 // The motion begins, and plays; or everything of it goes.

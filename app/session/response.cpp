@@ -40,72 +40,61 @@ BranchOptions follow_options(const ResponseRequest& of, double present) {
 }
 
 // What the present choices ask for; none where there is nothing to follow.
-std::optional<ResponseRequest> wanted_now(const Session& session) {
-  const ResponseState& state = session.study.response;
+std::optional<ResponseRequest> wanted_now(Session& session) {
+  ResponseState& state = session.study.response;
   if (session.mechanism().bodies.empty() || !session.mistakes.empty() || !response_control(session))
     return std::nullopt;
-  ResponseRequest of;
-  of.address = state.address;
-  of.from = state.from;
-  of.to = state.to;
-  of.logarithmic = state.logarithmic;
-  of.all = state.all;
-  of.reactions = needs_reactions(state.quantity);
-  Mechanism followed = session.mechanism();
-  try {
-    set_parameter(followed, of.address, of.from);
-  } catch (const SceneError&) { // no mechanism can be made there: the curve goes on from the present one
-  }
-  // What moves no equilibrium begins no new curve.
-  followed.sliders.clear();
-  followed.view.camera.reset();
-  followed.simulation = {};
-  of.mechanism = std::make_shared<const Mechanism>(std::move(followed));
-  return of;
+  const ResponseChoice& choice = state.choice;
+  return ResponseRequest{.mechanism =
+                             state.varied.of(session.document.shared(), {{choice.address, choice.from}}),
+                         .address = choice.address,
+                         .from = choice.from,
+                         .to = choice.to,
+                         .logarithmic = choice.logarithmic,
+                         .all = choice.all,
+                         .reactions = needs_reactions(choice.quantity)};
 }
 
-void follow(Session& session, ResponseRequest of) {
+ResponseResult find_curve(const ResponseRequest& of, double present,
+                          const std::optional<ResponsePoint>& through,
+                          const TaskContext<ResponseResult>& context) {
+  BranchOptions options = follow_options(of, present);
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
+  ResponseResult result;
+  std::optional<ResponseDiagram> diagram;
+  if (through && !of.all)
+    diagram = follow_branches_through(*of.mechanism, of.address, of.from, of.to, *through, options);
+  // Without a state to go through, as the command line: from the drawn pose at the range's beginning.
+  result.diagram =
+      diagram ? std::move(*diagram) : follow_branches(*of.mechanism, of.address, of.from, of.to, options);
+  result.lines = response_lines(result.diagram);
+  return result;
+}
+
+void follow(Session& session, const ResponseRequest& of) {
   ResponseState& state = session.study.response;
-  if (!state.task)
-    state.task = std::make_unique<Background<ResponseResult>>(session.options.mode, session.options.on_news);
   // While a hand drags one slider every curve that was begun is worth seeing; another question is not.
-  const bool after = state.asked && state.asked->address == of.address && state.asked->from == of.from &&
-                     state.asked->to == of.to && state.asked->all == of.all;
-  state.asked = of;
+  const auto& asked = state.curve.asked;
+  const bool same = asked && asked->address == of.address && asked->from == of.from && asked->to == of.to &&
+                    asked->all == of.all;
   std::optional<ResponsePoint> through;
   if (converged(session)) through = present_point(session, of.address);
   state.through = session.answer.ticket;
-  const double present = get_parameter(session.mechanism(), of.address);
-  state.task->start(
-      [of = std::move(of), through = std::move(through),
-       present](const Background<ResponseResult>::Watch& watch) {
-        BranchOptions options = follow_options(of, present);
-        options.cancel = &watch.cancel;
-        options.progress = watch.progress;
-        ResponseResult result;
-        std::optional<ResponseDiagram> diagram;
-        if (through && !of.all)
-          diagram = follow_branches_through(*of.mechanism, of.address, of.from, of.to, *through, options);
-        // Without a state to go through, as the command line: from the drawn pose at the range's beginning.
-        result.diagram = diagram ? std::move(*diagram)
-                                 : follow_branches(*of.mechanism, of.address, of.from, of.to, options);
-        result.lines = response_lines(result.diagram);
-        result.of = of;
-        return result;
+  state.curve.ask(
+      session.options, of,
+      [through = std::move(through), present = get_parameter(session.mechanism(), of.address)](
+          const ResponseRequest& request, const TaskContext<ResponseResult>& context) {
+        return find_curve(request, present, through, context);
       },
-      after);
+      same ? ResponseCurve::Running::finished : ResponseCurve::Running::cancelled);
 }
 
-void take_result(ResponseState& state) {
-  auto news = state.task ? state.task->take() : std::nullopt;
-  if (!news) return;
-  state.problem = news->problem;
-  state.result = std::move(news->result);
-  if (state.result && state.result->diagram.status != Status::converged) {
-    state.problem = state.result->diagram.message;
-    state.result.reset();
-  }
-  ++state.version;
+void take_curve(ResponseCurve& curve) {
+  if (!curve.take()) return;
+  if (curve.problem.empty() && curve.found && curve.found->result.diagram.status != Status::converged)
+    curve.problem = curve.found->result.diagram.message;
+  if (!curve.problem.empty()) curve.found.reset();
 }
 
 // How far a state is from the present one (rad and m, added up).
@@ -121,23 +110,20 @@ double away(const Session& session, const ResponsePoint& point) {
 
 // Stable states first, then those that are like the present one.
 void take_design(Session& session) {
-  ResponseState& state = session.study.response;
-  auto news = state.design.task ? state.design.task->take() : std::nullopt;
-  if (!news) return;
-  state.design.problem = news->problem;
-  state.design.answer = std::move(news->result);
-  if (state.design.answer)
-    std::ranges::stable_sort(state.design.answer->found.solutions, {}, [&](const DesignSolution& s) {
+  auto& answer = session.study.response.design.answer;
+  if (!answer.take()) return;
+  if (!answer.problem.empty()) answer.found.reset();
+  if (answer.found)
+    std::ranges::stable_sort(answer.found->result.solutions, {}, [&](const DesignSolution& s) {
       return std::pair(s.at.stable != true, away(session, s.at));
     });
-  ++state.version;
 }
 
 // First the parameter that is likely meant: a drive's speed.
 void choose_first(Session& session) {
   if (response_control(session)) return;
   if (session.parameters.empty()) {
-    session.study.response.address.clear();
+    session.study.response.choice.address.clear();
     return;
   }
   const auto drive = std::ranges::find_if(session.parameters, [](const ParameterControl& control) {
@@ -150,17 +136,17 @@ void choose_first(Session& session) {
 void choose_first_quantity(Session& session) {
   ResponseState& state = session.study.response;
   const std::vector<ResponseQuantity> all = offered_quantities(session);
-  if (const auto found = std::ranges::find(all, state.quantity, &ResponseQuantity::key); found != all.end()) {
+  if (const auto found = std::ranges::find(all, state.choice.quantity, &ResponseQuantity::key);
+      found != all.end()) {
     state.shown = *found;
     return;
   }
   // Without an answer not everything is offered that may be so again.
-  if (all.empty() || (!state.quantity.empty() && !converged(session))) return;
+  if (all.empty() || (!state.choice.quantity.empty() && !converged(session))) return;
   const auto length = std::ranges::find_if(
       all, [](const ResponseQuantity& each) { return each.unit == "m" && each.key.starts_with("value "); });
   state.shown = length == all.end() ? all.front() : *length;
-  state.quantity = state.shown.key;
-  ++state.version;
+  state.choice.quantity = state.shown.key;
 }
 
 // Whether coordinates are the same but for the straight lines that join a curve's points.
@@ -194,12 +180,13 @@ ResponsePoint between(const ResponsePoint& a, const ResponsePoint& b, double par
 // hand has put it.
 bool left_curves(const Session& session) {
   const ResponseState& state = session.study.response;
-  if (!state.result || state.task->running() || !converged(session) || solving(session)) return false;
+  const auto& found = state.curve.found;
+  if (!found || state.curve.running() || !converged(session) || solving(session)) return false;
   if (session.answer.ticket == state.through) return false;
-  const ResponseRequest& of = state.result->of;
+  const ResponseRequest& of = found->of;
   const std::optional<ResponsePoint> now = present_point(session, of.address);
   if (!now || (now->parameter - of.from) * (now->parameter - of.to) > 0) return false;
-  for (const ResponseLine& line : state.result->lines)
+  for (const ResponseLine& line : found->result.lines)
     for (std::size_t i = 1; i < line.points.size(); ++i) {
       const ResponsePoint &a = line.points[i - 1], &b = line.points[i];
       if ((now->parameter - a.parameter) * (now->parameter - b.parameter) > 0) continue;
@@ -244,61 +231,40 @@ std::optional<ResponsePoint> present_point(const Session& session, const std::st
 
 void update_response(Session& session) {
   ResponseState& state = session.study.response;
-  take_result(state);
+  take_curve(state.curve);
   take_design(session);
-  if (session.study.open != Study::response || session.mode != Mode::explore) return;
+  if (session.study.open != StudyKind::response || session.mode != Mode::explore) return;
   choose_first(session);
   choose_first_quantity(session);
-  if (state.asked && state.asked_revision == session.document.revision() &&
-      state.asked->address == state.address && state.asked->from == state.from &&
-      state.asked->to == state.to && state.asked->all == state.all &&
-      state.asked->reactions == needs_reactions(state.quantity)) {
-    if (!left_curves(session)) return;
-    follow(session, ResponseRequest(*state.asked));
-    take_result(state);
-    return;
-  }
-  std::optional<ResponseRequest> wanted = wanted_now(session);
-  state.asked_revision = session.document.revision();
+  const std::optional<ResponseRequest> wanted = wanted_now(session);
   if (!wanted) {
-    const bool had = state.asked || state.result;
-    state.asked.reset();
-    state.result.reset();
-    state.task.reset();
-    state.problem.clear();
-    if (had) ++state.version;
+    state.curve = {};
     return;
   }
-  if (state.asked == wanted) return;
-  follow(session, std::move(*wanted));
-  if (state.design.answer) find_design(session);
-  take_result(state); // in immediate mode it is there
+  const bool asked = state.curve.asked == wanted;
+  if (asked && !left_curves(session)) return;
+  follow(session, *wanted);
+  if (!asked && state.design.answer.found) find_design(session);
+  take_curve(state.curve); // in immediate mode it is there
 }
 
 void close_response(Session& session) {
   ResponseState& state = session.study.response;
   ResponseState fresh;
-  fresh.address = state.address;
-  fresh.from = state.from;
-  fresh.to = state.to;
-  fresh.logarithmic = state.logarithmic;
-  fresh.quantity = state.quantity;
-  fresh.all = state.all;
+  fresh.choice = state.choice;
   fresh.design.coordinate = state.design.coordinate;
   fresh.design.value = state.design.value;
-  fresh.version = state.version + 1;
-  fresh.chosen = state.chosen + 1;
   state = std::move(fresh);
 }
 
 bool computing_response(const Session& session) {
   const ResponseState& state = session.study.response;
-  return (state.task && state.task->running()) || (state.design.task && state.design.task->running());
+  return state.curve.running() || state.design.answer.running();
 }
 
 const ParameterControl* response_control(const Session& session) {
-  const auto found =
-      std::ranges::find(session.parameters, session.study.response.address, &ParameterControl::address);
+  const auto found = std::ranges::find(session.parameters, session.study.response.choice.address,
+                                       &ParameterControl::address);
   return found == session.parameters.end() ? nullptr : &*found;
 }
 
@@ -306,26 +272,23 @@ void choose_response(Session& session, const std::string& address) {
   const auto found = std::ranges::find(session.parameters, address, &ParameterControl::address);
   if (found == session.parameters.end()) return;
   ResponseState& state = session.study.response;
-  state.address = address;
-  state.from = found->from;
-  state.to = found->to;
-  state.logarithmic = found->log;
-  state.design.answer.reset();
-  ++state.chosen;
-  ++state.version;
+  state.choice.address = address;
+  state.choice.from = found->from;
+  state.choice.to = found->to;
+  state.choice.logarithmic = found->log;
+  state.design.answer.found.reset();
 }
 
-void choose_response_end(Session& session, double ResponseState::*end, double value) {
+void choose_response_end(Session& session, double ResponseChoice::*end, double value) {
   ResponseState& state = session.study.response;
-  if (value == (end == &ResponseState::from ? state.to : state.from)) return;
-  state.*end = value;
+  if (value == (end == &ResponseChoice::from ? state.choice.to : state.choice.from)) return;
+  state.choice.*end = value;
   const ParameterControl* varied = response_control(session);
-  state.logarithmic = varied && varied->log && std::min(state.from, state.to) > 0;
-  ++state.chosen;
+  state.choice.logarithmic = varied && varied->log && std::min(state.choice.from, state.choice.to) > 0;
 }
 
 std::string response_refusal(const Session& session) {
-  if (!session.study.response.problem.empty()) return session.study.response.problem;
+  if (!session.study.response.curve.problem.empty()) return session.study.response.curve.problem;
   // Where the balance turns with the drives, what is followed from their standing still is no steady state.
   const Solution& solution = session.answer.solution;
   const bool told = session.answer.ticket && !session.answer.error && session.mistakes.empty();
@@ -334,65 +297,56 @@ std::string response_refusal(const Session& session) {
 
 void choose_quantity(Session& session, const ResponseQuantity& quantity) {
   ResponseState& state = session.study.response;
-  state.quantity = quantity.key;
+  state.choice.quantity = quantity.key;
   state.shown = quantity;
-  ++state.version;
-  ++state.chosen;
 }
 
 std::vector<ResponseQuantity> offered_quantities(const Session& session) {
   if (converged(session)) return response_quantities(response_point(session.answer.solution, 0));
-  const auto& result = session.study.response.result;
-  if (result && !result->lines.empty() && !result->lines.front().points.empty())
-    return response_quantities(result->lines.front().points.front());
+  const auto& found = session.study.response.curve.found;
+  if (found && !found->result.lines.empty() && !found->result.lines.front().points.empty())
+    return response_quantities(found->result.lines.front().points.front());
   return {};
 }
 
 void go_to_response(Session& session, std::size_t line_index, double at, double step, bool dragged) {
-  const ResponseState& state = session.study.response;
-  if (!state.result || line_index >= state.result->lines.size()) return;
-  const ResponseLine& line = state.result->lines[line_index];
+  const auto& found = session.study.response.curve.found;
+  if (!found || line_index >= found->result.lines.size()) return;
+  const ResponseLine& line = found->result.lines[line_index];
   if (line.points.size() < 2) return;
   const ResponsePoint point = rounded_point(line, at, step);
+  const std::string& address = found->of.address;
   // A hand that rests on the marker asks for nothing new.
-  const bool there =
-      session.on_branch && point.parameter == get_parameter(session.mechanism(), state.result->of.address);
+  const bool there = session.on_branch && point.parameter == get_parameter(session.mechanism(), address);
   if (dragged && there && (solving(session) || near(session.answer.solution.coordinates, point.coordinates)))
     return;
-  go_to_state(session, state.result->of.address, point.parameter, start_values(point.coordinates));
+  go_to_state(session, address, point.parameter, start_values(point.coordinates));
 }
 
 void find_design(Session& session) {
-  ResponseState& state = session.study.response;
-  ResponseDesign& wanted = state.design;
-  std::optional<ResponseRequest> of = wanted_now(session);
+  ResponseDesign& wanted = session.study.response.design;
+  const std::optional<ResponseRequest> of = wanted_now(session);
   if (!of || wanted.coordinate.empty()) return;
-  if (!wanted.task)
-    wanted.task =
-        std::make_unique<Background<ResponseDesign::Answer>>(session.options.mode, session.options.on_news);
-  wanted.problem.clear();
   // The same question about a mechanism that is being changed: every answer is worth seeing.
-  const bool after =
-      wanted.answer && wanted.answer->coordinate == wanted.coordinate && wanted.answer->value == wanted.value;
-  wanted.task->start(
-      [of = std::move(*of), coordinate = wanted.coordinate,
-       value = wanted.value](const Background<ResponseDesign::Answer>::Watch& watch) {
+  const auto& found = wanted.answer.found;
+  const bool same = found && found->of.coordinate == wanted.coordinate && found->of.value == wanted.value;
+  wanted.answer.ask(
+      session.options, {*of, wanted.coordinate, wanted.value},
+      [](const DesignRequest& request, const TaskContext<DesignAnswer>& context) {
         DesignOptions options;
-        options.largest_step = largest_step(of);
-        options.cancel = &watch.cancel;
-        options.progress = watch.progress;
-        return ResponseDesign::Answer{
-            of, coordinate, value,
-            design(*of.mechanism, of.address, of.from, of.to, coordinate, value, options)};
+        options.largest_step = largest_step(request.of);
+        options.cancel = &context.cancel;
+        options.progress = context.progress;
+        return design(*request.of.mechanism, request.of.address, request.of.from, request.of.to,
+                      request.coordinate, request.value, options);
       },
-      after);
+      same ? ResponseCurve::Running::finished : ResponseCurve::Running::cancelled);
   take_design(session);
 }
 
 void go_to_design(Session& session, const DesignSolution& solution) {
-  const auto& answer = session.study.response.design.answer;
-  if (answer)
-    go_to_state(session, answer->of.address, solution.parameter, start_values(solution.at.coordinates));
+  if (const auto& found = session.study.response.design.answer.found)
+    go_to_state(session, found->of.of.address, solution.parameter, start_values(solution.at.coordinates));
 }
 
 } // namespace flyball

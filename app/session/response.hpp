@@ -1,15 +1,15 @@
 // The response curve: what is wanted and what was found. Nothing of it is made before a person asks for it.
 #pragma once
 
-#include "app/live/background.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/session/response_quantity.hpp"
+#include "app/session/study.hpp"
+#include "app/session/varied_mechanism.hpp"
 #include "engine/study/design.hpp"
 
-#include <memory>
+#include <cstdint>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace flyball {
@@ -18,19 +18,13 @@ struct Session;
 
 // What a curve is followed for; while it stays the same nothing is computed.
 struct ResponseRequest {
-  // With the varied number at `from`, and nothing that changes no equilibrium.
-  std::shared_ptr<const Mechanism> mechanism;
+  SharedMechanism mechanism; // with the varied number at `from`
   std::string address;
   double from = 0, to = 1; // of the number, in its unit
   bool logarithmic = false;
   bool all = false;       // disconnected branches, too
   bool reactions = false; // and drive torques
-  bool operator==(const ResponseRequest& o) const {
-    const auto choices = [](const ResponseRequest& r) {
-      return std::tie(r.address, r.from, r.to, r.logarithmic, r.all, r.reactions);
-    };
-    return choices(*this) == choices(o) && (mechanism == o.mechanism || *mechanism == *o.mechanism);
-  }
+  bool operator==(const ResponseRequest&) const = default;
 };
 
 // A branch with its special points in their places.
@@ -41,45 +35,42 @@ struct ResponseLine {
 };
 
 struct ResponseResult {
-  ResponseRequest of;
   ResponseDiagram diagram; // its branches are in `lines`
   std::vector<ResponseLine> lines;
+};
+using ResponseCurve = Study<ResponseRequest, ResponseResult>;
+
+struct DesignRequest {
+  ResponseRequest of;
+  std::string coordinate;
+  double value = 0;
 };
 
 // "Find the parameter so that the coordinate is this": design mode.
 struct ResponseDesign {
   std::string coordinate; // "joint" or "joint.index"; empty: not chosen
   double value = 0;       // rad or m
-  struct Answer {
-    ResponseRequest of;
-    std::string coordinate;
-    double value = 0;
-    DesignAnswer found;
-  };
-  std::unique_ptr<Background<Answer>> task; // made when it is first asked for
-  std::optional<Answer> answer;
-  std::string problem;
+  Study<DesignRequest, DesignAnswer> answer;
 };
 
-struct ResponseState {
-  // Chosen by the person; empty at first, see choose_response().
+// What a person has chosen to see; empty at first, see choose_response().
+struct ResponseChoice {
   std::string address;
   double from = 0, to = 0;
   bool logarithmic = false;
   std::string quantity; // see response_quantities()
   bool all = false;
+  bool operator==(const ResponseChoice&) const = default;
+};
+
+struct ResponseState {
+  ResponseChoice choice;
   ResponseQuantity shown; // the quantity, as last offered
 
-  std::unique_ptr<Background<ResponseResult>> task; // there while the panel is open
-  std::optional<ResponseRequest> asked;             // what the newest task is for
-  std::uint64_t asked_revision = 0;                 // of the document, then
-  std::uint64_t through = 0;                        // ticket of the answer that it starts from
-  std::optional<ResponseResult> result;
-  std::string problem; // why there is no curve
+  ResponseCurve curve;
+  VariedMechanism varied;
+  std::uint64_t through = 0; // ticket of the answer whose state the curve was to go through
   ResponseDesign design;
-
-  std::uint64_t version = 1; // of result, quantity and design
-  std::uint64_t chosen = 0;  // how often a parameter, a range or a quantity was chosen
 };
 
 // Takes what was computed and asks for what is wanted now; nothing unless the panel is open.
@@ -91,7 +82,7 @@ bool computing_response(const Session& session);
 // The parameter that is varied, with the range of its slider.
 void choose_response(Session& session, const std::string& address);
 // One end of its range, `from` or `to`.
-void choose_response_end(Session& session, double ResponseState::*end, double value);
+void choose_response_end(Session& session, double ResponseChoice::*end, double value);
 // The control of the varied parameter; null: there is none.
 const ParameterControl* response_control(const Session& session);
 // Why there is no curve, a sentence; empty where there is one.

@@ -6,14 +6,13 @@
 #include "app/live/live_solver.hpp"
 #include "app/session/files.hpp"
 #include "app/session/motion.hpp"
-#include "app/session/number_text.hpp"
 #include "app/session/parameter_list.hpp"
+#include "app/session/session_options.hpp"
 #include "app/session/studies.hpp"
 #include "app/session/units.hpp"
 #include "engine/mechanism/error.hpp"
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
@@ -23,14 +22,6 @@
 #include <vector>
 
 namespace flyball {
-
-struct SessionOptions {
-  LiveSolver::Mode mode = LiveSolver::Mode::background;
-  std::function<void()> on_news{}; // from the background thread; see LiveSolver
-  std::filesystem::path scenes{};  // the shipped scenes; may be empty
-  NumberStyle numbers{};
-  std::filesystem::path state{}; // folder for recent files and autosaves; empty: nothing is kept anywhere
-};
 
 struct Playback {
   bool playing = false;

@@ -3,79 +3,52 @@
 #include "app/session/session.hpp"
 #include "app/session/state_words.hpp"
 
-#include <chrono>
-
 namespace flyball {
 
 namespace {
 
-constexpr double no_time_for_states = 0.3; // s
-
-FoundStates find_states(std::shared_ptr<const Mechanism> mechanism,
-                        const Background<FoundStates>::Watch& watch) {
-  const auto begin = std::chrono::steady_clock::now();
-  FoundStates found;
-  report_progress(watch.progress, "preparing");
-  Analysis analysis(std::move(mechanism));
+AllSolutions find_states(const SharedMechanism& mechanism, const TaskContext<AllSolutions>& context) {
+  report_progress(context.progress, "preparing");
+  Analysis analysis(mechanism.pointer);
   SolveOptions options;
   options.details = false;
-  options.cancel = &watch.cancel;
-  options.progress = watch.progress;
-  found.all = analysis.solve_all(options);
-  found.cancelled = watch.cancel;
-  found.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return found;
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
+  return analysis.solve_all(options);
 }
 
 } // namespace
 
 void search_states(Session& session) {
-  StatesState& states = session.study.states;
   if (!session.mistakes.empty() || session.mechanism().bodies.empty()) return;
-  if (!states.task)
-    states.task = std::make_unique<Background<FoundStates>>(session.options.mode, session.options.on_news);
-  states.asked = session.document.revision();
-  states.problem.clear();
-  states.task->start([mechanism = session.document.shared()](const Background<FoundStates>::Watch& watch) {
-    return find_states(mechanism, watch);
-  });
+  session.study.states.ask(session.options, {session.document.shared()}, find_states);
 }
 
 void update_states(Session& session) {
-  if (session.study.open != Study::states) return;
-  StatesState& states = session.study.states;
-  if (states.task)
-    if (auto news = states.task->take()) {
-      states.problem = news->problem;
-      if (news->result && news->result->cancelled) {
-        states.problem = "The search was stopped.";
-      } else if (news->result) {
-        states.result = std::move(news->result);
-        states.of = states.asked;
-        ++states.lists;
-      }
-    }
+  if (session.study.open != StudyKind::states) return;
+  StatesStudy& states = session.study.states;
+  states.take("The search was stopped.");
   if (session.mode != Mode::explore) return;
-  const bool quick =
-      states.result && states.result->run_time_s < no_time_for_states && !states.task->running();
-  if (!states.task || (quick && states.asked != session.document.revision())) search_states(session);
+  const bool again =
+      states.quick() && !states.running() && *states.asked != SharedMechanism{session.document.shared()};
+  if (!states.asked || again) search_states(session);
 }
 
 bool states_are_current(const Session& session) {
-  return session.study.states.result && session.study.states.of == session.document.revision();
+  return session.study.states.is_of({session.document.shared()});
 }
 
 std::optional<std::size_t> shown_state(const Session& session) {
   if (!states_are_current(session) || !converged(session) || solving(session)) return std::nullopt;
-  const std::vector<Solution>& all = session.study.states.result->all.equilibria;
+  const std::vector<Solution>& all = session.study.states.found->result.equilibria;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (same_state(all[i].coordinates, session.answer.solution.coordinates, all[i].neutral)) return i;
   return std::nullopt;
 }
 
 void show_state(Session& session, std::size_t index) {
-  if (!states_are_current(session) || index >= session.study.states.result->all.equilibria.size()) return;
-  go_to_state(session, "", 0, start_values(session.study.states.result->all.equilibria[index].coordinates));
+  if (!states_are_current(session) || index >= session.study.states.found->result.equilibria.size()) return;
+  go_to_state(session, "", 0, start_values(session.study.states.found->result.equilibria[index].coordinates));
 }
 
 } // namespace flyball

@@ -4,17 +4,17 @@
 
 namespace flyball {
 
-void open_study(Session& session, Study study) {
-  if (study == session.study.open) study = Study::none;
-  if (study != Study::none) set_mode(session, Mode::explore);
+void open_study(Session& session, StudyKind study) {
+  if (study == session.study.open) study = StudyKind::none;
+  if (study != StudyKind::none) set_mode(session, Mode::explore);
   // The motion goes with its panel.
-  if (session.study.open == Study::motion && study != Study::motion) show_motion(session, false);
-  if (study != Study::states) session.study.states = {};
-  if (study != Study::modes) close_modes(session);
-  if (study != Study::map) close_map(session);
-  if (study != Study::response) close_response(session);
+  if (session.study.open == StudyKind::motion && study != StudyKind::motion) show_motion(session, false);
+  if (study != StudyKind::states) session.study.states = {};
+  if (study != StudyKind::modes) close_modes(session);
+  if (study != StudyKind::map) close_map(session);
+  if (study != StudyKind::response) close_response(session);
   session.study.open = study;
-  if (study == Study::motion) show_motion(session, true);
+  if (study == StudyKind::motion) show_motion(session, true);
 }
 
 void update_studies(Session& session) {
@@ -28,8 +28,7 @@ void update_studies(Session& session) {
 bool studying(const Session& session) {
   const StudyState& study = session.study;
   return computing_motion(session) || computing_response(session) || comparing(session) ||
-         (study.states.task && study.states.task->running()) || finding_modes(session) ||
-         computing_map(session);
+         study.states.running() || finding_modes(session) || computing_map(session);
 }
 
 } // namespace flyball

@@ -11,19 +11,19 @@ namespace flyball {
 
 struct Session;
 
-enum class Study { none, motion, compare, response, states, modes, map };
+enum class StudyKind { none, motion, compare, response, states, modes, map };
 
 struct StudyState {
-  Study open = Study::none;
+  StudyKind open = StudyKind::none;
   CompareState compare;
   ResponseState response;
-  StatesState states;
+  StatesStudy states;
   ModesState modes;
   MapState map;
 };
 
 // Shows a study, in the explore mode; the same again, or none, closes it.
-void open_study(Session& session, Study study);
+void open_study(Session& session, StudyKind study);
 // Takes what studies have found in the background, and asks for what is missing.
 void update_studies(Session& session);
 // Whether one computes.

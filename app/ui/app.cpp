@@ -10,7 +10,6 @@ namespace {
 
 void fit_view(App& app, ViewSize size) {
   if (!app.view.fit) return;
-  const ViewFrame frame = view_frame(app);
   const ViewScene& scene = *shown_scene(app);
   Bounds bounds = scene.solid.bounds;
   for (const Instance& instance : scene.ghost)
@@ -19,7 +18,7 @@ void fit_view(App& app, ViewSize size) {
     (app.view.glide ? app.view.glide->to : app.view.camera).fit(bounds, size);
   } else {
     app.view.glide.reset();
-    app.view.camera = initial_camera(*frame.mechanism, bounds, size);
+    app.view.camera = initial_camera(*shown_mechanism(app), bounds, size);
   }
   // Until the first answer is there nobody knows what will have to be in view.
   if (!solving(app)) app.view.fit = false;
@@ -33,7 +32,7 @@ App::App(AppOptions chosen)
                .scenes = std::move(chosen.scenes),
                .numbers = chosen.numbers,
                .state = std::move(chosen.state)}),
-      theme(chosen.theme), system_theme(chosen.theme) {
+      system_theme(chosen.theme) {
   const Settings settings = read_settings(options.state);
   panels.legend = settings.legend;
   navigation = settings.navigation;
@@ -78,9 +77,9 @@ void look_from(App& app, double azimuth, double elevation) {
 void update(App& app, double seconds, ViewSize view) {
   update(app, seconds);
   // What is closed is looked at afresh when it is opened again.
-  if (app.study.open != Study::response) app.plots.response = {};
-  if (app.study.open != Study::map) app.plots.map = {};
-  if (app.study.open != Study::modes) {
+  if (app.study.open != StudyKind::response) app.plots.response = {};
+  if (app.study.open != StudyKind::map) app.plots.map = {};
+  if (app.study.open != StudyKind::modes) {
     const bool hertz = app.plots.campbell.hertz;
     app.plots.campbell = {};
     app.plots.campbell.hertz = hertz;
@@ -90,11 +89,17 @@ void update(App& app, double seconds, ViewSize view) {
   advance_glide(app, seconds);
 }
 
+const std::shared_ptr<const Mechanism>& shown_mechanism(const App& app) {
+  if (app.mode == Mode::build) return app.document.shared();
+  if (app.tool.pull) return app.tool.pull->mechanism; // the tool draws the hand's spring
+  return app.answer.ticket ? app.answer.mechanism : app.document.shared();
+}
+
 ViewFrame view_frame(const App& app) {
   ViewFrame frame;
+  frame.mechanism = shown_mechanism(app).get();
   const bool solved = converged(app);
   if (app.mode == Mode::build) {
-    frame.mechanism = &app.mechanism();
     // The answer may still be that to an earlier edit.
     if (app.tool.assembly) {
       frame.ghost = app.tool.assembly->start;
@@ -103,8 +108,6 @@ ViewFrame view_frame(const App& app) {
       frame.ghost_pose = GhostPose::steady;
     }
   } else {
-    frame.mechanism = app.answer.ticket ? app.answer.mechanism.get() : &app.mechanism();
-    if (app.tool.pull) frame.mechanism = app.tool.pull->mechanism.get(); // the tool draws the hand's spring
     const bool moves = app.motion.poses.size() == frame.mechanism->bodies.size();
     if (solved) {
       frame.poses = app.poses;
@@ -133,8 +136,7 @@ ViewFrame view_frame(const App& app) {
   return frame;
 }
 
-ViewFrame motion_frame(const App& app) {
-  ViewFrame frame = view_frame(app);
+ViewFrame motion_frame(const App& app, ViewFrame frame) {
   frame.poses = app.motion.poses;
   frame.ghost = {};
   frame.motion = {};

@@ -2,7 +2,6 @@
 // build_gui() draws and edits it. Neither needs OpenGL; see stage.hpp for what turns it into a picture.
 #pragma once
 
-#include "app/render/fonts.hpp"
 #include "app/session/navigation.hpp"
 #include "app/session/session.hpp"
 #include "app/session/settings.hpp"
@@ -10,16 +9,14 @@
 #include "app/ui/command_state.hpp"
 #include "app/ui/file_dialog_state.hpp"
 #include "app/ui/inspector_state.hpp"
-#include "app/ui/keyboard/keyboard_state.hpp"
 #include "app/ui/panels/view_cube.hpp"
 #include "app/ui/shown_scene.hpp"
 #include "app/ui/studies/motion/movie_state.hpp"
 #include "app/ui/studies/study_views.hpp"
 #include "app/ui/tool_state.hpp"
+#include "app/ui/ui.hpp"
 #include "app/ui/widgets/notice.hpp"
 #include "app/ui/widgets/shown_rate.hpp"
-#include "app/ui/widgets/tooltip.hpp"
-#include "app/ui/widgets/widget_map.hpp"
 #include "app/viewport/camera.hpp"
 #include "app/viewport/scene_list.hpp"
 #include "app/viewport/view_renderer.hpp"
@@ -98,14 +95,6 @@ struct PanelState {
   SliderPress slider_press;
 };
 
-// A key that went down. Kept as it happened: Dear ImGui 1.86 only sees which keys are down when a frame
-// begins, and misses one that was tapped while a slow frame was drawn.
-struct KeyPress {
-  int key = 0; // 'A' to 'Z' as the keyboard's layout has it, a digit, ' ', a sign, or from 256 on GLFW's code
-  bool ctrl = false, shift = false, alt = false;
-  bool operator==(const KeyPress&) const = default;
-};
-
 enum class Dialog {
   none,
   open,
@@ -138,7 +127,7 @@ struct ExportRequest {
   std::shared_ptr<const PlotSave> plot{}; // this instead of the window or the view
 };
 
-struct App : Session {
+struct App : Session, Ui {
   explicit App(AppOptions options);
 
   ToolState tool;
@@ -150,22 +139,15 @@ struct App : Session {
   ViewState view;
   PanelState panels;
   DialogState dialog;
-  Theme theme = Theme::light; // that is shown
   Theme system_theme = Theme::light;
   ThemeChoice theme_choice = ThemeChoice::system;
   Navigation navigation = Navigation::own;
-  float scale = 1; // pixels a point has
-  UiFonts fonts;
-  WidgetMap widgets;
-  KeyboardState keyboard;
-  std::vector<KeyPress> keys; // since the last frame; whoever runs the loop adds, build_gui() empties
 
   // Told to whoever runs the loop, who clears them.
   bool quit = false;
   std::optional<ExportRequest> export_request;
   NoticeAge notice_age; // of `notice`, which is shown in the view for a while, see notice.hpp
   NoticeLog notice_log;
-  TooltipState tooltip;
 
  protected:
   void document_opened(bool same_file) override;
@@ -181,9 +163,12 @@ void update(App& app, double seconds, ViewSize view);
 // The whole interface, between ImGui::NewFrame and ImGui::Render.
 void build_gui(App& app);
 
-// What the 3-D view shows. Refers to the app: use before it changes.
+// The mechanism that the 3-D view shows.
+const std::shared_ptr<const Mechanism>& shown_mechanism(const App& app);
+// What the 3-D view shows. Refers to the app: use before it changes. The stage makes one a frame; what is
+// drawn over the view reads app.view.scene, which was made of it.
 ViewFrame view_frame(const App& app);
 // What the view beside it shows: the motion alone.
-ViewFrame motion_frame(const App& app);
+ViewFrame motion_frame(const App& app, ViewFrame frame);
 
 } // namespace flyball

@@ -9,35 +9,35 @@
 
 namespace flyball {
 
-void redraw(App& app, const std::string& step, const Mechanism& before, const MechanismPose& pose,
+void redraw(Session& session, const std::string& step, const Mechanism& before, const MechanismPose& pose,
             const Selection& selection) {
   Redrawn next = redrawn(before, pose);
-  edit(app, step, [&](Mechanism& mechanism, Selection& selected) {
+  edit(session, step, [&](Mechanism& mechanism, Selection& selected) {
     mechanism = std::move(next.mechanism);
     selected = selection;
   });
   if (next.along_other_axes.empty()) return;
-  app.notice = "What acts along single axes of " + name_list(next.along_other_axes) +
-               " acts along the world's now, as its parent has turned.";
+  session.notice = "What acts along single axes of " + name_list(next.along_other_axes) +
+                   " acts along the world's now, as its parent has turned.";
 }
 
-void move_coordinate(App& app, const std::string& joint, int index, double value) {
+void move_coordinate(Session& session, const std::string& joint, int index, double value) {
   constexpr double there = 1e-9; // rad or m
   if (!std::isfinite(value)) return;
-  const auto before = app.document.steps()[app.document.position()].mechanism;
+  const auto before = session.document.steps()[session.document.position()].mechanism;
   try {
     AssemblyDrag drag(*before);
-    if (!drag.assembled()) return show_error(app, "The loops cannot be closed, so nothing can be moved.");
+    if (!drag.assembled()) return show_error(session, "The loops cannot be closed, so nothing can be moved.");
     DragOutcome out = drag.move(joint, index, value);
     // As long as it takes, but not for ever.
     for (int i = 0; i < 20 && !out.settled; ++i)
       out = drag.move(joint, index, value);
-    redraw(app, "Move " + joint, *before, drag.pose(), app.selection());
+    redraw(session, "Move " + joint, *before, drag.pose(), session.selection());
     if (out.away > there)
-      app.notice =
+      session.notice =
           joint + (out.at_stop ? " is kept from there by a stop." : " is kept from there by its loops.");
   } catch (const SceneError& error) {
-    show_error(app, error.what());
+    show_error(session, error.what());
   }
 }
 

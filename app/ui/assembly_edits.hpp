@@ -8,10 +8,10 @@ namespace flyball {
 
 // The state of the history `before` in this pose, as a step of that name and gesture. Tells of springs that
 // could not come along.
-void redraw(App& app, const std::string& step, const Mechanism& before, const MechanismPose& pose,
+void redraw(Session& session, const std::string& step, const Mechanism& before, const MechanismPose& pose,
             const Selection& selection);
 // The coordinate (rad or m) brought to a value, as far as joints and stops allow; says where they do not.
-void move_coordinate(App& app, const std::string& joint, int index, double value);
+void move_coordinate(Session& session, const std::string& joint, int index, double value);
 // The drawn pose becomes that of the steady state.
 bool can_draw_settled(const App& app);
 void draw_settled(App& app);

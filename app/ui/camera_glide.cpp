@@ -54,7 +54,7 @@ void fit_all(App& app) {
 }
 
 void fit_selected(App& app) {
-  const std::vector<PartId> parts = view_frame(app).selected;
+  const std::vector<PartId> parts = find_parts(*shown_mechanism(app), app.selection());
   Bounds bounds;
   for (const Instance& instance : shown_scene(app)->solid.instances)
     if (std::ranges::find(parts, instance.part) != parts.end()) bounds.add(instance_bounds(instance));

@@ -20,14 +20,10 @@ void choose_units(App& app, const DisplayUnits& units) {
   if (app.units == units) return;
   app.units = units;
   keep_settings(app.options.state, settings_of(app));
-  // Plots are in these units; how a person has looked at them was in others.
-  app.plots.response.plotted = 0;
+  // How a person has looked at the plots was in other units.
   fit_plot(app.plots.response.view);
-  app.plots.map.made_version = 0;
   fit_plot(app.plots.map.view);
-  app.plots.campbell.made_result = 0;
   fit_plot(app.plots.campbell.view);
-  ++app.motion.version;
   for (MotionPlot& plot : app.plots.motion)
     fit_plot(plot.view);
 }
@@ -39,10 +35,10 @@ void choose_navigation(App& app, Navigation navigation) {
 
 namespace {
 
-void show_theme(App& app, Theme theme) {
-  if (app.theme == theme) return;
-  app.theme = theme;
-  apply_style(theme, app.scale);
+void show_theme(Ui& ui, Theme theme) {
+  if (ui.theme == theme) return;
+  ui.theme = theme;
+  apply_style(theme, ui.scale);
 }
 
 } // namespace

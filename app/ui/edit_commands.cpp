@@ -27,9 +27,9 @@ std::string words_for(const Selection& selection) {
 }
 
 // "joints arm1 and knee1, force push": what goes with the selected parts though it is not selected.
-std::string dependents_words(const App& app) {
-  Selection more = with_dependents(app.document.stored(), app.selection());
-  std::erase_if(more.parts, [&](const Part& part) { return app.selection().has(part); });
+std::string dependents_words(const Session& session) {
+  Selection more = with_dependents(session.document.stored(), session.selection());
+  std::erase_if(more.parts, [&](const Part& part) { return session.selection().has(part); });
   std::string words;
   for (const auto& [kind, word] :
        {std::pair(PartKind::joint, "joint"), std::pair(PartKind::force, "force")}) {
@@ -43,15 +43,15 @@ std::string dependents_words(const App& app) {
 }
 
 // Takes the selected parts out, and says what went with them.
-void remove_selected(App& app, const std::string& step, const std::string& done) {
-  const std::string what = words_for(app.selection()), along = dependents_words(app);
-  const std::uint64_t before = app.document.revision();
-  edit(app, step + " " + what, [](Mechanism& mechanism, Selection& selection) {
+void remove_selected(Session& session, const std::string& step, const std::string& done) {
+  const std::string what = words_for(session.selection()), along = dependents_words(session);
+  const std::uint64_t before = session.document.revision();
+  edit(session, step + " " + what, [](Mechanism& mechanism, Selection& selection) {
     remove_parts(mechanism, selection);
     selection = {};
   });
-  if (!along.empty() && app.document.revision() != before)
-    app.notice = done + " " + what + " together with " + along + ".";
+  if (!along.empty() && session.document.revision() != before)
+    session.notice = done + " " + what + " together with " + along + ".";
 }
 
 } // namespace

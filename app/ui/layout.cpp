@@ -90,7 +90,7 @@ Layout layout_of(const App& app, float width, float height) {
   const float top = std::round(toolbar_height * s);
   float below = std::max(height - top, 1.f);
   layout.toolbar = {0, 0, width, top};
-  if (!building && app.study.open != Study::none) {
+  if (!building && app.study.open != StudyKind::none) {
     const float study = std::round(below * app.panels.study_share);
     below -= study;
     layout.study = {0, top + below, width, study};

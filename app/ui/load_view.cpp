@@ -9,10 +9,10 @@ namespace flyball {
 namespace {
 
 // Since the drawn phase; nothing where the loads change as the drives turn.
-std::optional<Quat> turn_of_loads(const App& app) {
-  const Solution& solution = app.answer.solution;
-  if (app.playback.time == 0) return Quat::Identity();
-  return common_turn(*app.answer.mechanism, solution, app.poses);
+std::optional<Quat> turn_of_loads(const Session& session) {
+  const Solution& solution = session.answer.solution;
+  if (session.playback.time == 0) return Quat::Identity();
+  return common_turn(*session.answer.mechanism, solution, session.poses);
 }
 
 bool may_show_loads(const App& app) {

@@ -35,30 +35,30 @@ class Buttons {
   bool first_ = true;
 };
 
-std::vector<RunawayCoordinate> holdable(const App& app) {
+std::vector<RunawayCoordinate> holdable(const Session& session) {
   std::vector<RunawayCoordinate> found;
-  for (const UnheldCoordinate& c : app.answer.solution.unheld)
-    if (RunawayCoordinate runaway{c.joint, c.index, c.force}; can_hold(app.mechanism(), runaway))
+  for (const UnheldCoordinate& c : session.answer.solution.unheld)
+    if (RunawayCoordinate runaway{c.joint, c.index, c.force}; can_hold(session.mechanism(), runaway))
       found.push_back(std::move(runaway));
   return found;
 }
 
 void show_how_it_moves(App& app) {
-  if (app.study.open == Study::motion && app.motion.on) {
+  if (app.study.open == StudyKind::motion && app.motion.on) {
     set_mode(app, Mode::explore);
     restart_motion(app);
   } else {
-    if (app.study.open == Study::motion) app.study.open = Study::none; // open_study() would close it
-    open_study(app, Study::motion);
+    if (app.study.open == StudyKind::motion) app.study.open = StudyKind::none; // open_study() would close it
+    open_study(app, StudyKind::motion);
   }
 }
 
-void set_gravity(App& app, const std::string& step, const Vec3& gravity) {
-  edit(app, step, [&](Mechanism& mechanism, Selection&) { mechanism.gravity = gravity; });
+void set_gravity(Session& session, const std::string& step, const Vec3& gravity) {
+  edit(session, step, [&](Mechanism& mechanism, Selection&) { mechanism.gravity = gravity; });
 }
 
-void holding_buttons(Buttons& buttons, const App& app) {
-  const std::vector<RunawayCoordinate> found = holdable(app);
+void holding_buttons(Buttons& buttons, const Session& session) {
+  const std::vector<RunawayCoordinate> found = holdable(session);
   if (found.empty()) return;
   const bool one = found.size() == 1;
   const std::string to =

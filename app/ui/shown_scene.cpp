@@ -33,6 +33,7 @@ const std::shared_ptr<const ViewScene>& keep(const App& app, ShownScene& shown, 
   source.poses.assign(frame.poses.begin(), frame.poses.end());
   source.ghost.assign(frame.ghost.begin(), frame.ghost.end());
   source.motion.assign(frame.motion.begin(), frame.motion.end());
+  shown.mechanism = shown_mechanism(app);
   shown.scene = std::make_shared<const ViewScene>(view_scene(frame));
   ++shown.made;
   return shown.scene;
@@ -40,12 +41,16 @@ const std::shared_ptr<const ViewScene>& keep(const App& app, ShownScene& shown, 
 
 } // namespace
 
-const std::shared_ptr<const ViewScene>& shown_scene(App& app) {
-  return keep(app, app.view.scene, view_frame(app));
+const std::shared_ptr<const ViewScene>& show_scene(App& app, const ViewFrame& frame) {
+  return keep(app, app.view.scene, frame);
 }
 
-const std::shared_ptr<const ViewScene>& motion_scene(App& app) {
-  return keep(app, app.view.scene_beside, motion_frame(app));
+const std::shared_ptr<const ViewScene>& show_motion_scene(App& app, const ViewFrame& frame) {
+  return keep(app, app.view.scene_beside, frame);
+}
+
+const std::shared_ptr<const ViewScene>& shown_scene(App& app) {
+  return show_scene(app, view_frame(app));
 }
 
 } // namespace flyball

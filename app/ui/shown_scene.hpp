@@ -25,12 +25,15 @@ struct SceneSource {
 
 struct ShownScene {
   SceneSource source;
-  std::shared_ptr<const ViewScene> scene; // null: none yet
-  int made = 0;                           // how often
+  std::shared_ptr<const Mechanism> mechanism; // whose parts are in the scene
+  std::shared_ptr<const ViewScene> scene;     // null: none yet
+  int made = 0;                               // how often
 };
 
-// Of the view, and of the one beside it.
+// Of what the view shows in this frame, and of the view beside it.
+const std::shared_ptr<const ViewScene>& show_scene(App& app, const ViewFrame& frame);
+const std::shared_ptr<const ViewScene>& show_motion_scene(App& app, const ViewFrame& frame);
+// As the app is now, which commands may have changed since the frame began.
 const std::shared_ptr<const ViewScene>& shown_scene(App& app);
-const std::shared_ptr<const ViewScene>& motion_scene(App& app);
 
 } // namespace flyball

@@ -73,12 +73,15 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
   ViewFrame shown = view_frame(app);
   shown.options.triad = !has_view_cube(app, view); // the cube shows the axes
-  app.view.texture = draw_view(app, view_, shown, shown_scene(app), pixels_of(view));
-  if (layout.beside.width > 0)
+  app.view.texture = draw_view(app, view_, shown, show_scene(app, shown), pixels_of(view));
+  if (layout.beside.width > 0) {
+    ViewFrame motion = motion_frame(app, shown);
+    motion.options.triad = true; // there is no cube
     app.view.texture_beside =
-        draw_view(app, beside_, motion_frame(app), motion_scene(app), pixels_of(layout.beside));
-  else
+        draw_view(app, beside_, motion, show_motion_scene(app, motion), pixels_of(layout.beside));
+  } else {
     beside_ = {};
+  }
   if (const bool coarse = view_.is_coarse() || beside_.is_coarse(); coarse != told_coarse_) {
     told_coarse_ = coarse;
     if (coarse) app.notice = "The view is too large for OpenGL here and is drawn more coarsely.";

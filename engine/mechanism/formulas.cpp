@@ -1,6 +1,5 @@
 #include "engine/mechanism/formulas.hpp"
 
-#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/mass_properties.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
@@ -331,27 +330,6 @@ std::vector<GivenNumber> given_numbers(const Mechanism& mechanism) {
         all.push_back({path, joined_path(path, formula.key), formula.text, number->value, number->unit});
   });
   return all;
-}
-
-Mechanism without_number(Mechanism mechanism, const std::string& address) {
-  put_number(mechanism, address, 0);
-  if (!has_formulas(mechanism)) return mechanism;
-  for (NamedParameter& parameter : mechanism.parameters)
-    if (!parameter.formulas.empty()) parameter.value = 0;
-  for (NamedPoint& point : mechanism.points)
-    for (const Formula& formula : point.formulas)
-      point.at[std::clamp(std::atoi(formula.key.c_str()), 0, 2)] = 0;
-  visit_parts(mechanism, [](const std::string&, Formulas& formulas, const auto& numbers_of_part) {
-    for (const Number& number : numbers_of_part())
-      if (std::ranges::find(formulas, number.key, &Formula::key) != formulas.end()) number.set(0);
-  });
-  for (Body& body : mechanism.bodies)
-    if (body.density) {
-      body.mass = 0;
-      body.position.setZero();
-      body.inertia = {};
-    }
-  return mechanism;
 }
 
 void drop_lost_formulas(Mechanism& mechanism) {

@@ -45,10 +45,6 @@ struct GivenNumber {
 };
 std::vector<GivenNumber> given_numbers(const Mechanism& mechanism);
 
-// Zero for the number at an address and for every number that an expression gives: what is left is the same
-// whatever that number is.
-Mechanism without_number(Mechanism mechanism, const std::string& address);
-
 // Drops the expressions of numbers that are no longer there, as after a joint has become one of another type.
 void drop_lost_formulas(Mechanism& mechanism);
 

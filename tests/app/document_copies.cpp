@@ -6,6 +6,8 @@
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/app/document_mechanisms.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <cmath>
 
@@ -14,26 +16,15 @@ using namespace flyball::test;
 
 namespace {
 
-Mechanism governor() {
-  return load_scene(FLYBALL_ASSETS "/scenes/governor.json");
-}
-
 // Spindle, collar, one ball.
 Mechanism half_governor() {
-  Mechanism m = governor();
+  Mechanism m = shipped("governor");
   remove_parts(m, {{{PartKind::body, "ball2"}}});
   REQUIRE(m.joints.size() == 4);
   return m;
 }
 
 const Selection ball1{{{PartKind::body, "ball1"}}};
-
-double value(const Solution& solution, const std::string& joint) {
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (c.joint == joint) return c.value;
-  FAIL("no coordinate " << joint << ": " << solution.message);
-  return NAN;
-}
 
 const Joint& joint(const Mechanism& m, std::string_view name) {
   const int i = joint_index(m, name);
@@ -69,21 +60,21 @@ TEST_CASE("the governor comes out of the mirror") {
   CHECK_FALSE(has_negative_zero(m));
 
   // It is the shipped one, number for number.
-  const Mechanism shipped = governor();
+  const Mechanism given = shipped("governor");
   REQUIRE(m.bodies.size() == 4);
-  CHECK(m.bodies.back() == shipped.bodies[2]);
+  CHECK(m.bodies.back() == given.bodies[2]);
   for (const char* name : {"arm2", "link2"}) {
-    Joint wanted = joint(shipped, name);
-    wanted.description = joint(shipped, name == std::string("arm2") ? "arm1" : "link1").description;
+    Joint wanted = joint(given, name);
+    wanted.description = joint(given, name == std::string("arm2") ? "arm1" : "link1").description;
     CHECK(joint(m, name) == wanted);
   }
-  const Solution ours = Analysis(m).solve(), theirs = Analysis(shipped).solve();
+  const Solution ours = Analysis(m).solve(), theirs = Analysis(given).solve();
   CHECK(std::abs(value(ours, "slide") - value(theirs, "slide")) < 1e-12);
   CHECK(std::abs(value(ours, "arm2") - value(ours, "arm1")) < 1e-12);
 }
 
 TEST_CASE("governors with three and four arms settle with all arms alike") {
-  const double two_arms = value(Analysis(governor()).solve(), "arm1");
+  const double two_arms = value(Analysis(shipped("governor")).solve(), "arm1");
   for (const int count : {3, 4}) {
     Mechanism m = half_governor();
     const Selection copies = circular_copy(m, ball1, {0, 0.7, 0}, {0, -2, 0}, count);
@@ -99,8 +90,8 @@ TEST_CASE("governors with three and four arms settle with all arms alike") {
   }
   Mechanism two = half_governor();
   circular_copy(two, ball1, {0, 0, 0}, {0, 1, 0}, 2);
-  CHECK(std::abs(value(Analysis(two).solve(), "slide") - value(Analysis(governor()).solve(), "slide")) <
-        1e-12);
+  CHECK(std::abs(value(Analysis(two).solve(), "slide") -
+                 value(Analysis(shipped("governor")).solve(), "slide")) < 1e-12);
 }
 
 TEST_CASE("third and quarter turns leave no round-off where there need be none") {
@@ -112,7 +103,7 @@ TEST_CASE("third and quarter turns leave no round-off where there need be none")
 }
 
 TEST_CASE("duplicates stand beside and share what was not selected") {
-  Mechanism m = governor();
+  Mechanism m = shipped("governor");
   const Selection copies = duplicate_parts(m, ball1, {0, 0, 0.5});
   CHECK(copies == Selection{{{PartKind::body, "ball3"}}});
   CHECK(m.bodies.back().position == Vec3(-0.16, 0.2, 0.5));
@@ -124,7 +115,7 @@ TEST_CASE("duplicates stand beside and share what was not selected") {
 }
 
 TEST_CASE("parts selected by themselves are copied between the same bodies") {
-  Mechanism m = governor();
+  Mechanism m = shipped("governor");
   const Selection link{{{PartKind::joint, "link1"}}};
   CHECK(mirror_parts(m, link, {0, 0, 0}, {1, 0, 0}) == Selection{{{PartKind::joint, "link3"}}});
   CHECK(joint(m, "link3").bodies == joint(m, "link1").bodies);
@@ -255,7 +246,7 @@ TEST_CASE("a copy turned by any angle settles as the turned image") {
 }
 
 TEST_CASE("no copies at a plane or about an axis that is none") {
-  Mechanism m = governor();
+  Mechanism m = shipped("governor");
   const Mechanism before = m;
   CHECK(mirror_parts(m, ball1, {0, 0, 0}, {0, 0, 0}).empty());
   CHECK(circular_copy(m, ball1, {0, 0, 0}, {0, NAN, 0}, 3).empty());

@@ -9,6 +9,8 @@
 #include "engine/mechanism/validate.hpp"
 #include "tests/app/document_mechanisms.hpp"
 #include "tests/engine/mechanism_everything.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,11 +35,7 @@ Part force(const std::string& name) {
 }
 
 double value(const Mechanism& m, const std::string& joint) {
-  const Solution solution = Analysis(m).solve();
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (c.joint == joint) return c.value;
-  FAIL("no coordinate " << joint << ": " << solution.message);
-  return NAN;
+  return test::value(Analysis(m).solve(), joint);
 }
 
 std::vector<std::string> what_mistakes(const Mechanism& m) {
@@ -51,23 +49,23 @@ std::vector<std::string> what_mistakes(const Mechanism& m) {
 
 TEST_CASE("the swing pendulum is built from nothing") {
   // Choi, Park and Yoo, section 3.1, in the numbers of assets/scenes/pendulum.json.
-  const Mechanism shipped = load_scene(FLYBALL_ASSETS "/scenes/pendulum.json");
+  const Mechanism given = shipped("pendulum");
   Mechanism m = Document::empty_mechanism();
-  m.gravity = shipped.gravity;
-  for (const Body& wanted : shipped.bodies) {
+  m.gravity = given.gravity;
+  for (const Body& wanted : given.bodies) {
     const std::string name = add_body(m, {.form = BodyForm::block, .at = wanted.position});
     Body& made = m.bodies.back();
     made.mass = wanted.mass;
     made.inertia = wanted.inertia;
     rename_part(m, body(name), wanted.name);
   }
-  for (const Joint& wanted : shipped.joints) {
+  for (const Joint& wanted : given.joints) {
     const std::string name = add_joint(m, wanted.type, wanted.bodies, wanted.at, wanted.axis);
     m.joints.back().coordinates = wanted.coordinates;
     rename_part(m, joint(name), wanted.name);
   }
   REQUIRE(what_mistakes(m).empty());
-  const Solution ours = Analysis(m).solve(), theirs = Analysis(shipped).solve();
+  const Solution ours = Analysis(m).solve(), theirs = Analysis(given).solve();
   REQUIRE(ours.coordinates.size() == theirs.coordinates.size());
   for (std::size_t i = 0; i < ours.coordinates.size(); ++i)
     CHECK(ours.coordinates[i].value == theirs.coordinates[i].value);
@@ -119,7 +117,7 @@ TEST_CASE("a part takes along what hangs on it") {
 }
 
 TEST_CASE("a name is followed wherever it stands") {
-  const Mechanism before = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism before = shipped("governor");
   Mechanism m = before;
   rename_part(m, body("spindle"), "joints");
   rename_part(m, joint("spin"), "collar");
@@ -155,7 +153,7 @@ TEST_CASE("a name that cannot be is refused, and all stays as it was") {
 }
 
 TEST_CASE("copied and pasted into an empty document are the same parts") {
-  for (const Mechanism& m : {load_scene(FLYBALL_ASSETS "/scenes/governor.json"), everything_scene()}) {
+  for (const Mechanism& m : {shipped("governor"), everything_scene()}) {
     Mechanism pasted = Document::empty_mechanism();
     Selection bodies;
     for (const Body& b : m.bodies)
@@ -171,7 +169,7 @@ TEST_CASE("copied and pasted into an empty document are the same parts") {
 }
 
 TEST_CASE("what is held by bodies that are not copied stays behind, unless it is selected") {
-  const Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism m = shipped("governor");
   Mechanism to = Document::empty_mechanism();
   CHECK(paste_text(to, copy_text(m, {{body("ball1")}})) == Selection{{body("ball1")}});
   CHECK(paste_text(to, copy_text(m, {{body("ball1"), joint("arm1")}})) == Selection{{body("ball2")}});
@@ -221,7 +219,7 @@ TEST_CASE("a pasted text may be as unfinished as it likes") {
 }
 
 TEST_CASE("snap points are each told once, joints first") {
-  const Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism m = shipped("governor");
   const std::vector<SnapPoint> points = snap_points(m);
   const auto find = [&](const std::string& what) {
     return std::ranges::find(points, what, &SnapPoint::what);

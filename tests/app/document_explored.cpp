@@ -6,10 +6,12 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <limits>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 
@@ -17,7 +19,7 @@ constexpr const char* speed = "joints.spin.drive.speed";
 constexpr const char* mass = "bodies.collar.mass";
 
 Document governor() {
-  return Document(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  return Document(shipped("governor"));
 }
 
 double shown(const Document& document, const char* address) {

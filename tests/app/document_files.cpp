@@ -10,6 +10,7 @@
 #include "engine/mechanism/scene.hpp"
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -21,6 +22,7 @@
 #include <unistd.h>
 
 using namespace flyball;
+using namespace flyball::test;
 using flyball::test::TemporaryFolder;
 namespace fs = std::filesystem;
 
@@ -40,7 +42,7 @@ std::string dead_process() {
 }
 
 Document edited(const fs::path& file) {
-  Document document(load_scene(FLYBALL_ASSETS "/scenes/governor.json"), file);
+  Document document(shipped("governor"), file);
   Mechanism next = document.mechanism();
   next.bodies[0].mass = 123;
   document.edit("Set mass", std::move(next), {});

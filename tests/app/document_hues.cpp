@@ -8,6 +8,7 @@
 
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -15,6 +16,7 @@
 #include <set>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 
@@ -48,7 +50,7 @@ Mechanism chain(int links) {
 } // namespace
 
 TEST_CASE("deleting, renaming, sorting and undoing recolour no body") {
-  Document document(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  Document document(shipped("governor"));
   const ByName before = hues_of(document);
   std::set<int> different;
   for (const auto& [name, hue] : before)
@@ -108,7 +110,7 @@ TEST_CASE("neighbours never share a hue") {
 }
 
 TEST_CASE("an answer that is a little older finds its bodies' colours") {
-  Document document(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  Document document(shipped("governor"));
   const Mechanism older = document.stored();
   const BodyHues before = document.hues();
   change(document, [](Mechanism& m) { remove_parts(m, {{{PartKind::body, "ball1"}}}); });

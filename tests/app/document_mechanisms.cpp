@@ -90,7 +90,10 @@ class Builder {
     joint.bodies = {parent, body.name};
     if (dice_.chance(0.3)) std::swap(joint.bodies[0], joint.bodies[1]);
     joint.at = body.position + dice_.box(0.3);
-    if (has_axis(joint.type)) joint.axis = dice_.direction();
+    if (has_axis(joint.type)) {
+      const double length = dice_.between(0.3, 1.7);
+      joint.axis = length * dice_.direction();
+    }
     if (has_axis2(joint.type)) joint.axis2 = joint.axis.unitOrthogonal() + 0.3 * joint.axis;
     joint.coordinates.resize(static_cast<std::size_t>(coordinate_count(joint.type)));
     for (std::size_t k = 0; k < joint.coordinates.size(); ++k)

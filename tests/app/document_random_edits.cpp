@@ -16,6 +16,7 @@
 #include "engine/mechanism/validate.hpp"
 #include "tests/app/document_mechanisms.hpp"
 #include "tests/engine/mechanism_everything.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <limits>
 
@@ -299,8 +300,7 @@ bool settles(const Mechanism& m, bool details) {
 } // namespace
 
 TEST_CASE("thousands of random edits, undos, redos and jumps") {
-  const std::vector<Mechanism> starts{Document::empty_mechanism(),
-                                      load_scene(FLYBALL_ASSETS "/scenes/governor.json"),
+  const std::vector<Mechanism> starts{Document::empty_mechanism(), shipped("governor"),
                                       read_scene(everything)};
   int edits = 0, valid = 0, solved = 0, settled = 0;
   for (std::uint32_t seed = 1; seed <= 9; ++seed) {

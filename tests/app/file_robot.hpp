@@ -9,6 +9,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace flyball::test {
 
@@ -52,15 +53,8 @@ class FileRobot : public Robot {
 };
 
 inline fs::path governor_in(const TemporaryFolder& folder, const char* name = "governor.json") {
-  fs::copy_file(FLYBALL_ASSETS "/scenes/governor.json", folder / name);
+  fs::copy_file(shipped_file("governor"), folder / name);
   return folder / name;
-}
-
-inline Body a_body(const char* name) {
-  Body body;
-  body.name = name;
-  body.mass = 1;
-  return body;
 }
 
 inline double speed_in(const fs::path& file) {

@@ -2,19 +2,15 @@
 #pragma once
 
 #include "app/ui/app.hpp"
+#include "tests/support/parts.hpp"
 
 namespace flyball::test {
 
 // The same mechanism with one mistake in it, for which it is not solved, and a slider for its first drive.
 inline Mechanism unsolved(Mechanism mechanism) {
-  Force spring;
-  spring.name = "mistake";
-  spring.type = ForceType::spring;
-  spring.bodies = {std::string(ground_name), mechanism.bodies.front().name};
-  spring.points = {mechanism.bodies.front().position, mechanism.bodies.front().position};
-  spring.stiffness = 1;
-  spring.free_length = 1;
-  mechanism.forces.push_back(spring);
+  const Body& first = mechanism.bodies.front();
+  mechanism.forces.push_back(
+      point_spring("mistake", std::string(ground_name), first.name, first.position, first.position, 1, 1.));
   Slider slider;
   slider.parameter = "joints." + mechanism.joints.front().name + ".drive.speed";
   slider.to = 20;

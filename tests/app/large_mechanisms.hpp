@@ -14,10 +14,10 @@ inline Mechanism long_chain(int links) {
   m.name = "Chain";
   m.gravity = {0, -9.80665, 0};
   for (int i = 0; i < links; ++i) {
-    m.bodies.push_back(make_body("link" + std::to_string(i), 1, {length * (i + 0.5), 0, 0}));
-    Joint joint = make_joint("hinge" + std::to_string(i), JointType::revolute,
-                             i ? "link" + std::to_string(i - 1) : "ground", "link" + std::to_string(i),
-                             {length * i, 0, 0}, i % 2 ? Vec3::UnitZ() : Vec3::UnitY());
+    m.bodies.push_back(body("link" + std::to_string(i), 1, {length * (i + 0.5), 0, 0}));
+    Joint joint =
+        revolute("hinge" + std::to_string(i), i ? "link" + std::to_string(i - 1) : "ground",
+                 "link" + std::to_string(i), {length * i, 0, 0}, i % 2 ? Vec3::UnitZ() : Vec3::UnitY());
     if (i == 0) joint.coordinates[0].drive = Drive{5};
     if (i % 10 == 1) joint.coordinates[0].spring = CoordinateSpring{10, 0};
     if (i % 10 == 1) joint.coordinates[0].damping = 0.1;
@@ -33,15 +33,14 @@ inline Mechanism hanging_chain(int links) {
   Mechanism m;
   m.name = "Hanging chain";
   m.gravity = {0, -9.80665, 0};
-  m.bodies.push_back(make_body("hub", 1, {0, 0, 0}));
-  m.joints.push_back(make_joint("spin", JointType::revolute, "ground", "hub", {0, 0, 0}, {0, 1, 0}));
+  m.bodies.push_back(body("hub", 1, {0, 0, 0}));
+  m.joints.push_back(revolute("spin", "ground", "hub", {0, 0, 0}, {0, 1, 0}));
   m.joints[0].coordinates[0].drive = Drive{2};
   for (int i = 0; i < links; ++i) {
     const Vec3 from(0.1, -length * i, 0);
-    m.bodies.push_back(make_body("link" + std::to_string(i), length, from - Vec3(0, length / 2, 0)));
-    Joint joint = make_joint("hinge" + std::to_string(i), JointType::revolute,
-                             i ? "link" + std::to_string(i - 1) : "hub", "link" + std::to_string(i), from,
-                             Vec3::UnitZ());
+    m.bodies.push_back(body("link" + std::to_string(i), length, from - Vec3(0, length / 2, 0)));
+    Joint joint = revolute("hinge" + std::to_string(i), i ? "link" + std::to_string(i - 1) : "hub",
+                           "link" + std::to_string(i), from, Vec3::UnitZ());
     joint.coordinates[0].spring = CoordinateSpring{0.01, 0};
     m.joints.push_back(joint);
   }
@@ -67,10 +66,10 @@ inline Mechanism branching_tree(int limbs) {
     directions.push_back(along);
     lengths.push_back(length);
     ends.push_back(from + length * along);
-    m.bodies.push_back(make_body("limb" + std::to_string(i), length, from + 0.5 * length * along));
-    m.joints.push_back(make_joint("fork" + std::to_string(i), JointType::revolute,
-                                  i ? "limb" + std::to_string(carrier) : "ground", "limb" + std::to_string(i),
-                                  from, i ? along.cross(aside).normalized() : Vec3(0, 1, 0)));
+    m.bodies.push_back(body("limb" + std::to_string(i), length, from + 0.5 * length * along));
+    m.joints.push_back(revolute("fork" + std::to_string(i), i ? "limb" + std::to_string(carrier) : "ground",
+                                "limb" + std::to_string(i), from,
+                                i ? along.cross(aside).normalized() : Vec3(0, 1, 0)));
   }
   m.joints[0].coordinates[0].drive = Drive{2};
   return m;
@@ -92,20 +91,20 @@ inline Mechanism cable_net(int side) {
   m.gravity = {0, -9.80665, 0};
   const auto name = knot_name;
   const auto at = [&](int i, int k) { return knot_at(side, i, k); };
-  m.bodies.push_back(make_body("spindle", 1, {0, 0.2, 0}));
-  m.joints.push_back(make_joint("spin", JointType::revolute, "ground", "spindle", {0, 0.3, 0}, {0, 1, 0}));
+  m.bodies.push_back(body("spindle", 1, {0, 0.2, 0}));
+  m.joints.push_back(revolute("spin", "ground", "spindle", {0, 0.3, 0}, {0, 1, 0}));
   m.joints[0].coordinates[0].drive = Drive{5};
   for (int i = 0; i < side; ++i)
     for (int k = 0; k < side; ++k)
-      m.bodies.push_back(make_body(name(i, k), 1, at(i, k)));
-  m.joints.push_back(make_joint("hold", JointType::spherical, "spindle", name(side / 2, side / 2),
-                                at(side / 2, side / 2), Vec3::Zero()));
+      m.bodies.push_back(body(name(i, k), 1, at(i, k)));
+  m.joints.push_back(joint(JointType::spherical, "hold", "spindle", name(side / 2, side / 2),
+                           at(side / 2, side / 2), Vec3::Zero()));
   for (int i = 0; i < side; ++i)
     for (int k = 0; k < side; ++k) {
       if (i + 1 < side)
-        m.joints.push_back(make_link("x" + name(i, k), name(i, k), name(i + 1, k), at(i, k), at(i + 1, k)));
+        m.joints.push_back(distance("x" + name(i, k), name(i, k), name(i + 1, k), at(i, k), at(i + 1, k)));
       if (k + 1 < side)
-        m.joints.push_back(make_link("z" + name(i, k), name(i, k), name(i, k + 1), at(i, k), at(i, k + 1)));
+        m.joints.push_back(distance("z" + name(i, k), name(i, k), name(i, k + 1), at(i, k), at(i, k + 1)));
     }
   return m;
 }
@@ -119,17 +118,12 @@ inline Mechanism spring_net(int side) {
   const auto name = knot_name;
   const auto at = [&](int i, int k) { return knot_at(side, i, k); };
   const auto tie = [&](const std::string& first, int i, int k, int j, int l) {
-    Force spring;
-    spring.name = "s" + std::to_string(m.forces.size());
-    spring.type = ForceType::spring;
-    spring.bodies = {first, name(j, l)};
-    spring.points = {at(i, k), at(j, l)};
-    spring.stiffness = 100;
-    m.forces.push_back(spring);
+    m.forces.push_back(
+        point_spring("s" + std::to_string(m.forces.size()), first, name(j, l), at(i, k), at(j, l), 100));
   };
   for (int i = 0; i < side; ++i)
     for (int k = 0; k < side; ++k) {
-      m.bodies.push_back(make_body(name(i, k), 0.01, at(i, k)));
+      m.bodies.push_back(body(name(i, k), 0.01, at(i, k)));
       tie(i ? name(i - 1, k) : "ground", i - 1, k, i, k);
       tie(k ? name(i, k - 1) : "ground", i, k - 1, i, k);
     }
@@ -141,14 +135,14 @@ inline Mechanism ball_grid(int columns, int rows, double radius) {
   Mechanism m;
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
-      Body ball = make_body("ball" + std::to_string(r * columns + c), 1, {0.1 * c, 0.1 * r, 0});
+      Body ball = body("ball" + std::to_string(r * columns + c), 1, {0.1 * c, 0.1 * r, 0});
       Shape shape;
       shape.type = ShapeType::sphere;
       shape.radius = radius;
       ball.shapes = {shape};
       m.bodies.push_back(ball);
-      m.joints.push_back(make_joint("pin" + std::to_string(r * columns + c), JointType::spherical, "ground",
-                                    ball.name, ball.position, Vec3::Zero()));
+      m.joints.push_back(joint(JointType::spherical, "pin" + std::to_string(r * columns + c), "ground",
+                               ball.name, ball.position, Vec3::Zero()));
     }
   return m;
 }

@@ -1,22 +1,21 @@
-#include "app/live/live_motion.hpp"
+#include "app/live/motion.hpp"
 
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <thread>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
-
-Mechanism shipped(const std::string& name) {
-  return load_scene(std::string(FLYBALL_ASSETS) + "/scenes/" + name + ".json");
-}
 
 std::shared_ptr<const Mechanism> shared(const Mechanism& mechanism) {
   return std::make_shared<const Mechanism>(mechanism);
@@ -33,15 +32,22 @@ const CoordinateTrack& track(const Run& run, std::string_view joint) {
   return *std::ranges::find(run.coordinates, joint, &CoordinateTrack::joint);
 }
 
-// The last news of the ticket, waited for with a limit; all that came before in `seen`.
-MotionNews finished(LiveMotion& live, std::uint64_t ticket, std::vector<MotionNews>* seen = nullptr) {
+using Motions = Background<Motion>;
+
+void start(Motions& motions, MotionRequest request) {
+  motions.start([request = std::move(request)](const TaskContext<Motion>& context) {
+    return compute_motion(request, context);
+  });
+}
+void start(Motions& motions, const Mechanism& mechanism, const SimulationOptions& options) {
+  start(motions, {shared(mechanism), options, nullptr});
+}
+
+// The last of it, waited for with a limit.
+Motion finished(Motions& motions) {
   const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (std::chrono::steady_clock::now() < limit) {
-    if (auto news = live.take()) {
-      CHECK(news->ticket == ticket);
-      if (news->finished) return *news;
-      if (seen) seen->push_back(*news);
-    }
+    if (const auto news = motions.take(); news && news->result->finished) return *news->result;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   FAIL("no end within a minute");
@@ -53,11 +59,12 @@ MotionNews finished(LiveMotion& live, std::uint64_t ticket, std::vector<MotionNe
 TEST_CASE("a motion in the background is the motion") {
   const Mechanism governor = shipped("governor");
   const Run whole = simulate(governor, lasting(3));
-  for (const auto mode : {LiveSolver::Mode::background, LiveSolver::Mode::immediate}) {
-    LiveMotion live(mode);
-    const MotionNews news = finished(live, live.start(shared(governor), lasting(3)));
+  for (const auto mode : {BackgroundWorker::Mode::background, BackgroundWorker::Mode::immediate}) {
+    Motions live(mode);
+    start(live, governor, lasting(3));
+    const Motion news = finished(live);
     REQUIRE(news.run);
-    CHECK_FALSE(news.error);
+    CHECK(news.problem.empty());
     CHECK(news.run->time == whole.time);
     CHECK(track(*news.run, "slide").value == track(whole, "slide").value);
     CHECK_FALSE(live.running());
@@ -65,20 +72,20 @@ TEST_CASE("a motion in the background is the motion") {
 }
 
 TEST_CASE("a long motion is told of as it grows, and can be stopped") {
-  LiveMotion live(LiveSolver::Mode::background);
+  Motions live(BackgroundWorker::Mode::background);
   SimulationOptions options = lasting(1e6);
   options.damped = false;
-  const std::uint64_t ticket = live.start(shared(shipped("pendulum")), options);
+  start(live, shipped("pendulum"), options);
   std::vector<double> reached;
   const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (reached.size() < 3 && std::chrono::steady_clock::now() < limit)
-    if (const auto news = live.take()) reached.push_back(news->run->time.back());
+    if (const auto news = live.take()) reached.push_back(news->result->run->time.back());
   REQUIRE(reached.size() == 3);
   CHECK(reached[0] < reached[1]);
   CHECK(reached[1] < reached[2]);
   CHECK(live.running());
-  live.stop();
-  const MotionNews last = finished(live, ticket);
+  live.cancel();
+  const Motion last = finished(live);
   REQUIRE(last.run);
   CHECK(last.run->status == RunStatus::cancelled);
   CHECK(last.run->time.back() >= reached[2]);
@@ -86,12 +93,12 @@ TEST_CASE("a long motion is told of as it grows, and can be stopped") {
 }
 
 TEST_CASE("a newer motion takes the place of the one that runs") {
-  LiveMotion live(LiveSolver::Mode::background);
+  Motions live(BackgroundWorker::Mode::background);
   SimulationOptions endless = lasting(1e6);
   endless.damped = false;
-  live.start(shared(shipped("pendulum")), endless);
-  const std::uint64_t second = live.start(shared(shipped("governor")), lasting(0.5));
-  const MotionNews news = finished(live, second);
+  start(live, shipped("pendulum"), endless);
+  start(live, shipped("governor"), lasting(0.5));
+  const Motion news = finished(live);
   REQUIRE(news.run);
   CHECK(news.run->time.back() == Approx(0.5));
   CHECK(track(*news.run, "slide").value.size() == 51);
@@ -99,11 +106,13 @@ TEST_CASE("a newer motion takes the place of the one that runs") {
 
 TEST_CASE("a motion goes on from any moment with other numbers") {
   Mechanism governor = shipped("governor");
-  LiveMotion live(LiveSolver::Mode::immediate);
-  const MotionNews first = finished(live, live.start(shared(governor), lasting(4)));
+  Motions live(BackgroundWorker::Mode::immediate);
+  start(live, governor, lasting(4));
+  const Motion first = finished(live);
   REQUIRE(first.run);
   set_parameter(governor, "joints.spin.drive.speed", 14);
-  const MotionNews second = finished(live, live.go_on(shared(governor), lasting(4), first.run, 1.507));
+  start(live, {shared(governor), lasting(4), first.run, 1.507});
+  const Motion second = finished(live);
   REQUIRE(second.run);
   const Run &before = *first.run, &run = *second.run;
   REQUIRE(run.time.size() == before.time.size());
@@ -130,13 +139,13 @@ TEST_CASE("a motion goes on from any moment with other numbers") {
 }
 
 TEST_CASE("a motion that cannot begin says why") {
-  Mechanism crank = shipped("governor");
+  const Mechanism crank = shipped("governor");
   SimulationOptions options = lasting(1);
   options.start = Start::state;
   options.state.coordinates = {{"nothing", 0, 1, 0}};
-  LiveMotion live(LiveSolver::Mode::background);
-  const MotionNews news = finished(live, live.start(shared(crank), options));
-  REQUIRE(news.error);
-  CHECK(news.error->size() > 10);
+  Motions live(BackgroundWorker::Mode::background);
+  start(live, crank, options);
+  const Motion news = finished(live);
+  CHECK(news.problem.size() > 10);
   CHECK_FALSE(news.run);
 }

@@ -3,17 +3,23 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 
 // A shipped scene at this speed of its drive "spin" (rad/s).
 std::shared_ptr<const Mechanism> driven(const std::string& name, double speed) {
-  Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/" + name + ".json");
+  Mechanism mechanism = shipped(name);
   set_parameter(mechanism, "joints.spin.drive.speed", speed);
   return std::make_shared<const Mechanism>(std::move(mechanism));
 }
@@ -47,12 +53,6 @@ class News {
   int told_ = 0;
 };
 
-double slide(const Solution& solution) {
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (c.joint == "slide") return c.value;
-  return NAN;
-}
-
 } // namespace
 
 TEST_CASE("the immediate mode answers before ask returns") {
@@ -62,7 +62,7 @@ TEST_CASE("the immediate mode answers before ask returns") {
   const auto answer = live.take_answer();
   REQUIRE(answer);
   CHECK(answer->ticket == 1);
-  CHECK(slide(answer->solution) == Approx(0.1500174581252971).epsilon(1e-12));
+  CHECK(value(answer->solution, "slide") == Approx(0.1500174581252971).epsilon(1e-12));
   CHECK_FALSE(live.take_answer());
   live.ask_poses(0.1);
   const auto poses = live.take_poses();
@@ -91,7 +91,7 @@ TEST_CASE("the newest request wins, and whoever asks never waits for an answer")
   }));
   CHECK_FALSE(live.busy());
   Solution direct = Analysis(governor(5 + 0.05 * 299)).solve();
-  CHECK(slide(newest->solution) == Approx(slide(direct)).epsilon(1e-9));
+  CHECK(value(newest->solution, "slide") == Approx(value(direct, "slide")).epsilon(1e-9));
   CHECK(get_parameter(*newest->mechanism, "joints.spin.drive.speed") == 5 + 0.05 * 299);
 }
 
@@ -155,12 +155,6 @@ std::shared_ptr<const Mechanism> conical_pendulum(double speed) {
   return driven("conical_pendulum", speed);
 }
 
-double swing(const Solution& solution) {
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (c.joint == "swing") return c.value;
-  return NAN;
-}
-
 } // namespace
 
 TEST_CASE("a start leads to another branch, which is followed while the nearest is asked for") {
@@ -168,30 +162,30 @@ TEST_CASE("a start leads to another branch, which is followed while the nearest 
   live.ask({.mechanism = conical_pendulum(6), .another = true});
   auto answer = live.take_answer();
   REQUIRE(answer);
-  const double bent = swing(answer->solution);
+  const double bent = value(answer->solution, "swing");
   CHECK(std::abs(bent) > 1);
   CHECK(answer->solution.stable == true);
   // The straight state, from near it.
   live.ask({.mechanism = conical_pendulum(6), .nearest = true, .start = {{"swing", 0.02}}});
   answer = live.take_answer();
-  CHECK(std::abs(swing(answer->solution)) < 1e-9);
+  CHECK(std::abs(value(answer->solution, "swing")) < 1e-9);
   CHECK(answer->solution.stable == false);
   CHECK_FALSE(answer->left_branch);
   for (const double speed : {7., 9., 5.}) {
     live.ask({.mechanism = conical_pendulum(speed), .nearest = true});
     answer = live.take_answer();
-    CHECK(std::abs(swing(answer->solution)) < 1e-9);
+    CHECK(std::abs(value(answer->solution, "swing")) < 1e-9);
     CHECK(answer->solution.stable == false);
   }
   // And the other bent one.
   live.ask({.mechanism = conical_pendulum(6), .nearest = true, .start = {{"swing", -bent}}});
   answer = live.take_answer();
-  CHECK(swing(answer->solution) == Approx(-bent));
+  CHECK(value(answer->solution, "swing") == Approx(-bent));
   // Without the wish for the nearest it is left where it is unstable.
   live.ask({.mechanism = conical_pendulum(6), .nearest = true, .start = {{"swing", 0.02}}});
   live.ask({.mechanism = conical_pendulum(6.1), .warm = false});
   answer = live.take_answer();
-  CHECK(std::abs(swing(answer->solution)) > 1);
+  CHECK(std::abs(value(answer->solution, "swing")) > 1);
 }
 
 TEST_CASE("a start survives the requests that come before it was solved") {
@@ -210,6 +204,6 @@ TEST_CASE("a start survives the requests that come before it was solved") {
     }
     REQUIRE(answer);
     REQUIRE(answer->ticket == last);
-    CHECK(std::abs(swing(answer->solution)) < 1e-9);
+    CHECK(std::abs(value(answer->solution, "swing")) < 1e-9);
   }
 }

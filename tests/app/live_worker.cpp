@@ -1,8 +1,10 @@
 // Threads that nobody waits for: closing what runs one takes no time, whatever the thread is doing.
 #include "app/live/background.hpp"
-#include "app/live/live_motion.hpp"
+#include "app/live/live_solver.hpp"
+#include "app/live/motion.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -10,6 +12,7 @@
 #include <thread>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 
@@ -36,8 +39,8 @@ TEST_CASE("closing a background does not wait for a task that does not listen") 
   const auto gate = std::make_shared<Gate>();
   auto news = std::make_shared<std::atomic<int>>(0);
   {
-    Background<int> background(LiveSolver::Mode::background, [news] { ++*news; });
-    background.start([gate](const Background<int>::Watch&) {
+    Background<int> background(BackgroundWorker::Mode::background, [news] { ++*news; });
+    background.start([gate](const TaskContext<int>&) {
       gate->pass();
       return 1;
     });
@@ -57,19 +60,19 @@ TEST_CASE("what is closed is asked to stop, and what had not begun never begins"
   const auto begun = std::make_shared<std::atomic<bool>>(false);
   const auto cancelled = std::make_shared<std::atomic<bool>>(false);
   {
-    Background<int> background(LiveSolver::Mode::background);
-    background.start([gate, cancelled](const Background<int>::Watch& watch) {
+    Background<int> background(BackgroundWorker::Mode::background);
+    background.start([gate, cancelled](const TaskContext<int>& context) {
       gate->pass();
-      *cancelled = watch.cancel.load();
+      *cancelled = context.cancel.load();
       return 1;
     });
     gate->wait_until_reached();
     background.start(
-        [begun](const Background<int>::Watch&) {
+        [begun](const TaskContext<int>&) {
           *begun = true;
           return 2;
         },
-        true);
+        Background<int>::Running::finished);
   }
   gate->open = true;
   REQUIRE(join_left_behind(60));
@@ -79,9 +82,9 @@ TEST_CASE("what is closed is asked to stop, and what had not begun never begins"
 
 TEST_CASE("many that are closed while they run are all joined") {
   for (int i = 0; i < 50; ++i) {
-    Background<int> background(LiveSolver::Mode::background);
-    background.start([i](const Background<int>::Watch& watch) {
-      while (!watch.cancel)
+    Background<int> background(BackgroundWorker::Mode::background);
+    background.start([i](const TaskContext<int>& context) {
+      while (!context.cancel)
         std::this_thread::yield();
       return i;
     });
@@ -90,15 +93,14 @@ TEST_CASE("many that are closed while they run are all joined") {
 }
 
 TEST_CASE("solvers and motions are closed while they compute") {
-  const auto mechanism =
-      std::make_shared<const Mechanism>(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  const auto mechanism = std::make_shared<const Mechanism>(shipped("governor"));
   for (int i = 0; i < 5; ++i) {
-    LiveSolver solver(LiveSolver::Mode::background);
+    LiveSolver solver(BackgroundWorker::Mode::background);
     solver.ask({.mechanism = mechanism, .another = true});
-    LiveMotion motion(LiveSolver::Mode::background);
-    SimulationOptions options;
-    options.duration = 1e6;
-    motion.start(mechanism, options);
+    Background<Motion> motion(BackgroundWorker::Mode::background);
+    MotionRequest request{.mechanism = mechanism, .options = {}, .before = nullptr};
+    request.options.duration = 1e6;
+    motion.start([request](const TaskContext<Motion>& context) { return compute_motion(request, context); });
     if (i % 2) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   CHECK(join_left_behind(60));

@@ -1,6 +1,8 @@
 // New, save, and questions before work is lost.
 #include "file_robot.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/parts.hpp"
+#include "tests/support/scenes.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -13,7 +15,7 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
   CHECK_FALSE(app.dialog.showing); // nothing would be lost
   CHECK(app.mechanism() == Document::empty_mechanism());
   CHECK(document_name(app) == "Untitled");
-  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(a_body("ball")); });
+  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(test::body("ball")); });
   CHECK(app.document.unsaved());
 
   robot.key('S', true);
@@ -113,7 +115,7 @@ TEST_CASE("a file that cannot be written any more asks for another place") {
   const TemporaryFolder folder;
   fs::create_directory(folder / "gone");
   const fs::path file = folder / "gone/governor.json";
-  fs::copy_file(FLYBALL_ASSETS "/scenes/governor.json", file);
+  fs::copy_file(shipped_file("governor"), file);
   FileRobot robot(folder);
   robot.open(file);
   robot.set_speed(5);
@@ -193,7 +195,7 @@ TEST_CASE("an untitled document can be saved on the way out, or not after all") 
   FileRobot robot(folder);
   App& app = robot.app;
   robot.key('N', true);
-  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(a_body("ball")); });
+  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(test::body("ball")); });
   robot.key('Q', true);
   robot.click("unsaved/save");
   robot.frames(2);
@@ -237,7 +239,7 @@ TEST_CASE("an example is never overwritten by saving") {
   App& app = robot.app;
   const fs::path copy = folder / "scenes";
   fs::create_directory(copy);
-  fs::copy_file(FLYBALL_ASSETS "/scenes/governor.json", copy / "governor.json");
+  fs::copy_file(shipped_file("governor"), copy / "governor.json");
   app.options.scenes = copy;
   robot.open(copy / "governor.json");
   robot.set_speed(5);

@@ -6,6 +6,7 @@
 #include "app/ui/tools/tools_hand.hpp"
 #include "engine/solve/assembly_drag.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <numbers>
 #include <random>
@@ -59,11 +60,7 @@ struct Hand : Robot {
   Vec3 shown(const char* name) const {
     return app.poses.at(static_cast<std::size_t>(body_index(app.mechanism(), name))).position;
   }
-  double settled(const char* joint) const {
-    for (const CoordinateSolution& c : app.answer.solution.coordinates)
-      if (c.joint == joint) return c.value;
-    return std::numeric_limits<double>::quiet_NaN();
-  }
+  double settled(const char* joint) const { return value(app.answer.solution, joint); }
   void take(const Vec3& at) {
     hold(false, false, true);
     point(pixel(at));

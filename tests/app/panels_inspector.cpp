@@ -10,6 +10,9 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/parts.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -91,19 +94,6 @@ struct Hand : Robot {
     CHECK(mechanism() == after);
   }
 };
-
-Body body_called(const std::string& name) {
-  Body body;
-  body.name = name;
-  body.mass = 1;
-  return body;
-}
-
-double settles(const App& app, const std::string& joint) {
-  for (const CoordinateSolution& c : app.answer.solution.coordinates)
-    if (c.joint == joint) return c.value;
-  return NAN;
-}
 
 } // namespace
 
@@ -367,7 +357,7 @@ TEST_CASE("a joint's place, axis, bodies and type are edited") {
 
 TEST_CASE("a type changed keeps what fits, in gears and sliders too") {
   Mechanism m;
-  m.bodies = {body_called("a"), body_called("b")};
+  m.bodies = {test::body("a"), test::body("b")};
   const std::string one = add_joint(m, JointType::cylindrical, {"ground", "a"}, Vec3::Zero(), Vec3::UnitZ());
   const std::string two = add_joint(m, JointType::revolute, {"ground", "b"}, Vec3::Zero(), Vec3::UnitZ());
   add_gear(m, {one + ".0", two}, 1);
@@ -631,10 +621,10 @@ TEST_CASE("numbers are pinned as sliders with a range, and taken off again") {
   select(hand.app, {});
   hand.frames(2);
   CHECK(hand.app.parameters[2].group == ParameterGroup::pinned);
-  const double before = settles(hand.app, "slide");
+  const double before = value(hand.app.answer.solution, "slide");
   hand.one_step([&] { hand.drag("parameters/" + address, {0.5f, 0.5f}, {0.75f, 0.5f}); });
   CHECK(hand.body("ball1").mass == Approx(1.5).margin(0.05));
-  CHECK(settles(hand.app, "slide") != before);
+  CHECK(value(hand.app.answer.solution, "slide") != before);
 
   hand.point(hand.widget("parameters/" + address).center());
   hand.click("parameters/" + address + "/gear");
@@ -654,10 +644,10 @@ TEST_CASE("while exploring, the inspector's numbers are solved from the last ans
   Hand hand;
   set_mode(hand.app, Mode::explore);
   hand.choose(PartKind::joint, "spin");
-  const double before = settles(hand.app, "slide");
+  const double before = value(hand.app.answer.solution, "slide");
   hand.one_step([&] { hand.fill("inspector/drive/speed", "120 rpm"); });
   CHECK(hand.joint("spin").coordinates[0].drive->speed == Approx(12.566370614359172));
-  CHECK(settles(hand.app, "slide") != before);
+  CHECK(value(hand.app.answer.solution, "slide") != before);
 }
 
 TEST_CASE("the history goes to any step") {
@@ -679,7 +669,7 @@ TEST_CASE("the history goes to any step") {
 
 TEST_CASE("undo leaves the rows where they are, and a second edit at the same place means the same number") {
   Hand hand;
-  open_scene(hand.app, FLYBALL_ASSETS "/scenes/watt_governor.json");
+  open_scene(hand.app, shipped_file("watt_governor"));
   set_mode(hand.app, Mode::build);
   hand.frames(3);
   hand.click("outline/bodies/arm1");
@@ -707,7 +697,7 @@ TEST_CASE("undo leaves the rows where they are, and a second edit at the same pl
 
 TEST_CASE("deleting says what goes along though it was not selected") {
   Hand hand;
-  open_scene(hand.app, FLYBALL_ASSETS "/scenes/watt_governor.json");
+  open_scene(hand.app, shipped_file("watt_governor"));
   set_mode(hand.app, Mode::build);
   hand.choose(PartKind::body, "arm1");
   hand.key(261); // Delete

@@ -4,6 +4,7 @@
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -12,12 +13,6 @@ using namespace flyball;
 using namespace flyball::test;
 
 namespace {
-
-double value_of(const App& app, const std::string& joint) {
-  for (const CoordinateSolution& c : app.answer.solution.coordinates)
-    if (c.joint == joint) return c.value;
-  return NAN;
-}
 
 double parameter(const App& app, const char* address) {
   return get_parameter(app.mechanism(), address);
@@ -30,17 +25,17 @@ constexpr const char* stiffness = "joints.slide.spring.stiffness";
 
 TEST_CASE("a dragged slider solves at every move") {
   Robot robot;
-  const double before = value_of(robot.app, "slide");
+  const double before = value(robot.app.answer.solution, "slide");
   const std::uint64_t answers = robot.app.answer.ticket;
   robot.drag(std::string("parameters/") + speed, {0.4f, 0.5f}, {0.8f, 0.5f});
   CHECK(parameter(robot.app, speed) > 20);
-  CHECK(value_of(robot.app, "slide") != before);
+  CHECK(value(robot.app.answer.solution, "slide") != before);
   CHECK(robot.app.answer.ticket >= answers + 4);
 
   SECTION("and can be put back") {
     robot.click(std::string("parameters/") + speed + "/reset");
     CHECK(parameter(robot.app, speed) == 11.0174);
-    CHECK(value_of(robot.app, "slide") == Approx(before).epsilon(1e-9));
+    CHECK(value(robot.app.answer.solution, "slide") == Approx(before).epsilon(1e-9));
   }
   SECTION("and back all at once") {
     robot.click("parameters/reset");

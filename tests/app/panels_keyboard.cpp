@@ -135,8 +135,8 @@ TEST_CASE("a pendulum is built, solved, explored and exported without one event 
 
   hand.key('C');
   hand.frames(3);
-  REQUIRE(app.study.open == Study::response);
-  CHECK(app.study.response.result);
+  REQUIRE(app.study.open == StudyKind::response);
+  CHECK(app.study.response.curve.found);
 
   hand.key('E', true);
   hand.frames(2);
@@ -240,7 +240,7 @@ TEST_CASE("Alt opens the menus, arrows go through them, and Escape gives the key
     hand.key(keys::down);
   hand.key(keys::enter);
   hand.frames(3);
-  CHECK(app.study.open == Study::response);
+  CHECK(app.study.open == StudyKind::response);
   CHECK_FALSE(app.widgets.contains("menu/study.response"));
   hand.alt();
   REQUIRE(app.widgets.contains("menu/file.new"));
@@ -286,7 +286,7 @@ TEST_CASE("a plot's dot goes along its curve by arrows, and plus zooms about it"
   App& app = hand.app;
   hand.key('C');
   hand.frames(4);
-  REQUIRE(app.study.response.result);
+  REQUIRE(app.study.response.curve.found);
   hand.go_to("study");
   hand.tab_to("plot/response/area");
   const double before = get_parameter(app.mechanism(), spin_speed);

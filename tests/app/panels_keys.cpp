@@ -22,7 +22,7 @@ constexpr const char* speed = "joints.spin.drive.speed";
 struct Look {
   Mode mode;
   Tool tool;
-  Study study;
+  StudyKind study;
   double azimuth, elevation;
   bool playing, ghost, snap;
   std::size_t step;
@@ -115,13 +115,13 @@ TEST_CASE("letters are commands while the pointer works in the view, digits only
 
 TEST_CASE("among plots letters are commands, but not those of a number's unit") {
   Hand hand;
-  open_study(hand.app, Study::response);
+  open_study(hand.app, StudyKind::response);
   hand.frames(3);
   const WidgetRect close = hand.widget("study/close");
   hand.click(ImVec2{close.from.x - 30, close.center().y});
   SECTION("a letter") {
     hand.key('M');
-    CHECK(hand.app.study.open == Study::motion);
+    CHECK(hand.app.study.open == StudyKind::motion);
   }
   SECTION("a number") {
     const Look before = look(hand.app);
@@ -376,7 +376,7 @@ TEST_CASE(
   const WidgetRect view = robot.widget("view");
   robot.point({view.center().x, view.to.y - 60});
   robot.key('M');
-  REQUIRE(app.study.open == Study::motion);
+  REQUIRE(app.study.open == StudyKind::motion);
   REQUIRE(app.playback.playing);
   robot.key(' ');
   CHECK_FALSE(app.playback.playing);
@@ -384,7 +384,7 @@ TEST_CASE(
   // A number that is begun among its fields is none all the same.
   robot.key('1');
   robot.key('M');
-  CHECK(app.study.open == Study::motion);
+  CHECK(app.study.open == StudyKind::motion);
   CHECK_THAT(app.notice, ContainsSubstring("No field is being typed in"));
 }
 

@@ -68,9 +68,10 @@ TEST_CASE("a study of a long chain is left in the frame that asks for it, and ke
   Window window(hanging_chain(600));
   struct Key {
     int code;
-    Study study;
+    StudyKind study;
   };
-  for (const Key& key : {Key{'C', Study::response}, Key{'E', Study::states}, Key{'P', Study::map}}) {
+  for (const Key& key :
+       {Key{'C', StudyKind::response}, Key{'E', StudyKind::states}, Key{'P', StudyKind::map}}) {
     INFO("key " << static_cast<char>(key.code));
     window.key(key.code);
     REQUIRE(window.app().study.open == key.study);
@@ -81,10 +82,10 @@ TEST_CASE("a study of a long chain is left in the frame that asks for it, and ke
     auto begin = Clock::now();
     window.key('M');
     CHECK(seconds_since(begin) < frame_limit);
-    CHECK(window.app().study.open == Study::motion);
+    CHECK(window.app().study.open == StudyKind::motion);
     begin = Clock::now();
     window.key('M'); // and away again
-    CHECK(window.app().study.open == Study::none);
+    CHECK(window.app().study.open == StudyKind::none);
     CHECK_FALSE(studying(window.app()));
     CHECK(seconds_since(begin) < frame_limit);
   }

@@ -31,6 +31,7 @@ TEST_CASE("the legend names what is in the view, and no more") {
   CHECK(words(app) == Words{"Steady state", "Drawn pose"});
   CHECK(legend_rows(app)[1].mark == LegendMark::dashed);
   app.view.ghost = false;
+  robot.frames(1);
   CHECK(words(app) == Words{"Steady state"});
   app.view.ghost = true;
   set_mode(app, Mode::build);

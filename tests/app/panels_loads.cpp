@@ -5,6 +5,7 @@
 #include "robot.hpp"
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <set>
@@ -97,6 +98,24 @@ TEST_CASE("an arrow that is pointed at tells what it is") {
   CHECK(app.widgets.count("load/pointed") == 0);
 }
 
+TEST_CASE("a reaction that is one of many says so when it is pointed at") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  open_scene(app, FLYBALL_CASES "/reactions_nonunique_by_joint.json");
+  robot.frames(3);
+  REQUIRE(app.answer.solution.reactions_nonunique);
+  robot.key('A');
+  const ViewScene& scene = *shown_scene(app);
+  int told = 0;
+  for (const LoadArrow& arrow : scene.arrows.arrows) {
+    robot.point_at(0.2 * arrow.from + 0.8 * arrow.to);
+    robot.frames(2);
+    told += static_cast<int>(app.widgets.count("load/nonunique"));
+  }
+  CHECK(told > 0);
+  CHECK(told < static_cast<int>(scene.arrows.arrows.size())); // the other joint's is the only one
+}
+
 TEST_CASE("arrows turn along where that is exact, and the legend says where they cannot") {
   Robot robot;
   App& app = robot.app;
@@ -115,7 +134,7 @@ TEST_CASE("arrows turn along where that is exact, and the legend says where they
   CHECK((reaction() - at_first).norm() > 0.2 * at_first.norm());
   CHECK(loads_missing(app).empty());
   robot.key(' ');
-  open_scene(app, FLYBALL_ASSETS "/scenes/rate_gyro.json");
+  open_scene(app, shipped_file("rate_gyro"));
   robot.frames(3);
   CHECK(!shown_scene(app)->loads.empty());
   robot.key(' ');

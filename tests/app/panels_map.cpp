@@ -6,6 +6,8 @@
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -21,7 +23,7 @@ constexpr PixelSize wide{1280, 900};
 
 struct MapRobot : Robot {
   explicit MapRobot(const std::string& scene = "governor") : Robot(wide) {
-    open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    open_scene(app, shipped_file(scene));
     frames(3);
     key('P');
     frames(3);
@@ -33,45 +35,43 @@ double solved(Mechanism m, const MapChoice& choice, double x, double y) {
   set_parameter(m, choice.axes[0].address, x);
   set_parameter(m, choice.axes[1].address, y);
   const Solution solution = Analysis(m).solve();
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (solution.status == Status::converged && c.joint == choice.coordinate) return c.value;
-  return NAN;
+  return solution.status == Status::converged ? value(solution, choice.coordinate) : NAN;
 }
 
 } // namespace
 
 TEST_CASE("no map before it is asked for, and a closed one is gone but for what was chosen") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.study.map.cells_task);
+  CHECK_FALSE(robot.app.study.map.cells.asked);
   robot.key('P');
   robot.frames(2);
-  REQUIRE(robot.app.study.map.cells);
+  REQUIRE(robot.app.study.map.cells.found);
   robot.app.study.map.choice.axes[0].count = 21;
   robot.click("study/close");
-  CHECK_FALSE(robot.app.study.map.cells_task);
-  CHECK_FALSE(robot.app.study.map.curves_task);
-  CHECK_FALSE(robot.app.study.map.cells);
-  CHECK_FALSE(robot.app.study.map.curves);
+  CHECK_FALSE(robot.app.study.map.cells.asked);
+  CHECK_FALSE(robot.app.study.map.curves.asked);
+  CHECK_FALSE(robot.app.study.map.cells.found);
+  CHECK_FALSE(robot.app.study.map.curves.found);
   CHECK(robot.app.study.map.choice.axes[0].count == 21);
 }
 
 TEST_CASE("every place of the map is what a solve of its own gives") {
   MapRobot robot;
-  const FoundCells& found = *robot.map().cells;
-  const MapChoice& choice = found.choice;
+  const MapCells& cells = robot.map().cells.found->result;
+  const MapChoice& choice = robot.map().cells.found->of.choice;
   CHECK(choice.axes[0].address == "joints.spin.drive.speed");
   const auto columns = static_cast<std::size_t>(choice.axes[0].count);
-  REQUIRE(found.cells.size() == columns * static_cast<std::size_t>(choice.axes[1].count));
+  REQUIRE(cells.size() == columns * static_cast<std::size_t>(choice.axes[1].count));
   const Plot& plot = robot.app.plots.map.plot;
   REQUIRE(plot.heat);
-  for (std::size_t i = 7; i < found.cells.size(); i += 173) {
+  for (std::size_t i = 7; i < cells.size(); i += 173) {
     CAPTURE(i);
     const double x = plot.heat->x[i % columns], y = plot.heat->y[i / columns];
     const double expected = solved(robot.app.mechanism(), choice, x, y);
     if (std::isnan(expected)) {
-      CHECK(std::isnan(found.cells[i].value));
+      CHECK(std::isnan(cells[i].value));
     } else {
-      CHECK(found.cells[i].value == Approx(expected).epsilon(1e-12));
+      CHECK(cells[i].value == Approx(expected).epsilon(1e-12));
       CHECK(plot.heat->values[i] == Approx(expected * (plot.heat->unit == "m" ? 1 : 57.29577951308232)));
     }
   }
@@ -81,7 +81,7 @@ TEST_CASE("every place of the map is what a solve of its own gives") {
 
 TEST_CASE("unstable places are hatched, which is neither read off nor written to a file") {
   Robot plain(wide);
-  open_scene(plain.app, FLYBALL_ASSETS "/scenes/watt_governor.json");
+  open_scene(plain.app, shipped_file("watt_governor"));
   // A torque that turns along has no potential: then the answer is the state nearest to the drawn pose, and
   // that is unstable at high speeds.
   edit(plain.app, "Twist", [](Mechanism& m, Selection&) {
@@ -97,9 +97,9 @@ TEST_CASE("unstable places are hatched, which is neither read off nor written to
   plain.key('P');
   plain.frames(3);
   const MapState& map = plain.app.study.map;
-  REQUIRE(map.cells);
-  const FoundCells& found = *map.cells;
-  const auto unstable = std::ranges::count(found.cells, std::optional(false), &MapCell::stable);
+  REQUIRE(map.cells.found);
+  const MapCells& cells = map.cells.found->result;
+  const auto unstable = std::ranges::count(cells, std::optional(false), &MapCell::stable);
   REQUIRE(unstable > 0);
   const Plot& plot = plain.app.plots.map.plot;
   const auto hatch = std::ranges::find(plot.curves, std::string("unstable"), &PlotCurve::name);
@@ -144,19 +144,19 @@ TEST_CASE("what is chosen is computed; a value that a number cannot have is refu
   robot.map().choice.axes[0].count = 5;
   robot.map().choice.axes[1].count = 4;
   robot.frames(2);
-  CHECK(robot.map().cells->cells.size() == 20);
+  CHECK(robot.map().cells.found->result.size() == 20);
   change_parameter(app, "joints.slide.spring.stiffness", 1234);
   robot.frames(3); // an axis of the map: the same map
-  const std::vector<MapCell> before = robot.map().cells->cells;
+  const std::vector<MapCell> before = robot.map().cells.found->result;
   // Whatever it took on a busy machine.
-  robot.map().cells->run_time_s = robot.map().curves->run_time_s = 0;
+  robot.map().cells.found->run_time = robot.map().curves.found->run_time = 0;
   edit(app, "Heavier", [](Mechanism& m, Selection&) { set_parameter(m, "bodies.collar.mass", 3); });
   robot.frames(3);
-  CHECK(robot.map().cells->cells[10].value != before[10].value);
+  CHECK(robot.map().cells.found->result[10].value != before[10].value);
   robot.map().choice.axes[1] = {"joints.slide.spring.stiffness", -100, 100, 3};
   robot.frames(2);
-  const bool refused = !robot.map().problem.empty();
-  const bool solved_all = robot.map().cells->choice.axes[1].from == -100;
+  const bool refused = !map_problem(robot.app).empty();
+  const bool solved_all = robot.map().cells.found->of.choice.axes[1].from == -100;
   CHECK(refused != solved_all);
 }
 
@@ -167,12 +167,12 @@ TEST_CASE("the curve on which the conical pendulum lifts is where speed^2 length
   const MapChoice& choice = robot.map().choice;
   CHECK(choice.axes[0].address == "joints.spin.drive.speed");
   CHECK(choice.axes[1].address == "gravity.1");
-  REQUIRE(robot.map().curves);
-  REQUIRE(robot.map().curves->folds);
+  REQUIRE(robot.map().curves.found);
+  REQUIRE(robot.map().curves.found->result.folds);
   const Body& ball = app.mechanism().bodies[1];
   const double length = std::hypot(ball.position.x(), 1 - ball.position.y());
   std::size_t points = 0;
-  for (const PlaneCurve& curve : robot.map().curves->folds->curves)
+  for (const PlaneCurve& curve : robot.map().curves.found->result.folds->curves)
     for (const PlanePoint& p : curve.points) {
       if (std::abs(p.y) < 0.5 || std::abs(p.x) < 0.5) continue;
       CHECK(p.x * p.x * length == Approx(std::abs(p.y)).epsilon(1e-6));
@@ -189,11 +189,11 @@ TEST_CASE("on the curve of a constant value the coordinate has it") {
   robot.click("map/level");
   robot.frames(3);
   REQUIRE(robot.map().choice.level);
-  REQUIRE(robot.map().curves);
-  REQUIRE(robot.map().curves->level);
+  REQUIRE(robot.map().curves.found);
+  REQUIRE(robot.map().curves.found->result.level);
   const double level = *robot.map().choice.level;
   std::size_t points = 0;
-  for (const PlaneCurve& curve : robot.map().curves->level->curves)
+  for (const PlaneCurve& curve : robot.map().curves.found->result.level->curves)
     for (const PlanePoint& p : curve.points)
       for (const CoordinateSolution& c : p.coordinates)
         if (c.joint == robot.map().choice.coordinate) {
@@ -209,7 +209,7 @@ TEST_CASE("on the curve of a constant value the coordinate has it") {
 
 TEST_CASE("a map in the background tells its progress, can be stopped, and goes with its tab") {
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
-  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  open_scene(app, shipped_file("governor"));
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 3000 && !until(); ++i) {
       update(app, 0.01, {400, 300});
@@ -219,8 +219,8 @@ TEST_CASE("a map in the background tells its progress, can be stopped, and goes 
   };
   wait([&] { return app.answer.ticket != 0; });
   app.study.map.choice.folds = false;
-  open_study(app, Study::map);
-  wait([&] { return app.study.map.cells.has_value(); });
+  open_study(app, StudyKind::map);
+  wait([&] { return app.study.map.cells.found != nullptr; });
   CHECK(map_progress(app).part == 1);
   for (MapAxis& axis : app.study.map.choice.axes)
     axis.count = 401; // 160 801 solves: some seconds
@@ -229,10 +229,10 @@ TEST_CASE("a map in the background tells its progress, can be stopped, and goes 
   CHECK(studying(app));
   wait([&] { return map_progress(app).part < 1; });
   cancel_map(app);
-  wait([&] { return !computing_map(app) && !app.study.map.problem.empty(); });
-  CHECK(app.study.map.problem == "Computing the map was stopped.");
-  CHECK(app.study.map.cells->cells.size() == 41 * 41); // what there was stays
+  wait([&] { return !computing_map(app) && !map_problem(app).empty(); });
+  CHECK(map_problem(app) == "Computing the map was stopped.");
+  CHECK(app.study.map.cells.found->result.size() == 41 * 41); // what there was stays
   compute_map(app);
-  open_study(app, Study::none); // does not wait for the end
-  CHECK_FALSE(app.study.map.cells_task);
+  open_study(app, StudyKind::none); // does not wait for the end
+  CHECK_FALSE(app.study.map.cells.asked);
 }

@@ -6,6 +6,7 @@
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,12 +21,12 @@ constexpr PixelSize wide{1280, 900};
 
 struct ModesRobot : Robot {
   explicit ModesRobot(const std::string& scene) : Robot(wide) {
-    open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    open_scene(app, shipped_file(scene));
     frames(3);
     key('O');
     frames(3);
   }
-  const std::vector<VibrationMode>& modes() { return app.study.modes.result->modes; }
+  const std::vector<VibrationMode>& modes() { return app.study.modes.list.found->result.modes; }
   // The first that swings.
   std::size_t swinging() {
     const auto found = std::ranges::find_if(modes(), &VibrationMode::oscillates);
@@ -58,19 +59,19 @@ double opened(const Mechanism& m, const std::vector<Pose>& drawn, const std::vec
 
 TEST_CASE("no modes before they are asked for, and a closed study leaves nothing that moves") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.study.modes.task);
-  CHECK_FALSE(robot.app.study.modes.campbell.task);
+  CHECK_FALSE(robot.app.study.modes.list.asked);
+  CHECK_FALSE(robot.app.study.modes.campbell.diagram.asked);
   robot.key('O');
   robot.frames(2);
-  REQUIRE(robot.app.study.modes.result);
+  REQUIRE(robot.app.study.modes.list.found);
   robot.click("modes/row/1");
   CHECK_FALSE(robot.app.study.modes.poses.empty());
   CHECK(in_motion(robot.app));
   robot.click("study/close");
   const ModesState& modes = robot.app.study.modes;
-  CHECK_FALSE(modes.task);
-  CHECK_FALSE(modes.result);
-  CHECK_FALSE(modes.campbell.task);
+  CHECK_FALSE(modes.list.asked);
+  CHECK_FALSE(modes.list.found);
+  CHECK_FALSE(modes.campbell.diagram.asked);
   CHECK(modes.poses.empty());
   CHECK_FALSE(in_motion(robot.app));
   CHECK(view_frame(robot.app).motion.empty());
@@ -87,8 +88,8 @@ TEST_CASE("the governor's modes are its eigenvalues, and agree with its potentia
     CHECK(nearest < 1e-6 * (1 + mode.natural_frequency));
     CHECK_FALSE(grows(mode));
   }
-  REQUIRE(app.study.modes.result->evidence);
-  CHECK(app.study.modes.result->evidence->agree);
+  REQUIRE(app.study.modes.list.found->result.evidence);
+  CHECK(app.study.modes.list.found->result.evidence->agree);
   robot.widget("modes/verdict");
   robot.widget("modes/row/1");
 }
@@ -171,7 +172,7 @@ TEST_CASE("Campbell lines are continuous, and agree with the modes where the mec
   App& app = robot.app;
   const CampbellState& campbell = app.study.modes.campbell;
   const CampbellView& drawn = app.plots.campbell;
-  REQUIRE(campbell.result);
+  REQUIRE(campbell.diagram.found);
   REQUIRE_FALSE(drawn.plot.curves.empty());
   double highest = 0;
   for (const PlotCurve& curve : drawn.plot.curves)
@@ -187,7 +188,7 @@ TEST_CASE("Campbell lines are continuous, and agree with the modes where the mec
   }
   CHECK(lines > 0);
   // Each mode that swings lies on a line at the present speed.
-  const double speed = get_parameter(app.mechanism(), campbell.result->drive);
+  const double speed = get_parameter(app.mechanism(), campbell.diagram.found->of.drive);
   for (const VibrationMode& mode : robot.modes()) {
     if (!mode.oscillates()) continue;
     double nearest = 1e300;
@@ -216,6 +217,7 @@ TEST_CASE("a click in the Campbell diagram sets the speed") {
   App& app = robot.app;
   const std::string speed = "joints.spin.drive.speed";
   const PlotRange range = campbell_range(app);
+  const auto followed = app.study.modes.campbell.diagram.found;
   const WidgetRect area = robot.widget("plot/campbell/area");
   robot.click(
       ImVec2{area.from.x + 0.6f * (area.to.x - area.from.x), area.from.y + 0.2f * (area.to.y - area.from.y)});
@@ -224,12 +226,12 @@ TEST_CASE("a click in the Campbell diagram sets the speed") {
   CHECK(get_parameter(app.mechanism(), speed) == Approx(wanted).margin(0.01 * (range[1] - range[0])));
   // The diagram still holds: only the speed has changed.
   CHECK(app.study.modes.campbell.current);
-  CHECK(app.study.modes.campbell.results == 1);
+  CHECK(app.study.modes.campbell.diagram.found == followed);
   REQUIRE_FALSE(app.plots.campbell.plot.references.empty());
   CHECK(app.plots.campbell.plot.references[0].at == get_parameter(app.mechanism(), speed));
   // Another number changes it.
-  app.study.modes.campbell.result->run_time_s = 0; // whatever it took on a busy machine
+  app.study.modes.campbell.diagram.found->run_time = 0; // whatever it took on a busy machine
   change_parameter(app, "joints.slide.spring.stiffness", 1500);
   robot.frames(3);
-  CHECK(app.study.modes.campbell.results == 2);
+  CHECK(app.study.modes.campbell.diagram.found != followed);
 }

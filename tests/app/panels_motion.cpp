@@ -7,6 +7,8 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -44,8 +46,8 @@ TEST_CASE("without being asked for there is no motion, no integrator and no pane
   Robot robot(wide);
   CHECK_FALSE(robot.app.motion.on);
   for (const MotionRun& run : robot.app.motion.runs)
-    CHECK_FALSE(run.live);
-  CHECK_FALSE(robot.app.study.compare.task);
+    CHECK_FALSE(run.task);
+  CHECK_FALSE(robot.app.study.compare.measured.asked);
   CHECK(robot.app.widgets.count("motion/play") == 0);
   CHECK(robot.app.widgets.count("study/motion") == 0);
   CHECK(robot.app.widgets.count("parameters/joints.slide.damping") == 0);
@@ -84,10 +86,10 @@ TEST_CASE("a closed panel takes everything of the motion with it") {
   robot.click("study/close");
   CHECK_FALSE(robot.app.motion.on);
   for (const MotionRun& run : robot.app.motion.runs)
-    CHECK_FALSE(run.live);
+    CHECK_FALSE(run.task);
   CHECK(robot.app.motion.poses.empty());
   CHECK(robot.app.playback.time == 0);
-  CHECK(robot.app.study.open == Study::none);
+  CHECK(robot.app.study.open == StudyKind::none);
 }
 
 TEST_CASE("the motion is paused, stepped and scrubbed") {
@@ -182,10 +184,7 @@ TEST_CASE("plots show the motion, the motion without dampers, and the steady val
   REQUIRE(plot.curves.size() == 2);
   CHECK(plot.y.unit == "m");
   REQUIRE(plot.references.size() == 1);
-  double steady = NAN;
-  for (const CoordinateSolution& c : app.answer.solution.coordinates)
-    if (c.joint == "slide") steady = c.value;
-  CHECK(plot.references[0].at == Approx(steady));
+  CHECK(plot.references[0].at == Approx(value(app.answer.solution, "slide")));
   for (const PlotCurve& curve : plot.curves) {
     if (curve.name != "damped") continue;
     REQUIRE(curve.points.size() == run.time.size());
@@ -280,7 +279,7 @@ TEST_CASE("while a motion is computed it is told how much of it there is") {
            .theme = Theme::light,
            .numbers = {}});
   Stage stage(app, 1);
-  open_scene(app, FLYBALL_ASSETS "/scenes/chain20.json");
+  open_scene(app, shipped_file("chain20"));
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 3000 && !until(); ++i) {
       stage.frame(app, wide, 0.01);
@@ -290,7 +289,7 @@ TEST_CASE("while a motion is computed it is told how much of it there is") {
   };
   wait([&] { return app.answer.ticket != 0; });
   app.motion.duration = 1000;
-  open_study(app, Study::motion);
+  open_study(app, StudyKind::motion);
   CHECK(computed_motion(app) == 0.);
   wait([&] { return app.widgets.contains("motion/progress"); });
   wait([&] { return computed_motion(app).value_or(0) > 0; });
@@ -313,13 +312,13 @@ TEST_CASE("building ends the motion") {
 TEST_CASE("the comparison is measured and drawn") {
   Robot robot(wide);
   App& app = robot.app;
-  open_study(app, Study::compare);
+  open_study(app, StudyKind::compare);
   robot.frames(2);
   app.study.compare.repeats = 1;
   robot.click("compare/run");
   robot.frames(2);
-  REQUIRE(app.study.compare.result);
-  const Comparison& c = *app.study.compare.result;
+  REQUIRE(app.study.compare.measured.found);
+  const Comparison& c = app.study.compare.measured.found->result;
   CHECK(c.status == Status::converged);
   REQUIRE(c.best);
   CHECK(c.best->ratio() > 1);

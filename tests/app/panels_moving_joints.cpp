@@ -3,6 +3,7 @@
 
 #include "app/document/transform.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -133,7 +134,7 @@ TEST_CASE("what stays at the other side of joints that went along is told") {
   };
   move("ball1");
   CHECK(hand.app.notice == "Joint arm1 went along; spindle stays where it was; link1 follows with one end.");
-  open_scene(hand.app, FLYBALL_ASSETS "/scenes/watt_governor.json");
+  open_scene(hand.app, shipped_file("watt_governor"));
   set_mode(hand.app, Mode::build);
   hand.frames(3);
   move("arm1");

@@ -4,11 +4,13 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <tuple>
 
 using namespace flyball;
+using namespace flyball::test;
 
 TEST_CASE("a value has the digits its error supports") {
   const NumberStyle style;
@@ -35,7 +37,7 @@ TEST_CASE("magnitudes and run times are short") {
 }
 
 TEST_CASE("every drive speed and spring constant has a slider, the scene's own first") {
-  const Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism mechanism = shipped("governor");
   const auto controls = parameter_controls(mechanism, mechanism);
   REQUIRE(controls.size() >= 2);
   CHECK(controls[0].address == "joints.spin.drive.speed");
@@ -59,7 +61,7 @@ TEST_CASE("every drive speed and spring constant has a slider, the scene's own f
 }
 
 TEST_CASE("after a number was tried the sliders are those that would be made anew") {
-  Mechanism file = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  Mechanism file = shipped("governor");
   Force damper;
   damper.name = "damper";
   damper.type = ForceType::spring;
@@ -86,7 +88,7 @@ TEST_CASE("after a number was tried the sliders are those that would be made ane
 }
 
 TEST_CASE("a slider stops at round values") {
-  const Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism mechanism = shipped("governor");
   const auto controls = parameter_controls(mechanism, mechanism);
   CHECK(slider_value(controls[0], 0.5, false) == 15);
   CHECK(slider_value(controls[0], 0.34567, false) == 10.4);

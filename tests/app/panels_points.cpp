@@ -5,6 +5,7 @@
 #include "app/session/motion.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -83,7 +84,7 @@ TEST_CASE("a point of the selected body is told of beside its mass centre once i
     hand.frames(2);
     CHECK(app.points.contains("weight"));
     CHECK(app.answer.solution.points.size() == 1);
-    open_scene(app, FLYBALL_ASSETS "/scenes/pendulum.json");
+    open_scene(app, shipped_file("pendulum"));
     CHECK(app.points.empty());
   }
   SECTION("until it is taken away") {
@@ -110,7 +111,7 @@ TEST_CASE("a point of the selected body is told of beside its mass centre once i
 TEST_CASE("a point can be typed for the motion where there is no steady state") {
   Hand hand;
   App& app = hand.app;
-  open_scene(app, FLYBALL_ASSETS "/../tests/cases/no_equilibrium.json");
+  open_scene(app, FLYBALL_CASES "/no_equilibrium.json");
   REQUIRE_FALSE(app.mechanism().bodies.empty());
   select(app, {{{PartKind::body, app.mechanism().bodies.front().name}}});
   set_mode(app, Mode::explore);

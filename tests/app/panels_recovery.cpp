@@ -3,6 +3,7 @@
 
 #include "app/document/autosave.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/parts.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -150,7 +151,7 @@ TEST_CASE("untitled work that a crash has left is offered at the next start") {
     robot.key('N', true);
     edit(robot.app, "Add", [&](Mechanism& m, Selection&) {
       m.name = name;
-      m.bodies.push_back(a_body(name));
+      m.bodies.push_back(test::body(name));
     });
     robot.pass(2);
   }

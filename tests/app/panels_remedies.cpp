@@ -59,7 +59,7 @@ TEST_CASE("one button shows how it moves instead") {
   robot.click("results/remedy/motion");
   robot.frames(5);
   CHECK(robot.app.mode == Mode::explore);
-  CHECK(robot.app.study.open == Study::motion);
+  CHECK(robot.app.study.open == StudyKind::motion);
   CHECK(robot.app.motion.on);
 }
 

@@ -8,6 +8,8 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -23,21 +25,15 @@ namespace {
 constexpr PixelSize wide{1280, 900};
 const std::string speed = "joints.spin.drive.speed", stiffness = "joints.slide.spring.stiffness";
 
-double coordinate(const std::vector<CoordinateSolution>& all, const std::string& name) {
-  const auto found = std::ranges::find(all, name, &CoordinateSolution::joint);
-  REQUIRE(found != all.end());
-  return found->value;
-}
-
 double present(const App& app, const std::string& name) {
   REQUIRE(converged(app));
-  return coordinate(app.answer.solution.coordinates, name);
+  return value(app.answer.solution, name);
 }
 
 // The response is asked for with the key C.
 struct ResponseRobot : Robot {
   explicit ResponseRobot(const std::string& scene = "") : Robot(wide) {
-    if (!scene.empty()) open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    if (!scene.empty()) open_scene(app, shipped_file(scene));
     frames(2);
     key('C');
     frames(3);
@@ -82,8 +78,8 @@ std::vector<double> crossings(const Plot& plot, const std::string& name, double 
 
 TEST_CASE("without being asked for there is no response curve") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.study.response.task);
-  CHECK_FALSE(robot.app.study.response.result);
+  CHECK_FALSE(robot.app.study.response.curve.asked);
+  CHECK_FALSE(robot.app.study.response.curve.found);
   CHECK(robot.app.widgets.count("plot/response/area") == 0);
 }
 
@@ -91,9 +87,9 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
   ResponseRobot robot;
   ResponseState& state = robot.state();
   const ResponseView& drawn = robot.drawn();
-  REQUIRE(state.result);
-  CHECK(state.address == speed);
-  CHECK(state.quantity == "value slide");
+  REQUIRE(state.curve.found);
+  CHECK(state.choice.address == speed);
+  CHECK(state.choice.quantity == "value slide");
   CHECK(drawn.plot.y.unit == "m");
   Analysis analysis(robot.app.mechanism());
   for (const double at : {2.0, 9.0, 11.0174, 16.0, 25.0}) {
@@ -105,16 +101,16 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
     const std::vector<double> found =
         crossings(drawn.plot, solution.stable == true ? "stable" : "unstable", at);
     REQUIRE(found.size() == 1);
-    CHECK(found[0] == Approx(coordinate(solution.coordinates, "slide")).margin(5e-4));
+    CHECK(found[0] == Approx(value(solution.coordinates, "slide")).margin(5e-4));
   }
   // At its points the curve is exact.
-  for (std::size_t i = 0; i < state.result->lines[0].points.size(); i += 7) {
-    const ResponsePoint& point = state.result->lines[0].points[i];
+  for (std::size_t i = 0; i < state.curve.found->result.lines[0].points.size(); i += 7) {
+    const ResponsePoint& point = state.curve.found->result.lines[0].points[i];
     Mechanism mechanism = robot.app.mechanism();
     set_parameter(mechanism, speed, point.parameter);
     analysis.update(mechanism);
-    CHECK(coordinate(analysis.solve({}).coordinates, "slide") ==
-          Approx(coordinate(point.coordinates, "slide")).margin(1e-9));
+    CHECK(value(analysis.solve({}).coordinates, "slide") ==
+          Approx(value(point.coordinates, "slide")).margin(1e-9));
   }
 }
 
@@ -152,16 +148,18 @@ TEST_CASE("the varied slider moves the marker alone, another one the curve") {
   ResponseState& state = robot.state();
   const ResponseView& drawn = robot.drawn();
   const double x = drawn.plot.marker->x;
-  const std::uint64_t version = state.version, made = drawn.plots_made;
+  const auto curve = state.curve.found;
+  const std::uint64_t version = drawn.plot.version;
   robot.drag("parameters/" + speed, {0.37f, 0.5f}, {0.6f, 0.5f});
-  CHECK(state.version == version);
-  CHECK(drawn.plots_made == made);
+  CHECK(state.curve.found == curve);
+  CHECK(drawn.plot.version == version);
   CHECK(drawn.plot.marker->x > x + 2);
   CHECK(drawn.plot.marker->y == Approx(present(app, "slide")));
 
   const double before = crossings(drawn.plot, "stable", 20).at(0);
   robot.drag("parameters/" + stiffness, {0.5f, 0.5f}, {0.7f, 0.5f});
-  CHECK(state.version > version);
+  CHECK(state.curve.found != curve);
+  CHECK(drawn.plot.version > version);
   CHECK(std::abs(crossings(drawn.plot, "stable", 20).at(0) - before) > 1e-3);
   CHECK(crossings(drawn.plot, "stable", drawn.plot.marker->x).at(0) ==
         Approx(drawn.plot.marker->y).margin(5e-4));
@@ -197,7 +195,7 @@ TEST_CASE("the conical pendulum: drawn as a fork, and dragged onto the unstable 
   App& app = robot.app;
   ResponseState& state = robot.state();
   const ResponseView& drawn = robot.drawn();
-  REQUIRE(state.result);
+  REQUIRE(state.curve.found);
   REQUIRE(drawn.plot.marks.size() == 1);
   CHECK_THAT(drawn.plot.marks[0].label, ContainsSubstring("branch point 3.742"));
   CHECK_THAT(drawn.plot.marks[0].label, ContainsSubstring("rad/s"));
@@ -264,11 +262,11 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
   const ResponseView& drawn = robot.drawn();
   robot.click("response/parameter");
   robot.click("response/parameter/stiffness of slide");
-  CHECK(state.address == stiffness);
+  CHECK(state.choice.address == stiffness);
   CHECK(drawn.plot.x.logarithmic);
   CHECK(drawn.plot.x.unit == "N/m");
-  CHECK(state.from == 50);
-  CHECK(state.to == 20000);
+  CHECK(state.choice.from == 50);
+  CHECK(state.choice.to == 20000);
   CHECK(drawn.plot.marker->x == 1000);
   // A click between two points of the curve is one on the curve.
   const double y = crossings(drawn.plot, "stable", 3000).at(0);
@@ -280,7 +278,7 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
   robot.type("5 kN/m");
   robot.key(key_enter);
   robot.frames(2);
-  CHECK(state.to == 5000);
+  CHECK(state.choice.to == 5000);
   for (const PlotCurve& curve : drawn.plot.curves)
     for (const auto& point : curve.points)
       CHECK(point[0] <= 5000 * (1 + 1e-12));
@@ -307,18 +305,17 @@ TEST_CASE("a closed response takes everything with it but what was chosen") {
   robot.click("response/quantity");
   robot.click("response/quantity/value arm1");
   robot.click("study/close");
-  CHECK(robot.app.study.open == Study::none);
-  CHECK_FALSE(state.task);
-  CHECK_FALSE(state.result);
-  CHECK_FALSE(state.asked);
+  CHECK(robot.app.study.open == StudyKind::none);
+  CHECK_FALSE(state.curve.asked);
+  CHECK_FALSE(state.curve.found);
   CHECK(drawn.plot.curves.empty());
   CHECK(drawn.pieces.empty());
   change_parameter(robot.app, stiffness, 900);
   robot.frames(2);
-  CHECK_FALSE(state.task);
+  CHECK_FALSE(state.curve.asked);
   robot.key('C');
   robot.frames(2);
-  CHECK(state.quantity == "value arm1");
+  CHECK(state.choice.quantity == "value arm1");
   CHECK_FALSE(drawn.plot.curves.empty());
 }
 
@@ -332,31 +329,31 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   robot.type("0.12 m");
   robot.key(key_enter);
   robot.frames(2);
-  REQUIRE(state.design.answer);
-  const DesignAnswer& answer = state.design.answer->found;
+  REQUIRE(state.design.answer.found);
+  const DesignAnswer& answer = state.design.answer.found->result;
   // Arms that point up have such speeds of their own; first comes what is stable and like the present state.
   REQUIRE_FALSE(answer.solutions.empty());
   CHECK(answer.solutions[0].at.stable == true);
   for (const char* arm : {"arm1", "arm2"})
-    CHECK(coordinate(answer.solutions[0].at.coordinates, arm) == Approx(present(app, arm)).margin(0.5));
+    CHECK(value(answer.solutions[0].at.coordinates, arm) == Approx(present(app, arm)).margin(0.5));
   const double found = answer.solutions[0].parameter;
   // Solved at that speed, the collar is there.
   Mechanism mechanism = app.mechanism();
   set_parameter(mechanism, speed, found);
   Analysis analysis(mechanism);
-  CHECK(coordinate(analysis.solve({}).coordinates, "slide") == Approx(0.12).margin(1e-12));
+  CHECK(value(analysis.solve({}).coordinates, "slide") == Approx(0.12).margin(1e-12));
   robot.click("response/solution/1");
   CHECK(get_parameter(app.mechanism(), speed) == found);
   CHECK(present(app, "slide") == Approx(0.12).margin(1e-12));
   // With another spring there is another answer, without asking again.
   change_parameter(app, stiffness, 800);
   robot.frames(3);
-  REQUIRE_FALSE(state.design.answer->found.solutions.empty());
-  CHECK(std::abs(state.design.answer->found.solutions[0].parameter - found) > 0.1);
+  REQUIRE_FALSE(state.design.answer.found->result.solutions.empty());
+  CHECK(std::abs(state.design.answer.found->result.solutions[0].parameter - found) > 0.1);
   // What is never reached is told.
   state.design.value = 5;
   robot.click("response/find");
-  CHECK(state.design.answer->found.solutions.empty());
+  CHECK(state.design.answer.found->result.solutions.empty());
   CHECK(app.widgets.count("response/never") == 1);
 }
 
@@ -379,14 +376,14 @@ TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
     const auto above = solved(at + step), below = solved(at - step);
     for (const ShownRate& rate : rates) {
       const bool angle = rate.name != "slide";
-      const double expected = (coordinate(above, rate.name) - coordinate(below, rate.name)) / (2 * step) *
+      const double expected = (value(above, rate.name) - value(below, rate.name)) / (2 * step) *
                               (angle ? 180 / std::numbers::pi : 1);
       CHECK(rate.value == Approx(expected).epsilon(1e-6));
       CHECK(rate.unit == std::string(angle ? "°" : "m") + (address == speed ? "/(rad/s)" : "/(N/m)"));
     }
   }
   // Where there is no steady state there is nothing to tell.
-  open_scene(app, FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  open_scene(app, shipped_file("conical_pendulum"));
   robot.frames(2);
   CHECK_FALSE(shown_rates(app, speed).empty());
   CHECK(app.widgets.count("parameters/" + speed + "/rate") == 1);

@@ -5,6 +5,8 @@
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,33 +21,27 @@ constexpr PixelSize wide{1280, 900};
 
 struct StatesRobot : Robot {
   explicit StatesRobot(const std::string& scene = "conical_pendulum") : Robot(wide) {
-    open_scene(app, FLYBALL_ASSETS "/scenes/" + scene + ".json");
+    open_scene(app, shipped_file(scene));
     frames(3);
     key('E');
     frames(3);
   }
-  const std::vector<Solution>& all() { return app.study.states.result->all.equilibria; }
+  const std::vector<Solution>& all() { return app.study.states.found->result.equilibria; }
 };
-
-double value(const Solution& solution, const std::string& joint) {
-  for (const CoordinateSolution& c : solution.coordinates)
-    if (c.joint == joint) return c.value;
-  return NAN;
-}
 
 } // namespace
 
 TEST_CASE("nothing is searched before it is asked for, and a closed list is gone") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.study.states.task);
+  CHECK_FALSE(robot.app.study.states.asked);
   CHECK(robot.app.widgets.count("study/states") == 0);
   robot.key('E');
   robot.frames(2);
-  REQUIRE(robot.app.study.states.result);
-  CHECK_FALSE(robot.app.study.states.result->all.equilibria.empty());
+  REQUIRE(robot.app.study.states.found);
+  CHECK_FALSE(robot.app.study.states.found->result.equilibria.empty());
   robot.click("study/close");
-  CHECK_FALSE(robot.app.study.states.task);
-  CHECK_FALSE(robot.app.study.states.result);
+  CHECK_FALSE(robot.app.study.states.asked);
+  CHECK_FALSE(robot.app.study.states.found);
   CHECK(robot.app.widgets.count("states/row/1") == 0);
 }
 
@@ -103,20 +99,20 @@ TEST_CASE("a click on a row puts the mechanism into that state, stable or not") 
 TEST_CASE("after a change the list is that of the mechanism as it is") {
   StatesRobot robot;
   App& app = robot.app;
-  app.study.states.result->run_time_s = 0;             // whatever it took on a busy machine
+  app.study.states.found->run_time = 0;                // whatever it took on a busy machine
   change_parameter(app, "joints.spin.drive.speed", 1); // below the critical speed
   robot.frames(3);
   CHECK(states_are_current(app));
   CHECK(robot.all().size() == 2);
   // A search that took long is not begun again unasked.
-  app.study.states.result->run_time_s = 10;
+  app.study.states.found->run_time = 10;
   change_parameter(app, "joints.spin.drive.speed", 5);
   robot.frames(3);
   CHECK_FALSE(states_are_current(app));
   CHECK_FALSE(shown_state(app));
   CHECK(robot.all().size() == 2);
   robot.click("states/row/1"); // of another mechanism: not to be chosen
-  CHECK(app.document.revision() == app.study.states.of + 1);
+  CHECK_FALSE(states_are_current(app));
   robot.click("states/search_again");
   robot.frames(2);
   CHECK(states_are_current(app));
@@ -125,7 +121,7 @@ TEST_CASE("after a change the list is that of the mechanism as it is") {
 
 TEST_CASE("a search in the background can be stopped, and what was found before stays") {
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
-  open_scene(app, FLYBALL_ASSETS "/scenes/chain20.json");
+  open_scene(app, shipped_file("chain20"));
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 3000 && !until(); ++i) {
       update(app, 0.01, {400, 300});
@@ -134,13 +130,13 @@ TEST_CASE("a search in the background can be stopped, and what was found before 
     REQUIRE(until());
   };
   wait([&] { return app.answer.ticket != 0; });
-  open_study(app, Study::states);
+  open_study(app, StudyKind::states);
   update(app, 0.01, {400, 300});
-  REQUIRE(app.study.states.task);
-  app.study.states.task->cancel();
+  REQUIRE(app.study.states.asked);
+  app.study.states.stop();
   wait([&] { return !app.study.states.problem.empty(); });
   CHECK_FALSE(studying(app));
-  CHECK_FALSE(app.study.states.result);
+  CHECK_FALSE(app.study.states.found);
   CHECK(app.study.states.problem == "The search was stopped.");
 }
 
@@ -148,7 +144,7 @@ TEST_CASE("every shipped scene's list can be shown, in both themes and in a narr
   for (const char* scene : {"ball_on_string", "fourbar_turntable", "rate_gyro", "watt_governor"}) {
     CAPTURE(scene);
     StatesRobot robot(scene);
-    REQUIRE(robot.app.study.states.result);
+    REQUIRE(robot.app.study.states.found);
     CHECK(robot.app.study.states.problem.empty());
     robot.size = {820, 560};
     robot.frames(3);

@@ -2,6 +2,7 @@
 #include "robot.hpp"
 
 #include "tests/catch.hpp"
+#include "tests/support/parts.hpp"
 
 #include <string>
 
@@ -17,29 +18,15 @@ Mechanism long_chain(int links) {
   chain.name = "Long chain";
   chain.gravity = {0, -9.80665, 0};
   const double length = 1.0 / links, mass = 1.0 / links;
-  Body& hub = chain.bodies.emplace_back();
-  hub.name = "hub";
-  hub.mass = 1;
-  Joint& spin = chain.joints.emplace_back();
-  spin.name = "spin";
-  spin.bodies = {"ground", "hub"};
-  spin.axis = Vec3::UnitY();
-  spin.coordinates.resize(1);
-  spin.coordinates[0].drive = Drive{.speed = 5, .description = {}};
+  chain.bodies = {body("hub")};
+  chain.joints = {driven(revolute("spin", "ground", "hub", {0, 0, 0}, Vec3::UnitY()), 5)};
+  const Vec3 along(1e-3 * length, -length, 0), inertia = mass * length * length / 12 * Vec3(1, 0, 1);
   std::string last = "hub";
   for (int i = 0; i < links; ++i) {
-    const Vec3 along(1e-3 * length, -length, 0);
-    Body& link = chain.bodies.emplace_back();
-    link.name = "link" + std::to_string(i);
-    link.mass = mass;
-    link.position = (i + 0.5) * along;
-    link.inertia = {mass * length * length / 12, 0, mass * length * length / 12, 0, 0, 0};
-    Joint& hinge = chain.joints.emplace_back();
-    hinge.name = "hinge" + std::to_string(i);
-    hinge.bodies = {last, link.name};
-    hinge.at = i * along;
-    hinge.coordinates.resize(1);
-    last = link.name;
+    const std::string number = std::to_string(i), name = "link" + number;
+    chain.bodies.push_back(body(name, mass, (i + 0.5) * along, inertia));
+    chain.joints.push_back(revolute("hinge" + number, last, name, i * along));
+    last = name;
   }
   Force& drag = chain.forces.emplace_back();
   drag.name = "air";

@@ -3,6 +3,7 @@
 #include "app/render/imgui_compat.hpp"
 
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <cctype>
 #include <cmath>
@@ -21,7 +22,7 @@ Robot::Robot(PixelSize wanted, const NumberStyle& numbers)
   imgui_compat::map_key(ImGuiKey_Escape, key_escape);
   imgui_compat::map_key(ImGuiKey_A, 'A');
   imgui_compat::take_events_at_once();
-  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  open_scene(app, shipped_file("governor"));
   frames(3);
 }
 

@@ -2,23 +2,23 @@
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include <chrono>
 #include <thread>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 
 constexpr const char* speed = "joints.spin.drive.speed";
-constexpr const char* governor = FLYBALL_ASSETS "/scenes/governor.json";
+const std::string governor = test::shipped_file("governor");
 
 double collar(const Session& session) {
   REQUIRE(converged(session));
-  for (const CoordinateSolution& c : session.answer.solution.coordinates)
-    if (c.joint == "slide") return c.value;
-  FAIL("no collar");
-  return 0;
+  return test::value(session.answer.solution, "slide");
 }
 
 // A window's loop without the window, until `done`.
@@ -56,15 +56,15 @@ TEST_CASE("Session: solves and studies in the background") {
   Session session({.mode = LiveSolver::Mode::background});
   open_scene(session, governor);
   REQUIRE(run_until(session, [&] { return converged(session) && !solving(session); }));
-  open_study(session, Study::states);
-  REQUIRE(run_until(session, [&] { return session.study.states.result && !studying(session); }));
-  REQUIRE_FALSE(session.study.states.result->all.equilibria.empty());
+  open_study(session, StudyKind::states);
+  REQUIRE(run_until(session, [&] { return session.study.states.found && !studying(session); }));
+  REQUIRE_FALSE(session.study.states.found->result.equilibria.empty());
   CHECK(states_are_current(session));
   CHECK(shown_state(session).has_value());
-  open_study(session, Study::response);
-  REQUIRE(run_until(session, [&] { return session.study.response.result && !studying(session); }));
-  CHECK_FALSE(session.study.response.result->lines.empty());
-  CHECK_FALSE(session.study.states.result.has_value()); // gone with its tab
+  open_study(session, StudyKind::response);
+  REQUIRE(run_until(session, [&] { return session.study.response.curve.found && !studying(session); }));
+  CHECK_FALSE(session.study.response.curve.found->result.lines.empty());
+  CHECK_FALSE(session.study.states.found); // gone with its tab
 }
 
 TEST_CASE("Session: a slider's move hands one mechanism on, from the document to the answer") {

@@ -3,12 +3,14 @@
 #include "engine/mechanism/scene.hpp"
 #include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 
@@ -66,14 +68,6 @@ double worst_of(const Steady& steady, std::span<const Pose> poses, const Quat& t
   return worst;
 }
 
-std::vector<fs::path> shipped_scenes() {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(FLYBALL_ASSETS "/scenes"))
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
-}
-
 // An arm that hangs out of a driven hub, with one of everything that can act on it, and a wheel that a gear
 // turns along.
 Mechanism laden_arm() {
@@ -105,7 +99,7 @@ Mechanism laden_arm() {
 
 TEST_CASE("every body's free-body diagram adds up, inertial loads included") {
   std::size_t bodies = 0;
-  for (const fs::path& file : shipped_scenes()) {
+  for (const fs::path file : shipped_files()) {
     INFO(file.filename().string());
     const Steady steady = solved(load_scene(file));
     worst_of(steady, steady.solution.poses, Quat::Identity());
@@ -137,18 +131,18 @@ TEST_CASE("loads turn with a drive that turns everything about the vertical, and
     analysis.solve();
     return analysis.poses_at(0.37);
   };
-  const Steady governor = solved(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  const Steady governor = solved(shipped("governor"));
   const std::vector<Pose> turned = later(governor.mechanism);
   const auto turn = common_turn(governor.mechanism, governor.solution, turned);
   REQUIRE(turn);
   CHECK(turn->angularDistance(Quat::Identity()) > 0.1);
   CHECK(worst_of(governor, turned, *turn) < 1e-9);
-  const Steady gyro = solved(load_scene(FLYBALL_ASSETS "/scenes/rate_gyro.json"));
+  const Steady gyro = solved(shipped("rate_gyro"));
   CHECK_FALSE(common_turn(gyro.mechanism, gyro.solution, later(gyro.mechanism)));
 }
 
 TEST_CASE("of the governor's loads the bearing bears the whole weight, and the spring holds the collar") {
-  const Steady steady = solved(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  const Steady steady = solved(shipped("governor"));
   const Mechanism& mechanism = steady.mechanism;
   const std::vector<Load> loads =
       loads_of(Assembly(mechanism, steady.solution.poses), steady.solution, steady.turning, -1);
@@ -170,7 +164,7 @@ TEST_CASE("of the governor's loads the bearing bears the whole weight, and the s
 }
 
 TEST_CASE("arrows: a scale for each kind in a mechanism, one for all of a body") {
-  const Steady steady = solved(load_scene(FLYBALL_ASSETS "/scenes/governor.json"));
+  const Steady steady = solved(shipped("governor"));
   const Mechanism& mechanism = steady.mechanism;
   const Assembly assembly(mechanism, steady.solution.poses);
   const Palette& colors = palette(Theme::light);

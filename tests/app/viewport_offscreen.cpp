@@ -4,11 +4,13 @@
 #include "app/viewport/view_renderer.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <cstdlib>
 #include <optional>
 
 using namespace flyball;
+using namespace flyball::test;
 
 namespace {
 
@@ -31,7 +33,7 @@ std::optional<OffscreenContext> context_by(OffscreenLibrary library) {
 std::optional<Drawn> draw(OffscreenLibrary library) {
   const std::optional<OffscreenContext> context = context_by(library);
   if (!context) return std::nullopt;
-  const Mechanism mechanism = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism mechanism = shipped("governor");
   ViewFrame frame;
   frame.mechanism = &mechanism;
   frame.camera.fit(scene_of(frame).bounds, {640, 400});

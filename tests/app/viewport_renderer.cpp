@@ -80,9 +80,9 @@ TEST_CASE("an empty view shows the grid, extreme mechanisms draw without a fuss"
   frame.mechanism = &nothing;
   CHECK(has(renderer.draw(frame, target), "grid"));
   Mechanism extreme;
-  extreme.bodies = {make_body("tiny", 1, {1e-9, 0, 0}), make_body("far", 1, {1e9, 1e9, 0})};
-  extreme.joints = {make_joint("a", JointType::spherical, "ground", "tiny", {0, 0, 0}, {0, 0, 1}),
-                    make_link("b", "tiny", "far", {1e-9, 0, 0}, {1e9, 1e9, 0})};
+  extreme.bodies = {body("tiny", 1, {1e-9, 0, 0}), body("far", 1, {1e9, 1e9, 0})};
+  extreme.joints = {joint(JointType::spherical, "a", "ground", "tiny", {0, 0, 0}, {0, 0, 1}),
+                    distance("b", "tiny", "far", {1e-9, 0, 0}, {1e9, 1e9, 0})};
   frame.mechanism = &extreme;
   frame.camera = initial_camera(extreme, scene_of(frame).bounds, {96, 64});
   CHECK(renderer.draw(frame, target).instances > 0);
@@ -97,10 +97,9 @@ TEST_CASE("thousands of bodies take as few draw calls as a handful") {
   const auto chain = [](int links) {
     Mechanism m;
     for (int i = 0; i < links; ++i) {
-      m.bodies.push_back(make_body("link" + std::to_string(i), 1, {i + 0.5, 0, 0}));
-      m.joints.push_back(make_joint("joint" + std::to_string(i), JointType::revolute,
-                                    i ? "link" + std::to_string(i - 1) : "ground", "link" + std::to_string(i),
-                                    {double(i), 0, 0}, {0, 0, 1}));
+      m.bodies.push_back(body("link" + std::to_string(i), 1, {i + 0.5, 0, 0}));
+      m.joints.push_back(revolute("joint" + std::to_string(i), i ? "link" + std::to_string(i - 1) : "ground",
+                                  "link" + std::to_string(i), {double(i), 0, 0}, {0, 0, 1}));
     }
     return m;
   };

@@ -103,7 +103,7 @@ TEST_CASE("cut joints are marked when named") {
 
 TEST_CASE("given shapes are drawn as given") {
   Mechanism m;
-  Body box = make_body("box", 1, {1, 0, 0});
+  Body box = body("box", 1, {1, 0, 0});
   box.shapes.resize(2);
   box.shapes[0].type = ShapeType::box;
   box.shapes[0].size = {1, 2, 3};
@@ -139,9 +139,9 @@ TEST_CASE("every type of joint and force has a sign of its own") {
        {JointType::revolute, JointType::prismatic, JointType::cylindrical, JointType::universal,
         JointType::spherical, JointType::planar, JointType::fixed}) {
     Mechanism m;
-    m.bodies = {make_body("a", 1, {0, 1, 0}), make_body("b", 1, {0, -1, 0})};
-    m.joints = {make_joint("hold", JointType::fixed, "ground", "a", {0, 2, 0}, {0, 1, 0}),
-                make_joint("j", type, "a", "b", {0, 0, 0}, {0, 1, 0})};
+    m.bodies = {body("a", 1, {0, 1, 0}), body("b", 1, {0, -1, 0})};
+    m.joints = {joint(JointType::fixed, "hold", "ground", "a", {0, 2, 0}, {0, 1, 0}),
+                joint(type, "j", "a", "b", {0, 0, 0}, {0, 1, 0})};
     INFO(type_name(type));
     const SceneList scene = build_scene(m, {});
     CHECK(count(scene, {PartKind::joint, 1}) > 0);
@@ -149,7 +149,7 @@ TEST_CASE("every type of joint and force has a sign of its own") {
   }
   for (const ForceType type : {ForceType::spring, ForceType::force, ForceType::torque, ForceType::drag}) {
     Mechanism m;
-    m.bodies = {make_body("a", 1, {0, 1, 0})};
+    m.bodies = {body("a", 1, {0, 1, 0})};
     Force force;
     force.type = type;
     force.body = "a";
@@ -169,8 +169,8 @@ TEST_CASE("nothing lies below the floor, at any phase of a drive") {
   CHECK(scene.floor > scene.bounds.lower.y() - scene.scale.unit);
 
   Mechanism wheel;
-  wheel.bodies = {make_body("arm", 1, {1, 0, 0})};
-  wheel.joints = {make_joint("spin", JointType::revolute, "ground", "arm", {0, 0, 0}, {0, 0, 1})};
+  wheel.bodies = {body("arm", 1, {1, 0, 0})};
+  wheel.joints = {revolute("spin", "ground", "arm", {0, 0, 0}, {0, 0, 1})};
   wheel.joints[0].coordinates[0].drive = Drive{20};
   CHECK(build_scene(wheel, {}).floor < -1);
 }
@@ -178,11 +178,11 @@ TEST_CASE("nothing lies below the floor, at any phase of a drive") {
 TEST_CASE("extreme and degenerate mechanisms give finite lists") {
   CHECK(build_scene(Mechanism{}, {}).instances.empty());
   Mechanism m;
-  m.bodies = {make_body("tiny", 1e-30, {1e-12, 0, 0}), make_body("far", 1e30, {1e15, 0, 0}),
-              make_body("same", 0, {1e-12, 0, 0})};
-  m.joints = {make_joint("a", JointType::revolute, "ground", "tiny", {0, 0, 0}, {0, 0, 0}),
-              make_joint("b", JointType::prismatic, "tiny", "far", {0, 0, 0}, {1e-200, 0, 0}),
-              make_link("c", "tiny", "same", {1e-12, 0, 0}, {1e-12, 0, 0})};
+  m.bodies = {body("tiny", 1e-30, {1e-12, 0, 0}), body("far", 1e30, {1e15, 0, 0}),
+              body("same", 0, {1e-12, 0, 0})};
+  m.joints = {revolute("a", "ground", "tiny", {0, 0, 0}, {0, 0, 0}),
+              prismatic("b", "tiny", "far", {0, 0, 0}, {1e-200, 0, 0}),
+              distance("c", "tiny", "same", {1e-12, 0, 0}, {1e-12, 0, 0})};
   std::vector<Pose> poses = drawn_poses(m);
   for (const bool broken : {false, true}) {
     if (broken) poses[1].position.x() = std::numeric_limits<double>::quiet_NaN();

@@ -205,7 +205,7 @@ int main() {
     ImGui::Render();
   };
   frame(1 / wanted);
-  open_study(app, Study::response);
+  open_study(app, StudyKind::response);
   for (int i = 0; i < 30; ++i) {
     frame(1 / wanted);
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -214,7 +214,8 @@ int main() {
   std::vector<double> spent; // s, by frame
   std::size_t late = 0, curves = 0;
   const std::uint64_t first_answer = app.answer.ticket;
-  std::uint64_t answers = 0, ticket = first_answer, version = app.study.response.version;
+  std::uint64_t answers = 0, ticket = first_answer;
+  auto curve = app.study.response.curve.found;
   const auto start = Clock::now();
   auto due = start;
   while (seconds_since(start) < duration) {
@@ -225,8 +226,8 @@ int main() {
     spent.push_back(seconds_since(begin));
     answers += app.answer.ticket != ticket;
     ticket = app.answer.ticket;
-    curves += app.study.response.version != version;
-    version = app.study.response.version;
+    curves += app.study.response.curve.found != curve;
+    curve = app.study.response.curve.found;
     due += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / wanted));
     if (Clock::now() > due) {
       ++late;

@@ -1,8 +1,14 @@
 #include "tests/bench/large_scenes.hpp"
 
+#include "tests/support/parts.hpp"
+
 #include <cmath>
 
 namespace flyball::bench {
+
+using test::revolute;
+using test::rod;
+
 namespace {
 
 constexpr double gravity = 9.80665;
@@ -11,42 +17,9 @@ Mechanism on_a_hub(const std::string& name, double speed) {
   Mechanism m;
   m.name = name;
   m.gravity = {0, -gravity, 0};
-  Body hub;
-  hub.name = "hub";
-  hub.mass = 1;
-  m.bodies.push_back(hub);
-  Joint spin;
-  spin.name = "spin";
-  spin.type = JointType::revolute;
-  spin.bodies = {"ground", "hub"};
-  spin.axis = Vec3::UnitY();
-  spin.coordinates.resize(1);
-  spin.coordinates[0].drive = Drive{speed, {}};
-  m.joints.push_back(spin);
+  m.bodies = {test::body("hub")};
+  m.joints = {test::driven(test::revolute("spin", "ground", "hub", {0, 0, 0}, Vec3::UnitY()), speed)};
   return m;
-}
-
-Body rod(const std::string& name, double mass, const Vec3& from, const Vec3& to) {
-  Body b;
-  b.name = name;
-  b.mass = mass;
-  b.position = (from + to) / 2;
-  const Vec3 d = to - from;
-  const Mat3 i = mass / 12 * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
-  b.inertia = {i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)};
-  return b;
-}
-
-Joint hinge(const std::string& name, const std::string& parent, const std::string& child, const Vec3& at,
-            const Vec3& axis) {
-  Joint j;
-  j.name = name;
-  j.type = JointType::revolute;
-  j.bodies = {parent, child};
-  j.at = at;
-  j.axis = axis;
-  j.coordinates.resize(1);
-  return j;
 }
 
 } // namespace
@@ -57,8 +30,8 @@ Mechanism chain(int links, double speed, double tilt, double length, double mass
   for (int i = 0; i < links; ++i) {
     const std::string name = "rod" + std::to_string(i);
     m.bodies.push_back(rod(name, mass / links, i * way, (i + 1) * way));
-    m.joints.push_back(hinge("hinge" + std::to_string(i), m.bodies[static_cast<std::size_t>(i)].name, name,
-                             i * way, Vec3::UnitZ()));
+    m.joints.push_back(revolute("hinge" + std::to_string(i), m.bodies[static_cast<std::size_t>(i)].name, name,
+                                i * way, Vec3::UnitZ()));
   }
   return m;
 }
@@ -84,8 +57,8 @@ Mechanism binary_tree(int rods, double speed) {
     const std::string name = "rod" + std::to_string(i);
     m.bodies.push_back(rod(name, size * size, from, to));
     tip.push_back(to);
-    Joint j = hinge("hinge" + std::to_string(i), m.bodies[static_cast<std::size_t>(parent)].name, name, from,
-                    level % 2 == 0 ? Vec3::UnitZ() : Vec3::UnitX());
+    Joint j = revolute("hinge" + std::to_string(i), m.bodies[static_cast<std::size_t>(parent)].name, name,
+                       from, level % 2 == 0 ? Vec3::UnitZ() : Vec3::UnitX());
     j.coordinates[0].spring = CoordinateSpring{3000 * size * size, 0};
     m.joints.push_back(j);
   }

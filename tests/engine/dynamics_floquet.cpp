@@ -2,12 +2,12 @@
 // period, any coordinate of a small motion obeys the recurrence that the characteristic polynomial of the
 // monodromy matrix gives (Cayley and Hamilton).
 #include "tests/engine/equilibrium_mechanisms.hpp"
+#include "tests/support/dice.hpp"
 
 #include "engine/dynamics/simulation.hpp"
 #include "engine/dynamics/simulator.hpp"
 
 #include <complex>
-#include <random>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -16,43 +16,35 @@ namespace {
 
 using Complex = std::complex<double>;
 
-class Random {
- public:
-  explicit Random(unsigned seed) : generator_(seed) {}
-  double operator()(double a, double b) {
-    return a + (b - a) * static_cast<double>(generator_()) / 4294967296.;
-  }
-
- private:
-  std::mt19937 generator_;
-};
-
 // A rotor with three different principal moments, or arms with masses, driven in a frame that springs and
 // dampers hold about two or three axes; seen from the frame its inertia turns.
 Mechanism unround_rotor(unsigned seed) {
-  Random any(seed);
+  Dice any(seed);
   Mechanism m;
   m.name = "rotor " + std::to_string(seed);
-  const double height = any(0.1, 0.4);
-  m.bodies.push_back(body("frame", any(0.1, 1), Vec3(0, 0, any(0, 0.2)), Vec3(0.02, 0.02, 0.02)));
-  const double a = any(0.02, 0.05), b = any(0.02, 0.05);
-  m.bodies.push_back(body("rotor", any(0.5, 3), Vec3(0, 0, height), Vec3(a, b, any(std::abs(a - b), a + b))));
+  const double height = any.between(0.1, 0.4);
+  m.bodies.push_back(
+      body("frame", any.between(0.1, 1), Vec3(0, 0, any.between(0, 0.2)), Vec3(0.02, 0.02, 0.02)));
+  const double a = any.between(0.02, 0.05), b = any.between(0.02, 0.05);
+  m.bodies.push_back(body("rotor", any.between(0.5, 3), Vec3(0, 0, height),
+                          Vec3(a, b, any.between(std::abs(a - b), a + b))));
   Joint hang = joint(JointType::universal, "hang", "ground", "frame", Vec3::Zero());
   hang.axis = Vec3::UnitX();
   hang.axis2 = Vec3::UnitY();
   for (Coordinate& c : hang.coordinates) {
-    c.spring = CoordinateSpring{any(20, 80), 0};
-    c.damping = any(0.001, 0.01);
+    c.spring = CoordinateSpring{any.between(20, 80), 0};
+    c.damping = any.between(0.001, 0.01);
   }
   m.joints.push_back(hang);
   Joint drive = revolute("drive", "frame", "rotor", Vec3(0, 0, height), Vec3::UnitZ());
-  drive.coordinates[0].drive = Drive{any(5, 40)};
+  drive.coordinates[0].drive = Drive{any.between(5, 40)};
   m.joints.push_back(drive);
   if (seed % 3 == 0) { // and a pendulum across the spin axis on the rotor, its hinge through the axis
-    m.bodies.push_back(body("arm", any(0.1, 0.5), Vec3(0, 0, height + 0.1), Vec3(0.001, 0.002, 0.0015)));
+    m.bodies.push_back(
+        body("arm", any.between(0.1, 0.5), Vec3(0, 0, height + 0.1), Vec3(0.001, 0.002, 0.0015)));
     Joint hinge = revolute("hinge", "rotor", "arm", Vec3(0, 0, height), Vec3::UnitX());
-    hinge.coordinates[0].spring = CoordinateSpring{any(20, 60), 0};
-    hinge.coordinates[0].damping = any(0.001, 0.02);
+    hinge.coordinates[0].spring = CoordinateSpring{any.between(20, 60), 0};
+    hinge.coordinates[0].damping = any.between(0.001, 0.02);
     m.joints.push_back(hinge);
   }
   return m;

@@ -19,10 +19,6 @@ double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-Mechanism stored(const std::string& name) {
-  return load_scene(FLYBALL_ASSETS "/../tests/cases/" + name + ".json");
-}
-
 const std::vector<std::string> endless{"motion_with_a_far_point", "motion_with_extreme_damping",
                                        "motion_of_a_string_held_far_away"};
 
@@ -55,7 +51,7 @@ TEST_CASE("a mass matrix that cannot be factored is refused with the reason") {
   for (const std::string name : {"crash_simulate_lost_mass", "crash_simulate_heavy_and_massless"}) {
     CAPTURE(name);
     try {
-      const Run run = simulate(stored(name), lasting(0.5));
+      const Run run = simulate(stored_case(name), lasting(0.5));
       check_whole(run); // also well, if it can be done
     } catch (const SceneError& error) {
       CAPTURE(error.what());
@@ -94,7 +90,7 @@ TEST_CASE("a motion without end stops at the time limit and keeps what was compu
       SimulationOptions options = lasting(0.5, method);
       options.time_limit = 0.3;
       const auto start = Clock::now();
-      const Run run = simulate(stored(name), options);
+      const Run run = simulate(stored_case(name), options);
       CAPTURE(run.message);
       CHECK(since(start) < 5);
       check_whole(run);
@@ -123,7 +119,7 @@ TEST_CASE("a motion is cancelled inside its steps") {
     SimulationOptions options = lasting(1e9);
     options.rate = 0;
     options.cancel = &cancel;
-    Simulator simulator(stored(name), options);
+    Simulator simulator(stored_case(name), options);
     Clock::time_point asked;
     std::jthread hand([&] {
       std::this_thread::sleep_for(std::chrono::milliseconds(30));

@@ -9,13 +9,10 @@ using namespace flyball;
 using namespace flyball::test;
 
 TEST_CASE("the scenes are all known here") {
-  std::size_t count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(FLYBALL_ASSETS "/scenes"))
-    if (entry.path().extension() == ".json") {
-      ++count;
-      CHECK(std::ranges::count(shipped_names, entry.path().stem().string()) == 1);
-    }
-  CHECK(count == shipped_names.size());
+  const std::vector<std::string> files = shipped_files();
+  for (const std::string& file : files)
+    CHECK(std::ranges::count(shipped_names, std::filesystem::path(file).stem().string()) == 1);
+  CHECK(files.size() == shipped_names.size());
 }
 
 TEST_CASE("every scene moves soundly: energies balance and loops stay closed to rounding") {

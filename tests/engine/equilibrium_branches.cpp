@@ -312,7 +312,7 @@ TEST_CASE("the list of all equilibria holds the answer, is repeatable and never 
 
 TEST_CASE("a branch ends where the balance would turn with the drive", "[branches]") {
   // With the weight across the spin axis there is a steady state at rest alone.
-  Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  Mechanism m = shipped("conical_pendulum");
   m.gravity = {standard_gravity, -standard_gravity, 0};
   const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 0, 10);
   for (const ResponseBranch& branch : d.branches) {
@@ -323,7 +323,7 @@ TEST_CASE("a branch ends where the balance would turn with the drive", "[branche
 }
 
 TEST_CASE("where nothing resists a direction no crossings are made up", "[branches]") {
-  const Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/ball_on_string.json");
+  const Mechanism m = shipped("ball_on_string");
   const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 0, 10);
   CHECK(d.status == Status::converged);
   CHECK(d.branches.size() <= 2);
@@ -350,7 +350,7 @@ TEST_CASE("where nothing resists a direction no crossings are made up", "[branch
 TEST_CASE("a branch goes on where a stop is reached, and bends there", "[branches]") {
   // Conical pendulum whose swing has soft stops at 0.8 rad: beyond, the stop shares the load.
   constexpr double stiffness = 500, limit = 0.8, length = 0.7;
-  Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  Mechanism m = shipped("conical_pendulum");
   m.joints[1].coordinates[0].stop = Stop{-limit, limit, stiffness, {}};
   const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 0, 12);
   REQUIRE(d.branches.size() == 3);

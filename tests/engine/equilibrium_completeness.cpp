@@ -61,10 +61,9 @@ bool has_family(const Problem& problem, const EquilibriumList& list, Workspace& 
 
 std::vector<Group> groups() {
   std::vector<Group> out;
-  const std::string cases = FLYBALL_ASSETS "/../tests/cases/";
   out.push_back({"cases kept", {}});
   for (const char* name : {"triple_pendulum_turning", "soft_spirals", "soft_spirals_of_two"})
-    out.back().mechanisms.push_back(load_scene(cases + name + ".json"));
+    out.back().mechanisms.push_back(stored_case(name));
   out.push_back({"shipped scenes", {}});
   for (const char* name : {"governor", "pendulum", "watt_governor", "fourbar_turntable", "rate_gyro",
                            "conical_pendulum", "governor_bearing"})

@@ -269,13 +269,13 @@ TEST_CASE("a sleeping top stays where it is drawn", "[gyroscopic]") {
 }
 
 TEST_CASE("a sleeping top of unequal moments stays, too: its multipliers judge", "[gyroscopic][floquet]") {
-  const Solution s = solve(load_scene(FLYBALL_ASSETS "/../tests/cases/asymmetric_sleeping_top.json"));
+  const Solution s = solve(stored_case("asymmetric_sleeping_top"));
   CAPTURE(s.message);
   REQUIRE(s.status == Status::converged);
   CHECK(s.stability_reason == StabilityReason::floquet);
   CHECK(s.stable == true);
   CHECK_FALSE(s.fallback.has_value());
-  Mechanism slow = load_scene(FLYBALL_ASSETS "/../tests/cases/asymmetric_sleeping_top.json");
+  Mechanism slow = stored_case("asymmetric_sleeping_top");
   set_parameter(slow, "joints.s.drive.speed", 20);
   const Solution fallen = solve(slow);
   CAPTURE(fallen.message);

@@ -1,8 +1,10 @@
-// Shipped scenes and ways to read solutions, for the tests of solving.
+// Ways to solve and to judge solutions, for the tests of solving.
 #pragma once
 
 #include "tests/catch.hpp"
-#include "tests/engine/mechanism_parts.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
@@ -24,19 +26,6 @@ inline const bool all_digits = [] {
   return true;
 }();
 
-inline Mechanism shipped(const std::string& name) {
-  return load_scene(FLYBALL_ASSETS "/scenes/" + name + ".json");
-}
-
-// The shipped scene with some of its numbers changed.
-inline Mechanism shipped(const std::string& name,
-                         const std::vector<std::pair<std::string, double>>& changes) {
-  Mechanism m = shipped(name);
-  for (const auto& [address, value] : changes)
-    set_parameter(m, address, value);
-  return m;
-}
-
 inline Solution solve(const Mechanism& m, const SolveOptions& options = {}) {
   validate(m);
   return Analysis(m).solve(options);
@@ -52,18 +41,6 @@ inline SolveOptions from(const std::string& joint, double value) {
   SolveOptions o;
   o.start = {{joint, value}};
   return o;
-}
-
-inline const CoordinateSolution& coordinate(const Solution& s, std::string_view joint, int index = 0) {
-  const auto found = std::ranges::find_if(
-      s.coordinates, [&](const CoordinateSolution& c) { return c.joint == joint && c.index == index; });
-  INFO(s.message);
-  REQUIRE(found != s.coordinates.end());
-  return *found;
-}
-
-inline double value(const Solution& s, const std::string& joint, int index = 0) {
-  return coordinate(s, joint, index).value;
 }
 
 // The root of an increasing or decreasing f between `a` and `b`, by bisection to the last digit.

@@ -8,10 +8,6 @@ using namespace flyball::test;
 
 namespace {
 
-Mechanism test_case(const std::string& name) {
-  return load_scene(FLYBALL_ASSETS "/../tests/cases/" + name + ".json");
-}
-
 // A body welded to a turning one and strung to it: closed where the string is as long as the way it spans.
 Mechanism welded_arm(double string) {
   Mechanism m;
@@ -64,9 +60,9 @@ void check_branches(const Mechanism& m, const std::string& address, double from,
 } // namespace
 
 TEST_CASE("a mechanism without free coordinates is solved, or refused in words", "[nothing_free]") {
-  check_answers(test_case("brace_of_wrong_length"), false);
-  check_answers(test_case("welded_and_strung"), false);
-  check_answers(test_case("turned_and_strung"), false);
+  check_answers(stored_case("brace_of_wrong_length"), false);
+  check_answers(stored_case("welded_and_strung"), false);
+  check_answers(stored_case("turned_and_strung"), false);
   check_answers(welded_arm(std::hypot(0.1, 0.2)), true);
   check_answers(welded_arm(0.5), false);
   check_answers(driven_loop(0), true);
@@ -80,8 +76,8 @@ TEST_CASE("a mechanism without free coordinates is solved, or refused in words",
 }
 
 TEST_CASE("branches of a mechanism without free coordinates", "[nothing_free]") {
-  check_branches(test_case("brace_of_wrong_length"), "joints.spin.drive.speed", 0, 10);
-  check_branches(test_case("turned_and_strung"), "bodies.b.mass", 1, 2);
+  check_branches(stored_case("brace_of_wrong_length"), "joints.spin.drive.speed", 0, 10);
+  check_branches(stored_case("turned_and_strung"), "bodies.b.mass", 1, 2);
   check_branches(welded_arm(std::hypot(0.1, 0.2)), "joints.spin.drive.speed", 0, 10);
   check_branches(welded_arm(0.5), "bodies.arm.mass", 2, 1);
   check_branches(driven_loop(0), "bodies.a.mass", 1, 3);

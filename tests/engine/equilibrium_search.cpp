@@ -14,10 +14,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Mechanism test_case(const std::string& name) {
-  return load_scene(FLYBALL_ASSETS "/../tests/cases/" + name + ".json");
-}
-
 // An unsymmetric rotor in a gimbal on a turntable, which a spring draws towards the turntable's axis: only
 // there does the balance hold as the rotor turns.
 Mechanism gimbal(double turn, double rotor_speed, const Vec3& inertia, double stiffness) {
@@ -65,7 +61,7 @@ void check_list(const AllSolutions& all) {
 } // namespace
 
 TEST_CASE("a steady state that the way from the start misses is found before solving refuses", "[search]") {
-  const Solution shipped_case = solve(test_case("steady_at_another_root"));
+  const Solution shipped_case = solve(stored_case("steady_at_another_root"));
   INFO(shipped_case.message);
   REQUIRE(shipped_case.status == Status::converged);
   CHECK(shipped_case.fallback == Fallback::search);
@@ -110,7 +106,7 @@ TEST_CASE("a refusal says what was tried", "[search]") {
 }
 
 TEST_CASE("where Newton-Raphson and its fallbacks lead nowhere a search may", "[search]") {
-  const Solution s = solve(test_case("five_bodies_from_afar"));
+  const Solution s = solve(stored_case("five_bodies_from_afar"));
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
   CHECK(s.fallback == Fallback::search);
@@ -119,12 +115,12 @@ TEST_CASE("where Newton-Raphson and its fallbacks lead nowhere a search may", "[
   std::atomic<bool> cancel = true;
   SolveOptions cancelled;
   cancelled.cancel = &cancel;
-  CHECK(solve(test_case("five_bodies_from_afar"), cancelled).status == Status::not_converged);
+  CHECK(solve(stored_case("five_bodies_from_afar"), cancelled).status == Status::not_converged);
 }
 
 TEST_CASE("branches begin where solving answers, though the drawn pose leads to nothing", "[search]") {
   for (const char* name : {"five_bodies_from_afar", "steady_at_another_root"}) {
-    const Mechanism m = test_case(name);
+    const Mechanism m = stored_case(name);
     const std::string speed = "joints." + m.joints.front().name + ".drive.speed";
     const double now = get_parameter(m, speed);
     BranchOptions few;
@@ -174,7 +170,7 @@ TEST_CASE("what falls for certain is unstable, whatever another direction leaves
 
 TEST_CASE("what a state leaves at other phases counts in its error", "[search]") {
   for (const double tilt : {1e-8, 3e-10, 1e-12}) {
-    Mechanism m = test_case("slightly_tilted");
+    Mechanism m = stored_case("slightly_tilted");
     const double g = -m.gravity.z();
     m.gravity.x() = tilt * g;
     const Solution s = solve(m);
@@ -192,18 +188,18 @@ TEST_CASE("what a state leaves at other phases counts in its error", "[search]")
       CHECK(std::abs(value(there, "h") - value(s, "h")) <= coordinate(s, "h").error);
     }
   }
-  Mechanism upright = test_case("slightly_tilted");
+  Mechanism upright = stored_case("slightly_tilted");
   upright.gravity.x() = 0;
   CHECK(coordinate(solve(upright), "h").error < 1e-14);
 }
 
 TEST_CASE("all equilibria of planar pendulums on a shaft", "[all]") {
-  const AllSolutions triple = Analysis(test_case("triple_pendulum_turning")).solve_all();
+  const AllSolutions triple = Analysis(stored_case("triple_pendulum_turning")).solve_all();
   INFO(triple.message);
   CHECK(triple.equilibria.size() == 32);
   check_list(triple);
   for (const char* name : {"soft_spirals", "soft_spirals_of_two"}) {
-    const AllSolutions all = Analysis(test_case(name)).solve_all();
+    const AllSolutions all = Analysis(stored_case(name)).solve_all();
     CAPTURE(name, all.message, all.equilibria.size());
     check_list(all);
   }
@@ -229,7 +225,7 @@ TEST_CASE("an equilibrium beside a singular pose of the loops is listed once", "
 }
 
 TEST_CASE("a search is bounded by its starts, repeats itself to the bit and can be cancelled", "[all]") {
-  const Mechanism m = test_case("soft_spirals");
+  const Mechanism m = stored_case("soft_spirals");
   SolveOptions options;
   const AllSolutions one = Analysis(m).solve_all(options), again = Analysis(m).solve_all(options);
   REQUIRE(one.equilibria.size() == again.equilibria.size());

@@ -375,7 +375,7 @@ TEST_CASE("only asked for its sign, stability says the same") {
 }
 
 TEST_CASE("eigenvalues of a mechanism with numbers far apart make its pencil singular, each") {
-  const Mechanism m = load_scene(FLYBALL_ASSETS "/../tests/cases/uninitialised_eigenvalues_of_a_pencil.json");
+  const Mechanism m = stored_case("uninitialised_eigenvalues_of_a_pencil");
   const System system = compile_for_drives(m);
   Parameters parameters;
   Scaling scaling;

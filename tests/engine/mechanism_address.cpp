@@ -4,7 +4,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/engine/mechanism_everything.hpp"
-#include "tests/engine/mechanism_random.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -15,7 +15,7 @@ using namespace flyball::test;
 
 TEST_CASE("Every address of every scene can be read and set, and changes nothing else") {
   std::vector<Mechanism> mechanisms{read_scene(everything)};
-  for (const std::string& file : shipped_scenes())
+  for (const std::string& file : shipped_files())
     mechanisms.push_back(load_scene(file));
   for (const Mechanism& original : mechanisms) {
     const std::vector<std::string> addresses = parameter_addresses(original);

@@ -3,6 +3,7 @@
 #include "engine/mechanism/scene.hpp"
 
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -18,6 +19,7 @@
 #include <unistd.h>
 
 using namespace flyball;
+using namespace flyball::test;
 namespace fs = std::filesystem;
 
 namespace {
@@ -177,7 +179,7 @@ TEST_CASE("Mistakes in a scene file begin with the file") {
 
 TEST_CASE("A scene is saved and loaded") {
   const Folder folder;
-  const Mechanism governor = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism governor = shipped("governor");
   save_scene(governor, folder / "copy.json");
   CHECK(load_scene(folder / "copy.json") == governor);
 }

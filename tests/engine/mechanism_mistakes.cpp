@@ -6,7 +6,8 @@
 
 #include "tests/catch.hpp"
 #include "tests/engine/mechanism_everything.hpp"
-#include "tests/engine/mechanism_random.hpp"
+#include "tests/support/parts.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <limits>
 
@@ -198,32 +199,12 @@ TEST_CASE("A byte order mark is no mistake") {
 
 namespace {
 
-Joint revolute(const std::string& name, const std::string& parent, const std::string& child) {
-  Joint joint;
-  joint.name = name;
-  joint.bodies = {parent, child};
-  joint.coordinates.resize(1);
-  return joint;
-}
-
-Joint gear(const std::string& name, const std::string& a, const std::string& b, double ratio) {
-  Joint joint;
-  joint.name = name;
-  joint.type = JointType::gear;
-  joint.joints = {a, b};
-  joint.ratio = ratio;
-  return joint;
-}
-
 // Wheels a, b, c on axles of the same names.
 Mechanism three_wheels() {
   Mechanism m;
   for (const char* name : {"a", "b", "c"}) {
-    Body body;
-    body.name = name;
-    body.mass = 1;
-    m.bodies.push_back(body);
-    m.joints.push_back(revolute(name, "ground", name));
+    m.bodies.push_back(body(name));
+    m.joints.push_back(revolute(name, "ground", name, {0, 0, 0}));
   }
   return m;
 }
@@ -281,7 +262,7 @@ TEST_CASE("Drives that close a loop") {
   Mechanism m = three_wheels();
   m.joints[1].bodies = {"a", "b"};
   m.joints[2].bodies = {"b", "c"};
-  m.joints.push_back(revolute("back", "c", "ground"));
+  m.joints.push_back(revolute("back", "c", "ground", {0, 0, 0}));
   for (std::size_t i = 0; i < 3; ++i)
     m.joints[i].coordinates[0].drive = Drive{1};
   CHECK(mistakes_of(m).empty());
@@ -319,7 +300,7 @@ TEST_CASE("What holds a body") {
     m.forces[0].bodies = {"c", "b"};
     CHECK_THAT(mistakes_of(m),
                ContainsSubstring("c is not connected") || ContainsSubstring("b is not connected"));
-    m.joints.push_back(revolute("second", "ground", "c"));
+    m.joints.push_back(revolute("second", "ground", "c", {0, 0, 0}));
     CHECK(mistakes_of(m).empty());
   }
   SECTION("only another body that hangs on nothing") {
@@ -366,7 +347,7 @@ TEST_CASE("After a number was set the mistakes are those that a look at all part
   std::vector<Mechanism> mechanisms{read_scene(everything)};
   std::erase_if(mechanisms.emplace_back(mechanisms[0]).joints,
                 [](const Joint& joint) { return joint.type == JointType::gear; });
-  for (const std::string& file : shipped_scenes())
+  for (const std::string& file : shipped_files())
     mechanisms.push_back(load_scene(file));
   int wrong = 0;
   for (const Mechanism& right : mechanisms) {

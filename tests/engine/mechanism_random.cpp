@@ -1,11 +1,7 @@
 #include "tests/engine/mechanism_random.hpp"
 
-#include "engine/mechanism/file.hpp"
-
-#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <filesystem>
 
 namespace flyball::test {
 
@@ -152,18 +148,6 @@ Mechanism RandomMechanism::operator()() {
   if (maybe()) m.view.camera = Camera{vector(), number(), number(), number(), description()};
   if (maybe()) m.view.description = text();
   return m;
-}
-
-std::vector<std::string> shipped_scenes() {
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(FLYBALL_ASSETS "/scenes"))
-    if (entry.path().extension() == ".json") files.push_back(entry.path().string());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-std::string text_of(const std::string& file) {
-  return read_bytes(file);
 }
 
 } // namespace flyball::test

@@ -30,8 +30,4 @@ class RandomMechanism {
   std::mt19937 engine_;
 };
 
-// The files of assets/scenes, in order.
-std::vector<std::string> shipped_scenes();
-std::string text_of(const std::string& file);
-
 } // namespace flyball::test

@@ -1,11 +1,13 @@
 // Scenes read and written.
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 
 #include "tests/catch.hpp"
 #include "tests/engine/mechanism_everything.hpp"
 #include "tests/engine/mechanism_random.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <filesystem>
 #include <limits>
@@ -14,7 +16,7 @@ using namespace flyball;
 using namespace flyball::test;
 
 TEST_CASE("The paper's values are shipped") {
-  const Mechanism pendulum = load_scene(FLYBALL_ASSETS "/scenes/pendulum.json");
+  const Mechanism pendulum = shipped("pendulum");
   CHECK(pendulum.gravity == Vec3::Zero());
   REQUIRE(pendulum.joints.size() == 3);
   CHECK(pendulum.joints[0].coordinates.at(0).drive == Drive{20});
@@ -23,7 +25,7 @@ TEST_CASE("The paper's values are shipped") {
   CHECK(pendulum.joints[2].coordinates.at(0).drawn == 1.1);
   CHECK(pendulum.bodies.at(1).mass == 0);
 
-  const Mechanism governor = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const Mechanism governor = shipped("governor");
   CHECK(governor.gravity == Vec3(0, -9.80665, 0));
   REQUIRE(governor.joints.size() == 6);
   CHECK(governor.joints[0].coordinates.at(0).drive == Drive{11.0174});
@@ -33,7 +35,7 @@ TEST_CASE("The paper's values are shipped") {
 }
 
 TEST_CASE("Every shipped scene is right, described, and written as the program writes it") {
-  const std::vector<std::string> scenes = shipped_scenes();
+  const std::vector<std::string> scenes = shipped_files();
   CHECK(scenes.size() >= 9);
   for (const std::string& file : scenes) {
     INFO(file);
@@ -42,7 +44,7 @@ TEST_CASE("Every shipped scene is right, described, and written as the program w
     CHECK_FALSE(mechanism.description.empty());
     CHECK_FALSE(mechanism.sliders.empty());
     const std::string text = write_scene(mechanism);
-    CHECK(text == text_of(file));
+    CHECK(text == read_bytes(file));
     CHECK(read_scene(text) == mechanism);
   }
 }

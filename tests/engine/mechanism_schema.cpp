@@ -11,10 +11,12 @@ TEST_CASE("The schema agrees with the reader") {
 #else
 
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
 #include "engine/mechanism/scene.hpp"
 
 #include "tests/engine/mechanism_everything.hpp"
 #include "tests/engine/mechanism_random.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <nlohmann/json.hpp>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
@@ -31,7 +33,7 @@ namespace {
 class SceneSchema {
  public:
   SceneSchema() {
-    const Json text = Json::parse(text_of(FLYBALL_ASSETS "/scene.schema.json"));
+    const Json text = Json::parse(read_bytes(FLYBALL_ASSETS "/scene.schema.json"));
     const valijson::adapters::NlohmannJsonAdapter adapter(text);
     valijson::SchemaParser(valijson::SchemaParser::kDraft7).populateSchema(adapter, schema_);
   }
@@ -112,9 +114,9 @@ void check_agreement(const SceneSchema& schema, const Json& scene) {
 
 TEST_CASE("The schema takes every shipped scene") {
   const SceneSchema schema;
-  for (const std::string& file : shipped_scenes()) {
+  for (const std::string& file : shipped_files()) {
     INFO(file);
-    CHECK(schema.accepts(Json::parse(text_of(file))));
+    CHECK(schema.accepts(Json::parse(read_bytes(file))));
   }
   CHECK(schema.accepts(Json::parse(everything)));
 }
@@ -131,7 +133,7 @@ TEST_CASE("The schema agrees with the reader on changed scenes") {
   const SceneSchema schema;
   check_agreement(schema, Json::parse(everything));
   for (const char* name : {"governor", "pendulum"})
-    check_agreement(schema, Json::parse(text_of(FLYBALL_ASSETS "/scenes/" + std::string(name) + ".json")));
+    check_agreement(schema, Json::parse(read_bytes(shipped_file(name))));
 }
 
 #endif

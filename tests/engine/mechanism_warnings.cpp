@@ -2,7 +2,7 @@
 // refused.
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
-#include "tests/engine/mechanism_parts.hpp"
+#include "tests/support/mechanisms.hpp"
 
 using namespace flyball;
 using namespace flyball::test;

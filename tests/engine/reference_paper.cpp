@@ -1,52 +1,15 @@
 // The reference against the paper's two mechanisms and a closed form.
 #include "tests/catch.hpp"
 #include "tests/engine/reference/b_matrix.hpp"
+#include "tests/support/parts.hpp"
 
 #include <cmath>
 
 using namespace flyball;
 using namespace flyball::reference;
+using namespace flyball::test;
 
 namespace {
-
-Joint revolute(const std::string& name, const std::string& parent, const std::string& child, const Vec3& at,
-               const Vec3& axis) {
-  Joint j;
-  j.name = name;
-  j.type = JointType::revolute;
-  j.bodies = {parent, child};
-  j.at = at;
-  j.axis = axis;
-  j.coordinates.resize(1);
-  return j;
-}
-
-Joint prismatic(const std::string& name, const std::string& parent, const std::string& child, const Vec3& at,
-                const Vec3& axis) {
-  Joint j = revolute(name, parent, child, at, axis);
-  j.type = JointType::prismatic;
-  return j;
-}
-
-Joint distance(const std::string& name, const std::string& a, const std::string& b, const Vec3& on_a,
-               const Vec3& on_b, double length) {
-  Joint j;
-  j.name = name;
-  j.type = JointType::distance;
-  j.bodies = {a, b};
-  j.points = {on_a, on_b};
-  j.length = length;
-  return j;
-}
-
-Body body(const std::string& name, double mass, const Vec3& position, const Vec3& inertia) {
-  Body b;
-  b.name = name;
-  b.mass = mass;
-  b.position = position;
-  b.inertia = {inertia.x(), inertia.y(), inertia.z(), 0, 0, 0};
-  return b;
-}
 
 // Section 3.1: drawn along x, the arm's tip at 1 m.
 Mechanism swing_pendulum() {

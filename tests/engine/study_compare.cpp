@@ -110,7 +110,7 @@ TEST_CASE("what is asked for is what is measured") {
 TEST_CASE("a state that only a search finds is compared like any other") {
   CompareOptions o = quick();
   o.durations = {0.05};
-  const Comparison c = compare(load_scene(FLYBALL_ASSETS "/../tests/cases/five_bodies_from_afar.json"), o);
+  const Comparison c = compare(stored_case("five_bodies_from_afar"), o);
   CAPTURE(c.message);
   CHECK(c.status == Status::converged);
   CHECK(c.answer.error < 1e-9);

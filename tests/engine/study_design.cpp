@@ -11,13 +11,6 @@ namespace {
 
 const std::string speed = "joints.spin.drive.speed";
 
-double value_at(const DesignSolution& s, const std::string& joint) {
-  for (const CoordinateSolution& c : s.at.coordinates)
-    if (c.joint == joint) return c.value;
-  FAIL(joint);
-  return 0;
-}
-
 } // namespace
 
 TEST_CASE("the speed at which a conical pendulum leans as wanted", "[design]") {
@@ -31,7 +24,7 @@ TEST_CASE("the speed at which a conical pendulum leans as wanted", "[design]") {
     const double wanted = std::sqrt(standard_gravity / (length * std::cos(angle)));
     CHECK(std::abs(s.parameter - wanted) <= s.parameter_error);
     CHECK(s.parameter_error < 1e-13);
-    CHECK(value_at(s, "swing") == Approx(angle).epsilon(1e-14));
+    CHECK(value(s.at.coordinates, "swing") == Approx(angle).epsilon(1e-14));
     CHECK(s.at.stable == true);
     CHECK(s.residual < 1e-13);
     // cos(a) = g / (w^2 L): da/dw = 2 cos(a) / (w sin(a))
@@ -136,7 +129,7 @@ TEST_CASE("what cannot be asked is refused, and cancelling ends", "[design]") {
 
 TEST_CASE("what a coordinate covers is told branch by branch") {
   // The conical pendulum below, and on its head: nothing between.
-  const Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/conical_pendulum.json");
+  const Mechanism m = shipped("conical_pendulum");
   const DesignAnswer answer = design(m, "joints.spin.drive.speed", 0, 12, "swing", 2.5);
   CHECK(answer.solutions.empty());
   CHECK(answer.message.find("-1.47335 rad to 1.47335 rad and 3.14159 rad") != std::string::npos);

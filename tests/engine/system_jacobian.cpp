@@ -3,6 +3,7 @@
 #include "tests/catch.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/engine/system_model.hpp"
+#include "tests/support/parts.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -115,26 +116,19 @@ Mechanism without_slow_drag(Mechanism m, const Eigen::VectorXd& q, double t) {
 // The part of a joint in the rig below.
 enum class Use { tree, reversed, cut };
 
-Joint make_joint(const std::string& name, JointType type, const std::string& a, const std::string& b,
-                 const Vec3& at) {
-  Joint j;
-  j.name = name;
-  j.type = type;
-  j.bodies = {a, b};
-  j.at = at;
-  j.axis = {0.3, 1.1, -0.4};
+// Every part in general position: axes and products of inertia that are nothing special, coordinates
+// labelled.
+Joint slanted(const std::string& name, JointType type, const std::string& a, const std::string& b,
+              const Vec3& at) {
+  Joint j = test::joint(type, name, a, b, at, {0.3, 1.1, -0.4});
   j.axis2 = {0.8, -0.2, 0.3};
-  j.coordinates.resize(static_cast<std::size_t>(coordinate_count(type)));
   for (std::size_t i = 0; i < j.coordinates.size(); ++i)
     j.coordinates[i].drawn = 0.2 - 0.15 * static_cast<double>(i);
   return j;
 }
 
-Body make_body(const std::string& name, double mass, const Vec3& position) {
-  Body b;
-  b.name = name;
-  b.mass = mass;
-  b.position = position;
+Body slanted(const std::string& name, double mass, const Vec3& position) {
+  Body b = test::body(name, mass, position);
   b.inertia = {0.05, 0.07, 0.04, 0.01, -0.005, 0.008};
   b.rotation = Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()));
   return b;
@@ -145,19 +139,19 @@ Body make_body(const std::string& name, double mass, const Vec3& position) {
 Mechanism rig(JointType type, Use use) {
   Mechanism m;
   m.gravity = {1, -9, 3};
-  m.bodies = {make_body("table", 3, {0.1, 0, 0.2}), make_body("sled", 2, {1, 0.3, -0.2}),
-              make_body("arm", 1.5, {0.4, 0.5, 0.1}), make_body("tool", 0.8, {0.7, 0.9, 0.2})};
-  m.joints = {make_joint("turn", JointType::revolute, "ground", "table", {0, 0, 0}),
-              make_joint("drift", JointType::cylindrical, "ground", "sled", {0.9, 0.2, 0}),
-              make_joint("shoulder", JointType::spherical, "table", "arm", {0.3, 0.2, 0.1})};
+  m.bodies = {slanted("table", 3, {0.1, 0, 0.2}), slanted("sled", 2, {1, 0.3, -0.2}),
+              slanted("arm", 1.5, {0.4, 0.5, 0.1}), slanted("tool", 0.8, {0.7, 0.9, 0.2})};
+  m.joints = {slanted("turn", JointType::revolute, "ground", "table", {0, 0, 0}),
+              slanted("drift", JointType::cylindrical, "ground", "sled", {0.9, 0.2, 0}),
+              slanted("shoulder", JointType::spherical, "table", "arm", {0.3, 0.2, 0.1})};
   m.joints[0].coordinates[0].drive = Drive{3};
   m.joints[1].axis = {-1, 0.2, 0.5};
   m.joints[1].coordinates[0].drive = Drive{-2};
   m.joints[1].coordinates[1].drive = Drive{0.4};
-  Joint joint = make_joint("joint", type, "arm", "tool", {0.5, 0.7, 0.15});
+  Joint joint = slanted("joint", type, "arm", "tool", {0.5, 0.7, 0.15});
   if (use == Use::reversed) std::swap(joint.bodies[0], joint.bodies[1]);
   if (use == Use::cut) {
-    m.joints.push_back(make_joint("hold", JointType::free, "sled", "tool", {0.8, 0.6, 0}));
+    m.joints.push_back(slanted("hold", JointType::free, "sled", "tool", {0.8, 0.6, 0}));
     if (type != JointType::distance && type != JointType::gear) joint.cut = true;
   }
   if (type == JointType::distance) joint.points = {Vec3(0.45, 0.6, 0.1), Vec3(0.7, 0.8, 0.3)};
@@ -198,14 +192,8 @@ std::vector<Dressing> dressings(const std::string& name) {
           {"damper", each([](Coordinate& c, double k) { c.damping = 2 * k; })}};
 }
 
-Force point_spring(const std::string& a, const std::string& b, const Vec3& on_a, const Vec3& on_b) {
-  Force f;
-  f.name = "force";
-  f.type = ForceType::spring;
-  f.bodies = {a, b};
-  f.points = {on_a, on_b};
-  f.stiffness = 120;
-  return f;
+Force spring_between(const std::string& a, const std::string& b, const Vec3& on_a, const Vec3& on_b) {
+  return test::point_spring("force", a, b, on_a, on_b, 120);
 }
 
 Force on_tool(ForceType type, ForceFrame frame) {
@@ -220,20 +208,20 @@ Force on_tool(ForceType type, ForceFrame frame) {
 }
 
 std::vector<std::pair<std::string, Force>> forces() {
-  Force spring = point_spring("arm", "tool", {0.3, 0.6, 0}, {0.8, 0.8, 0.4});
-  Force across = point_spring("sled", "arm", {1.1, 0.2, 0}, {0.3, 0.6, 0});
+  Force spring = spring_between("arm", "tool", {0.3, 0.6, 0}, {0.8, 0.8, 0.4});
+  Force across = spring_between("sled", "arm", {1.1, 0.2, 0}, {0.3, 0.6, 0});
   across.free_length = 0.5;
-  Force free_of_length = point_spring("table", "tool", {0, 0.1, 0.3}, {0.8, 0.8, 0.4});
+  Force free_of_length = spring_between("table", "tool", {0, 0.1, 0.3}, {0.8, 0.8, 0.4});
   free_of_length.free_length = 0;
-  Force damped = point_spring("sled", "arm", {1.1, 0.2, 0}, {0.3, 0.6, 0});
+  Force damped = spring_between("sled", "arm", {1.1, 0.2, 0}, {0.3, 0.6, 0});
   damped.damping = 7;
-  Force damper = point_spring("tool", "ground", {0.9, 0.8, 0.4}, {0.5, 2, 0});
+  Force damper = spring_between("tool", "ground", {0.9, 0.8, 0.4}, {0.5, 2, 0});
   damper.stiffness = 0;
   damper.damping = 5;
   Force damped_free = damped;
   damped_free.free_length = 0;
-  Force to_ground = point_spring("ground", "tool", {2, 0.3, 0}, {0.8, 0.8, 0.4});
-  Force between_drives = point_spring("table", "sled", {0.1, 0.4, 0}, {1.1, 0.2, 0});
+  Force to_ground = spring_between("ground", "tool", {2, 0.3, 0}, {0.8, 0.8, 0.4});
+  Force between_drives = spring_between("table", "sled", {0.1, 0.4, 0}, {1.1, 0.2, 0});
   between_drives.damping = 3;
   Force drag = on_tool(ForceType::drag, ForceFrame::world), quadratic = drag, both = drag;
   drag.linear = both.linear = 2;
@@ -299,8 +287,8 @@ TEST_CASE("the Jacobian is exact for gears between any two axes") {
       if (a == "shoulder.0") continue; // a rotation vector has no axis
       INFO(a << " to " << b);
       Mechanism m = rig(JointType::revolute, a == "hold.1" ? Use::cut : Use::reversed);
-      m.bodies.push_back(make_body("wheel", 0.5, {0.2, 1, 0}));
-      m.joints.push_back(make_joint("second", type, "wheel", "arm", {0.3, 0.8, 0}));
+      m.bodies.push_back(slanted("wheel", 0.5, {0.2, 1, 0}));
+      m.joints.push_back(slanted("second", type, "wheel", "arm", {0.3, 0.8, 0}));
       Joint gear;
       gear.name = "gear";
       gear.type = JointType::gear;

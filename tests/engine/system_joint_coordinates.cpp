@@ -1,12 +1,11 @@
 // Coordinates of joints from relative poses: against those of the tree, for every type and either order.
 #include "engine/system/joint_coordinates.hpp"
 #include "tests/catch.hpp"
-#include "tests/engine/mechanism_parts.hpp"
 #include "tests/engine/system_model.hpp"
+#include "tests/support/mechanisms.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
-using flyball::testing::Dice;
 
 namespace {
 

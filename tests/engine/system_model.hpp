@@ -4,9 +4,8 @@
 #include "engine/system/extended.hpp"
 #include "engine/system/linearization.hpp"
 #include "tests/engine/reference/b_matrix.hpp"
+#include "tests/support/dice.hpp"
 
-#include <cstdint>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -16,36 +15,7 @@ using reference::MatrixR;
 using reference::Real;
 using reference::ReferenceState;
 using reference::VectorR;
-
-// The same numbers with every standard library.
-class Dice {
- public:
-  explicit Dice(std::uint32_t seed) : engine_(seed) {}
-  double between(double from, double to) {
-    return from + (to - from) * (static_cast<double>(engine_()) + 0.5) / 4294967296.0;
-  }
-  int below(int count) { return static_cast<int>(engine_() % static_cast<std::uint32_t>(count)); }
-  bool chance(double probability) { return between(0, 1) < probability; }
-  Vec3 box(double half) {
-    const double x = between(-half, half), y = between(-half, half), z = between(-half, half);
-    return {x, y, z};
-  }
-  Quat rotation() {
-    const double angle = between(-3, 3);
-    Vec3 axis = box(1);
-    while (axis.norm() < 0.2)
-      axis = box(1);
-    return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
-  }
-  template <class T>
-  void shuffle(std::vector<T>& list) {
-    for (int i = static_cast<int>(list.size()) - 1; i > 0; --i)
-      std::swap(list[static_cast<std::size_t>(i)], list[static_cast<std::size_t>(below(i + 1))]);
-  }
-
- private:
-  std::mt19937 engine_;
-};
+using test::Dice;
 
 struct Model {
   explicit Model(const Mechanism& m, const CutChoice& choice = {});

@@ -2,12 +2,12 @@
 #include "tests/catch.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/engine/system_model.hpp"
+#include "tests/support/scenes.hpp"
 
 #include "engine/mechanism/scene.hpp"
 #include "engine/system/reactions.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 
 using namespace flyball;
@@ -178,10 +178,9 @@ RandomOptions kind(std::uint32_t seed) {
 TEST_CASE("the balance of the shipped scenes is that of eq. 20") {
   Tally tally;
   int scenes = 0;
-  for (const auto& file : std::filesystem::directory_iterator(FLYBALL_ASSETS "/scenes")) {
-    if (file.path().extension() != ".json") continue;
-    INFO(file.path());
-    compare(load_scene(file.path()), {}, 1, tally);
+  for (const std::string& file : test::shipped_files()) {
+    INFO(file);
+    compare(load_scene(file), {}, 1, tally);
     ++scenes;
   }
   CHECK(scenes >= 2);

@@ -134,7 +134,7 @@ TEST_CASE("parts are turned with rings") {
 TEST_CASE("the motion stands beside the steady state, with its plots") {
   Hand hand("governor.json");
   set_mode(hand.app, Mode::explore);
-  open_study(hand.app, Study::motion);
+  open_study(hand.app, StudyKind::motion);
   hand.frames(2);
   hand.app.playback.playing = false;
   seek_motion(hand.app, 0.55);
@@ -151,19 +151,19 @@ TEST_CASE("the landscape is drawn below the view") {
   Hand hand("conical_pendulum.json");
   set_mode(hand.app, Mode::explore);
   SECTION("response") {
-    open_study(hand.app, Study::response);
+    open_study(hand.app, StudyKind::response);
     hand.check("study-response");
   }
   SECTION("states") {
-    open_study(hand.app, Study::states);
+    open_study(hand.app, StudyKind::states);
     hand.check("study-states");
   }
   SECTION("modes") {
-    open_study(hand.app, Study::modes);
+    open_study(hand.app, StudyKind::modes);
     hand.check("study-modes");
   }
   SECTION("map") {
-    open_study(hand.app, Study::map);
+    open_study(hand.app, StudyKind::map);
     hand.check("study-map");
   }
 }

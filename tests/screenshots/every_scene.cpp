@@ -5,6 +5,7 @@
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -21,7 +22,7 @@ void check_stored(const std::string& name, const Image& image) {
 
 TEST_CASE("every shipped scene looks as it did") {
   const OffscreenContext context;
-  for (const std::filesystem::path& scene : shipped_scenes()) {
+  for (const std::filesystem::path scene : shipped_files()) {
     const std::string name = scene.stem().string();
     DYNAMIC_SECTION(name) {
       App app(steady_options());

@@ -13,14 +13,6 @@ namespace flyball::test {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> shipped_scenes() {
-  std::vector<fs::path> scenes;
-  for (const fs::directory_entry& entry : fs::directory_iterator(FLYBALL_ASSETS "/scenes"))
-    if (entry.path().extension() == ".json") scenes.push_back(entry.path());
-  std::ranges::sort(scenes);
-  return scenes;
-}
-
 AppOptions steady_options(Theme theme) {
   return {.mode = LiveSolver::Mode::immediate,
           .on_news = {},

@@ -12,7 +12,6 @@
 namespace flyball::test {
 
 // The shipped scenes, by name.
-std::vector<std::filesystem::path> shipped_scenes();
 
 // An app that shows the same on every computer: solves at once, keeps quiet about run times and does not
 // tell round-off.

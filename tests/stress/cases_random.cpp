@@ -3,8 +3,8 @@
 #include "tests/stress/scenes.hpp"
 #include "tests/stress/verdict.hpp"
 
-#include "tests/engine/mechanism_parts.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace flyball::stress {
 

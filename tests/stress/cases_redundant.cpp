@@ -2,7 +2,7 @@
 #include "tests/stress/numbers.hpp"
 #include "tests/stress/verdict.hpp"
 
-#include "tests/engine/mechanism_parts.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace flyball::stress {
 namespace {

@@ -3,7 +3,7 @@
 #include "tests/stress/scenes.hpp"
 #include "tests/stress/verdict.hpp"
 
-#include "tests/engine/mechanism_parts.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace flyball::stress {
 namespace {

@@ -1,31 +1,20 @@
-// Numbers to try: decades, random ones that are the same everywhere, and short words for them.
+// Numbers to try: decades, seeds, starts anywhere, and short words for them.
 #pragma once
 
 #include "engine/report/analysis.hpp"
+#include "tests/support/dice.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
 #include <numbers>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace flyball::stress {
 
-// The standard's distributions differ between libraries; these do not.
-class Dice {
- public:
-  explicit Dice(std::uint32_t seed) : engine_(seed) {}
-  double between(double from, double to) {
-    return from + (to - from) * (static_cast<double>(engine_()) + 0.5) / 4294967296.;
-  }
-  double decade(double from, double to) { return std::pow(10, between(from, to)); }
-
- private:
-  std::mt19937 engine_;
-};
+using test::Dice;
 
 inline std::string digits(double x) {
   char text[32];

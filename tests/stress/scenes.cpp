@@ -1,6 +1,6 @@
 #include "tests/stress/scenes.hpp"
 
-#include "tests/engine/mechanism_parts.hpp"
+#include "tests/support/mechanisms.hpp"
 
 #include "engine/mechanism/scene.hpp"
 

@@ -55,11 +55,11 @@ void point_fields(App& app, const std::string& name, Vec3& point) {
 }
 
 // The buttons below; returns whether to go ahead.
-bool accepted(App& app, const std::string& name, const char* text) {
-  ImGui::Dummy({0, 4 * app.scale});
-  const bool go = text_button(app, name + "/ok", text, true);
+bool accepted(Ui& ui, const std::string& name, const char* text) {
+  ImGui::Dummy({0, 4 * ui.scale});
+  const bool go = text_button(ui, name + "/ok", text, true);
   ImGui::SameLine();
-  if (text_button(app, name + "/cancel", "Cancel") || escape_pressed() || go) close_dialog();
+  if (text_button(ui, name + "/cancel", "Cancel") || escape_pressed() || go) close_dialog();
   return go;
 }
 

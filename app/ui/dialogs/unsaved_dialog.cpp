@@ -12,9 +12,9 @@ namespace {
 constexpr std::array unsaved_answers{Choice{"unsaved/save", "Save"}, Choice{"unsaved/discard", "Don't save"},
                                      Choice{"unsaved/cancel", "Cancel"}};
 
-std::string question(const App& app) {
-  const std::string name = document_name(app);
-  if (app.files.watch.vanished()) return name + " is no longer on disk. What is open here is in no file.";
+std::string question(const Session& session) {
+  const std::string name = document_name(session);
+  if (session.files.watch.vanished()) return name + " is no longer on disk. What is open here is in no file.";
   return name + " has changes that are not saved.";
 }
 

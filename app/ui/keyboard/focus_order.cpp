@@ -144,10 +144,10 @@ const KeyStop* row_away(std::span<const KeyStop> stops, const KeyStop& from, int
   return list[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(now + rows, 0, std::ssize(list) - 1))];
 }
 
-void bring_into_sight(const App& app, const KeyStop& stop) {
+void bring_into_sight(const Ui& ui, const KeyStop& stop) {
   ImVec2 from = stop.from, to = stop.to;
   // So that the next one of a list that draws only what is in sight is drawn, too.
-  const float more = 2.5f * ImGui::GetTextLineHeight() + 20 * app.scale;
+  const float more = 2.5f * ImGui::GetTextLineHeight() + 20 * ui.scale;
   for (ImGuiWindow* window = stop.window; window; window = window->ParentWindow) {
     const ImRect& inner = window->InnerRect;
     const float room = std::min(more, std::max(0.f, (inner.GetHeight() - (to.y - from.y)) / 2));
@@ -162,9 +162,9 @@ void bring_into_sight(const App& app, const KeyStop& stop) {
   }
 }
 
-void draw_focus_ring(const App& app, const KeyStop& stop) {
-  if (!app.keyboard.ring) return;
-  const float s = app.scale, gap = std::round(2 * s), thick = std::max(2.f, std::round(2 * s));
+void draw_focus_ring(const Ui& ui, const KeyStop& stop) {
+  if (!ui.keyboard.ring) return;
+  const float s = ui.scale, gap = std::round(2 * s), thick = std::max(2.f, std::round(2 * s));
   ImDrawList& list = *stop.window->DrawList;
   const ImRect clip = stop.window->OuterRectClipped;
   // Whole where the widget touches the rim of its window.
@@ -173,7 +173,7 @@ void draw_focus_ring(const App& app, const KeyStop& stop) {
   const ImVec2 to(std::min(stop.to.x + gap, clip.Max.x - thick / 2),
                   std::min(stop.to.y + gap, clip.Max.y - thick / 2));
   if (from.x >= to.x || from.y >= to.y) return;
-  const UiColors& colors = colors_of(app);
+  const UiColors& colors = colors_of(ui);
   list.PushClipRect(clip.Min, clip.Max, false);
   // On a rim of the panel's colour, so that it stands out from what has the accent's.
   list.AddRect(from, to, packed(colors.panel), 4 * s, 0, thick + std::max(2.f, std::round(2 * s)));
@@ -181,15 +181,15 @@ void draw_focus_ring(const App& app, const KeyStop& stop) {
   list.PopClipRect();
 }
 
-void draw_view_ring(const App& app) {
-  if (!app.keyboard.ring) return;
+void draw_view_ring(const Ui& ui) {
+  if (!ui.keyboard.ring) return;
   ImGuiWindow* window = ImGui::FindWindowByName("view");
   if (!window) return;
-  const float thick = std::max(2.f, std::round(2 * app.scale));
+  const float thick = std::max(2.f, std::round(2 * ui.scale));
   const ImRect rect = window->Rect();
   window->DrawList->PushClipRect(rect.Min, rect.Max, false);
   window->DrawList->AddRect({rect.Min.x + thick, rect.Min.y + thick},
-                            {rect.Max.x - thick, rect.Max.y - thick}, packed(colors_of(app).focus), 0, 0,
+                            {rect.Max.x - thick, rect.Max.y - thick}, packed(colors_of(ui).focus), 0, 0,
                             thick);
   window->DrawList->PopClipRect();
 }

@@ -28,8 +28,8 @@ const KeyStop* nearest_stop(std::span<const KeyStop> stops, const KeyStop& from,
 const KeyStop* row_away(std::span<const KeyStop> stops, const KeyStop& from, int rows);
 
 // Of stops of the frame that is being made.
-void bring_into_sight(const App& app, const KeyStop& stop);
-void draw_focus_ring(const App& app, const KeyStop& stop);
-void draw_view_ring(const App& app);
+void bring_into_sight(const Ui& ui, const KeyStop& stop);
+void draw_focus_ring(const Ui& ui, const KeyStop& stop);
+void draw_view_ring(const Ui& ui);
 
 } // namespace flyball

@@ -59,8 +59,8 @@ void begin_typing(KeyboardState& state, const KeyStop& stop) {
   state.ahead_frames = 2; // it is pressed in the next frame, and takes characters from the one after that
 }
 
-void go(App& app, const KeyStop& stop, bool type) {
-  KeyboardState& state = app.keyboard;
+void go(Ui& ui, const KeyStop& stop, bool type) {
+  KeyboardState& state = ui.keyboard;
   if (typed_stop(state)) ImGui::ClearActiveID(); // what was typed is taken
   state.at = stop.name;
   state.region = region_of(stop);
@@ -91,20 +91,20 @@ void go_to_region(App& app, int step) {
   if (stop) go(app, *stop, false);
 }
 
-void press(App& app, const KeyStop& stop) {
-  if (stop.use == KeyUse::type) return begin_typing(app.keyboard, stop);
+void press(Ui& ui, const KeyStop& stop) {
+  if (stop.use == KeyUse::type) return begin_typing(ui.keyboard, stop);
   if (stop.use == KeyUse::slide) {
     // Its number is typed in the field beside it.
-    if (const KeyStop* field = stop_named(app.keyboard.stops, stop.name + "/value")) go(app, *field, true);
+    if (const KeyStop* field = stop_named(ui.keyboard.stops, stop.name + "/value")) go(ui, *field, true);
     return;
   }
   imgui_compat::press_item(stop.id, false);
 }
 
 // Digits begin the number of the slider or field that has the keys.
-void begin_number(App& app, const KeyStop& stop) {
-  press(app, stop);
-  KeyboardState& state = app.keyboard;
+void begin_number(Ui& ui, const KeyStop& stop) {
+  press(ui, stop);
+  KeyboardState& state = ui.keyboard;
   if (state.ahead_frames == 0) return;
   ImVector<ImWchar>& queue = ImGui::GetIO().InputQueueCharacters;
   for (const ImWchar character : queue)
@@ -112,7 +112,7 @@ void begin_number(App& app, const KeyStop& stop) {
   queue.resize(0);
 }
 
-bool nudge(App& app, const KeyStop& stop, const KeyPress& key) {
+bool nudge(Ui& ui, const KeyStop& stop, const KeyPress& key) {
   const bool plot = stop.use == KeyUse::plot;
   KeyNudge wanted{.name = stop.name};
   wanted.size = key.shift ? 0.1 : key.ctrl ? 10 : 1;
@@ -135,32 +135,32 @@ bool nudge(App& app, const KeyStop& stop, const KeyPress& key) {
   default: break;
   }
   if (!wanted.x && !wanted.y && !wanted.end && !wanted.zoom && !wanted.fit && !wanted.enter) return false;
-  if (app.keyboard.nudge.name == stop.name) { // several in one frame
-    wanted.x += app.keyboard.nudge.x;
-    wanted.y += app.keyboard.nudge.y;
+  if (ui.keyboard.nudge.name == stop.name) { // several in one frame
+    wanted.x += ui.keyboard.nudge.x;
+    wanted.y += ui.keyboard.nudge.y;
   }
-  app.keyboard.nudged = stop.name;
-  app.keyboard.nudge = std::move(wanted);
-  app.keyboard.ring = true;
+  ui.keyboard.nudged = stop.name;
+  ui.keyboard.nudge = std::move(wanted);
+  ui.keyboard.ring = true;
   return true;
 }
 
-bool move_by_arrow(App& app, const KeyStop& stop, const KeyPress& key) {
+bool move_by_arrow(Ui& ui, const KeyStop& stop, const KeyPress& key) {
   const KeyStop* next = nullptr;
   if (key.key == keys::home || key.key == keys::end)
-    next = last_stop(app.keyboard, stop, key.key == keys::end);
+    next = last_stop(ui.keyboard, stop, key.key == keys::end);
   else if (key.key == keys::page_up || key.key == keys::page_down)
     next = stop.use == KeyUse::row
-               ? row_away(app.keyboard.stops, stop, key.key == keys::page_down ? rows_a_page : -rows_a_page)
+               ? row_away(ui.keyboard.stops, stop, key.key == keys::page_down ? rows_a_page : -rows_a_page)
                : nullptr;
   else if (is_arrow(key.key))
-    next = nearest_stop(app.keyboard.stops, stop, key.key);
+    next = nearest_stop(ui.keyboard.stops, stop, key.key);
   else
     return false;
   if (!next) return true;
-  go(app, *next, false);
+  go(ui, *next, false);
   // Parts are chosen as one goes through them; rows that do more wait for Enter.
-  if (next->use == KeyUse::row && next->name.starts_with("outline/")) press(app, *next);
+  if (next->use == KeyUse::row && next->name.starts_with("outline/")) press(ui, *next);
   return true;
 }
 
@@ -181,28 +181,28 @@ bool step_out(App& app) {
   return true;
 }
 
-bool take_stop_key(App& app, const KeyStop& stop, const KeyPress& key) {
-  KeyboardState& state = app.keyboard;
+bool take_stop_key(Ui& ui, const KeyStop& stop, const KeyPress& key) {
+  KeyboardState& state = ui.keyboard;
   const bool number = stop.use == KeyUse::slide || stop.use == KeyUse::type;
-  if ((stop.use == KeyUse::slide || stop.use == KeyUse::plot) && nudge(app, stop, key)) return true;
+  if ((stop.use == KeyUse::slide || stop.use == KeyUse::plot) && nudge(ui, stop, key)) return true;
   if (!key.ctrl && (key.key == keys::menu || (key.shift && key.key == keys::f10))) {
     state.menu_of = stop.name;
     return true;
   }
-  if (move_by_arrow(app, stop, key)) return true;
+  if (move_by_arrow(ui, stop, key)) return true;
   if (!state.ring) return false;
   if (key.key == keys::enter || (key.key == ' ' && !key.ctrl && stop.use != KeyUse::plot)) {
-    press(app, stop);
+    press(ui, stop);
     return true;
   }
   if (key.ctrl) return number && (key.key == 'X' || key.key == 'V'); // it is not the part that is meant
   if (key.key == keys::f2 && number) {
-    press(app, stop);
+    press(ui, stop);
     return true;
   }
   if (key.key == keys::del || key.key == keys::backspace) return number;
   if (!is_digit_or_sign(key.key)) return false;
-  if (number) begin_number(app, stop);
+  if (number) begin_number(ui, stop);
   return true; // the beginning of a number is no command
 }
 
@@ -239,8 +239,8 @@ bool take_focus_key(App& app, const KeyPress& key) {
 }
 
 // A popup that opens has the keys, and gives them back when it goes.
-void follow_popups(App& app) {
-  KeyboardState& state = app.keyboard;
+void follow_popups(Ui& ui) {
+  KeyboardState& state = ui.keyboard;
   const auto open = static_cast<std::size_t>(ImGui::GetCurrentContext()->OpenPopupStack.Size);
   while (state.behind.size() < open) {
     state.behind.emplace_back(state.at, state.ring);
@@ -262,17 +262,17 @@ void follow_popups(App& app) {
   const auto chosen = std::ranges::find_if(
       state.stops, [&](const KeyStop& each) { return each.chosen && region_of(each) == popup; });
   if (chosen != state.stops.end())
-    go(app, *chosen, false);
+    go(ui, *chosen, false);
   else if (const KeyStop* first = tab_stop(state, popup, nullptr, 1))
-    go(app, *first, false);
+    go(ui, *first, false);
 }
 
 // A click takes the keys to what was clicked, without a ring.
-void follow_clicks(App& app) {
-  KeyboardState& state = app.keyboard;
+void follow_clicks(Ui& ui) {
+  KeyboardState& state = ui.keyboard;
   const ImGuiIO& io = ImGui::GetIO();
   const bool clicked = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
-  if (!app.keys.empty()) state.by_key = true;
+  if (!ui.keys.empty()) state.by_key = true;
   const bool moved = io.MousePos.x != state.mouse.x || io.MousePos.y != state.mouse.y;
   if (moved || io.MouseWheel != 0 || clicked) state.by_key = false;
   state.mouse = io.MousePos;
@@ -292,9 +292,9 @@ void follow_clicks(App& app) {
 }
 
 // Of a region that has gone, or of a widget that has.
-void find_another(App& app) {
-  KeyboardState& state = app.keyboard;
-  const std::vector<KeyStop>& stops = app.widgets.stops;
+void find_another(Ui& ui) {
+  KeyboardState& state = ui.keyboard;
+  const std::vector<KeyStop>& stops = ui.widgets.stops;
   const KeyStop* nearest = nullptr;
   for (std::size_t i = 0; i < stops.size(); ++i)
     if (region_of(stops[i]) == state.region && stops[i].use != KeyUse::aside &&
@@ -331,15 +331,15 @@ void take_keyboard(App& app) {
   std::erase_if(app.keys, [&](const KeyPress& key) { return take_focus_key(app, key); });
 }
 
-void settle_keyboard(App& app) {
-  KeyboardState& state = app.keyboard;
+void settle_keyboard(Ui& ui) {
+  KeyboardState& state = ui.keyboard;
   state.menu_of.clear();
   if (!state.sought.empty() && --state.sought_frames < 0) state.sought.clear();
-  const std::vector<KeyStop>& stops = app.widgets.stops;
+  const std::vector<KeyStop>& stops = ui.widgets.stops;
   const auto found = std::ranges::find(stops, state.at, &KeyStop::name);
-  if (state.at.empty()) return draw_view_ring(app);
+  if (state.at.empty()) return draw_view_ring(ui);
   if (found == stops.end()) {
-    if (++state.missing > patience_to_draw) find_another(app);
+    if (++state.missing > patience_to_draw) find_another(ui);
     return;
   }
   state.missing = 0;
@@ -347,21 +347,21 @@ void settle_keyboard(App& app) {
   state.region = region_of(*found);
   if (state.reveal > 0) {
     --state.reveal;
-    bring_into_sight(app, *found);
+    bring_into_sight(ui, *found);
   }
-  draw_focus_ring(app, *found);
+  draw_focus_ring(ui, *found);
 }
 
-void focus_widget(App& app, const std::string& name) {
-  app.keyboard.at = name;
-  app.keyboard.ring = true;
-  app.keyboard.reveal = 4;
-  app.keyboard.missing = 0;
+void focus_widget(Ui& ui, const std::string& name) {
+  ui.keyboard.at = name;
+  ui.keyboard.ring = true;
+  ui.keyboard.reveal = 4;
+  ui.keyboard.missing = 0;
 }
 
-void seek_number(App& app, const std::string& address) {
-  app.keyboard.sought = address;
-  app.keyboard.sought_frames = patience_to_draw;
+void seek_number(Ui& ui, const std::string& address) {
+  ui.keyboard.sought = address;
+  ui.keyboard.sought_frames = patience_to_draw;
 }
 
 void note_number(App& app, const std::string& name, const std::string& address) {
@@ -373,20 +373,20 @@ void note_number(App& app, const std::string& name, const std::string& address) 
   if (name.starts_with("inspector/") && !state.section.empty()) app.inspector.open[state.section] = true;
 }
 
-void enter_dialog_at(App& app, const std::string& name) {
-  app.keyboard.entry = name;
+void enter_dialog_at(Ui& ui, const std::string& name) {
+  ui.keyboard.entry = name;
 }
 
-bool has_keyboard(const App& app, const std::string& name) {
-  return app.keyboard.ring && app.keyboard.at == name;
+bool has_keyboard(const Ui& ui, const std::string& name) {
+  return ui.keyboard.ring && ui.keyboard.at == name;
 }
 
-const KeyNudge* nudge_of(const App& app, const std::string& name) {
-  return app.keyboard.nudge.name == name ? &app.keyboard.nudge : nullptr;
+const KeyNudge* nudge_of(const Ui& ui, const std::string& name) {
+  return ui.keyboard.nudge.name == name ? &ui.keyboard.nudge : nullptr;
 }
 
-bool nudge_value(const App& app, const std::string& name, double& value, double from, double to) {
-  const KeyNudge* nudge = nudge_of(app, name);
+bool nudge_value(const Ui& ui, const std::string& name, double& value, double from, double to) {
+  const KeyNudge* nudge = nudge_of(ui, name);
   if (!nudge || !(to > from)) return false;
   double next = value + nudge->x * nudge->size * (to - from) / 100;
   if (nudge->end != 0) next = nudge->end < 0 ? from : to;
@@ -394,27 +394,27 @@ bool nudge_value(const App& app, const std::string& name, double& value, double 
   return std::exchange(value, next) != next;
 }
 
-bool takes_menu_key(App& app, const std::string& name) {
-  if (app.keyboard.menu_of != name || name.empty()) return false;
-  app.keyboard.menu_of.clear();
+bool takes_menu_key(Ui& ui, const std::string& name) {
+  if (ui.keyboard.menu_of != name || name.empty()) return false;
+  ui.keyboard.menu_of.clear();
   return true;
 }
 
-bool enter_is_taken(const App& app) {
-  const KeyStop* stop = stop_named(app.keyboard.stops, app.keyboard.at);
-  return app.keyboard.ring && stop && region_of(*stop) == popup_region();
+bool enter_is_taken(const Ui& ui) {
+  const KeyStop* stop = stop_named(ui.keyboard.stops, ui.keyboard.at);
+  return ui.keyboard.ring && stop && region_of(*stop) == popup_region();
 }
 
-bool goes_on_nudging(const App& app) {
-  const KeyboardState& state = app.keyboard;
-  return !app.keys.empty() && state.ring && !state.at.empty() && state.nudged == state.at &&
-         std::ranges::all_of(app.keys, [](const KeyPress& key) {
+bool goes_on_nudging(const Ui& ui) {
+  const KeyboardState& state = ui.keyboard;
+  return !ui.keys.empty() && state.ring && !state.at.empty() && state.nudged == state.at &&
+         std::ranges::all_of(ui.keys, [](const KeyPress& key) {
            return is_arrow(key.key) || key.key == keys::page_up || key.key == keys::page_down;
          });
 }
 
-std::string focused_address(const App& app) {
-  const KeyStop* stop = stop_named(app.keyboard.stops, app.keyboard.at);
+std::string focused_address(const Ui& ui) {
+  const KeyStop* stop = stop_named(ui.keyboard.stops, ui.keyboard.at);
   return stop ? stop->address : std::string();
 }
 

@@ -17,29 +17,29 @@ void take_keyboard(App& app);
 // the tools have had theirs.
 void take_view_keys(App& app);
 // After everything is drawn: brings the focused widget into sight and draws the ring.
-void settle_keyboard(App& app);
+void settle_keyboard(Ui& ui);
 
 // The widget gets the keys as soon as it is drawn.
-void focus_widget(App& app, const std::string& name);
+void focus_widget(Ui& ui, const std::string& name);
 // The same of a dialog that is opening: what had them before gets them back.
-void enter_dialog_at(App& app, const std::string& name);
-bool has_keyboard(const App& app, const std::string& name);
+void enter_dialog_at(Ui& ui, const std::string& name);
+bool has_keyboard(const Ui& ui, const std::string& name);
 // The slider or field of the number at this address gets the keys when it is drawn; the inspector opens the
 // section that it is in.
-void seek_number(App& app, const std::string& address);
+void seek_number(Ui& ui, const std::string& address);
 // Of a field or slider of that number, while it is drawn.
 void note_number(App& app, const std::string& name, const std::string& address);
 // What keys do to this slider or plot in this frame; null: nothing.
-const KeyNudge* nudge_of(const App& app, const std::string& name);
+const KeyNudge* nudge_of(const Ui& ui, const std::string& name);
 // What keys make of a slider's value between its ends, in hundredths of the way; whether it is another.
-bool nudge_value(const App& app, const std::string& name, double& value, double from, double to);
+bool nudge_value(const Ui& ui, const std::string& name, double& value, double from, double to);
 // Whether the widget's context menu is asked for by a key; asks once.
-bool takes_menu_key(App& app, const std::string& name);
+bool takes_menu_key(Ui& ui, const std::string& name);
 // Whether Enter presses the focused widget of a dialog rather than what the dialog takes it for.
-bool enter_is_taken(const App& app);
+bool enter_is_taken(const Ui& ui);
 // Whether this frame's keys go on with a movement of a slider that began before.
-bool goes_on_nudging(const App& app);
+bool goes_on_nudging(const Ui& ui);
 // The number that the focused widget shows; empty: none.
-std::string focused_address(const App& app);
+std::string focused_address(const Ui& ui);
 
 } // namespace flyball

@@ -11,8 +11,8 @@ namespace {
 
 constexpr const char* submenu = "menu/recent";
 
-void open_menu(App& app, int menu) {
-  KeyboardState& state = app.keyboard;
+void open_menu(Ui& ui, int menu) {
+  KeyboardState& state = ui.keyboard;
   const auto titles = menu_titles();
   // What had the keys before the first menu has them afterwards.
   if (ImGui::GetCurrentContext()->OpenPopupStack.Size > 0) {
@@ -44,8 +44,8 @@ bool take_alt(App& app, const KeyPress& key) {
   return true;
 }
 
-bool take_menu_arrow(App& app, const KeyStop* stop, const KeyPress& key) {
-  const KeyboardState& state = app.keyboard;
+bool take_menu_arrow(Ui& ui, const KeyStop* stop, const KeyPress& key) {
+  const KeyboardState& state = ui.keyboard;
   if (state.menu < 0 || (key.key != keys::left && key.key != keys::right)) return false;
   const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
   if (key.key == keys::left && open > 1) {
@@ -57,7 +57,7 @@ bool take_menu_arrow(App& app, const KeyStop* stop, const KeyPress& key) {
     return true;
   }
   const int count = static_cast<int>(std::ssize(menu_titles()));
-  open_menu(app, (state.menu + (key.key == keys::right ? 1 : count - 1)) % count);
+  open_menu(ui, (state.menu + (key.key == keys::right ? 1 : count - 1)) % count);
   return true;
 }
 

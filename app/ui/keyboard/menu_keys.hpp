@@ -8,6 +8,6 @@ namespace flyball {
 // Alt alone, or Alt with a letter.
 bool take_alt(App& app, const KeyPress& key);
 // Left and right, from menu to menu of the bar and into menus of menus.
-bool take_menu_arrow(App& app, const KeyStop* stop, const KeyPress& key);
+bool take_menu_arrow(Ui& ui, const KeyStop* stop, const KeyPress& key);
 
 } // namespace flyball

@@ -68,12 +68,12 @@ void point_results(App& app, const Body& body) {
 }
 
 // Above and below what is told of one body, so that it is not read as part of its neighbours.
-void line_across(App& app) {
-  const float s = app.scale, width = ImGui::GetContentRegionAvail().x;
+void line_across(Ui& ui) {
+  const float s = ui.scale, width = ImGui::GetContentRegionAvail().x;
   ImGui::Dummy({width, 5 * s});
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   ImGui::GetWindowDrawList()->AddRectFilled({from.x, to.y - std::max(1.f, std::round(s))}, to,
-                                            packed(colors_of(app).border));
+                                            packed(colors_of(ui).border));
 }
 
 } // namespace

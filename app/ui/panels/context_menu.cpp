@@ -34,11 +34,11 @@ void command_items(App& app, std::initializer_list<const char*> ids) {
     command_item(app, id);
 }
 
-void menu_title(App& app, const std::string& name, const std::string& what) {
-  ImGui::PushFont(app.fonts.strong);
+void menu_title(Ui& ui, const std::string& name, const std::string& what) {
+  ImGui::PushFont(ui.fonts.strong);
   ImGui::TextUnformatted(name.c_str());
   ImGui::PopFont();
-  note_widget(app.widgets, "view/menu/title");
+  note_widget(ui.widgets, "view/menu/title");
   if (!what.empty()) {
     ImGui::SameLine();
     ImGui::TextDisabled("%s", what.c_str());
@@ -158,11 +158,10 @@ void view_items(App& app) {
 
 // Where a key has asked for it: at the selected part, else in the middle of the view.
 ImVec2 place_for_key(App& app, const ViewInput& input) {
-  const ViewFrame frame = view_frame(app);
+  const std::vector<PartId> selected = find_parts(*shown_mechanism(app), app.selection());
   Bounds bounds;
   for (const Instance& instance : shown_scene(app)->solid.instances)
-    if (!frame.selected.empty() && instance.part == frame.selected.back())
-      bounds.add(instance_bounds(instance));
+    if (!selected.empty() && instance.part == selected.back()) bounds.add(instance_bounds(instance));
   const auto at = bounds.empty ? std::nullopt : input.on_screen(bounds.center());
   return at.value_or(ImVec2(input.rect.x + input.rect.width / 2, input.rect.y + input.rect.height / 2));
 }
@@ -186,7 +185,7 @@ void context_menu(App& app, const ViewInput& input) {
   if (input.menu && !app.tool.grab) {
     const auto hit = part_under_cursor(app, input);
     if (hit) {
-      Part part = part_of(*view_frame(app).mechanism, hit->part);
+      Part part = part_of(*shown_mechanism(app), hit->part);
       if (!app.selection().has(part)) select(app, {{std::move(part)}});
     }
     const ImVec2 at = ImGui::GetIO().MousePos;

@@ -11,9 +11,9 @@ namespace flyball {
 
 namespace {
 
-std::string motion_words(const App& app) {
-  if (moving_mode(app)) return "Swinging in mode " + std::to_string(*app.study.modes.chosen + 1);
-  return motion_words(app, shown_motion(app));
+std::string motion_words(const Session& session) {
+  if (moving_mode(session)) return "Swinging in mode " + std::to_string(*session.study.modes.chosen + 1);
+  return motion_words(session, shown_motion(session));
 }
 
 // A dashed frame, as the drawn pose has.
@@ -48,8 +48,8 @@ void draw_mark(const App& app, LegendMark mark, ImVec2 from, ImVec2 to) {
 namespace {
 
 std::vector<LegendRow> pose_rows(App& app) {
-  if (app.mechanism().bodies.empty()) return {};
-  const ViewScene& scene = *shown_scene(app);
+  if (app.mechanism().bodies.empty() || !app.view.scene.scene) return {};
+  const ViewScene& scene = *app.view.scene.scene;
   const bool apart = !scene.drawn.empty(); // the two poses differ
   std::vector<LegendRow> rows;
   if (app.mode == Mode::build) {
@@ -61,7 +61,7 @@ std::vector<LegendRow> pose_rows(App& app) {
     return rows;
   }
   if (!converged(app)) {
-    const bool moves = !view_frame(app).poses.empty();
+    const bool moves = !app.view.scene.source.poses.empty();
     rows.push_back({LegendMark::solid, moves ? motion_words(app) : std::string("Drawn pose")});
     return rows;
   }
@@ -76,7 +76,7 @@ std::vector<LegendRow> pose_rows(App& app) {
 std::vector<LegendRow> legend_rows(App& app) {
   std::vector<LegendRow> rows = pose_rows(app);
   if (rows.empty()) return rows;
-  if (const std::size_t hidden = view_frame(app).hidden.size())
+  if (const std::size_t hidden = app.view.scene.source.hidden.size())
     rows.push_back({.mark = LegendMark::note,
                     .words = std::to_string(hidden) + (hidden == 1 ? " part hidden" : " parts hidden"),
                     .help = "View, Show all brings hidden parts back (Ctrl+Shift+H)."});

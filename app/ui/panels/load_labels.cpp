@@ -62,6 +62,13 @@ std::string load_components_text(const Load& load) {
   return text + (load.moment ? " N m" : " N");
 }
 
+// Whether it is a reaction that redundant loops share out in many ways.
+bool is_one_of_many(const Solution& solution, const std::string& part, const Load& load) {
+  return load.kind == LoadKind::reaction && std::ranges::any_of(solution.reactions, [&](const Reaction& r) {
+           return r.nonunique && r.joint == part;
+         });
+}
+
 // What else is drawn over the view.
 std::vector<LabelBox> taken_by_others(const App& app, const PanelRect& rect) {
   std::vector<LabelBox> taken;
@@ -100,9 +107,10 @@ std::optional<LabelBox> free_place(ImVec2 best, ImVec2 half, const LabelBox& roo
 } // namespace
 
 void load_labels(App& app, const PanelRect& rect) {
-  const ViewFrame frame = view_frame(app);
-  if (!frame.loads || frame.loads_body < 0) return;
-  const ViewScene& scene = *shown_scene(app);
+  const ShownScene& shown = app.view.scene;
+  if (!shown.scene || !shown.source.loads || shown.source.loads_body < 0) return;
+  const ViewScene& scene = *shown.scene;
+  const ViewCamera& camera = app.view.camera;
   const ViewSize size{static_cast<double>(rect.width), static_cast<double>(rect.height)};
   const UiColors& colors = colors_of(app);
   const float s = app.scale, pad = 4 * s;
@@ -115,9 +123,9 @@ void load_labels(App& app, const PanelRect& rect) {
   std::vector<LabelBox> taken = taken_by_others(app, rect);
   for (const LoadArrow& arrow : scene.arrows.arrows) {
     const Load& load = scene.loads[arrow.load];
-    const auto tail = frame.camera.project(arrow.from, size), tip = frame.camera.project(arrow.to, size);
+    const auto tail = camera.project(arrow.from, size), tip = camera.project(arrow.to, size);
     if (!tail || !tip) continue;
-    const std::string words = short_load_name(*frame.mechanism, load) + " " + load_value_text(load);
+    const std::string words = short_load_name(*shown.mechanism, load) + " " + load_value_text(load);
     const ImVec2 text = font.CalcTextSizeA(font.FontSize, 1e9f, 0, words.c_str());
     const ImVec2 half(text.x / 2 + pad + 2 * s, text.y / 2 + s);
     Vec2 away = *tip - *tail;
@@ -144,20 +152,24 @@ void load_labels(App& app, const PanelRect& rect) {
 
 bool load_tooltip(App& app, const ViewInput& input) {
   if (!input.hovered || places(app.tool.tool)) return false;
-  const ViewScene& scene = *shown_scene(app);
-  if (scene.arrows.solids.empty()) return false;
+  const ShownScene& shown = app.view.scene;
+  if (!shown.scene || shown.scene->arrows.solids.empty()) return false;
+  const ViewScene& scene = *shown.scene;
   const auto hit = pick(scene.arrows.solids, input.ray(), 3 * input.point);
   if (!hit) return false;
   const Load& load = scene.loads[scene.arrows.arrows[scene.arrows.arrow_of[hit->instance]].load];
-  const Mechanism& mechanism = *view_frame(app).mechanism;
   ImGui::BeginTooltip();
   ImGui::PushFont(app.fonts.strong);
-  ImGui::TextUnformatted(long_load_name(mechanism, load).c_str());
+  ImGui::TextUnformatted(long_load_name(*shown.mechanism, load).c_str());
   ImGui::PopFont();
   ImGui::SameLine();
   ImGui::TextUnformatted(load_value_text(load).c_str());
   note_widget(app.widgets, "load/pointed");
   ImGui::TextDisabled("%s", load_components_text(load).c_str());
+  if (is_one_of_many(app.answer.solution, load_part_name(*shown.mechanism, load), load)) {
+    ImGui::TextUnformatted("The loops hold more than they need: the smallest of many.");
+    note_widget(app.widgets, "load/nonunique");
+  }
   ImGui::EndTooltip();
   return true;
 }

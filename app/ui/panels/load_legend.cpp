@@ -45,17 +45,17 @@ std::string load_size_words(double size, bool moment) {
   return short_text(size, 4) + (moment ? " N m" : " N");
 }
 
-LegendRow load_row(const App& app, const LoadScales& scales, LoadKind kind, bool moment, double pixel,
+LegendRow load_row(const Ui& ui, const LoadScales& scales, LoadKind kind, bool moment, double pixel,
                    bool diagram) {
   const double largest = scales.largest(kind, moment);
-  const double fits = scales.size(kind, moment, static_cast<double>(longest_sample * app.scale) * pixel);
+  const double fits = scales.size(kind, moment, static_cast<double>(longest_sample * ui.scale) * pixel);
   const double sample = round_below(std::min(fits, largest));
   LegendRow row;
   row.mark = LegendMark::load;
   row.load = kind;
   row.moment = moment;
   row.length =
-      std::max(static_cast<float>(scales.length(kind, moment, sample) / pixel), shortest_sample * app.scale);
+      std::max(static_cast<float>(scales.length(kind, moment, sample) / pixel), shortest_sample * ui.scale);
   row.words = load_size_words(sample, moment) + ": " + load_name(kind) + ", up to " +
               load_size_words(largest, moment);
   row.help = load_help(kind, moment, diagram);
@@ -85,13 +85,13 @@ void add_load_rows(App& app, std::vector<LegendRow>& rows) {
     rows.push_back({.mark = LegendMark::note, .words = std::move(words)});
   };
   if (const std::string missing = loads_missing(app); !missing.empty()) return note(missing);
-  const ViewFrame frame = view_frame(app);
-  if (!frame.loads) return;
-  const ViewScene& scene = *shown_scene(app);
-  const bool diagram = frame.loads_body >= 0;
+  const ShownScene& shown = app.view.scene;
+  if (!shown.scene || !shown.source.loads) return;
+  const ViewScene& scene = *shown.scene;
+  const bool diagram = shown.source.loads_body >= 0;
   const double pixel = app.view.camera.pixel_size(app.view.size);
   if (diagram)
-    note("Free body: " + frame.mechanism->bodies[static_cast<std::size_t>(frame.loads_body)].name +
+    note("Free body: " + shown.mechanism->bodies[static_cast<std::size_t>(shown.source.loads_body)].name +
          ", adds up to zero");
   const std::size_t before = rows.size();
   for (const LoadKind kind : {LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::weight,
@@ -105,11 +105,11 @@ void add_load_rows(App& app, std::vector<LegendRow>& rows) {
     note("Twice as long: eight times as much");
 }
 
-void draw_load_mark(const App& app, const LegendRow& row, ImVec2 from, float height) {
+void draw_load_mark(const Ui& ui, const LegendRow& row, ImVec2 from, float height) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float s = app.scale, middle = std::round(from.y + height / 2), head = 7 * s, half = 3.2f * s;
+  const float s = ui.scale, middle = std::round(from.y + height / 2), head = 7 * s, half = 3.2f * s;
   const float tip = from.x + row.length;
-  const ImU32 color = packed(load_color(row.load, palette(app.theme)), 1);
+  const ImU32 color = packed(load_color(row.load, palette(ui.theme)), 1);
   const auto cone = [&](float at) {
     list.AddTriangleFilled({at - head, middle - half}, {at, middle}, {at - head, middle + half}, color);
   };

@@ -36,10 +36,10 @@ PaletteEntry part_entry(PartKind kind, const std::string& name, const std::strin
   return entry;
 }
 
-void read_mechanism(const App& app, PaletteIndex& index) {
-  if (index.revision == app.document.revision()) return;
-  const Mechanism& mechanism = app.mechanism();
-  index = {.revision = app.document.revision(), .entries = {}, .search = {}, .found = {}, .fresh = false};
+void read_mechanism(const Session& session, PaletteIndex& index) {
+  if (index.revision == session.document.revision()) return;
+  const Mechanism& mechanism = session.mechanism();
+  index = {.revision = session.document.revision(), .entries = {}, .search = {}, .found = {}, .fresh = false};
   for (const Body& body : mechanism.bodies)
     index.entries.push_back(part_entry(PartKind::body, body.name, "body"));
   for (const Joint& joint : mechanism.joints)
@@ -80,18 +80,18 @@ std::pair<std::string, std::string> words_and_number(const std::string& search) 
   return {search, ""};
 }
 
-std::string number_words(const App& app, const std::string& si_unit, double value) {
-  const ShownUnit unit = shown_unit(si_unit, app.units);
+std::string number_words(const Session& session, const std::string& si_unit, double value) {
+  const ShownUnit unit = shown_unit(si_unit, session.units);
   return short_text(unit.shown(value), 6) + (unit.text.empty() ? "" : " " + unit.text);
 }
 
-void describe_number(const App& app, PaletteEntry& entry) {
-  const std::string unit = parameter_unit(app.mechanism(), entry.address);
-  const double now = get_parameter(app.mechanism(), entry.address);
-  entry.right = number_words(app, unit, now);
+void describe_number(const Session& session, PaletteEntry& entry) {
+  const std::string unit = parameter_unit(session.mechanism(), entry.address);
+  const double now = get_parameter(session.mechanism(), entry.address);
+  entry.right = number_words(session, unit, now);
   entry.about = "go to it; with a number behind its name, set it";
   if (!entry.value) return;
-  entry.right += " → " + number_words(app, unit, *entry.value);
+  entry.right += " → " + number_words(session, unit, *entry.value);
   entry.about = "Enter sets it";
 }
 
@@ -147,7 +147,7 @@ Part part_of_address(const std::string& address) {
 }
 
 void fit_part(App& app, const Part& part) {
-  const PartId id = find_part(*view_frame(app).mechanism, part);
+  const PartId id = find_part(*shown_mechanism(app), part);
   const SceneList& scene = shown_scene(app)->solid;
   Bounds bounds;
   for (const Instance& instance : scene.instances)

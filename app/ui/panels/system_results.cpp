@@ -8,9 +8,9 @@ namespace flyball {
 
 namespace {
 
-void list_of(App& app, const char* title, const std::vector<std::string>& words, const ImVec4& color) {
+void list_of(Ui& ui, const char* title, const std::vector<std::string>& words, const ImVec4& color) {
   if (words.empty()) return;
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(ui.fonts.strong);
   ImGui::TextUnformatted(title);
   ImGui::PopFont();
   for (const std::string& word : words)

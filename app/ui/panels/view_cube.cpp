@@ -54,9 +54,9 @@ struct CubeDrawing {
   }
 };
 
-ImVec2 cube_middle(const App& app, const PanelRect& view) {
-  const float half = cube_side / 2 * app.scale;
-  return {std::round(view.x + half + 2 * app.scale), std::round(view.y + view.height - half - 2 * app.scale)};
+ImVec2 cube_middle(const Ui& ui, const PanelRect& view) {
+  const float half = cube_side / 2 * ui.scale;
+  return {std::round(view.x + half + 2 * ui.scale), std::round(view.y + view.height - half - 2 * ui.scale)};
 }
 
 // Dear ImGui smooths the edges of what goes round clockwise.

@@ -15,8 +15,8 @@ namespace {
 
 constexpr float ring_margin = 1.5f; // points, in the background's colour
 
-Color background(const App& app) {
-  return palette(app.theme).background_top;
+Color background(const Ui& ui) {
+  return palette(ui.theme).background_top;
 }
 
 } // namespace
@@ -37,48 +37,48 @@ void draw_line(const App& app, ImVec2 from, ImVec2 to, const Color& color, float
   draw_lines(app, points, color, width, false, alpha);
 }
 
-void draw_lines(const App& app, std::span<const ImVec2> points, const Color& color, float width, bool closed,
+void draw_lines(const Ui& ui, std::span<const ImVec2> points, const Color& color, float width, bool closed,
                 float alpha) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const int count = static_cast<int>(points.size());
   const ImDrawFlags flags = closed ? ImDrawFlags_Closed : ImDrawFlags_None;
-  list.AddPolyline(points.data(), count, packed(background(app), 0.7f * alpha), flags,
-                   (width + 2 * ring_margin) * app.scale);
-  list.AddPolyline(points.data(), count, packed(color, alpha), flags, width * app.scale);
+  list.AddPolyline(points.data(), count, packed(background(ui), 0.7f * alpha), flags,
+                   (width + 2 * ring_margin) * ui.scale);
+  list.AddPolyline(points.data(), count, packed(color, alpha), flags, width * ui.scale);
 }
 
-void draw_dot(const App& app, ImVec2 at, float radius, bool open) {
+void draw_dot(const Ui& ui, ImVec2 at, float radius, bool open) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float s = app.scale;
-  const Color& accent = palette(app.theme).accent;
+  const float s = ui.scale;
+  const Color& accent = palette(ui.theme).accent;
   if (open) {
-    list.AddCircle(at, radius * s, packed(background(app), 0.7f), 0, 5 * s);
+    list.AddCircle(at, radius * s, packed(background(ui), 0.7f), 0, 5 * s);
     list.AddCircle(at, radius * s, packed(accent), 0, 2 * s);
     return;
   }
-  list.AddCircleFilled(at, (radius + ring_margin) * s, packed(background(app), 0.8f));
+  list.AddCircleFilled(at, (radius + ring_margin) * s, packed(background(ui), 0.8f));
   list.AddCircleFilled(at, radius * s, packed(accent));
 }
 
-void draw_square(const App& app, ImVec2 at, float half, bool lit) {
+void draw_square(const Ui& ui, ImVec2 at, float half, bool lit) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float s = app.scale, h = std::round((lit ? half + 1.5f : half) * s);
+  const float s = ui.scale, h = std::round((lit ? half + 1.5f : half) * s);
   const ImVec2 from(std::round(at.x) - h, std::round(at.y) - h),
       to(std::round(at.x) + h, std::round(at.y) + h);
-  const UiColors& colors = colors_of(app);
+  const UiColors& colors = colors_of(ui);
   list.AddRectFilled(from, to, packed(lit ? colors.accent : colors.panel), 1.5f * s);
   list.AddRect(from, to, packed(colors.accent), 1.5f * s, 0, 1.5f * s);
 }
 
-void draw_tag(const App& app, const ViewInput& input, Vec2 beside, const std::string& words,
+void draw_tag(const Ui& ui, const ViewInput& input, Vec2 beside, const std::string& words,
               const std::string& numbers) {
   if (words.empty() && numbers.empty()) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, pad = 6 * s, leading = 2 * s;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, pad = 6 * s, leading = 2 * s;
   const auto size_of = [](const ImFont* font, const std::string& text) {
     return text.empty() ? ImVec2(0, 0) : font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str());
   };
-  const ImVec2 upper = size_of(app.fonts.text, words), lower = size_of(app.fonts.digits, numbers);
+  const ImVec2 upper = size_of(ui.fonts.text, words), lower = size_of(ui.fonts.digits, numbers);
   const float gap = words.empty() || numbers.empty() ? 0 : leading;
   const ImVec2 size(std::max(upper.x, lower.x) + 2 * pad, upper.y + gap + lower.y + pad);
   const ImVec2 at = input.on_screen(beside);
@@ -96,10 +96,10 @@ void draw_tag(const App& app, const ViewInput& input, Vec2 beside, const std::st
   list.AddRect(from, to, packed(colors.border), 4 * s, 0, std::max(1.f, std::round(s)));
   const float y = from.y + pad / 2;
   if (!words.empty())
-    list.AddText(app.fonts.text, app.fonts.text->FontSize, {from.x + pad, y}, packed(colors.text),
+    list.AddText(ui.fonts.text, ui.fonts.text->FontSize, {from.x + pad, y}, packed(colors.text),
                  words.c_str());
   if (!numbers.empty())
-    list.AddText(app.fonts.digits, app.fonts.digits->FontSize, {from.x + pad, y + upper.y + gap},
+    list.AddText(ui.fonts.digits, ui.fonts.digits->FontSize, {from.x + pad, y + upper.y + gap},
                  packed(words.empty() ? colors.text : colors.dim), numbers.c_str());
 }
 

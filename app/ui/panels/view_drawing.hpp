@@ -15,14 +15,14 @@ Color axis_color(Theme theme, int axis);
 
 // With a margin in the background's colour, so that it is seen before anything.
 void draw_line(const App& app, ImVec2 from, ImVec2 to, const Color& color, float width, float alpha = 1);
-void draw_lines(const App& app, std::span<const ImVec2> points, const Color& color, float width,
+void draw_lines(const Ui& ui, std::span<const ImVec2> points, const Color& color, float width,
                 bool closed = false, float alpha = 1);
 // A small disc, or a circle in the accent's colour.
-void draw_dot(const App& app, ImVec2 at, float radius, bool open = false);
+void draw_dot(const Ui& ui, ImVec2 at, float radius, bool open = false);
 // A shadowed square: a point that can be dragged.
-void draw_square(const App& app, ImVec2 at, float half, bool lit);
+void draw_square(const Ui& ui, ImVec2 at, float half, bool lit);
 // A label beside a pixel of the view, within it: a line of words, a line of numbers; either may be empty.
-void draw_tag(const App& app, const ViewInput& input, Vec2 beside, const std::string& words,
+void draw_tag(const Ui& ui, const ViewInput& input, Vec2 beside, const std::string& words,
               const std::string& numbers);
 
 // "x 0.10  y -0.20  z 0 m", with the digits that a grid of this step (m) calls for; 0: three significant of

@@ -42,7 +42,7 @@ WidgetRect draw_line(const App& app, const PanelRect& rect, const std::string& t
 void part_label(App& app) {
   const PartId part = app.view.hovered;
   if (places(app.tool.tool)) return;
-  const Mechanism& m = *view_frame(app).mechanism;
+  const Mechanism& m = *shown_mechanism(app);
   const auto i = static_cast<std::size_t>(part.index);
   std::string name, what;
   if (part.kind == PartKind::body && i < m.bodies.size()) {
@@ -147,11 +147,11 @@ void error_line(App& app, const PanelRect& rect) {
 namespace {
 
 // "speed of spin 15 rad/s is tried", or how many are.
-std::string tried_text(const App& app) {
-  const Explored& explored = app.document.explored();
+std::string tried_text(const Session& session) {
+  const Explored& explored = session.document.explored();
   if (explored.size() > 1) return std::to_string(explored.size()) + " explored values";
   const ShownUnit unit =
-      shown_unit(parameter_unit(app.document.stored(), explored.front().address), app.units);
+      shown_unit(parameter_unit(session.document.stored(), explored.front().address), session.units);
   return "Explored: " + parameter_phrase(explored.front().address) + " " +
          short_text(unit.shown(explored.front().value), 9) + (unit.text.empty() ? "" : " " + unit.text);
 }

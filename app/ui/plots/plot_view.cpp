@@ -10,20 +10,20 @@ namespace flyball {
 
 namespace {
 
-std::shared_ptr<const PlotLayout> laid_out(const App& app, PlotView& view, const Plot& plot, ImVec2 size) {
+std::shared_ptr<const PlotLayout> laid_out(const Ui& ui, PlotView& view, const Plot& plot, ImVec2 size) {
   PlotKept& kept = view.kept;
   const bool same = kept.layout && plot.version != 0 && kept.version == plot.version &&
                     kept.look == view.look && kept.width == size.x && kept.height == size.y &&
-                    kept.scale == app.scale;
+                    kept.scale == ui.scale;
   if (!same)
     kept = {plot.version,
             view.look,
             size.x,
             size.y,
-            app.scale,
+            ui.scale,
             std::make_shared<PlotLayout>(plot_layout(plot, view.look, static_cast<double>(size.x),
                                                      static_cast<double>(size.y),
-                                                     plot_metrics(app.fonts, app.scale)))};
+                                                     plot_metrics(ui.fonts, ui.scale)))};
   return kept.layout;
 }
 
@@ -77,6 +77,11 @@ PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Pl
   ImGui::Dummy(size);
   ImGui::PopID();
   return events;
+}
+
+void replace_plot(Plot& plot, Plot next) {
+  next.version = plot.version + 1;
+  plot = std::move(next);
 }
 
 void fit_plot(PlotView& view) {

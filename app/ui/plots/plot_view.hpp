@@ -61,6 +61,9 @@ struct PlotView {
 // quickly where Plot::version is kept.
 PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Plot& plot, ImVec2 size);
 
+// Another takes its place and is laid out anew: with the next version.
+void replace_plot(Plot& plot, Plot next);
+
 // All of it in view again.
 void fit_plot(PlotView& view);
 

@@ -11,19 +11,19 @@ namespace flyball {
 namespace {
 
 struct Tab {
-  Study study;
+  StudyKind study;
   const char* name;
   const char* title;
   const char* help;
 };
 constexpr std::array tabs{
-    Tab{Study::motion, "study/motion", "Motion", "The damped motion beside the steady state"},
-    Tab{Study::response, "study/response", "Response",
+    Tab{StudyKind::motion, "study/motion", "Motion", "The damped motion beside the steady state"},
+    Tab{StudyKind::response, "study/response", "Response",
         "The steady states over one parameter: branches, folds and crossings"},
-    Tab{Study::states, "study/states", "States", "Every equilibrium that a bounded search finds"},
-    Tab{Study::modes, "study/modes", "Modes", "How the steady state swings, and at which speeds"},
-    Tab{Study::map, "study/map", "Map", "A coordinate over the plane of two parameters, with its folds"},
-    Tab{Study::compare, "study/compare", "Compare", "Error against run time: direct solution and motion"},
+    Tab{StudyKind::states, "study/states", "States", "Every equilibrium that a bounded search finds"},
+    Tab{StudyKind::modes, "study/modes", "Modes", "How the steady state swings, and at which speeds"},
+    Tab{StudyKind::map, "study/map", "Map", "A coordinate over the plane of two parameters, with its folds"},
+    Tab{StudyKind::compare, "study/compare", "Compare", "Error against run time: direct solution and motion"},
 };
 
 // A word with a line below it where it is the one that shows.
@@ -58,11 +58,11 @@ void study_panel(App& app, const PanelRect& rect) {
   ImGui::PopStyleVar();
   ImGui::GetWindowDrawList()->AddLine({rect.x, rect.y}, {rect.x + rect.width, rect.y},
                                       packed(colors_of(app).border), std::max(1.f, std::round(s)));
-  Study wanted = Study::none;
+  StudyKind wanted = StudyKind::none;
   for (const Tab& each : tabs)
     if (tab(app, each) && each.study != app.study.open) wanted = each.study;
   const float side = ImGui::GetFrameHeight() + 2 * s;
-  if (app.study.open == Study::motion && app.motion.on) {
+  if (app.study.open == StudyKind::motion && app.motion.on) {
     const float from = std::max(314 * s, ImGui::GetCursorPosX() + 12 * s);
     ImGui::SetCursorPosX(from);
     motion_transport(app, rect.width - side - 24 * s - from);
@@ -71,17 +71,17 @@ void study_panel(App& app, const PanelRect& rect) {
   ImGui::SetCursorPosX(rect.width - side - 8 * s);
   const bool closed = icon_button(app, "study/close", icon::close, "Close");
   switch (app.study.open) {
-  case Study::none: break;
-  case Study::motion: motion_panel(app); break;
-  case Study::compare: compare_panel(app); break;
-  case Study::response: response_panel(app); break;
-  case Study::states: states_panel(app); break;
-  case Study::modes: modes_panel(app); break;
-  case Study::map: map_panel(app); break;
+  case StudyKind::none: break;
+  case StudyKind::motion: motion_panel(app); break;
+  case StudyKind::compare: compare_panel(app); break;
+  case StudyKind::response: response_panel(app); break;
+  case StudyKind::states: states_panel(app); break;
+  case StudyKind::modes: modes_panel(app); break;
+  case StudyKind::map: map_panel(app); break;
   }
   ImGui::End();
-  if (closed) open_study(app, Study::none);
-  if (wanted != Study::none) open_study(app, wanted);
+  if (closed) open_study(app, StudyKind::none);
+  if (wanted != StudyKind::none) open_study(app, wanted);
 }
 
 } // namespace flyball

@@ -1,11 +1,14 @@
 // How a person looks at the studies' plots, and the plots as they were last drawn.
 #pragma once
 
+#include "app/session/motion.hpp"
 #include "app/session/studies.hpp"
+#include "app/session/units.hpp"
 #include "app/ui/plots/plot_view.hpp"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +19,7 @@ namespace flyball {
 struct CompareView {
   PlotView view;
   Plot plot;
-  std::uint64_t made_result = 0; // CompareState::results, of which the plot is
+  std::shared_ptr<const void> of; // the measurements that the plot is of
 };
 
 // Which points of a line a plot's curve goes through.
@@ -28,9 +31,13 @@ struct ResponseView {
   PlotView view;
   Plot plot;                         // of the result, with the answer's marker
   std::vector<ResponsePiece> pieces; // by curve of the plot
-  std::uint64_t plotted = 0;         // ResponseState::version that the plot shows
-  std::uint64_t chosen = 0;          // ResponseState::chosen that it was fitted to
-  std::uint64_t plots_made = 0;
+  struct Of {
+    std::shared_ptr<const void> curve, design; // what was found
+    std::string quantity;
+    DisplayUnits units;
+    bool operator==(const Of&) const = default;
+  } of;
+  ResponseChoice fitted;     // what was chosen when all of the plot was last in view
   std::uint64_t gesture = 0; // of the hand, when the plot's range of y was last fitted
   double waiting_since = -1; // s, ImGui's clock; negative: nothing runs
 };
@@ -38,30 +45,40 @@ struct ResponseView {
 struct MapView {
   PlotView view;
   Plot plot;
-  std::uint64_t made_version = 0; // MapState::version that the plot shows
-  std::uint64_t made_ticket = 0;  // of the answer that the marker shows
-  std::uint64_t plots_made = 0;
+  struct Of {
+    std::shared_ptr<const void> cells, curves; // what was found
+    DisplayUnits units;
+    bool operator==(const Of&) const = default;
+  } of;
+  std::uint64_t marked = 0; // ticket of the answer that the marker shows
 };
 
 struct CampbellView {
   bool hertz = true; // or rad/s
   PlotView view;
   Plot plot;
-  std::uint64_t plots_made = 0;
-  // What the plot was drawn of: result, answer, modes, units, chosen mode.
-  std::uint64_t made_result = 0, made_ticket = 0, made_modes = 0;
-  bool made_hertz = true;
-  std::optional<std::size_t> made_chosen;
+  struct Of {
+    std::shared_ptr<const void> diagram, modes; // what was found
+    std::uint64_t answer = 0;                   // its ticket
+    std::optional<std::size_t> chosen;          // of the modes
+    bool hertz = true;
+    DisplayUnits units;
+    bool operator==(const Of&) const = default;
+  } of;
 };
 
 // A plot over time.
 struct MotionPlot {
   std::string quantity; // see motion_quantities(); empty: not shown
   PlotView view;
-  Plot plot;                // drawn from `made`
-  std::uint64_t made = 0;   // MotionState::version
-  std::string made_for;     // quantity
-  std::uint64_t ticket = 0; // of the answer whose steady value it shows
+  Plot plot;
+  struct Of {
+    std::array<std::shared_ptr<const Run>, 2> runs; // null: not shown
+    std::string quantity;
+    std::uint64_t answer = 0; // ticket of that whose steady value it shows
+    DisplayUnits units;
+    bool operator==(const Of&) const = default;
+  } of;
 };
 
 struct StudyViews {
@@ -70,7 +87,6 @@ struct StudyViews {
   MapView map;
   CampbellView campbell;
   std::array<MotionPlot, 2> motion;
-  std::uint64_t motion_plots_made = 0; // so far, for their versions
 };
 
 } // namespace flyball

@@ -123,13 +123,13 @@ Aim find_aim(App& app, const ViewInput& input) {
 }
 
 // Lines of the grid near the place, fading with the distance.
-void draw_grid(const App& app, const ViewInput& input, const Aim& aim) {
+void draw_grid(const Ui& ui, const ViewInput& input, const Aim& aim) {
   if (aim.step <= 0) return;
   constexpr int reach = 7;
-  const Color ink = palette(app.theme).grid;
+  const Color ink = palette(ui.theme).grid;
   const Vec3 a = Vec3::Unit((aim.plane.normal + 1) % 3), b = Vec3::Unit((aim.plane.normal + 2) % 3);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float thick = std::max(1.f, std::round(app.scale));
+  const float thick = std::max(1.f, std::round(ui.scale));
   for (const auto& [along, across] : {std::pair(a, b), std::pair(b, a)})
     for (int i = -reach; i <= reach; ++i)
       for (int k = -reach; k < reach; ++k) {

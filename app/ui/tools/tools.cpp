@@ -8,8 +8,8 @@ namespace flyball {
 
 namespace {
 
-bool has_body(const App& app, const std::string& name) {
-  return name == ground_name || body_index(app.mechanism(), name) >= 0;
+bool has_body(const Session& session, const std::string& name) {
+  return name == ground_name || body_index(session.mechanism(), name) >= 0;
 }
 
 void drop_begun(ToolState& tool) {

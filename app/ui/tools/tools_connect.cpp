@@ -96,8 +96,8 @@ Aim second_end(const App& app, const ViewInput& input, const Aim& from, const Ai
   return end;
 }
 
-void draw_end(const App& app, const ViewInput& input, const Vec3& at) {
-  if (const auto pixel = input.on_screen(at)) draw_dot(app, *pixel, 4);
+void draw_end(const Ui& ui, const ViewInput& input, const Vec3& at) {
+  if (const auto pixel = input.on_screen(at)) draw_dot(ui, *pixel, 4);
 }
 
 void draw_between(const App& app, const ViewInput& input, const Vec3& from, const Vec3& to) {

@@ -29,7 +29,7 @@ std::optional<HandHit> body_under_cursor(App& app, const ViewInput& input) {
                                              [](const Instance& i) { return i.part.kind == PartKind::body; });
   const auto hit = pick(std::span(scene.instances.begin(), last), input.ray(), 4 * input.point);
   if (!hit) return {};
-  return HandHit{part_of(*view_frame(app).mechanism, hit->part).name, hit->point};
+  return HandHit{part_of(*shown_mechanism(app), hit->part).name, hit->point};
 }
 
 std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray) {

@@ -31,18 +31,18 @@ std::optional<Vec3> pulled_point(const App& app, const PullGrab& grab) {
 }
 
 // Asks for the steady state of this mechanism, from where the last one is.
-void ask_pulled(App& app, const PullGrab& grab, std::shared_ptr<const Mechanism> mechanism,
+void ask_pulled(Session& session, const PullGrab& grab, std::shared_ptr<const Mechanism> mechanism,
                 std::optional<BodyPoint> grip, bool nearest = false) {
-  const bool found = converged(app) && app.answer.ticket >= app.opened;
-  app.awaited = app.asked =
-      app.live.ask({.mechanism = std::move(mechanism),
-                    .time = app.playback.time,
-                    .another = false,
-                    .warm = true,
-                    .nearest = nearest,
-                    .start = found && !nearest ? start_values(app.answer.solution.coordinates) : grab.start,
-                    .points = told_points(app),
-                    .grip = std::move(grip)});
+  const bool found = converged(session) && session.answer.ticket >= session.opened;
+  session.awaited = session.asked = session.live.ask(
+      {.mechanism = std::move(mechanism),
+       .time = session.playback.time,
+       .another = false,
+       .warm = true,
+       .nearest = nearest,
+       .start = found && !nearest ? start_values(session.answer.solution.coordinates) : grab.start,
+       .points = told_points(session),
+       .grip = std::move(grip)});
 }
 
 // The spring as the hand stands now; nothing before it is known how to take hold.
@@ -85,19 +85,19 @@ double moved_since(const Mechanism& mechanism, const std::vector<Pose>& before,
 }
 
 // Where it went once the hand was gone.
-void tell_where(App& app, const PullGrab& grab) {
+void tell_where(Session& session, const PullGrab& grab) {
   constexpr double same = 1e-6;
-  if (!converged(app)) {
-    app.notice = "Where it was let go nothing settles.";
+  if (!converged(session)) {
+    session.notice = "Where it was let go nothing settles.";
     return;
   }
-  const Solution& found = app.answer.solution;
+  const Solution& found = session.answer.solution;
   if (moved_since(mechanism_of(grab), grab.stood, found.poses) < same) {
-    app.notice.clear();
+    session.notice.clear();
   } else if (found.stability_reason == StabilityReason::neutral) {
-    app.notice = "Nothing pulls it back: it stays where it was let go.";
+    session.notice = "Nothing pulls it back: it stays where it was let go.";
   } else {
-    app.notice =
+    session.notice =
         "It has gone over to another steady state, and stays there. \"Restart from drawn pose\" goes back.";
   }
 }

@@ -47,7 +47,7 @@ void point_at_body(App& app, const ViewInput& input) {
 }
 
 void click_part(App& app, const ViewInput& input) {
-  const Part part = part_of(*view_frame(app).mechanism, app.view.hovered);
+  const Part part = part_of(*shown_mechanism(app), app.view.hovered);
   Selection selection = app.selection();
   if (!input.ctrl && !input.shift)
     selection.set(part);
@@ -57,13 +57,13 @@ void click_part(App& app, const ViewInput& input) {
 }
 
 void select_framed(App& app, const ViewInput& input) {
-  const ViewFrame frame = view_frame(app);
+  const Mechanism& mechanism = *shown_mechanism(app);
   Selection selection;
   if (input.shift) selection = app.selection();
   std::vector<Part> parts = selection.parts;
-  for (const PartId id : parts_in_frame(part_anchors(*frame.mechanism, frame.poses), input.camera, input.size,
-                                        {*app.tool.frame, input.cursor})) {
-    Part part = part_of(*frame.mechanism, id);
+  for (const PartId id : parts_in_frame(part_anchors(mechanism, view_frame(app).poses), input.camera,
+                                        input.size, {*app.tool.frame, input.cursor})) {
+    Part part = part_of(mechanism, id);
     if (!input.shift || !selection.has(part)) parts.push_back(std::move(part));
   }
   selection.parts = std::move(parts);

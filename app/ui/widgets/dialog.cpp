@@ -52,25 +52,25 @@ bool escape_pressed() {
   return key_pressed(ImGuiKey_Escape);
 }
 
-bool enter_pressed(const App& app) {
-  if (enter_is_taken(app)) return false;
+bool enter_pressed(const Ui& ui) {
+  if (enter_is_taken(ui)) return false;
   return key_pressed(ImGuiKey_Enter) || key_pressed(imgui_compat::keypad_enter);
 }
 
-int choice_buttons(App& app, std::span<const Choice> choices, int& marked) {
+int choice_buttons(Ui& ui, std::span<const Choice> choices, int& marked) {
   const int count = static_cast<int>(choices.size());
   if (ImGui::IsWindowAppearing()) {
     marked = 0;
-    enter_dialog_at(app, choices[0].name);
+    enter_dialog_at(ui, choices[0].name);
   }
   for (int i = 0; i < count; ++i)
-    if (has_keyboard(app, choices[static_cast<std::size_t>(i)].name)) marked = i;
-  int pressed = enter_pressed(app) ? marked : -1;
-  ImGui::Dummy({0, 4 * app.scale});
+    if (has_keyboard(ui, choices[static_cast<std::size_t>(i)].name)) marked = i;
+  int pressed = enter_pressed(ui) ? marked : -1;
+  ImGui::Dummy({0, 4 * ui.scale});
   for (int i = 0; i < count; ++i) {
     const Choice& choice = choices[static_cast<std::size_t>(i)];
     if (i > 0) ImGui::SameLine();
-    if (text_button(app, choice.name, choice.text, i == marked)) pressed = i;
+    if (text_button(ui, choice.name, choice.text, i == marked)) pressed = i;
   }
   return pressed;
 }

@@ -15,7 +15,7 @@ void close_dialog();
 bool escape_pressed();
 // Enter, where no field swallows it and no widget that has the keys is pressed by it; not the one that
 // brought the dialog.
-bool enter_pressed(const App& app);
+bool enter_pressed(const Ui& ui);
 
 struct Choice {
   const char* name; // for the widget map
@@ -23,6 +23,6 @@ struct Choice {
 };
 // A row of buttons of which `marked` is the one that Enter means, at first the first; the arrow keys and Tab
 // go to another. Returns the one pressed, or -1.
-int choice_buttons(App& app, std::span<const Choice> choices, int& marked);
+int choice_buttons(Ui& ui, std::span<const Choice> choices, int& marked);
 
 } // namespace flyball

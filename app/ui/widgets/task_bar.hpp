@@ -8,6 +8,6 @@ namespace flyball {
 
 // As wide as `width` (pixels), or where that is 0 as the room there is. Where nobody knows how much is left
 // the bar stays empty and the words tell that it goes on.
-void task_bar(App& app, const std::string& name, const Progress& progress, double seconds, float width = 0);
+void task_bar(Ui& ui, const std::string& name, const Progress& progress, double seconds, float width = 0);
 
 } // namespace flyball

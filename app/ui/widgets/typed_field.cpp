@@ -38,15 +38,15 @@ void begin(App& app, const TextField& field, std::string typed) {
 }
 
 // Below the field, wherever the mouse is.
-void show_mistake(App& app, const std::string& mistake) {
+void show_mistake(Ui& ui, const std::string& mistake) {
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   const bool right = from.x + to.x > ImGui::GetIO().DisplaySize.x;
-  ImGui::SetNextWindowPos({right ? to.x : from.x, to.y + 3 * app.scale}, ImGuiCond_Always,
+  ImGui::SetNextWindowPos({right ? to.x : from.x, to.y + 3 * ui.scale}, ImGuiCond_Always,
                           {right ? 1.f : 0.f, 0});
   ImGui::BeginTooltip();
-  ImGui::PushFont(app.fonts.text);
+  ImGui::PushFont(ui.fonts.text);
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 20);
-  ImGui::TextColored(colors_of(app).bad, "%s", mistake.c_str());
+  ImGui::TextColored(colors_of(ui).bad, "%s", mistake.c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
   ImGui::EndTooltip();

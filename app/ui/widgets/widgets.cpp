@@ -39,9 +39,9 @@ void help_on_hover(const char* help) {
   }
 }
 
-bool icon_button(App& app, const std::string& name, const char* icon, const char* help, bool on) {
-  const UiColors& colors = colors_of(app);
-  const float side = ImGui::GetFrameHeight() + 2 * app.scale;
+bool icon_button(Ui& ui, const std::string& name, const char* icon, const char* help, bool on) {
+  const UiColors& colors = colors_of(ui);
+  const float side = ImGui::GetFrameHeight() + 2 * ui.scale;
   ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.accent : colors.text);
   if (on) ImGui::PushStyleColor(ImGuiCol_Button, colors.raised);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
@@ -50,13 +50,13 @@ bool icon_button(App& app, const std::string& name, const char* icon, const char
   ImGui::PopID();
   ImGui::PopStyleVar();
   ImGui::PopStyleColor(on ? 2 : 1);
-  note_widget(app.widgets, name);
+  note_widget(ui.widgets, name);
   help_on_hover(help);
   return pressed;
 }
 
-bool text_button(App& app, const std::string& name, const char* text, bool primary) {
-  const UiColors& colors = colors_of(app);
+bool text_button(Ui& ui, const std::string& name, const char* text, bool primary) {
+  const UiColors& colors = colors_of(ui);
   ImGui::PushStyleColor(ImGuiCol_Button, primary ? colors.accent : colors.raised);
   ImGui::PushStyleColor(ImGuiCol_ButtonHovered, primary ? colors.accent : colors.pointed);
   ImGui::PushStyleColor(ImGuiCol_ButtonActive, primary ? colors.accent : colors.pressed);
@@ -65,13 +65,13 @@ bool text_button(App& app, const std::string& name, const char* text, bool prima
   const bool pressed = ImGui::Button(text);
   ImGui::PopID();
   ImGui::PopStyleColor(4);
-  note_widget(app.widgets, name);
+  note_widget(ui.widgets, name);
   return pressed;
 }
 
-void heading(App& app, const char* text) {
-  ImGui::Dummy({0, 2 * app.scale});
-  text_in(app.fonts.strong, colors_of(app).text, text);
+void heading(Ui& ui, const char* text) {
+  ImGui::Dummy({0, 2 * ui.scale});
+  text_in(ui.fonts.strong, colors_of(ui).text, text);
 }
 
 bool section(App& app, const std::string& name, const char* text, bool& open) {
@@ -97,12 +97,12 @@ bool section(App& app, const std::string& name, const char* text, bool& open) {
   return open;
 }
 
-float digits_drop(const App& app) {
-  return std::round(app.fonts.text->Ascent - app.fonts.digits->Ascent);
+float digits_drop(const Ui& ui) {
+  return std::round(ui.fonts.text->Ascent - ui.fonts.digits->Ascent);
 }
 
-void right_digits(App& app, const std::string& text, const ImVec4& color) {
-  ImFont* font = app.fonts.digits;
+void right_digits(Ui& ui, const std::string& text, const ImVec4& color) {
+  ImFont* font = ui.fonts.digits;
   const float width = font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.f, ImGui::GetContentRegionAvail().x - width));
   text_in(font, color, text);

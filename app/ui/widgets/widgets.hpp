@@ -9,27 +9,27 @@
 
 namespace flyball {
 
-inline const UiColors& colors_of(const App& app) {
-  return ui_colors(app.theme);
+inline const UiColors& colors_of(const Ui& ui) {
+  return ui_colors(ui.theme);
 }
 inline ImU32 packed(const ImVec4& color) {
   return ImGui::ColorConvertFloat4ToU32(color);
 }
 
 // A button of one icon; `on` shows it pressed in.
-bool icon_button(App& app, const std::string& name, const char* icon, const char* help, bool on = false);
+bool icon_button(Ui& ui, const std::string& name, const char* icon, const char* help, bool on = false);
 // A button of words; `primary` is the one that Enter means.
-bool text_button(App& app, const std::string& name, const char* text, bool primary = false);
+bool text_button(Ui& ui, const std::string& name, const char* text, bool primary = false);
 
 // What a panel's part is called.
-void heading(App& app, const char* text);
+void heading(Ui& ui, const char* text);
 // The same, that opens and closes; returns whether it is open.
 bool section(App& app, const std::string& name, const char* text, bool& open);
 
 // Digits from here to the right edge, ending there.
-void right_digits(App& app, const std::string& text, const ImVec4& color);
+void right_digits(Ui& ui, const std::string& text, const ImVec4& color);
 // How much lower digits must begin than words to stand on the same line (pixels).
-float digits_drop(const App& app);
+float digits_drop(const Ui& ui);
 // "label            value unit": the value in digits. Help appears over the row.
 void row(App& app, const std::string& label, const std::string& value, const char* unit,
          const char* help = nullptr);

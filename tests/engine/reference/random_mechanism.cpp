@@ -1,55 +1,14 @@
 #include "tests/engine/reference/random_mechanism.hpp"
 
 #include "engine/mechanism/validate.hpp"
+#include "tests/support/dice.hpp"
 
 #include <algorithm>
-#include <random>
 #include <set>
 
 namespace flyball::reference {
 
 namespace {
-
-// The standard's distributions differ between libraries; these do not.
-class Dice {
- public:
-  explicit Dice(std::uint32_t seed) : engine_(seed) {}
-
-  double between(double from, double to) {
-    return from + (to - from) * (static_cast<double>(engine_()) + 0.5) / 4294967296.0;
-  }
-  bool chance(double probability) { return between(0, 1) < probability; }
-  int below(int count) { return static_cast<int>(engine_() % static_cast<std::uint32_t>(count)); }
-  double sign() { return chance(0.5) ? 1 : -1; }
-  template <typename T>
-  const T& pick(const std::vector<T>& from) {
-    return from[static_cast<std::size_t>(below(static_cast<int>(from.size())))];
-  }
-  Vec3 box(double half) {
-    const double x = between(-half, half), y = between(-half, half), z = between(-half, half);
-    return {x, y, z};
-  }
-  Vec3 direction() {
-    for (;;) {
-      const Vec3 v = box(1);
-      if (v.norm() > 0.2 && v.norm() < 1) return v.normalized();
-    }
-  }
-  Vec3 across(const Vec3& axis) {
-    for (;;) {
-      const Vec3 v = axis.normalized().cross(direction());
-      if (v.norm() > 0.2) return v.normalized();
-    }
-  }
-  Quat rotation() {
-    const Vec3 axis = direction();
-    const double angle = between(-3, 3);
-    return Quat(Eigen::AngleAxisd(angle, axis)).normalized();
-  }
-
- private:
-  std::mt19937 engine_;
-};
 
 std::string numbered(std::string stem, int i) {
   return stem += std::to_string(i);
@@ -104,7 +63,7 @@ class Builder {
     mechanism_.bodies.push_back(b);
 
     const bool root = i == 0 && options_.drives == RandomDrives::root;
-    JointType type = dice_.pick(tree_types_);
+    JointType type = dice_.one_of(tree_types_);
     if (root)
       type = dice_.chance(0.2) && !options_.parallel_axes ? JointType::cylindrical : JointType::revolute;
     Joint joint = make_joint(numbered("j", i), type, parent, i);
@@ -171,7 +130,7 @@ class Builder {
   }
 
   void add_loop(int i) {
-    const JointType type = dice_.pick(loop_types_);
+    const JointType type = dice_.one_of(loop_types_);
     const std::string name = numbered("loop", i);
     if (type == JointType::gear) {
       add_gear(name);
@@ -290,7 +249,7 @@ class Builder {
     mechanism_.forces.push_back(force);
   }
 
-  Dice dice_;
+  test::Dice dice_;
   RandomOptions options_;
   Mechanism mechanism_;
   std::vector<JointType> tree_types_, loop_types_;

@@ -37,19 +37,19 @@ void found(App& app, const Comparison& c) {
 }
 
 void words(App& app) {
-  CompareState& state = app.study.compare;
+  auto& measured = app.study.compare.measured;
   const UiColors& colors = colors_of(app);
   if (comparing(app)) {
-    task_bar(app, "compare/progress", state.task->progress(), state.task->seconds());
-    if (text_button(app, "compare/cancel", "Cancel")) state.task->cancel();
+    task_bar(app, "compare/progress", measured.progress(), measured.seconds());
+    if (text_button(app, "compare/cancel", "Cancel")) measured.stop();
     return;
   }
   ImGui::BeginDisabled(!app.mistakes.empty() || app.mechanism().bodies.empty());
-  if (text_button(app, "compare/run", state.result ? "Measure again" : "Measure", true))
+  if (text_button(app, "compare/run", measured.found ? "Measure again" : "Measure", true))
     begin_comparison(app);
   ImGui::EndDisabled();
-  if (!state.problem.empty()) paragraph(state.problem, colors.bad);
-  if (!state.result) {
+  if (!measured.problem.empty()) paragraph(measured.problem, colors.bad);
+  if (!measured.found) {
     paragraph(
         "The direct solution, one Newton-Raphson iteration after the other, and the damped motion with every "
         "integrator over tolerances and durations: what error is left after which time.",
@@ -58,11 +58,11 @@ void words(App& app) {
   }
   ImGui::SameLine();
   if (text_button(app, "compare/copy", "Copy the table")) {
-    ImGui::SetClipboardText(comparison_csv(*state.result).c_str());
+    ImGui::SetClipboardText(comparison_csv(measured.found->result).c_str());
     app.notice = "The measurements are on the clipboard, as CSV.";
   }
   if (!comparison_is_current(app)) paragraph("Measured before the last changes.", colors.warn);
-  found(app, *state.result);
+  found(app, measured.found->result);
 }
 
 } // namespace
@@ -74,11 +74,11 @@ void compare_panel(App& app) {
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  if (const CompareState& state = app.study.compare; state.result) {
+  if (const auto& measured = app.study.compare.measured.found) {
     CompareView& drawn = app.plots.compare;
-    if (drawn.made_result != state.results) {
-      drawn.plot = comparison_plot("", *state.result);
-      drawn.plot.version = drawn.made_result = state.results;
+    if (drawn.of != measured) {
+      drawn.of = measured;
+      replace_plot(drawn.plot, comparison_plot("", measured->result));
       fit_plot(drawn.view);
     }
     const ImVec2 room = ImGui::GetContentRegionAvail();

@@ -120,7 +120,8 @@ void curve_choices(App& app) {
 void map_words(App& app) {
   MapState& map = app.study.map;
   const UiColors& colors = colors_of(app);
-  if (!map.problem.empty()) paragraph(map.problem, colors.bad);
+  const std::string problem = map_problem(app);
+  if (!problem.empty()) paragraph(problem, colors.bad);
   if (!app.mistakes.empty())
     paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
   if (map.stale) paragraph("Computed before the last changes.", colors.warn);
@@ -129,24 +130,23 @@ void map_words(App& app) {
     ImGui::SameLine();
     task_bar(app, "map/progress", map_progress(app), map_seconds(app),
              std::max(ImGui::GetContentRegionAvail().x - margin_width(app), 20 * app.scale));
-  } else if (map.stale || !map.problem.empty()) {
-    if (text_button(app, "map/again", "Compute again", true)) {
-      map.stale = false;
-      compute_map(app);
-    }
+  } else if (map.stale || !problem.empty()) {
+    if (text_button(app, "map/again", "Compute again", true)) compute_map(app);
   }
-  if (map.curves && map.choice.folds && map.curves->folds && map.curves->folds->curves.empty() &&
-      !computing_map(app))
-    paragraph(map.curves->folds->message, colors.dim);
-  if (!map.cells || computing_map(app)) return;
+  if (computing_map(app)) return;
+  const auto& curves = map.curves.found;
+  if (curves && map.choice.folds && curves->result.folds && curves->result.folds->curves.empty())
+    paragraph(curves->result.folds->message, colors.dim);
+  if (!map.cells.found) return;
+  const MapCells& cells = map.cells.found->result;
   std::size_t unsolved = 0, unstable = 0;
-  for (const MapCell& cell : map.cells->cells) {
+  for (const MapCell& cell : cells) {
     unsolved += std::isfinite(cell.value) ? 0 : 1;
     unstable += cell.stable == false ? 1 : 0;
   }
-  std::string text = std::to_string(map.cells->cells.size()) + " solves";
+  std::string text = std::to_string(cells.size()) + " solves";
   if (app.options.numbers.run_times)
-    text += " in " + duration_text(map.cells->run_time_s, app.options.numbers);
+    text += " in " + duration_text(map.cells.found->run_time, app.options.numbers);
   text += unsolved > 0 ? ", " + std::to_string(unsolved) + " without a steady state (left free)" : "";
   text += unstable > 0 ? ", " + std::to_string(unstable) + " unstable (hatched)" : "";
   paragraph(text + ". Each starts from the drawn pose. Click a place, or drag the mark, to go there.",
@@ -174,14 +174,15 @@ void map_panel(App& app) {
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  if (map.cells) {
+  if (map.cells.found) {
     draw_map(app);
     const PlotEvents events = plot_view(
         app, "map", drawn.view, drawn.plot,
         {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
     // What is shown may be of other numbers than are chosen by now.
-    const bool same = map.cells->choice.axes[0].address == map.choice.axes[0].address &&
-                      map.cells->choice.axes[1].address == map.choice.axes[1].address;
+    const std::array<MapAxis, 2>& axes = map.cells.found->of.choice.axes;
+    const bool same =
+        axes[0].address == map.choice.axes[0].address && axes[1].address == map.choice.axes[1].address;
     if (const auto place = events.dragged_at ? events.dragged_at : events.clicked_at; place && same)
       later(app, [place = std::array{(*place)[0] / drawn.plot.x.factor, (*place)[1] / drawn.plot.y.factor}](
                      App& then) { go_to_place(then, place); });

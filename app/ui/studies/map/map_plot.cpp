@@ -22,14 +22,14 @@ std::vector<double> values_of(const MapAxis& axis) {
 }
 
 // A slanting line through each unstable cell; those of neighbours meet.
-PlotCurve hatching(const FoundCells& found, const std::vector<double>& x, const std::vector<double>& y) {
+PlotCurve hatching(const MapCells& cells, const std::vector<double>& x, const std::vector<double>& y) {
   PlotCurve hatch{
       .name = "unstable", .points = {}, .color = plot_color::vermillion, .width = 1, .hatching = true};
   if (x.size() < 2 || y.size() < 2) return hatch;
   const double half_x = (x[1] - x[0]) / 2, half_y = (y[1] - y[0]) / 2;
   for (std::size_t j = 0; j < y.size(); ++j)
     for (std::size_t i = 0; i < x.size(); ++i) {
-      if (found.cells[j * x.size() + i].stable != false) continue;
+      if (cells[j * x.size() + i].stable != false) continue;
       hatch.points.push_back({x[i] - half_x, y[j] - half_y});
       hatch.points.push_back({x[i] + half_x, y[j] + half_y});
       hatch.points.push_back({no_value_here, no_value_here});
@@ -37,8 +37,8 @@ PlotCurve hatching(const FoundCells& found, const std::vector<double>& x, const 
   return hatch;
 }
 
-std::string axis_unit(const App& app, const MapAxis& axis) {
-  return parameter_unit(app.mechanism(), axis.address);
+std::string axis_unit(const Session& session, const MapAxis& axis) {
+  return parameter_unit(session.mechanism(), axis.address);
 }
 
 void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level) {
@@ -89,13 +89,15 @@ void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level)
 void draw_map(App& app) {
   const MapState& map = app.study.map;
   MapView& drawn = app.plots.map;
-  const bool made = drawn.made_version == map.version;
-  if (made && drawn.made_ticket == app.answer.ticket) return;
-  if (!map.cells) return;
-  const FoundCells& found = *map.cells;
-  const std::array<MapAxis, 2>& axes = found.choice.axes;
-  drawn.made_version = map.version;
-  drawn.made_ticket = app.answer.ticket;
+  if (!map.cells.found) return;
+  const MapView::Of of{map.cells.found, map.curves.found, app.units};
+  const bool made = drawn.of == of;
+  if (made && drawn.marked == app.answer.ticket) return;
+  const MapChoice& choice = map.cells.found->of.choice;
+  const MapCells& cells = map.cells.found->result;
+  const std::array<MapAxis, 2>& axes = choice.axes;
+  drawn.of = of;
+  drawn.marked = app.answer.ticket;
   drawn.plot.marker.reset();
   if (converged(app) && !solving(app)) {
     const double x = get_parameter(app.mechanism(), axes[0].address);
@@ -120,32 +122,31 @@ void draw_map(App& app) {
   plot.y = axis_for(axes[1]);
   const CoordinateSolution* shown = nullptr;
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if (coordinate_label(c) == found.choice.coordinate) shown = &c;
+    if (coordinate_label(c) == choice.coordinate) shown = &c;
   const bool angle = shown && shown->angle;
   const std::string coordinate = angle ? "rad" : "m";
   const ShownUnit unit = coordinate_unit(angle, app.units);
   PlotHeat heat{.x = values_of(axes[0]),
                 .y = values_of(axes[1]),
                 .values = {},
-                .label = found.choice.coordinate,
+                .label = choice.coordinate,
                 .unit = coordinate};
-  heat.values.reserve(found.cells.size());
-  for (const MapCell& cell : found.cells)
+  heat.values.reserve(cells.size());
+  for (const MapCell& cell : cells)
     heat.values.push_back(cell.value);
-  if (PlotCurve hatch = hatching(found, heat.x, heat.y); !hatch.points.empty())
+  if (PlotCurve hatch = hatching(cells, heat.x, heat.y); !hatch.points.empty())
     plot.curves.push_back(std::move(hatch));
   show_heat(heat, coordinate, app.units);
   plot.heat = std::move(heat);
-  if (map.curves && map.curves->folds) add_curves(plot, *map.curves->folds, "");
-  if (map.curves && map.curves->level && map.choice.level)
-    add_curves(plot, *map.curves->level,
-               found.choice.coordinate + " = " + short_text(unit.shown(*map.choice.level), 5) + " " +
-                   unit.text);
+  const auto& curves = map.curves.found;
+  if (curves && curves->result.folds) add_curves(plot, *curves->result.folds, "");
+  if (curves && curves->result.level && map.choice.level)
+    add_curves(plot, *curves->result.level,
+               choice.coordinate + " = " + short_text(unit.shown(*map.choice.level), 5) + " " + unit.text);
   show_axis(plot, 0, axis_unit(app, axes[0]), app.units);
   show_axis(plot, 1, axis_unit(app, axes[1]), app.units);
   plot.marker = drawn.plot.marker;
-  plot.version = ++drawn.plots_made;
-  drawn.plot = std::move(plot);
+  replace_plot(drawn.plot, std::move(plot));
   show_marker();
 }
 

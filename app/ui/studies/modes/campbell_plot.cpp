@@ -155,24 +155,23 @@ double highest_of(const Plot& plot) {
 void draw_campbell(App& app) {
   const CampbellState& campbell = app.study.modes.campbell;
   CampbellView& drawn = app.plots.campbell;
-  const std::optional<std::size_t> chosen = app.study.modes.chosen;
-  if (drawn.made_result == campbell.results && drawn.made_ticket == app.answer.ticket &&
-      drawn.made_modes == app.study.modes.of && drawn.made_hertz == drawn.hertz &&
-      drawn.made_chosen == chosen)
-    return;
-  if (!campbell.result || solving(app)) return; // the answer belongs to other numbers
-  drawn.made_result = campbell.results;
-  drawn.made_ticket = app.answer.ticket;
-  drawn.made_modes = app.study.modes.of;
-  drawn.made_hertz = drawn.hertz;
-  drawn.made_chosen = chosen;
+  const CampbellView::Of shown{campbell.diagram.found,
+                               app.study.modes.list.found,
+                               app.answer.ticket,
+                               app.study.modes.chosen,
+                               drawn.hertz,
+                               app.units};
+  if (drawn.of == shown) return;
+  if (!campbell.diagram.found || solving(app)) return; // the answer belongs to other numbers
+  drawn.of = shown;
   Plot plot;
   const double factor = drawn.hertz ? 1 / full_turn : 1;
-  const FoundCampbell& found = *campbell.result;
-  const std::string unit = parameter_unit(app.mechanism(), found.drive);
-  plot.x = {.label = parameter_phrase(found.drive),
+  const CampbellRequest& of = campbell.diagram.found->of;
+  const FoundCampbell& found = campbell.diagram.found->result;
+  const std::string unit = parameter_unit(app.mechanism(), of.drive);
+  plot.x = {.label = parameter_phrase(of.drive),
             .unit = unit,
-            .range = PlotRange{std::min(found.from, found.to), std::max(found.from, found.to)},
+            .range = PlotRange{std::min(of.from, of.to), std::max(of.from, of.to)},
             .room = 0};
   plot.y = {.label = "frequency", .unit = drawn.hertz ? "Hz" : "rad/s"};
   const std::optional<std::size_t> branch = campbell_branch(app);
@@ -180,18 +179,17 @@ void draw_campbell(App& app) {
     add_lines(plot, found.diagram.branches[*branch], found.lines[*branch], factor);
     const double highest = highest_of(plot);
     plot.y.range = PlotRange{0, highest > 0 ? 1.1 * highest : 1};
-    if (unit == "rad/s" && highest > 0) add_orders(plot, found.from, found.to, factor, 1.1 * highest);
+    if (unit == "rad/s" && highest > 0) add_orders(plot, of.from, of.to, factor, 1.1 * highest);
     add_special(plot, found, *branch, factor);
   }
   if (converged(app)) {
-    const double speed = get_parameter(app.mechanism(), found.drive);
+    const double speed = get_parameter(app.mechanism(), of.drive);
     plot.references.push_back({.axis = 0, .at = speed, .label = "now", .color = plot_color::blue});
     if (const VibrationMode* mode = moving_mode(app); mode && modes_are_current(app) && mode->oscillates())
       plot.marker = PlotMarker{speed * shown_unit(unit, app.units).factor, mode->frequency * factor, ""};
   }
   show_axis(plot, 0, unit, app.units);
-  plot.version = ++drawn.plots_made;
-  drawn.plot = std::move(plot);
+  replace_plot(drawn.plot, std::move(plot));
 }
 
 } // namespace flyball

@@ -136,7 +136,7 @@ void list(App& app, const FoundModes& found, float height) {
 }
 
 // "swing ± 8.6°": the coordinate that moves most.
-std::string largest_movement(const App& app, const VibrationMode& mode) {
+std::string largest_movement(const Session& session, const VibrationMode& mode) {
   const ModeAmplitude* angle = nullptr;
   const ModeAmplitude* slide = nullptr;
   for (const ModeAmplitude& a : mode.amplitudes) {
@@ -146,8 +146,8 @@ std::string largest_movement(const App& app, const VibrationMode& mode) {
   // An angle of 1 is as much as a slide can be, for the largest is 1 in radians or reaches.
   const ModeAmplitude* most = angle && (std::abs(angle->value) > 0.5 || !slide) ? angle : slide;
   if (!most) return {};
-  const double movement = app.study.modes.amplitude * std::abs(most->value);
-  const ShownUnit unit = coordinate_unit(most->angle, app.units);
+  const double movement = session.study.modes.amplitude * std::abs(most->value);
+  const ShownUnit unit = coordinate_unit(most->angle, session.units);
   return coordinate_label(*most) + " ± " + short_text(unit.shown(movement), 3) +
          (unit.text == "°" ? "" : " ") + unit.text;
 }
@@ -166,7 +166,9 @@ void transport(App& app) {
   const VibrationMode* mode = moving_mode(app);
   if (!mode) {
     ImGui::AlignTextToFramePadding();
-    paragraph(modes.result && modes.result->modes.empty() ? "" : "Click a mode to see it move.", colors.dim);
+    paragraph(modes.list.found && modes.list.found->result.modes.empty() ? ""
+                                                                         : "Click a mode to see it move.",
+              colors.dim);
     return;
   }
   if (icon_button(app, "modes/play", modes.playing ? icon::pause : icon::play,
@@ -193,23 +195,25 @@ void transport(App& app) {
 void modes_list(App& app) {
   ModesState& modes = app.study.modes;
   const UiColors& colors = colors_of(app);
-  if (!modes.problem.empty()) return paragraph(modes.problem, colors.bad);
+  auto& search = modes.list;
+  if (!search.problem.empty()) return paragraph(search.problem, colors.bad);
   if (!converged(app)) return paragraph("Modes are of a steady state, and there is none now.", colors.dim);
-  const bool finding = modes.task && modes.task->running();
-  if (finding && (!modes.result || modes.task->seconds() > modes_patience)) {
-    if (text_button(app, "modes/cancel", "Cancel")) modes.task->cancel();
+  const bool finding = search.running();
+  if (finding && (!search.found || search.seconds() > modes_patience)) {
+    if (text_button(app, "modes/cancel", "Cancel")) search.stop();
     ImGui::SameLine();
-    task_bar(app, "modes/progress", modes.task->progress(), modes.task->seconds());
+    task_bar(app, "modes/progress", search.progress(), search.seconds());
   }
-  if (!modes.result) return;
+  if (!search.found) return;
+  const FoundModes& found = search.found->result;
   if (!modes_are_current(app) && !finding) {
     paragraph("Of the state before the last changes.", colors.warn);
     if (text_button(app, "modes/again", "Find again", true)) find_modes_again(app);
   }
-  verdict(app, *modes.result);
-  if (modes.result->modes.empty()) return paragraph("No coordinate is free to swing.", colors.dim);
+  verdict(app, found);
+  if (found.modes.empty()) return paragraph("No coordinate is free to swing.", colors.dim);
   const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * app.scale;
-  list(app, *modes.result, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * app.scale));
+  list(app, found, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * app.scale));
   transport(app);
 }
 
@@ -271,11 +275,11 @@ void campbell_choices(App& app, const std::string& drive) {
       drawn.view.look.range[1].reset();
     }
   }
-  if (campbell.task && campbell.task->running()) {
+  if (auto& diagram = campbell.diagram; diagram.running()) {
     ImGui::SameLine(0, 14 * s);
-    if (text_button(app, "campbell/cancel", "Cancel")) campbell.task->cancel();
+    if (text_button(app, "campbell/cancel", "Cancel")) diagram.stop();
     ImGui::SameLine();
-    task_bar(app, "campbell/progress", campbell.task->progress(), campbell.task->seconds(),
+    task_bar(app, "campbell/progress", diagram.progress(), diagram.seconds(),
              std::max(ImGui::GetContentRegionAvail().x, 30 * s));
   } else if (!campbell.current || !campbell.on_branch) {
     ImGui::SameLine(0, 14 * s);
@@ -290,10 +294,11 @@ void campbell_diagram(App& app) {
   if (drive.empty())
     return paragraph("A Campbell diagram is over the speed of a drive, and there is none here.", colors.dim);
   campbell_choices(app, drive);
-  if (!campbell.problem.empty()) paragraph(campbell.problem, colors.bad);
-  if (!campbell.result) return;
+  const auto& diagram = campbell.diagram;
+  if (!diagram.problem.empty()) paragraph(diagram.problem, colors.bad);
+  if (!diagram.found) return;
   draw_campbell(app);
-  if (!campbell.on_branch && converged(app) && !solving(app) && !campbell.task->running())
+  if (!campbell.on_branch && converged(app) && !solving(app) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
   const PlotEvents events = plot_view(
       app, "campbell", app.plots.campbell.view, app.plots.campbell.plot,
@@ -301,7 +306,7 @@ void campbell_diagram(App& app) {
   const auto set = [&](double speed) {
     later(app, [drive, speed](App& then) { change_parameter(then, drive, speed); });
   };
-  if (campbell.result->drive != drive) return;
+  if (diagram.found->of.drive != drive) return;
   if (events.clicked_at) set((*events.clicked_at)[0]);
   if (events.dragged_at) set((*events.dragged_at)[0]);
 }

@@ -277,13 +277,13 @@ void plots(App& app) {
     ImGui::BeginGroup();
     const std::string name = "motion/plot" + std::to_string(i + 1);
     quantity_choice(app, each, all, name, width);
-    if (each.made != app.motion.version || each.made_for != each.quantity ||
-        each.ticket != app.answer.ticket) {
-      each.plot = motion_plot(app, each.quantity);
-      each.plot.version = ++app.plots.motion_plots_made;
-      each.made = app.motion.version;
-      each.made_for = each.quantity;
-      each.ticket = app.answer.ticket;
+    const auto run = [&](std::size_t k) {
+      return app.motion.runs[k].wanted ? app.motion.runs[k].run : nullptr;
+    };
+    const MotionPlot::Of of{{run(0), run(1)}, each.quantity, app.answer.ticket, app.units};
+    if (each.of != of) {
+      each.of = of;
+      replace_plot(each.plot, motion_plot(app, each.quantity));
     }
     each.plot.marker = play_head(app, each.plot, each.view.look);
     const PlotEvents events =

@@ -159,7 +159,6 @@ std::vector<MotionQuantity> motion_quantities(const Run& run) {
 Plot motion_plot(const App& app, const std::string& quantity) {
   Plot plot;
   plot.x = {.label = "time", .unit = "s", .room = 0};
-  plot.version = app.motion.version;
   const bool both =
       std::ranges::all_of(app.motion.runs, [](const MotionRun& r) { return r.wanted && r.run; });
   const bool dampers = has_dampers(app.mechanism());

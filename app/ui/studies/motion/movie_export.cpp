@@ -19,8 +19,8 @@ std::string saved_words(const std::filesystem::path& file, std::size_t frames) {
 
 } // namespace
 
-std::vector<double> requested_times(const App& app, const MovieRequest& request) {
-  const MotionRun* shown = shown_motion(app);
+std::vector<double> requested_times(const Session& session, const MovieRequest& request) {
+  const MotionRun* shown = shown_motion(session);
   if (!shown) return {};
   return movie_times(*shown->run, {request.from, request.to, request.rate, request.factor});
 }

@@ -8,7 +8,7 @@
 namespace flyball {
 
 // The run's moments that a film of the request shows; none where no run is shown.
-std::vector<double> requested_times(const App& app, const MovieRequest& request);
+std::vector<double> requested_times(const Session& session, const MovieRequest& request);
 
 class MovieExport {
  public:

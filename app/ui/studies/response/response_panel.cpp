@@ -25,7 +25,7 @@ void parameter_choice(App& app) {
   std::string chosen;
   for (const ParameterControl& control : app.parameters) {
     phrases.push_back(parameter_phrase(control.address));
-    if (control.address == app.study.response.address) chosen = phrases.back();
+    if (control.address == app.study.response.choice.address) chosen = phrases.back();
   }
   const auto other = name_choice_row(app, "response/parameter", "Vary", phrases, chosen,
                                      "The number along the plot: one of the sliders, or pin another.");
@@ -35,12 +35,12 @@ void parameter_choice(App& app) {
 }
 
 // One end of the range.
-void range_field(App& app, const char* name, const char* help, double ResponseState::*end, float width) {
+void range_field(App& app, const char* name, const char* help, double ResponseChoice::*end, float width) {
   const ParameterControl* control = response_control(app);
   ResponseState& state = app.study.response;
   const QuantityField field{
       .name = name,
-      .value = state.*end,
+      .value = state.choice.*end,
       .unit = control ? control->unit : "",
       .help = help,
       .set = [end](App& changed, double typed) { choose_response_end(changed, end, typed); },
@@ -52,9 +52,9 @@ void range_row(App& app) {
   const float width = row_label(app, "Range", "Where the curve begins and where it ends.");
   const float gap = 6 * app.scale, each = std::floor((width - gap) / 2);
   range_field(app, "response/from", "The curve begins here, with the equilibrium nearest to the drawn pose.",
-              &ResponseState::from, each);
+              &ResponseChoice::from, each);
   ImGui::SameLine(0, gap);
-  range_field(app, "response/to", "The curve is followed as far as this.", &ResponseState::to, each);
+  range_field(app, "response/to", "The curve is followed as far as this.", &ResponseChoice::to, each);
 }
 
 void quantity_choice(App& app) {
@@ -72,10 +72,10 @@ void quantity_choice(App& app) {
   for (const ResponseQuantity& each : offered_quantities(app)) {
     if (each.group != group) ImGui::TextDisabled("%s", (group = each.group).c_str());
     ImGui::PushID(each.key.c_str());
-    if (ImGui::Selectable(each.title.c_str(), each.key == state.quantity)) choose_quantity(app, each);
+    if (ImGui::Selectable(each.title.c_str(), each.key == state.choice.quantity)) choose_quantity(app, each);
     ImGui::PopID();
     note_widget(app.widgets, "response/quantity/" + each.key);
-    if (each.key == state.quantity) mark_chosen(app.widgets);
+    if (each.key == state.choice.quantity) mark_chosen(app.widgets);
   }
   ImGui::EndCombo();
 }
@@ -89,23 +89,24 @@ void found(App& app) {
     note_widget(app.widgets, "response/problem");
     return;
   }
-  if (!state.result) return;
+  if (!state.curve.found) return;
+  const ResponseResult& result = state.curve.found->result;
   std::size_t points = 0, apart = 0;
-  for (const ResponseLine& line : state.result->lines) {
+  for (const ResponseLine& line : result.lines) {
     points += line.points.size();
     if (!line.connected) ++apart;
   }
-  const std::size_t branches = state.result->lines.size();
+  const std::size_t branches = result.lines.size();
   std::string text = std::to_string(branches) + (branches == 1 ? " branch, " : " branches, ");
   if (apart > 0) text += std::to_string(apart) + " apart, ";
   text += std::to_string(points) + " points";
-  std::string help = state.result->diagram.message;
+  std::string help = result.diagram.message;
   for (std::size_t i = 0; i < branches && i < 8; ++i) {
-    const ResponseBranch& b = state.result->diagram.branches[i];
+    const ResponseBranch& b = result.diagram.branches[i];
     help += "\nBranch " + std::to_string(i + 1) + " ends: " + b.end + ".";
   }
   const NumberStyle& numbers = app.options.numbers;
-  row(app, text, numbers.run_times ? duration_text(state.result->diagram.run_time_s, numbers) : "", "",
+  row(app, text, numbers.run_times ? duration_text(result.diagram.run_time_s, numbers) : "", "",
       help.c_str());
   note_widget(app.widgets, "response/found");
 }
@@ -113,22 +114,22 @@ void found(App& app) {
 // A bar for what takes long.
 void progress(App& app) {
   ResponseState& state = app.study.response;
-  const bool curve = state.task && state.task->running(),
-             design = state.design.task && state.design.task->running();
+  ResponseCurve& curve = state.curve;
+  auto& design = state.design.answer;
   double& waiting_since = app.plots.response.waiting_since;
-  if (!curve && !design) {
+  if (!curve.running() && !design.running()) {
     waiting_since = -1;
     return;
   }
   if (waiting_since < 0) waiting_since = ImGui::GetTime();
   if (ImGui::GetTime() - waiting_since < curve_patience) return;
-  task_bar(app, "response/progress", curve ? state.task->progress() : state.design.task->progress(),
-           curve ? state.task->seconds() : state.design.task->seconds(),
+  task_bar(app, "response/progress", curve.running() ? curve.progress() : design.progress(),
+           curve.running() ? curve.seconds() : design.seconds(),
            ImGui::GetContentRegionAvail().x - 70 * app.scale);
   ImGui::SameLine();
   if (text_button(app, "response/cancel", "Cancel")) {
-    if (curve) state.task->cancel();
-    if (design) state.design.task->cancel();
+    curve.stop();
+    design.stop();
   }
 }
 
@@ -155,8 +156,7 @@ double present_value(const App& app, const std::string& name) {
 void choose_design(App& app, const std::string& name) {
   ResponseDesign& design = app.study.response.design;
   design.coordinate = name;
-  design.answer.reset();
-  ++app.study.response.version;
+  design.answer.found.reset();
   const CoordinateSolution* c = design_coordinate(app);
   // The nearest whole degree, millimetre or hundredth of a radian.
   const ShownUnit unit = coordinate_unit(c && c->angle, app.units);
@@ -215,9 +215,9 @@ void solution_row(App& app, const DesignAnswer& answer, const DesignSolution& s,
 void design_answer(App& app) {
   const ResponseDesign& design = app.study.response.design;
   const UiColors& colors = colors_of(app);
-  if (!design.problem.empty()) return paragraph(design.problem, colors.bad);
-  if (!design.answer) return;
-  const DesignAnswer& answer = design.answer->found;
+  if (!design.answer.problem.empty()) return paragraph(design.answer.problem, colors.bad);
+  if (!design.answer.found) return;
+  const DesignAnswer& answer = design.answer.found->result;
   if (answer.solutions.empty()) {
     paragraph(answer.message, colors.warn);
     note_widget(app.widgets, "response/never");
@@ -239,7 +239,7 @@ void design_rows(App& app) {
   if (names.empty()) return;
   ResponseDesign& design = app.study.response.design;
   if (std::ranges::find(names, design.coordinate) == names.end()) {
-    const std::string& quantity = app.study.response.quantity;
+    const std::string& quantity = app.study.response.choice.quantity;
     const auto shown =
         std::ranges::find_if(names, [&](const std::string& n) { return quantity == "value " + n; });
     choose_design(app, shown == names.end() ? names.back() : *shown);
@@ -281,10 +281,10 @@ void response_choices(App& app) {
   range_row(app);
   quantity_choice(app);
   if (check_row(
-          app, "response/all", "Disconnected branches, too", app.study.response.all,
+          app, "response/all", "Disconnected branches, too", app.study.response.choice.all,
           "Also looks for branches that nothing connects with the drawn pose's: a bounded search at both "
           "ends and at the present value, which takes longer."))
-    app.study.response.all = !app.study.response.all;
+    app.study.response.choice.all = !app.study.response.choice.all;
   progress(app);
   found(app);
   branch_note(app);
@@ -303,7 +303,7 @@ void response_panel(App& app) {
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   ResponseView& drawn = app.plots.response;
-  if (app.study.response.result && response_refusal(app).empty()) {
+  if (app.study.response.curve.found && response_refusal(app).empty()) {
     draw_response(app);
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const PlotEvents events =

@@ -131,16 +131,17 @@ std::string mark_label(const SpecialPoint& special, const ShownUnit& unit) {
 
 } // namespace
 
-Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantity, const DisplayUnits& units,
-                   std::vector<ResponsePiece>& pieces) {
+Plot response_plot(const ResponseCurve::Found& found, const ResponseQuantity& quantity,
+                   const DisplayUnits& units, std::vector<ResponsePiece>& pieces) {
+  const ResponseRequest& of = found.of;
+  const ResponseResult& result = found.result;
   Plot plot;
   pieces.clear();
-  const std::string unit = parameter_unit(*result.of.mechanism, result.of.address);
-  plot.x = {.label = parameter_phrase(result.of.address),
+  const std::string unit = parameter_unit(*of.mechanism, of.address);
+  plot.x = {.label = parameter_phrase(of.address),
             .unit = unit,
-            .logarithmic = result.of.logarithmic,
-            .range =
-                PlotRange{std::min(result.of.from, result.of.to), std::max(result.of.from, result.of.to)},
+            .logarithmic = of.logarithmic,
+            .range = PlotRange{std::min(of.from, of.to), std::max(of.from, of.to)},
             .room = 0};
   plot.y.label = quantity.title;
   plot.y.unit = quantity.unit;
@@ -158,41 +159,46 @@ Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantit
 void draw_response(App& app) {
   const ResponseState& state = app.study.response;
   ResponseView& drawn = app.plots.response;
-  if (drawn.chosen != state.chosen) fit_plot(drawn.view);
-  drawn.chosen = state.chosen;
+  ResponseChoice choice = state.choice;
+  choice.all = false; // more branches are looked at as before
+  if (drawn.fitted != choice) fit_plot(drawn.view);
+  drawn.fitted = choice;
   const ResponseQuantity& quantity = state.shown;
+  const auto& curve = state.curve.found;
+  const auto& design = state.design.answer.found;
   // Until a curve with reactions is there the one before stays.
-  const bool told = state.result && (state.result->of.reactions || !needs_reactions(state.quantity));
-  if (drawn.plotted != state.version && told) {
+  const bool told = curve && (curve->of.reactions || !needs_reactions(state.choice.quantity));
+  const ResponseView::Of of{curve, design, state.choice.quantity, app.units};
+  if (drawn.of != of && told) {
     const std::optional<PlotRange> before = drawn.plot.y.range;
     const bool same = drawn.plot.y.label == quantity.title;
-    drawn.plot = response_plot(*state.result, quantity, app.units, drawn.pieces);
-    if (const auto& answer = state.design.answer; answer && "value " + answer->coordinate == state.quantity &&
-                                                  answer->of.address == state.result->of.address) {
-      drawn.plot.references.push_back(
-          {.axis = 1, .at = answer->value * quantity.factor, .label = "wanted", .color = plot_color::green});
-      for (const DesignSolution& s : answer->found.solutions)
-        drawn.plot.marks.push_back({.at = {s.parameter, answer->value * quantity.factor},
-                                    .label = "",
-                                    .shape = PlotShape::diamond,
-                                    .color = plot_color::green});
+    Plot plot = response_plot(*curve, quantity, app.units, drawn.pieces);
+    if (design && "value " + design->of.coordinate == state.choice.quantity &&
+        design->of.of.address == curve->of.address) {
+      const double wanted = design->of.value * quantity.factor;
+      plot.references.push_back({.axis = 1, .at = wanted, .label = "wanted", .color = plot_color::green});
+      for (const DesignSolution& s : design->result.solutions)
+        plot.marks.push_back({.at = {s.parameter, wanted},
+                              .label = "",
+                              .shape = PlotShape::diamond,
+                              .color = plot_color::green});
     }
-    show_axis(drawn.plot, 0, drawn.plot.x.unit, app.units);
-    show_axis(drawn.plot, 1, quantity.unit, app.units);
+    show_axis(plot, 0, plot.x.unit, app.units);
+    show_axis(plot, 1, quantity.unit, app.units);
     // While one slider is dragged the axis only grows: a curve that moves is seen against it.
-    PlotRange range = axis_range(drawn.plot, {}, 1);
+    PlotRange range = axis_range(plot, {}, 1);
     if (before && same && drawn.gesture == app.gesture)
       range = {std::min(range[0], (*before)[0]), std::max(range[1], (*before)[1])};
-    drawn.plot.y.range = range;
+    plot.y.range = range;
+    replace_plot(drawn.plot, std::move(plot));
     drawn.gesture = app.gesture;
-    drawn.plot.version = ++drawn.plots_made;
-    drawn.plotted = state.version;
+    drawn.of = of;
   }
   drawn.plot.marker.reset();
-  if (!state.result || !converged(app)) return;
-  const std::optional<ResponsePoint> now = present_point(app, state.result->of.address);
+  if (!curve || !converged(app)) return;
+  const std::optional<ResponsePoint> now = present_point(app, curve->of.address);
   if (!now) return;
-  if (const auto y = quantity_mark(*now, state.quantity))
+  if (const auto y = quantity_mark(*now, state.choice.quantity))
     drawn.plot.marker =
         PlotMarker{now->parameter * drawn.plot.x.factor, *y * quantity.factor * drawn.plot.y.factor, ""};
 }
@@ -202,10 +208,10 @@ void go_to_hit(App& app, const PlotHit& hit, bool dragged) {
   const ResponseView& drawn = app.plots.response;
   if (hit.curve >= drawn.pieces.size()) return;
   const ResponsePiece& piece = drawn.pieces[hit.curve];
-  const double span = std::abs(state.to - state.from);
+  const double span = std::abs(state.choice.to - state.choice.from);
   double step = std::pow(10, std::floor(std::log10(span)) - 4);
   // A logarithmic range needs more digits at its lower end.
-  if (const double x = hit.x / drawn.plot.x.factor; state.logarithmic && x > 0)
+  if (const double x = hit.x / drawn.plot.x.factor; state.choice.logarithmic && x > 0)
     step = std::pow(10, std::floor(std::log10(x)) - 4);
   go_to_response(app, piece.line, static_cast<double>(piece.first) + hit.index, step, dragged);
 }

@@ -7,8 +7,8 @@ namespace flyball {
 
 // Curves of one quantity over the parameter: stable solid, unstable dashed, undecided dotted.
 // In SI units; `units` are for labels.
-Plot response_plot(const ResponseResult& result, const ResponseQuantity& quantity, const DisplayUnits& units,
-                   std::vector<ResponsePiece>& pieces);
+Plot response_plot(const ResponseCurve::Found& found, const ResponseQuantity& quantity,
+                   const DisplayUnits& units, std::vector<ResponsePiece>& pieces);
 // The plot of result, quantity and design, made anew where one of them has changed; the marker is the
 // present answer.
 void draw_response(App& app);

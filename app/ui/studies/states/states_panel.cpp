@@ -51,30 +51,31 @@ void summary(App& app, const std::vector<Solution>& all) {
 }
 
 // Where it was looked, and from how many starts.
-void search_bounds(App& app, const FoundStates& found) {
+void search_bounds(App& app, const StatesStudy::Found& search) {
+  const AllSolutions& found = search.result;
   const UiColors& colors = colors_of(app);
   heading(app, "How it was searched");
-  paragraph(number_of(static_cast<std::size_t>(found.all.starts), "run", "runs") +
+  paragraph(counted(static_cast<std::size_t>(found.starts), "run", "runs") +
                 " of Newton-Raphson, from starts spread over these ranges and deflated at what was found. No "
                 "such search is complete.",
             colors.dim);
   note_widget(app.widgets, "states/search");
-  for (const AllSolutions::Bound& b : found.all.bounds) {
+  for (const AllSolutions::Bound& b : found.bounds) {
     const ShownUnit unit = coordinate_unit(b.angle, app.units);
     row(app, coordinate_label(b),
         short_text(unit.shown(b.lower), 5) + " … " + short_text(unit.shown(b.upper), 5), unit.text.c_str(),
         "Where starts lay. What was found a range's width further out was kept, too.");
   }
   if (app.options.numbers.run_times)
-    row(app, "Run time", duration_text(found.run_time_s, app.options.numbers), "");
+    row(app, "Run time", duration_text(search.run_time, app.options.numbers), "");
 }
 
-void states_words(App& app) {
-  StatesState& states = app.study.states;
+void words(App& app) {
+  StatesStudy& states = app.study.states;
   const UiColors& colors = colors_of(app);
-  if (states.task && states.task->running()) {
-    task_bar(app, "states/progress", states.task->progress(), states.task->seconds());
-    if (text_button(app, "states/cancel", "Cancel")) states.task->cancel();
+  if (states.running()) {
+    task_bar(app, "states/progress", states.progress(), states.seconds());
+    if (text_button(app, "states/cancel", "Cancel")) states.stop();
   } else {
     const bool refused = !app.mistakes.empty() || app.mechanism().bodies.empty();
     ImGui::BeginDisabled(refused);
@@ -83,11 +84,11 @@ void states_words(App& app) {
     if (refused) paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
   }
   if (!states.problem.empty()) paragraph(states.problem, colors.bad);
-  if (!states.result) return;
+  if (!states.found) return;
   if (!states_are_current(app))
     paragraph("Found before the last changes: search again to choose one.", colors.warn);
-  summary(app, states.result->all.equilibria);
-  search_bounds(app, *states.result);
+  summary(app, states.found->result.equilibria);
+  search_bounds(app, *states.found);
 }
 
 struct Column {
@@ -199,16 +200,16 @@ std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
   return columns;
 }
 
-void states_table(App& app) {
-  const StatesState& states = app.study.states;
-  if (!states.result || states.result->all.equilibria.empty()) return;
-  const std::vector<Solution>& all = states.result->all.equilibria;
-  std::vector<StateLine> lines;
+void table(App& app) {
+  const auto& found = app.study.states.found;
+  if (!found || found->result.equilibria.empty()) return;
+  const std::vector<Solution>& all = found->result.equilibria;
+  std::vector<Line> lines;
   lines.reserve(all.size());
   for (const Solution& solution : all)
     lines.push_back(line_of(solution, app.options.numbers, app.units));
   const std::vector<Column> columns = columns_of(app, all, lines);
-  ImGui::PushID(static_cast<int>(states.lists)); // new widths with every list
+  ImGui::PushID(found.get()); // new widths with every list
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {6 * app.scale, 3 * app.scale});
   ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors_of(app).panel);
   ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors_of(app).border);

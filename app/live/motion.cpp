@@ -1,0 +1,71 @@
+#include "app/live/motion.hpp"
+
+#include "engine/dynamics/joined.hpp"
+#include "engine/dynamics/simulator.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+namespace flyball {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double slice = 0.02; // s of computing between looks at what else is wanted
+constexpr double apart = 0.04; // s between two pieces of news, at least
+constexpr double share = 10;   // copying the run must take no more than one part in so many of the time
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+} // namespace
+
+Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& context) {
+  SimulationOptions options = request.options;
+  options.cancel = &context.cancel;
+  std::shared_ptr<const Run> before = request.before;
+  std::size_t last = 0;
+  double duration = options.duration;
+  try {
+    if (before && before->time.empty()) before = nullptr;
+    if (before) {
+      last = sample_before(*before, request.time + 1e-9 * (1 + std::abs(request.time))); // one that is meant
+      duration -= before->time[last] - before->time.front();
+      options.start = Start::state;
+      options.state = state_at(*before, last);
+    }
+    Simulator simulator(*request.mechanism, options);
+    if (simulator.run().time.empty()) // cancelled before it began
+      return {before, true, simulator.run().message};
+    const double begin = simulator.time(), end = begin + std::max(duration, 0.);
+    const auto so_far = [&] {
+      return std::make_shared<const Run>(before ? joined(*before, last, simulator.run()) : simulator.run());
+    };
+    double step = options.rate > 0 ? 1 / options.rate : end - begin, wait = apart;
+    auto told = Clock::now();
+    bool well = true;
+    for (double until = begin; well && until < end;) {
+      const auto started = Clock::now();
+      until = std::min(end, until + step);
+      well = simulator.advance(until, until == end);
+      const double took = since(started);
+      if (options.rate > 0) step *= std::clamp(slice / std::max(took, 1e-6), 0.5, 2.);
+      if (well && until < end && since(told) > wait) {
+        const auto copying = Clock::now();
+        context.publish({so_far(), false, {}});
+        wait = std::max(apart, share * since(copying));
+        told = Clock::now();
+      }
+    }
+    return {so_far(), true, {}};
+  } catch (const std::exception& error) { // SceneError, or no memory
+    return {before, true, error.what()};
+  }
+}
+
+} // namespace flyball

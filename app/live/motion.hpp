@@ -1,0 +1,26 @@
+// The damped motion computed while it plays: the run comes out as a value that grows.
+#pragma once
+
+#include "app/live/background.hpp"
+#include "engine/dynamics/simulation.hpp"
+
+namespace flyball {
+
+struct MotionRequest {
+  std::shared_ptr<const Mechanism> mechanism; // not null
+  SimulationOptions options;                  // `cancel` and `progress` are not used
+  // To go on from its moment `time` (s), up to where it would have ended; null: a new run.
+  std::shared_ptr<const Run> before;
+  double time = 0;
+};
+
+struct Motion {
+  std::shared_ptr<const Run> run; // all so far; null where no motion could begin
+  bool finished = false;          // nothing more will come
+  std::string problem;            // why no motion could begin, or go on
+};
+
+// Publishes what there is from time to time. Cancelled, it returns what was computed.
+Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& context);
+
+} // namespace flyball

@@ -1,0 +1,33 @@
+// What widgets are drawn with, where they note themselves, and the keys that reach them: all of a window that
+// they touch.
+#pragma once
+
+#include "app/render/fonts.hpp"
+#include "app/ui/keyboard/keyboard_state.hpp"
+#include "app/ui/widgets/tooltip.hpp"
+#include "app/ui/widgets/widget_map.hpp"
+#include "app/viewport/theme.hpp"
+
+#include <vector>
+
+namespace flyball {
+
+// A key that went down. Kept as it happened: Dear ImGui 1.86 only sees which keys are down when a frame
+// begins, and misses one that was tapped while a slow frame was drawn.
+struct KeyPress {
+  int key = 0; // 'A' to 'Z' as the keyboard's layout has it, a digit, ' ', a sign, or from 256 on GLFW's code
+  bool ctrl = false, shift = false, alt = false;
+  bool operator==(const KeyPress&) const = default;
+};
+
+struct Ui {
+  Theme theme = Theme::light; // that is shown
+  float scale = 1;            // pixels a point has
+  UiFonts fonts;
+  WidgetMap widgets;
+  KeyboardState keyboard;
+  std::vector<KeyPress> keys; // since the last frame; whoever runs the loop adds, build_gui() empties
+  TooltipState tooltip;
+};
+
+} // namespace flyball
