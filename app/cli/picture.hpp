@@ -30,8 +30,8 @@ struct Picture {
 
 // Of a mechanism that is at hand; `scene` is its file.
 Picture draw_picture(Mechanism mechanism, const std::filesystem::path& scene, const PictureOptions& options);
-// Of a file, warnings to standard error. Throws SceneError for a scene that cannot be used; both throw GlError
-// where nothing can be drawn.
+// Of a file, warnings to standard error. Throws SceneError for a scene that cannot be used; both throw
+// GlError where nothing can be drawn.
 Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& options);
 
 } // namespace flyball::cli

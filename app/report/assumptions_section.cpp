@@ -26,7 +26,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 bool damped(const Mechanism& m) {
   const auto damper = [](const Coordinate& c) { return c.damping != 0; };
-  return std::ranges::any_of(m.joints, [&](const Joint& j) { return std::ranges::any_of(j.coordinates, damper); }) ||
+  return std::ranges::any_of(m.joints,
+                             [&](const Joint& j) { return std::ranges::any_of(j.coordinates, damper); }) ||
          std::ranges::any_of(m.forces, [](const Force& f) {
            return f.type == ForceType::drag || (f.type == ForceType::spring && f.damping != 0);
          });
@@ -51,25 +52,28 @@ OptionalSection assumptions_section(const ReportContents& contents) {
   terms.term("Drives", driven.empty() ? Html("None: an equilibrium at rest.")
                                       : "Constant speeds, whatever torque they take: " + driven + ".");
   terms.term("Steady state", "Every other coordinate is constant.");
-  terms.term("Damping", damped(m) ? "Viscous dampers count in stability and modes; they move no steady state of "
-                                    "coordinates that stand still."
-                                  : "None.");
+  terms.term("Damping", damped(m)
+                            ? "Viscous dampers count in stability and modes; they move no steady state of "
+                              "coordinates that stand still."
+                            : "None.");
   if (dragged(m)) terms.term("Air", "At rest in the world.");
   terms.term("Size", std::to_string(system.bodies) + (system.bodies == 1 ? " body, " : " bodies, ") +
                          std::to_string(system.free_coordinates) + " free and " +
                          std::to_string(system.driven_coordinates) + " driven coordinates, " +
                          std::to_string(system.constraint_equations) + " constraint equations.");
-  terms.term("Loops", system.cut_joints.empty() ? Html("None.")
-                                                : Html("Closed by constraint equations at " +
-                                                       joined(system.cut_joints) + "."));
+  terms.term("Loops", system.cut_joints.empty()
+                          ? Html("None.")
+                          : Html("Closed by constraint equations at " + joined(system.cut_joints) + "."));
   if (!system.implicit_joints.empty())
-    terms.term("Free joints", "Added for bodies that no joint holds: " + joined(system.implicit_joints) + ".");
+    terms.term("Free joints",
+               "Added for bodies that no joint holds: " + joined(system.implicit_joints) + ".");
   if (contents.solution.reactions_nonunique)
     terms.term("Redundancy", "The loops are redundantly constrained; multipliers are those of least norm.");
   Html body = terms.html();
   if (!system.notes.empty()) body += heading_of("Choices of the solver") + list_of(system.notes);
   if (!system.in.empty()) body += heading_of("In the equations") + list_of(system.in);
-  if (!system.left_out.empty()) body += heading_of("Left out, as the scene has none") + list_of(system.left_out);
+  if (!system.left_out.empty())
+    body += heading_of("Left out, as the scene has none") + list_of(system.left_out);
   return ReportSection{"assumptions", "Assumptions", body};
 }
 
@@ -80,7 +84,8 @@ OptionalSection warnings_section(const ReportContents& contents) {
   Html body = table.empty() ? paragraph_of("None: nothing in the scene is unlikely.")
                             : paragraph_of("Allowed, and yet unlikely:") + table.html();
   if (contents.cut_short)
-    body += paragraph_of("The computation was cut short by its time limit: curves may be missing or end early.");
+    body +=
+        paragraph_of("The computation was cut short by its time limit: curves may be missing or end early.");
   return ReportSection{"warnings", "Warnings", body};
 }
 

@@ -18,8 +18,8 @@ constexpr int most_modes = 20;
 
 // Over what curves are drawn: the sliders, or else the speeds of the drives from standstill to twice.
 std::vector<Slider> curve_parameters(const Mechanism& m) {
-  std::vector<Slider> out(m.sliders.begin(),
-                          m.sliders.begin() + static_cast<std::ptrdiff_t>(std::min(m.sliders.size(), most_curves)));
+  std::vector<Slider> out(m.sliders.begin(), m.sliders.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                     m.sliders.size(), most_curves)));
   if (!out.empty()) return out;
   for (const Joint& joint : m.joints) {
     for (std::size_t i = 0; i < joint.coordinates.size() && out.size() < most_curves; ++i) {
@@ -40,9 +40,8 @@ std::vector<std::size_t> plotted_coordinates(const std::vector<CoordinateSolutio
                                              const std::vector<std::string>& names) {
   std::vector<std::size_t> out;
   for (const std::string& name : names) {
-    const auto at = std::ranges::find_if(all, [&](const CoordinateSolution& c) {
-      return !c.driven && coordinate_label(c) == name;
-    });
+    const auto at = std::ranges::find_if(
+        all, [&](const CoordinateSolution& c) { return !c.driven && coordinate_label(c) == name; });
     if (at == all.end()) throw SceneError("--plot " + name, "expected a coordinate that is not driven");
     out.push_back(static_cast<std::size_t>(at - all.begin()));
   }
@@ -66,7 +65,8 @@ ReportCurve follow(const ReportContents& contents, const Slider& over, const Rep
   follow.progress = options.progress;
   // The branch of the state that is reported; where that lies outside, the one that the range begins with.
   const double low = std::min(over.from, over.to), high = std::max(over.from, over.to);
-  const bool within = contents.solution.status == Status::converged && low <= out.present && out.present <= high;
+  const bool within =
+      contents.solution.status == Status::converged && low <= out.present && out.present <= high;
   std::optional<ResponseDiagram> diagram;
   if (within)
     diagram = follow_branches_through(m, over.parameter, over.from, over.to,

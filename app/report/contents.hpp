@@ -14,9 +14,9 @@ namespace flyball {
 // The response to one slider, or to a drive's speed where there are no sliders.
 struct ReportCurve {
   Slider over;
-  double present = 0;       // the parameter's value in the report
-  std::vector<Plot> plots;  // one a coordinate; none where nothing could be followed
-  std::string message;      // a sentence: what was followed, or why nothing
+  double present = 0;      // the parameter's value in the report
+  std::vector<Plot> plots; // one a coordinate; none where nothing could be followed
+  std::string message;     // a sentence: what was followed, or why nothing
 };
 
 // The mechanism in its steady state, as PNG files on light and on dark ground.
@@ -45,14 +45,15 @@ struct ReportOptions {
   // See SolveOptions.
   std::vector<std::pair<std::string, double>> start{};
   bool nearest = false;
-  // The coordinates that curves show ("joint", or "joint.index"); empty: the first angle and the first length.
+  // The coordinates that curves show ("joint", or "joint.index"); empty: the first angle and the first
+  // length.
   std::vector<std::string> plotted{};
   const std::atomic<bool>* cancel = nullptr; // what was found until then is told
   ReportProgress progress{};
 };
 
-// Solves, and follows the curves. Picture, scene and date are whoever asks' to fill in. Throws SceneError for a
-// mechanism that cannot be compiled, and for coordinates and starts that are none.
+// Solves, and follows the curves. Picture, scene and date are whoever asks' to fill in. Throws SceneError for
+// a mechanism that cannot be compiled, and for coordinates and starts that are none.
 ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const ReportOptions& options);
 
 // Now, in the computer's time zone: "2026-11-24 23:05".

@@ -83,10 +83,10 @@ Html HtmlTable::html() const {
     head += column.number ? element("th", column.title, {{"scope", "col"}, {"class", "number"}})
                           : element("th", column.title, {{"scope", "col"}});
   // As wide as it needs to be, without making the page so.
-  Html out = element("div",
-                     element("table", element("thead", element("tr", head)) + element("tbody", "\n" + body_)),
-                     {{"class", "wide"}}) +
-             "\n";
+  Html out =
+      element("div", element("table", element("thead", element("tr", head)) + element("tbody", "\n" + body_)),
+              {{"class", "wide"}}) +
+      "\n";
   if (rows_ > most_rows)
     out += paragraph_of("The other " + std::to_string(rows_ - most_rows) + " rows are left out.");
   return out;

@@ -40,7 +40,8 @@ Html paragraph_of(const Html& words);
 Html heading_of(std::string_view words); // within a section
 Html list_of(const std::vector<std::string>& items);
 
-// A table in which columns of numbers are flush right. Of very many rows the last are left out, which it says.
+// A table in which columns of numbers are flush right. Of very many rows the last are left out, which it
+// says.
 class HtmlTable {
  public:
   struct Column {

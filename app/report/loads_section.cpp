@@ -25,7 +25,8 @@ double drive_speed(const Mechanism& m, const DriveTorque& d) {
 
 Html drives(const Mechanism& m, const std::vector<DriveTorque>& all) {
   if (all.empty()) return {};
-  HtmlTable table({{"Drive", false}, {"Speed"}, {"Torque or force"}, {"Power"}, {"Over all phases", false}, {"", false}});
+  HtmlTable table(
+      {{"Drive", false}, {"Speed"}, {"Torque or force"}, {"Power"}, {"Over all phases", false}, {"", false}});
   for (const DriveTorque& d : all) {
     const std::string_view unit = force_unit_of(d.angle);
     const double speed = drive_speed(m, d);
@@ -36,7 +37,8 @@ Html drives(const Mechanism& m, const std::vector<DriveTorque>& all) {
     table.row({coordinate_label(d), quantity(speed, d.angle ? "rad/s" : "m/s"), quantity(d.value, unit, 9),
                quantity(d.value * speed, "W"), range, flags(d.varying, d.nonunique)});
   }
-  return heading_of("Drives") + paragraph_of("What each drive exerts, positive along its coordinate.") + table.html();
+  return heading_of("Drives") + paragraph_of("What each drive exerts, positive along its coordinate.") +
+         table.html();
 }
 
 // What is rounding beside the largest reaction is shown as zero.
@@ -51,15 +53,17 @@ Html reactions(const Solution& s) {
     force = std::max(force, r.force.norm());
     torque = std::max(torque, r.torque.norm());
   }
-  HtmlTable table({{"Joint", false}, {"Force (x, y, z)"}, {"Size"}, {"Torque (x, y, z)"}, {"Size"}, {"", false}});
+  HtmlTable table(
+      {{"Joint", false}, {"Force (x, y, z)"}, {"Size"}, {"Torque (x, y, z)"}, {"Size"}, {"", false}});
   for (const Reaction& r : s.reactions) {
     const Vec3 f = without_rounding(r.force, force), t = without_rounding(r.torque, std::max(torque, force));
     table.row({r.joint, vector_quantity(f, "N", 5), quantity(f.norm(), "N", 5), vector_quantity(t, "N m", 5),
                quantity(t.norm(), "N m", 5), flags(r.varying, r.nonunique)});
   }
   Html out = heading_of("Reactions") +
-             paragraph_of("What the parent exerts on the child through the joint, its spring, stop, damper and drive "
-                          "included: in world axes at the drawn phase, torques about the joint's point.") +
+             paragraph_of(
+                 "What the parent exerts on the child through the joint, its spring, stop, damper and drive "
+                 "included: in world axes at the drawn phase, torques about the joint's point.") +
              table.html();
   if (s.reactions_nonunique)
     out += element("p",
@@ -74,23 +78,29 @@ Html gears(const Solution& s) {
   if (s.gears.empty()) return {};
   HtmlTable table({{"Gear", false}, {"On its first joint"}, {"On its second joint"}, {"", false}});
   for (const GearReaction& g : s.gears)
-    table.row({g.joint, quantity(g.a, force_unit_of(g.angle_a), 9), quantity(g.b, force_unit_of(g.angle_b), 9),
-               flags(g.varying, g.nonunique)});
-  return heading_of("Gears") + paragraph_of("Along the coordinates of their two joints, whose reactions include it.") +
+    table.row({g.joint, quantity(g.a, force_unit_of(g.angle_a), 9),
+               quantity(g.b, force_unit_of(g.angle_b), 9), flags(g.varying, g.nonunique)});
+  return heading_of("Gears") +
+         paragraph_of("Along the coordinates of their two joints, whose reactions include it.") +
          table.html();
 }
 
 Html springs(const std::vector<SpringLoad>& all) {
   if (all.empty()) return {};
-  HtmlTable table(
-      {{"Spring", false}, {"Kind", false}, {"Coordinate or length"}, {"Deflection"}, {"Force or torque"}, {"Energy"}});
+  HtmlTable table({{"Spring", false},
+                   {"Kind", false},
+                   {"Coordinate or length"},
+                   {"Deflection"},
+                   {"Force or torque"},
+                   {"Energy"}});
   for (const SpringLoad& s : all) {
     const std::string_view unit = coordinate_unit_of(s.angle);
     table.row({s.name, s.kind, quantity(s.at, unit), quantity(s.deflection, unit),
                quantity(s.force, force_unit_of(s.angle)), quantity(s.energy, "J", 4)});
   }
   return heading_of("Springs and stops") +
-         paragraph_of("On a joint positive along its coordinate; between bodies, tension is positive.") + table.html();
+         paragraph_of("On a joint positive along its coordinate; between bodies, tension is positive.") +
+         table.html();
 }
 
 } // namespace

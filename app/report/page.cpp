@@ -9,9 +9,9 @@ namespace flyball {
 namespace {
 
 constexpr OptionalSection (*all_sections[])(const ReportContents&) = {
-    steady_state_section, stability_section,   loads_section,    bodies_section,  sliders_section,
-    curves_section,       sensitivities_section, assumptions_section, warnings_section, numbers_section,
-    versions_section};
+    steady_state_section, stability_section, loads_section,         bodies_section,
+    sliders_section,      curves_section,    sensitivities_section, assumptions_section,
+    warnings_section,     numbers_section,   versions_section};
 
 Html image(const std::string& png, const char* which, const ReportPicture& picture, const std::string& alt) {
   return void_element("img", {{"class", which},
@@ -24,7 +24,8 @@ Html image(const std::string& png, const char* which, const ReportPicture& pictu
 Html picture_of(const ReportContents& contents) {
   const ReportPicture& p = contents.picture;
   if (p.light.empty() || p.dark.empty())
-    return p.problem.empty() ? Html() : element("p", "There is no picture: " + p.problem, {{"class", "note"}});
+    return p.problem.empty() ? Html()
+                             : element("p", "There is no picture: " + p.problem, {{"class", "note"}});
   const bool found = contents.solution.status == Status::converged;
   const std::string words = found ? "In its steady state." : "As it is drawn.";
   const std::string alt = contents.mechanism->name + ": " + words;
@@ -55,19 +56,21 @@ std::string report_page(const ReportContents& contents) {
     const OptionalSection section = make(contents);
     if (!section) continue;
     entries += element("li", element("a", section->title, {{"href", "#" + section->id}}));
-    body += element("section", element("h2", section->title) + "\n" + section->body, {{"id", section->id}}) + "\n";
+    body += element("section", element("h2", section->title) + "\n" + section->body, {{"id", section->id}}) +
+            "\n";
   }
-  const Html head = void_element("meta", {{"charset", "utf-8"}}) +
-                    void_element("meta", {{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}}) +
-                    void_element("meta", {{"name", "color-scheme"}, {"content", "light dark"}}) +
-                    element("title", contents.mechanism->name + " – steady-state report") +
-                    element("style", Html::markup(std::string(report_style())));
+  const Html head =
+      void_element("meta", {{"charset", "utf-8"}}) +
+      void_element("meta", {{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}}) +
+      void_element("meta", {{"name", "color-scheme"}, {"content", "light dark"}}) +
+      element("title", contents.mechanism->name + " – steady-state report") +
+      element("style", Html::markup(std::string(report_style())));
   const Html contents_list =
       element("nav", element("h2", "Contents") + element("ol", entries), {{"aria-label", "Contents"}});
   const Html page = element("html",
                             element("head", head) + "\n" +
-                                element("body", "\n" + header(contents) + picture_of(contents) + contents_list + "\n" +
-                                                    element("main", "\n" + body)),
+                                element("body", "\n" + header(contents) + picture_of(contents) +
+                                                    contents_list + "\n" + element("main", "\n" + body)),
                             {{"lang", "en"}});
   return "<!DOCTYPE html>\n" + page.text() + "\n";
 }

@@ -9,7 +9,12 @@ namespace {
 
 SpringLoad elastic(std::string name, const char* kind, bool angle, double at, double deflection,
                    double stiffness, double sign) {
-  return {std::move(name), kind, angle, at, deflection, sign * stiffness * deflection,
+  return {std::move(name),
+          kind,
+          angle,
+          at,
+          deflection,
+          sign * stiffness * deflection,
           stiffness * deflection * deflection / 2};
 }
 
@@ -25,7 +30,8 @@ std::vector<SpringLoad> spring_loads(const Mechanism& m, const Solution& solutio
     const auto add = [&](const char* kind, double deflection, double stiffness) {
       out.push_back(elastic(coordinate_label(c), kind, c.angle, c.value, deflection, stiffness, -1));
     };
-    if (const auto& spring = coordinate.spring) add("spring on a joint", c.value - spring->free, spring->stiffness);
+    if (const auto& spring = coordinate.spring)
+      add("spring on a joint", c.value - spring->free, spring->stiffness);
     if (!coordinate.stop) continue;
     const Stop& stop = *coordinate.stop;
     if (stop.lower && c.value < *stop.lower) add("stop", c.value - *stop.lower, stop.stiffness);

@@ -8,7 +8,7 @@
 namespace flyball {
 
 struct SpringLoad {
-  std::string name; // of the joint's coordinate, or of the force
+  std::string name;      // of the joint's coordinate, or of the force
   const char* kind = ""; // "spring on a joint"
   bool angle = false;    // rad and N m rather than m and N
   double at = 0;         // the coordinate's value, or the spring's length: rad or m

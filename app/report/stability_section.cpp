@@ -28,7 +28,8 @@ Html amplitudes(const VibrationMode& mode) {
   std::vector<const ModeAmplitude*> largest;
   for (const ModeAmplitude& a : mode.amplitudes)
     if (std::abs(a.value) > 1e-6) largest.push_back(&a);
-  std::ranges::stable_sort(largest, std::greater<>(), [](const ModeAmplitude* a) { return std::abs(a->value); });
+  std::ranges::stable_sort(largest, std::greater<>(),
+                           [](const ModeAmplitude* a) { return std::abs(a->value); });
   Html out;
   for (std::size_t i = 0; i < largest.size() && i < most_named; ++i) {
     const ModeAmplitude& a = *largest[i];
@@ -42,8 +43,13 @@ Html amplitudes(const VibrationMode& mode) {
 }
 
 Html modes_table(const std::vector<VibrationMode>& modes) {
-  HtmlTable table({{"Mode", false}, {"Eigenvalue"}, {"Frequency"}, {"Undamped"}, {"Damping ratio"},
-                   {"Time constant"}, {"Largest amplitudes", false}});
+  HtmlTable table({{"Mode", false},
+                   {"Eigenvalue"},
+                   {"Frequency"},
+                   {"Undamped"},
+                   {"Damping ratio"},
+                   {"Time constant"},
+                   {"Largest amplitudes", false}});
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const VibrationMode& m = modes[i];
     table.row({std::to_string(i + 1), eigenvalue(m.eigenvalue),
@@ -58,7 +64,8 @@ Html eigenvalues_table(const std::vector<std::complex<double>>& all) {
   HtmlTable table({{"Eigenvalue", false}, {"Frequency"}, {"Damping ratio"}, {"Time constant"}});
   for (const auto& e : all)
     if (e.imag() >= 0)
-      table.row({eigenvalue(e), e.imag() > 0 ? quantity(hertz(damped_frequency(e)), "Hz", 5) : Html("no oscillation"),
+      table.row({eigenvalue(e),
+                 e.imag() > 0 ? quantity(hertz(damped_frequency(e)), "Hz", 5) : Html("no oscillation"),
                  quantity(100 * damping_ratio(e), "%", 4), time_constant(e.real())});
   return table.html();
 }
@@ -68,13 +75,16 @@ Html floquet_table(const Floquet& f) {
   for (std::size_t i = 0; i < f.multipliers.size(); ++i) {
     const auto& mu = f.multipliers[i];
     Html value = quantity(mu.real(), "", 9);
-    if (mu.imag() != 0) value += Html(mu.imag() < 0 ? " − " : " + ") + quantity(std::abs(mu.imag()), "", 9) + " i";
-    table.row({value, quantity(std::abs(mu), "", 9), i < f.growth.size() ? quantity(f.growth[i], "1/s") : Html("–")});
+    if (mu.imag() != 0)
+      value += Html(mu.imag() < 0 ? " − " : " + ") + quantity(std::abs(mu.imag()), "", 9) + " i";
+    table.row({value, quantity(std::abs(mu), "", 9),
+               i < f.growth.size() ? quantity(f.growth[i], "1/s") : Html("–")});
   }
   return heading_of("Floquet multipliers") +
          paragraph_of(Html("The linearised motion turns with the drives; their common period is ") +
-                      quantity(f.period, "s", 10) + ", and the multipliers, plain numbers, are known to about " +
-                      magnitude(f.error, "") + ".") +
+                      quantity(f.period, "s", 10) +
+                      ", and the multipliers, plain numbers, are known to about " + magnitude(f.error, "") +
+                      ".") +
          table.html();
 }
 
@@ -94,7 +104,8 @@ OptionalSection stability_section(const ReportContents& contents) {
   Html body = element("p", element("strong", v.word + ".", {{"class", v.color}}) + " " + v.sentence,
                       {{"class", "lead"}}) +
               "\n";
-  if (contents.evidence && !contents.evidence->reason.empty()) body += paragraph_of(contents.evidence->reason);
+  if (contents.evidence && !contents.evidence->reason.empty())
+    body += paragraph_of(contents.evidence->reason);
   if (!s.neutral.empty()) body += paragraph_of("Nothing resists some motion of:") + list_of(s.neutral);
   if (s.floquet) body += floquet_table(*s.floquet);
   if (!s.floquet && !contents.modes.empty()) {

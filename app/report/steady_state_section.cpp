@@ -9,7 +9,8 @@ namespace flyball {
 namespace {
 
 Html coordinates_table(const Solution& s) {
-  HtmlTable table({{"Coordinate", false}, {"Value"}, {"Estimated error"}, {"In everyday units"}, {"", false}});
+  HtmlTable table(
+      {{"Coordinate", false}, {"Value"}, {"Estimated error"}, {"In everyday units"}, {"", false}});
   for (const CoordinateSolution& c : s.coordinates) {
     const std::string label = coordinate_label(c);
     if (c.driven) {
@@ -74,9 +75,9 @@ OptionalSection sensitivities_section(const ReportContents& contents) {
       table.row({coordinate_label(r), s.address, rate_quantity(m, r.value, angle, s.address)});
     }
   if (table.empty()) return std::nullopt;
-  return ReportSection{"sensitivities", "Sensitivities",
-                       paragraph_of("How fast each coordinate of the steady state changes with each slider.") +
-                           table.html()};
+  return ReportSection{
+      "sensitivities", "Sensitivities",
+      paragraph_of("How fast each coordinate of the steady state changes with each slider.") + table.html()};
 }
 
 } // namespace flyball

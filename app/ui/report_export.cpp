@@ -56,7 +56,8 @@ void begin_report(App& app, const ExportRequest& request) {
     contents.date = report_date();
     contents.picture.problem = pictures->problem;
     if (pictures->problem.empty())
-      contents.picture = {encode_png(pictures->light), encode_png(pictures->dark), size.width, size.height, ""};
+      contents.picture = {encode_png(pictures->light), encode_png(pictures->dark), size.width, size.height,
+                          ""};
     replace_file(file, report_page(contents));
     return file;
   });

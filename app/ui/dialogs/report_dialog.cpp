@@ -18,7 +18,8 @@ void report_dialog(App& app) {
   if (!begin_dialog(app, Dialog::export_report, "Export a report", 520)) return;
   bool accepted = path_field(app, "report", "Name");
   folder_line(app, "report");
-  paragraph("One page for a browser or printer: picture, steady state, stability and modes, loads, response curves, "
+  paragraph("One page for a browser or printer: picture, steady state, stability and modes, loads, response "
+            "curves, "
             "parameters and assumptions.",
             colors_of(app).dim);
   const std::filesystem::path file = typed_file(app, ".html");
