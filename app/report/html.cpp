@@ -2,6 +2,8 @@
 
 #include "engine/mechanism/safe_text.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 namespace {
 
@@ -64,29 +66,30 @@ Html list_of(const std::vector<std::string>& items) {
 }
 
 void HtmlTable::row(const std::vector<Html>& cells) {
-  if (++rows_ > most_rows) return;
-  Html inner;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    // The first names what the row is about.
-    const char* const name = i == 0 ? "th" : "td";
-    if (columns_[i].number)
-      inner += element(name, cells[i], {{"class", "number"}});
-    else
-      inner += i == 0 ? element(name, cells[i], {{"scope", "row"}}) : element(name, cells[i]);
-  }
-  body_ += element("tr", inner) + "\n";
+  if (++rows_ <= most_rows) shown_.push_back(cells);
 }
 
 Html HtmlTable::html() const {
+  const auto used = [&](std::size_t column) {
+    return std::ranges::any_of(shown_, [&](const auto& cells) { return !cells[column].empty(); });
+  };
   Html head;
-  for (const Column& column : columns_)
-    head += column.number ? element("th", column.title, {{"scope", "col"}, {"class", "number"}})
-                          : element("th", column.title, {{"scope", "col"}});
+  std::vector<Html> rows(shown_.size());
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    if (!used(c)) continue;
+    const char* const kind = columns_[c].number ? "number" : "words";
+    head += element("th", columns_[c].title, {{"scope", "col"}, {"class", kind}});
+    for (std::size_t r = 0; r < rows.size(); ++r) // the first cell names what the row is about
+      rows[r] += c == 0 ? element("th", shown_[r][c], {{"scope", "row"}})
+                        : element("td", shown_[r][c], {{"class", kind}});
+  }
+  Html body = "\n";
+  for (const Html& row : rows)
+    body += element("tr", row) + "\n";
   // As wide as it needs to be, without making the page so.
-  Html out =
-      element("div", element("table", element("thead", element("tr", head)) + element("tbody", "\n" + body_)),
-              {{"class", "wide"}}) +
-      "\n";
+  Html out = element("div", element("table", element("thead", element("tr", head)) + element("tbody", body)),
+                     {{"class", "wide"}}) +
+             "\n";
   if (rows_ > most_rows)
     out += paragraph_of("The other " + std::to_string(rows_ - most_rows) + " rows are left out.");
   return out;

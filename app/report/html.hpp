@@ -40,8 +40,8 @@ Html paragraph_of(const Html& words);
 Html heading_of(std::string_view words); // within a section
 Html list_of(const std::vector<std::string>& items);
 
-// A table in which columns of numbers are flush right. Of very many rows the last are left out, which it
-// says.
+// A table in which columns of numbers are flush right. Columns without anything in them are left out; of very
+// many rows the last are, which it says.
 class HtmlTable {
  public:
   struct Column {
@@ -56,8 +56,8 @@ class HtmlTable {
 
  private:
   std::vector<Column> columns_;
+  std::vector<std::vector<Html>> shown_;
   std::size_t rows_ = 0;
-  Html body_;
 };
 
 // Words and what belongs to each, below each other.

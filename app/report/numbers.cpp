@@ -4,6 +4,8 @@
 #include "app/session/units.hpp"
 #include "engine/mechanism/address.hpp"
 
+#include <cmath>
+
 namespace flyball {
 namespace {
 
@@ -33,6 +35,7 @@ Html written_number(std::string_view number) {
   std::string exponent(number.substr(e + 1));
   const bool negative = exponent.starts_with('-');
   exponent.erase(0, exponent.find_first_not_of("+-0"));
+  if (exponent.empty()) return with_minus(number.substr(0, e)); // 10 to the 0
   return Html(with_minus(number.substr(0, e))) + narrow_space + "×" + narrow_space + "10" +
          element("sup", (negative ? minus : "") + exponent);
 }
@@ -46,7 +49,9 @@ Html quantity_within(double value, double error, std::string_view unit) {
 }
 
 Html magnitude(double value, std::string_view unit) {
-  return with_unit(written_number(magnitude_text(value, {})), unit);
+  const double size = std::abs(value);
+  const bool plain = size >= 1e-3 && size < 1e4;
+  return with_unit(written_number(plain ? short_text(value, 2) : magnitude_text(value, {})), unit);
 }
 
 Html vector_quantity(const Vec3& v, std::string_view unit, int digits) {

@@ -14,7 +14,7 @@ Html coordinates_table(const Solution& s) {
   for (const CoordinateSolution& c : s.coordinates) {
     const std::string label = coordinate_label(c);
     if (c.driven) {
-      table.row({label, "turns on", "", "", "driven"});
+      table.row({label, "driven", "", "", ""});
       continue;
     }
     const std::string_view unit = coordinate_unit_of(c.angle);

@@ -60,6 +60,7 @@ th, td { padding: 0.35rem 0.9rem 0.35rem 0; text-align: left; vertical-align: to
 th:last-child, td:last-child { padding-right: 0; }
 thead th { color: var(--dim); font-weight: 600; vertical-align: bottom; border-bottom-color: var(--dim); }
 tbody th { font-weight: 500; min-width: 6.5rem; max-width: 22rem; overflow-wrap: anywhere; }
+td.words { min-width: 8rem; }
 .number { text-align: right; white-space: nowrap; }
 dl { display: grid; grid-template-columns: minmax(8rem, max-content) 1fr; gap: 0.4rem 1.4rem; margin: 0.8rem 0; }
 dt { color: var(--dim); }
