@@ -72,8 +72,7 @@ OptionalSection assumptions_section(const ReportContents& contents) {
   Html body = terms.html();
   if (!system.notes.empty()) body += heading_of("Choices of the solver") + list_of(system.notes);
   if (!system.in.empty()) body += heading_of("In the equations") + list_of(system.in);
-  if (!system.left_out.empty())
-    body += heading_of("Left out, as the scene has none") + list_of(system.left_out);
+  if (!system.left_out.empty()) body += heading_of("Left out of the equations") + list_of(system.left_out);
   return ReportSection{"assumptions", "Assumptions", body};
 }
 

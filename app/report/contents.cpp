@@ -63,7 +63,7 @@ ReportCurve follow(const ReportContents& contents, const Slider& over, const Rep
   BranchOptions follow;
   follow.cancel = options.cancel;
   follow.progress = options.progress;
-  if (over.scale == SliderScale::log) follow.largest_step /= 4; // its beginning is drawn as wide as its end
+  if (over.scale == SliderScale::log) follow.largest_step /= 10; // its beginning is drawn as wide as its end
   // The branch of the state that is reported; where that lies outside, the one that the range begins with.
   const double low = std::min(over.from, over.to), high = std::max(over.from, over.to);
   const bool within =

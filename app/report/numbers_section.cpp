@@ -44,8 +44,8 @@ OptionalSection bodies_section(const ReportContents& contents) {
   for (std::size_t i = 0; i < m.bodies.size(); ++i)
     table.row({m.bodies[i].name, quantity(m.bodies[i].mass, "kg"),
                vector_quantity(found ? s.poses[i].position : m.bodies[i].position, "m", 5),
-               moving ? quantity(s.centres[i].velocity.norm(), "m/s", 5) : Html("–"),
-               moving ? quantity(s.centres[i].acceleration.norm(), "m/s^2", 5) : Html("–")});
+               moving ? quantity(s.centres[i].velocity.norm(), "m/s", 5) : Html(),
+               moving ? quantity(s.centres[i].acceleration.norm(), "m/s^2", 5) : Html()});
   if (table.empty()) return std::nullopt;
   return ReportSection{
       "bodies", "Bodies",

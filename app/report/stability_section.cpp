@@ -42,22 +42,31 @@ Html amplitudes(const VibrationMode& mode) {
   return out;
 }
 
-Html modes_table(const std::vector<VibrationMode>& modes) {
+Html modes_tables(const std::vector<VibrationMode>& modes) {
   HtmlTable table({{"Mode", false},
                    {"Eigenvalue"},
                    {"Frequency"},
-                   {"Undamped"},
+                   {"Undamped frequency"},
                    {"Damping ratio"},
-                   {"Time constant"},
-                   {"Largest amplitudes", false}});
+                   {"Time constant"}});
+  HtmlTable shapes({{"Mode", false}, {"Largest amplitudes", false}});
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const VibrationMode& m = modes[i];
-    table.row({std::to_string(i + 1), eigenvalue(m.eigenvalue),
+    const std::string number = std::to_string(i + 1);
+    table.row({number, eigenvalue(m.eigenvalue),
                m.oscillates() ? quantity(hertz(m.frequency), "Hz", 5) : Html("no oscillation"),
                quantity(hertz(m.natural_frequency), "Hz", 5), quantity(100 * m.damping_ratio, "%", 4),
-               time_constant(m.eigenvalue.real()), amplitudes(m)});
+               time_constant(m.eigenvalue.real())});
+    shapes.row({number, amplitudes(m)});
   }
-  return table.html();
+  return heading_of("Modes of the linearised motion") + table.html() + heading_of("Their shapes") +
+         shapes.html() +
+         element(
+             "p",
+             "The largest amplitude is 1 rad, or as many metres as the mechanism reaches; angles after “at” "
+             "are phases.",
+             {{"class", "note"}}) +
+         "\n";
 }
 
 Html eigenvalues_table(const std::vector<std::complex<double>>& all) {
@@ -104,17 +113,15 @@ OptionalSection stability_section(const ReportContents& contents) {
   Html body = element("p", element("strong", v.word + ".", {{"class", v.color}}) + " " + v.sentence,
                       {{"class", "lead"}}) +
               "\n";
-  if (contents.evidence && !contents.evidence->reason.empty())
-    body += paragraph_of(contents.evidence->reason);
+  if (contents.evidence && !contents.evidence->reason.empty()) {
+    HtmlTerms terms;
+    terms.term("By potential and eigenvalues", contents.evidence->reason);
+    body += terms.html();
+  }
   if (!s.neutral.empty()) body += paragraph_of("Nothing resists some motion of:") + list_of(s.neutral);
   if (s.floquet) body += floquet_table(*s.floquet);
   if (!s.floquet && !contents.modes.empty()) {
-    body += heading_of("Modes of the linearised motion") + modes_table(contents.modes) +
-            element("p",
-                    "Of a mode's shape the largest amplitude is 1 rad, or as many metres as the mechanism "
-                    "reaches; angles after “at” are phases.",
-                    {{"class", "note"}}) +
-            "\n";
+    body += modes_tables(contents.modes);
   } else if (s.eigenvalues && !s.eigenvalues->empty()) {
     body += heading_of(s.floquet ? "Floquet exponents" : "Eigenvalues of the linearised motion") +
             eigenvalues_table(*s.eigenvalues);

@@ -19,7 +19,7 @@ Html coordinates_table(const Solution& s) {
     }
     const std::string_view unit = coordinate_unit_of(c.angle);
     const double shown = c.angle ? 180 / std::numbers::pi : 1000;
-    table.row({label, quantity_within(c.value, c.error, unit), Html("± ") + magnitude(c.error, unit),
+    table.row({label, quantity_within(c.value, c.error, unit), magnitude(c.error, unit),
                quantity(c.value * shown, c.angle ? "°" : "mm"), c.dependent ? "closes a loop" : ""});
   }
   return table.html();

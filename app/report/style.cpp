@@ -59,8 +59,10 @@ table { border-collapse: collapse; width: 100%; font-size: 0.9rem; line-height: 
 th, td { padding: 0.35rem 0.9rem 0.35rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
 th:last-child, td:last-child { padding-right: 0; }
 thead th { color: var(--dim); font-weight: 600; vertical-align: bottom; border-bottom-color: var(--dim); }
-tbody th { font-weight: 500; min-width: 6.5rem; max-width: 22rem; overflow-wrap: anywhere; }
-td.words { min-width: 8rem; }
+tbody th { font-weight: 500; min-width: 3rem; max-width: 22rem; overflow-wrap: anywhere; }
+.columns .wide { overflow: visible; columns: 2 20rem; column-gap: 2.5rem; }
+.columns tr { break-inside: avoid; }
+td.words { min-width: 8rem; overflow-wrap: anywhere; }
 .number { text-align: right; white-space: nowrap; }
 dl { display: grid; grid-template-columns: minmax(8rem, max-content) 1fr; gap: 0.4rem 1.4rem; margin: 0.8rem 0; }
 dt { color: var(--dim); }
