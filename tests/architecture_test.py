@@ -19,14 +19,15 @@ APP = {
     "app/plot": ["engine"],
     "app/render": ["engine", "app/platform"],
     "app/session": ["engine", "app/platform", "app/document", "app/live"],
+    "app/report": ["engine", "app/plot", "app/session"],
     "app/viewport": ["engine", "app/platform", "app/document", "app/render"],
     "app/ui": ["engine", "app/platform", "app/document", "app/live", "app/plot", "app/render", "app/session",
-               "app/viewport"],
+               "app/report", "app/viewport"],
     "app/cli": ["engine", "app/platform", "app/document", "app/live", "app/plot", "app/render",
-                "app/session", "app/viewport", "app/ui"],
+                "app/session", "app/report", "app/viewport", "app/ui"],
 }
 # What draws has no place in these, nor in the engine.
-WITHOUT_DRAWING = ["app/platform", "app/document", "app/live", "app/plot", "app/session"]
+WITHOUT_DRAWING = ["app/platform", "app/document", "app/live", "app/plot", "app/session", "app/report"]
 # What only some systems have is in these.
 OF_A_SYSTEM = ("app/platform/linux/", "engine/mechanism/posix/")
 SYSTEM = re.compile(r"^(sys/|(unistd|fcntl|poll|spawn|dlfcn|pthread|termios|dirent|pwd|glob|windows)\.h$)")

@@ -3,6 +3,7 @@
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
+#include "app/plot/branch_plot.hpp"
 #include "app/plot/svg.hpp"
 #include "app/render/offscreen.hpp"
 #include "app/ui/plots/plot_picture.hpp"
@@ -17,7 +18,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -95,41 +95,6 @@ std::size_t plotted_coordinate(const ResponseDiagram& d, const std::string& name
                    known.empty() ? "there is no free coordinate to draw" : "expected one of " + known);
 }
 
-// Stable parts solid, others dashed.
-Plot diagram_plot(const Mechanism& m, const std::string& address, const ResponseDiagram& d,
-                  std::size_t coordinate) {
-  const CoordinateSolution& shown = d.branches.front().points.front().coordinates[coordinate];
-  const std::string unit = parameter_unit(m, address);
-  Plot plot;
-  plot.title = m.name;
-  plot.x.label = address;
-  plot.x.unit = unit;
-  plot.y.label = coordinate_label(shown);
-  plot.y.unit = shown.angle ? "rad" : "m";
-  for (const ResponseBranch& b : d.branches) {
-    for (std::size_t i = 0; i < b.points.size();) {
-      const bool stable = b.points[i].stable == true;
-      PlotCurve curve;
-      curve.line = stable ? PlotLine::solid : PlotLine::dashed;
-      curve.color = stable ? 0 : 1;
-      curve.name = stable ? "stable" : "not stable";
-      for (; i < b.points.size() && (b.points[i].stable == true) == stable; ++i)
-        curve.points.push_back({b.points[i].parameter, b.points[i].coordinates[coordinate].value});
-      // Up to the point where the next part begins, so that no gap is left.
-      if (i < b.points.size())
-        curve.points.push_back({b.points[i].parameter, b.points[i].coordinates[coordinate].value});
-      plot.curves.push_back(std::move(curve));
-    }
-  }
-  for (const SpecialPoint& s : d.special) {
-    std::string label(word(s.type));
-    std::ranges::replace(label, '_', ' ');
-    plot.marks.push_back({{s.at.parameter, s.at.coordinates[coordinate].value},
-                          fmt::format("{} {:.5g}", label, s.at.parameter)});
-  }
-  return plot;
-}
-
 std::string diagram_text(const Mechanism& m, const std::string& address, const ResponseDiagram& d) {
   std::string out = fmt::format("{}: {}\n", printable(m.name), printable(d.message));
   const std::string unit = parameter_unit(m, address);
@@ -193,7 +158,7 @@ void add_branch(CLI::App& app, Ending& ending) {
     const bool any = diagram.status == Status::converged && !diagram.branches.empty();
     if ((!options->svg.empty() || !options->png.empty()) && any) {
       const Plot plot =
-          diagram_plot(mechanism, range.address, diagram, plotted_coordinate(diagram, options->plot));
+          branch_plot(mechanism, range.address, diagram, plotted_coordinate(diagram, options->plot));
       if (!options->svg.empty()) write_bytes(options->svg, to_svg(plot));
       if (!options->png.empty()) {
         const OffscreenContext context;

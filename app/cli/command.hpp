@@ -37,6 +37,7 @@ void add_design(CLI::App& app, Ending& ending);
 void add_simulate(CLI::App& app, Ending& ending);
 void add_compare(CLI::App& app, Ending& ending);
 void add_render(CLI::App& app, Ending& ending);
+void add_report(CLI::App& app, Ending& ending);
 void add_check(CLI::App& app, Ending& ending);
 // `completion`, and `manual`, which only the build asks for: about the commands that `app` has.
 void add_completion(CLI::App& app);

@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
   add_simulate(app, ending);
   add_compare(app, ending);
   add_render(app, ending);
+  add_report(app, ending);
   add_check(app, ending);
   add_completion(app);
   add_manual(app);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <utility>
 
 namespace flyball::cli {
 
@@ -26,6 +27,13 @@ void read_size(const std::string& text, int largest, int& width, int& height) {
 }
 
 Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& options) {
+  Mechanism mechanism = load_scene(scene);
+  for (const SceneError& warning : find_warnings(mechanism))
+    report_warning(scene, warning);
+  return draw_picture(std::move(mechanism), scene, options);
+}
+
+Picture draw_picture(Mechanism mechanism, const std::filesystem::path& scene, const PictureOptions& options) {
   App app({.mode = LiveSolver::Mode::immediate,
            .on_news = {},
            .scenes = data_folder() / "scenes",
@@ -34,9 +42,7 @@ Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& o
   app.view.samples = options.antialiased ? 4 : 1;
   app.scale = options.scale;
   app.view.loads = options.loads || !options.free_body.empty();
-  open_document(app, Document(load_scene(scene), scene));
-  for (const SceneError& warning : find_warnings(app.mechanism()))
-    report_warning(scene, warning);
+  open_document(app, Document(std::move(mechanism), scene));
   if (!options.free_body.empty()) {
     if (body_index(app.mechanism(), options.free_body) < 0)
       throw SceneError("--free-body", "no body is called \"" + options.free_body + "\"");

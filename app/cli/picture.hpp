@@ -28,7 +28,10 @@ struct Picture {
   LiveAnswer answer;    // what it shows; where nothing was solved, ticket is 0
 };
 
-// Throws SceneError for a scene that cannot be used and GlError where nothing can be drawn.
+// Of a mechanism that is at hand; `scene` is its file.
+Picture draw_picture(Mechanism mechanism, const std::filesystem::path& scene, const PictureOptions& options);
+// Of a file, warnings to standard error. Throws SceneError for a scene that cannot be used; both throw
+// GlError where nothing can be drawn.
 Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& options);
 
 } // namespace flyball::cli

@@ -55,6 +55,7 @@ struct Drawing {
   const PlotLayout& layout;
   const PlotColors& colors;
   PlotGround ground;
+  std::string prefix; // escaped
   std::string out{};
 
   void text(const PlotText& t, std::uint32_t color) {
@@ -196,12 +197,12 @@ struct Drawing {
 
   void bar() {
     const PlotBox& box = layout.bar->box;
-    out += "<defs><linearGradient id=\"bar\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">";
+    out += fmt::format("<defs><linearGradient id=\"{}bar\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">", prefix);
     for (int i = 0; i <= 32; ++i)
       out += fmt::format("<stop offset=\"{}\" stop-color=\"{}\"/>", px(i / 32.), hex(heat_color(i / 32.)));
     out += fmt::format("</linearGradient></defs>\n<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" "
-                       "fill=\"url(#bar)\"/>\n",
-                       px(box.left), px(box.top), px(box.width()), px(box.height()));
+                       "fill=\"url(#{}bar)\"/>\n",
+                       px(box.left), px(box.top), px(box.width()), px(box.height()), prefix);
     for (const PlotTick& tick : layout.bar->ticks)
       if (tick.label) text(*tick.label, colors.dim);
     if (layout.bar->label) text(*layout.bar->label, colors.text);
@@ -246,7 +247,7 @@ std::string to_svg(const Plot& plot, const SvgOptions& options, const PlotLook& 
   PlotMetrics metrics;
   metrics.height = {line_height, line_height, line_height + 2};
   const PlotLayout layout = plot_layout(plot, look, options.width, options.height, metrics);
-  Drawing d{plot, layout, plot_colors(options.ground), options.ground};
+  Drawing d{plot, layout, plot_colors(options.ground), options.ground, escaped(options.prefix)};
   d.out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"{2}\" font-size=\"{3}\" style=\"font-variant-numeric: tabular-nums\" fill=\"{4}\">\n"
@@ -256,12 +257,12 @@ std::string to_svg(const Plot& plot, const SvgOptions& options, const PlotLook& 
   if (layout.drawable()) {
     const PlotBox& a = layout.area;
     d.out += fmt::format(
-        "<clipPath id=\"area\"><rect x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\"/></clipPath>\n"
+        "<clipPath id=\"{5}area\"><rect x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\"/></clipPath>\n"
         "<rect x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" fill=\"{4}\"/>\n",
-        px(a.left), px(a.top), px(a.width()), px(a.height()), hex(d.colors.area));
+        px(a.left), px(a.top), px(a.width()), px(a.height()), hex(d.colors.area), d.prefix);
     d.frame_lines();
     d.heat();
-    d.out += "<g clip-path=\"url(#area)\">\n";
+    d.out += fmt::format("<g clip-path=\"url(#{}area)\">\n", d.prefix);
     d.references();
     for (const PlotCurveLines& lines : layout.curves)
       d.curve(lines);

@@ -10,6 +10,7 @@ struct SvgOptions {
   int width = 800, height = 520;
   std::string font = "Inter, Helvetica, Arial, sans-serif";
   PlotGround ground = PlotGround::light;
+  std::string prefix{}; // of its ids, where a page holds several
 };
 
 // Valid XML whatever the texts hold.

@@ -76,6 +76,7 @@ void look_from(App& app, double azimuth, double elevation) {
 
 void update(App& app, double seconds, ViewSize view) {
   update(app, seconds);
+  update_report(app);
   // What is closed is looked at afresh when it is opened again.
   if (app.study.open != StudyKind::response) app.plots.response = {};
   if (app.study.open != StudyKind::map) app.plots.map = {};

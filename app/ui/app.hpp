@@ -10,6 +10,7 @@
 #include "app/ui/file_dialog_state.hpp"
 #include "app/ui/inspector_state.hpp"
 #include "app/ui/panels/view_cube.hpp"
+#include "app/ui/report_export.hpp"
 #include "app/ui/shown_scene.hpp"
 #include "app/ui/studies/motion/movie_state.hpp"
 #include "app/ui/studies/study_views.hpp"
@@ -103,6 +104,7 @@ enum class Dialog {
   unsaved,
   recover,
   export_picture,
+  export_report,
   save_plot,
   export_run,
   mirror,
@@ -125,6 +127,7 @@ struct ExportRequest {
   int width = 1920, height = 1080; // pixels
   bool panels = false, loads = false;
   std::shared_ptr<const PlotSave> plot{}; // this instead of the window or the view
+  bool report = false;                    // a page with the view in it
 };
 
 struct App : Session, Ui {
@@ -136,6 +139,7 @@ struct App : Session, Ui {
   FileDialogState file_dialogs;
   StudyViews plots;
   MovieState movie;
+  ReportExport report;
   ViewState view;
   PanelState panels;
   DialogState dialog;

@@ -62,6 +62,7 @@ void build_gui(App& app) {
   save_dialog(app);
   gallery_dialog(app);
   export_dialog(app);
+  report_dialog(app);
   movie_dialog(app);
   plot_dialog(app);
   mirror_dialog(app);

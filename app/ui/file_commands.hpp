@@ -18,6 +18,7 @@ void save_document(App& app); // where it has no file of its own yet, asks for o
 void show_save_dialog(App& app);
 void quit(App& app); // asks first
 void show_export_dialog(App& app);
+void show_report_dialog(App& app);
 void show_movie_dialog(App& app); // of the motion that is shown
 
 // When the program has started: reads what is kept in options.state, and offers what a crash has left.

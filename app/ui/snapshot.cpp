@@ -74,6 +74,7 @@ void export_picture(App& app, PixelSize window) {
   const ExportRequest request = *std::exchange(app.export_request, std::nullopt);
   const PixelSize size{request.width, request.height};
   app.notice.clear();
+  if (request.report) return begin_report(app, request);
   try {
     // A larger picture of the panels has larger letters, not more room.
     const float grown = std::min(static_cast<float>(size.width) / static_cast<float>(window.width),

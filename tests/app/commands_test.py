@@ -41,7 +41,7 @@ def reasons(folder):
     forms = [["solve"], ["solve", "--all"], ["solve", "--json"], ["solve", "--nearest"], ["design", "--vary",
              f"{SPEED}=0:20", "--want", "h=0.2"], ["compare"], ["compare", "--csv", old], ["compare", "--csv", "-"],
              ["compare", "--svg", old], ["compare", "--svg", "-"], ["compare", "--json"],
-             ["render", "-o", folder / "new.png"]]
+             ["render", "-o", folder / "new.png"], ["report", "-o", folder / "new.html"]]
     for vary in (["branch", "--vary", f"{SPEED}=0:20"],):
         forms += [vary, *([*vary, option, file] for option in ("--csv", "--svg", "--png") for file in (old, "-")),
                   [*vary, "--json"], [*vary, "--all", "--csv", old], [*vary, "--csv", old, "--svg", "-"]]
@@ -58,6 +58,8 @@ def reasons(folder):
             json.loads(out)
     code, _, error = run("branch", CASES / "no_equilibrium.json", "--vary", f"{SPEED}=0:20")
     check(f"the words fit: {error}", f"At {SPEED} = 0 rad/s: " in error)
+    page = (folder / "new.html").read_text()
+    check("a report without a steady state tells why, too", "<h2>No steady state</h2>" in page and "</html>" in page)
 
 
 def control_characters(folder):
@@ -73,7 +75,7 @@ def control_characters(folder):
     forms = [["check", file], ["check", file, "--json"], ["solve", file], ["solve", file, "--json"],
              ["solve", file, "--all"], ["solve", file, "--set", "joints.\x1b[31m.x=1"],
              ["sweep", file, "--vary", "gravity.1=-1:-2:2"], ["simulate", file, "--duration", "0.1"],
-             ["branch", file, "--vary", "gravity.1=-1:-2"], ["compare", file, "--duration", "0.1", "--repeats", "1"],
+             ["report", file, "-o", folder / "control.html"], ["branch", file, "--vary", "gravity.1=-1:-2"], ["compare", file, "--duration", "0.1", "--repeats", "1"],
              ["design", file, "--vary", "gravity.1=-1:-2", "--want", "\x1b=1"], ["check", broken], ["solve", broken],
              ["solve", folder / "no \x1b such.json"], ["\x1b[31m"], ["solve", file, "--\x1b"]]
     for form in forms:
@@ -131,6 +133,8 @@ def own_scene(folder):
                   code == 2 and "scene itself" in error and file.read_bytes() == before)
     code, _, error = run("render", bare, "-o", bare)
     check(f"render refuses its own scene: {code} {error}", code == 2 and bare.read_bytes() == before)
+    code, _, error = run("report", bare, "-o", bare)
+    check(f"report refuses its own scene: {code} {error}", code == 2 and bare.read_bytes() == before)
     with open(file, "rb") as stdin:
         code, _, error = run("sweep", "-", *vary, "--csv", file, stdin=stdin)
     check(f"a scene from standard input, too: {error}", code == 2 and file.read_bytes() == before)
@@ -143,7 +147,7 @@ def own_scene(folder):
 
 def limits(folder):
     """What has no end is refused, and what nobody writes to can be interrupted."""
-    for command in (["check"], ["solve"], ["render", "-o", folder / "x.png"]):
+    for command in (["check"], ["solve"], ["render", "-o", folder / "x.png"], ["report", "-o", folder / "x.html"]):
         code, _, error = run(command[0], "/dev/zero", *command[1:])
         check(f"{command} /dev/zero: {error}", code == 2 and "/dev/zero" in error and "256 MB" in error)
     large = folder / "large.json"
@@ -192,6 +196,22 @@ def repetitions(folder):
     check(f"ten thousand sliders: {error}", code == 0)
 
 
+def reports(folder):
+    """A report has the numbers that were set, the coordinates that were asked for, and goes where it should."""
+    page = folder / "governor.html"
+    code, out, error = run("report", SCENE, "--set", f"{SPEED}=12.5", "--plot", "slide", "-o", page)
+    text = page.read_text()
+    check(f"a report is written: {error}", code == 0 and out.decode().strip() == str(page))
+    check("it has the number that was set", "12.5\u00a0rad/s" in text)
+    check("it shows the coordinate asked for over both sliders", text.count("<svg") == 4)
+    check("it has a picture", text.count("data:image/png;base64,") == 2 or "There is no picture" in text)
+    code, out, _ = run("report", SCENE, "-o", "-")
+    check("standard output has nothing but the page", code == 0 and out.startswith(b"<!DOCTYPE html>"))
+    code, _, error = run("report", SCENE, "--plot", "spin", "-o", folder / "none.html")
+    check(f"a driven coordinate is no curve's: {error}", code == 2 and "--plot spin" in error)
+    check("what is refused leaves no file", not (folder / "none.html").exists())
+
+
 def parts(folder):
     """What a killed program left is removed by the next that writes there; what another one writes stays."""
     own = folder / "parts"
@@ -213,7 +233,7 @@ def parts(folder):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for part in (reasons, control_characters, tables, own_scene, limits, repetitions, parts):
+    for part in (reasons, control_characters, tables, own_scene, limits, repetitions, reports, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()
         part(home)

@@ -1,0 +1,12 @@
+// Bytes as text for data URIs.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace flyball {
+
+// RFC 4648, with padding.
+std::string base64(std::string_view bytes);
+
+} // namespace flyball

@@ -1,0 +1,126 @@
+#include "app/report/contents.hpp"
+
+#include "app/plot/branch_plot.hpp"
+#include "app/session/response_quantity.hpp"
+#include "engine/continuation/branches.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/mechanism/validate.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+namespace flyball {
+namespace {
+
+constexpr std::size_t most_curves = 12; // sliders that are followed
+constexpr int most_modes = 20;
+
+// Over what curves are drawn: the sliders, or else the speeds of the drives from standstill to twice.
+std::vector<Slider> curve_parameters(const Mechanism& m) {
+  std::vector<Slider> out(m.sliders.begin(), m.sliders.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                     m.sliders.size(), most_curves)));
+  if (!out.empty()) return out;
+  for (const Joint& joint : m.joints) {
+    for (std::size_t i = 0; i < joint.coordinates.size() && out.size() < most_curves; ++i) {
+      const auto& drive = joint.coordinates[i].drive;
+      if (!drive || drive->speed == 0) continue;
+      const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
+      out.push_back({.parameter = "joints." + joint.name + ".drive" + index + ".speed",
+                     .from = 0,
+                     .to = 2 * drive->speed,
+                     .description = ""});
+    }
+  }
+  return out;
+}
+
+// Indices of those to be drawn. Throws SceneError for a name that is none's.
+std::vector<std::size_t> plotted_coordinates(const std::vector<CoordinateSolution>& all,
+                                             const std::vector<std::string>& names) {
+  std::vector<std::size_t> out;
+  for (const std::string& name : names) {
+    const auto at = std::ranges::find_if(
+        all, [&](const CoordinateSolution& c) { return !c.driven && coordinate_label(c) == name; });
+    if (at == all.end()) throw SceneError("--plot " + name, "expected a coordinate that is not driven");
+    out.push_back(static_cast<std::size_t>(at - all.begin()));
+  }
+  if (!out.empty()) return out;
+  for (const bool angle : {true, false})
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].driven || all[i].dependent || all[i].angle != angle) continue;
+      out.push_back(i);
+      break;
+    }
+  return out;
+}
+
+ReportCurve follow(const ReportContents& contents, const Slider& over, const ReportOptions& options) {
+  const Mechanism& m = *contents.mechanism;
+  ReportCurve out;
+  out.over = over;
+  out.present = get_parameter(m, over.parameter);
+  BranchOptions follow;
+  follow.cancel = options.cancel;
+  follow.progress = options.progress;
+  if (over.scale == SliderScale::log) follow.largest_step /= 10; // its beginning is drawn as wide as its end
+  // The branch of the state that is reported; where that lies outside, the one that the range begins with.
+  const double low = std::min(over.from, over.to), high = std::max(over.from, over.to);
+  const bool within =
+      contents.solution.status == Status::converged && low <= out.present && out.present <= high;
+  std::optional<ResponseDiagram> diagram;
+  if (within)
+    diagram = follow_branches_through(m, over.parameter, over.from, over.to,
+                                      response_point(contents.solution, out.present), follow);
+  if (!diagram) diagram = follow_branches(m, over.parameter, over.from, over.to, follow);
+  out.message = diagram->message;
+  if (diagram->branches.empty() || diagram->branches.front().points.empty()) return out;
+  const std::vector<CoordinateSolution>& all = diagram->branches.front().points.front().coordinates;
+  for (const std::size_t i : plotted_coordinates(all, options.plotted)) {
+    Plot plot = branch_plot(m, over.parameter, *diagram, i);
+    plot.title.clear(); // the page has words for it
+    plot.x.logarithmic = over.scale == SliderScale::log;
+    if (within && i < contents.solution.coordinates.size())
+      plot.marker = PlotMarker{out.present, contents.solution.coordinates[i].value, ""};
+    out.plots.push_back(std::move(plot));
+  }
+  return out;
+}
+
+} // namespace
+
+ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const ReportOptions& options) {
+  ReportContents out;
+  out.mechanism = std::move(mechanism);
+  out.warnings = find_warnings(*out.mechanism);
+  Analysis analysis(out.mechanism);
+  out.system = analysis.summary();
+  plotted_coordinates(out.system.coordinates, options.plotted); // before anything takes its time
+  SolveOptions solve;
+  solve.start = options.start;
+  solve.nearest = options.nearest;
+  solve.modes = most_modes;
+  solve.cancel = options.cancel;
+  solve.progress = options.progress;
+  out.solution = analysis.solve(solve);
+  const auto cancelled = [&] { return options.cancel && *options.cancel; };
+  if (out.solution.status == Status::converged) {
+    out.modes = analysis.modes(most_modes);
+    out.evidence = analysis.stability_evidence();
+    out.springs = spring_loads(*out.mechanism, out.solution);
+  }
+  for (const Slider& over : curve_parameters(*out.mechanism))
+    if (!cancelled()) out.curves.push_back(follow(out, over, options));
+  out.cut_short = cancelled();
+  return out;
+}
+
+std::string report_date() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  if (!localtime_r(&now, &local)) return "";
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M", &local)};
+}
+
+} // namespace flyball

@@ -1,0 +1,79 @@
+#include "app/ui/report_export.hpp"
+
+#include "app/report/page.hpp"
+#include "app/ui/snapshot.hpp"
+#include "engine/mechanism/file.hpp"
+
+#include <utility>
+
+namespace flyball {
+namespace {
+
+struct Pictures {
+  Image light, dark;
+  std::string problem; // why there are none
+};
+
+Pictures both_pictures(App& app, PixelSize size) {
+  Pictures out;
+  const Theme theme = app.theme;
+  const Mode mode = app.mode;
+  try {
+    app.mode = Mode::explore; // the steady state
+    app.theme = Theme::light;
+    out.light = view_picture(app, size);
+    app.theme = Theme::dark;
+    out.dark = view_picture(app, size);
+  } catch (const std::exception& error) {
+    out.problem = error.what();
+  }
+  app.theme = theme;
+  app.mode = mode;
+  return out;
+}
+
+} // namespace
+
+void begin_report(App& app, const ExportRequest& request) {
+  using Task = Background<std::filesystem::path>;
+  const PixelSize size{request.width, request.height};
+  const auto pictures = std::make_shared<const Pictures>(both_pictures(app, size));
+  if (!app.report.task) app.report.task = std::make_unique<Task>(app.options.mode, app.options.on_news);
+  ReportOptions options;
+  // The state that a hand has chosen, if one has.
+  if (app.on_branch && converged(app)) {
+    options.start = start_values(app.answer.solution.coordinates);
+    options.nearest = true;
+  }
+  app.notice = "Writing the report…";
+  app.report.task->start([options, size, pictures, file = request.file, mechanism = app.document.shared(),
+                          scene = app.document.file().filename().string()](const Task::Watch& watch) mutable {
+    options.cancel = &watch.cancel;
+    options.progress = watch.progress;
+    ReportContents contents = report_contents(mechanism, options);
+    if (watch.cancel) return std::filesystem::path(); // nobody is there any more
+    contents.scene = scene;
+    contents.date = report_date();
+    contents.picture.problem = pictures->problem;
+    if (pictures->problem.empty())
+      contents.picture = {encode_png(pictures->light), encode_png(pictures->dark), size.width, size.height,
+                          ""};
+    replace_file(file, report_page(contents));
+    return file;
+  });
+}
+
+bool writing_report(const App& app) {
+  return app.report.task && app.report.task->running();
+}
+
+void update_report(App& app) {
+  const auto news = app.report.task ? app.report.task->take() : std::nullopt;
+  if (!news) return;
+  if (!news->problem.empty())
+    show_error(app, "Not saved: " + news->problem);
+  else if (news->result && !news->result->empty())
+    app.notice = "Saved " + news->result->string();
+}
+
+} // namespace flyball
