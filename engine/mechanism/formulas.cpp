@@ -237,6 +237,19 @@ std::vector<const Definition*> in_order(const std::vector<Definition>& all, std:
                                   circle + "and back");
 }
 
+// Mass, mass centre and inertia by the density, to the same digits whatever they were before. False where the
+// shapes have no volume.
+bool weigh(Body& body) {
+  std::optional<Vec3> reference;
+  for (Shape& shape : body.shapes) {
+    const bool rod = shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule;
+    if (!rod && !shape.at) shape.at = body.position;
+    if (!reference) reference = rod ? shape.from : *shape.at;
+  }
+  if (reference) body.position = *reference;
+  return take_mass_properties(body, *body.density);
+}
+
 } // namespace
 
 void evaluate_formulas(Mechanism& mechanism) {
@@ -263,7 +276,7 @@ void evaluate_formulas(Mechanism& mechanism) {
     }
   });
   for (Body& body : mechanism.bodies)
-    if (body.density && !take_mass_properties(body, *body.density))
+    if (body.density && !weigh(body))
       throw SceneError("bodies." + body.name + ".density",
                        "expected shapes with a volume and a density above zero, from which the mass follows");
 }

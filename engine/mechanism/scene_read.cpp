@@ -9,6 +9,8 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 namespace {
 
@@ -78,6 +80,12 @@ void check(const ValueReader& value, const Body& body) {
       throw SceneError(key_path(value.path(), field.key),
                        "missing; a body needs it, or a density: " + std::string(field.expected));
   }
+  if (!body.density) return;
+  for (std::size_t i = 0; i < body.shapes.size(); ++i)
+    if (const Shape& shape = body.shapes[i];
+        !shape.at && (shape.type == ShapeType::sphere || shape.type == ShapeType::box))
+      throw SceneError(value.path() + ".shapes[" + std::to_string(i) + "].at",
+                       "missing; the mass centre, where it would stand, follows from the density");
 }
 void check(const ValueReader& value, const Stop& stop) {
   if (!stop.lower && !stop.upper) throw SceneError(value.path(), "expected lower, upper or both");
@@ -246,6 +254,7 @@ Part read_object(const ValueReader& value) {
   const ObjectReader object(value, sink, keys::of(part), noun(part), relatives);
   PresentFields fields(object);
   visit_fields(fields, part);
+  if constexpr (requires { part.formulas; }) std::ranges::sort(part.formulas, {}, &Formula::key);
   check(value, part);
   return part;
 }

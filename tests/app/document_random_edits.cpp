@@ -5,13 +5,14 @@
 #include "app/document/create.hpp"
 #include "app/document/document.hpp"
 #include "app/document/finite.hpp"
-#include "engine/mechanism/mass_properties.hpp"
+#include "app/document/formula_edits.hpp"
 #include "app/document/remove.hpp"
 #include "app/document/rename.hpp"
 #include "app/document/snap_points.hpp"
 #include "app/document/transform.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/app/document_mechanisms.hpp"
@@ -58,6 +59,8 @@ class Person {
   Document& document() { return document_; }
   const std::vector<Mechanism>& past() const { return past_; }
   int edits() const { return edits_; }
+  int refused() const { return refused_; }
+  int named() const { return named_; }
 
   void act() {
     const int what = dice_.below(100);
@@ -80,10 +83,17 @@ class Person {
   void edit(const std::string& name, std::uint64_t gesture, const std::function<void(Mechanism&)>& change) {
     Mechanism next = document_.mechanism();
     change(next);
-    document_.edit(name, next, selection(), gesture);
     ++edits_;
+    try {
+      document_.edit(name, next, selection(), gesture);
+    } catch (const SceneError&) { // what expressions do not allow
+      ++refused_;
+      return;
+    }
     // What the history ought to be.
-    if (next == past_[at_] || !is_finite(next)) return;
+    if (!is_finite(next)) return;
+    settle_formulas(past_[at_], next);
+    if (next == past_[at_]) return;
     const bool same = gesture != 0 && gesture == gesture_ && at_ > 0;
     past_.resize(at_ + 1);
     if (same) {
@@ -133,6 +143,9 @@ class Person {
 
   void check() {
     CHECK(document_.mechanism() == past_[at_]);
+    Mechanism again = document_.mechanism();
+    evaluate_formulas(again);
+    CHECK(again == document_.mechanism());
     CHECK(document_.position() == at_);
     CHECK(document_.steps().size() == past_.size());
     CHECK(existing(document_.selection(), document_.mechanism()) == document_.selection());
@@ -182,7 +195,7 @@ class Person {
   void change(Mechanism& m) {
     if (m.bodies.size() > 8 || m.joints.size() > 16 || m.forces.size() > 8)
       return remove_parts(m, {{part(), part(), part()}});
-    switch (dice_.below(24)) {
+    switch (dice_.below(28)) {
     case 0:
     case 1:
     case 2: new_body(m); return;
@@ -209,6 +222,10 @@ class Person {
     case 21: weigh(m); return;
     case 22: m.gravity = dice_.chance(0.7) ? Vec3(0, -9.80665, 0) : vector(); return;
     case 23: mend(m); return;
+    case 24:
+    case 25: name_something(m); return;
+    case 26: express(m); return;
+    case 27: rename_something(m); return;
     }
   }
 
@@ -255,6 +272,49 @@ class Person {
     } catch (const SceneError&) { // a number that is none
     }
   }
+  // Of parameters and points, or one that is none.
+  std::string known_name(const Mechanism& m) {
+    std::vector<std::string> names{"nobody"};
+    for (const NamedParameter& each : m.parameters)
+      names.push_back(each.name);
+    for (const NamedPoint& each : m.points)
+      names.push_back(each.name);
+    return dice_.one_of(names);
+  }
+  void try_to(Mechanism& m, const std::function<void()>& act) {
+    const Mechanism before = m;
+    try {
+      act();
+      ++named_;
+    } catch (const SceneError&) {
+      CHECK(m == before);
+    }
+  }
+  void name_something(Mechanism& m) {
+    if (dice_.chance(0.3) && m.points.size() < 6)
+      m.points.push_back({free_name(m, "Q"), vector(), {}});
+    else if (dice_.chance(0.5) && !m.points.empty() && !m.joints.empty())
+      try_to(m, [&] { stand_at_point(m, "joints." + name(PartKind::joint) + ".at", known_name(m)); });
+    else if (m.parameters.size() < 8)
+      try_to(m, [&] { name_number(m, dice_.one_of(parameter_addresses(m)), free_name(m, "p")); });
+  }
+  void express(Mechanism& m) {
+    static const std::vector<std::string> forms{"2*@", "@ + @", "-@", "sqrt(@*@ + @^2)", "@ + 1", "0.5", "@.x", "", "2 *"};
+    std::string text = dice_.one_of(forms);
+    for (std::size_t at; (at = text.find('@')) != std::string::npos;)
+      text.replace(at, 1, known_name(m));
+    try_to(m, [&] { set_expression(m, dice_.one_of(parameter_addresses(m)), text); });
+  }
+  void rename_something(Mechanism& m) {
+    const std::string which = known_name(m), to = dice_.chance(0.2) ? known_name(m) : free_name(m, "n");
+    const bool point = point_index(m, which) >= 0;
+    try_to(m, [&] {
+      if (dice_.chance(0.3))
+        point ? remove_point(m, which) : remove_parameter(m, which);
+      else
+        point ? rename_point(m, which, to) : rename_parameter(m, which, to);
+    });
+  }
   void pin(Mechanism& m) {
     if (m.sliders.size() > 5) m.sliders.erase(m.sliders.begin());
     m.sliders.push_back({dice_.one_of(parameter_addresses(m)), number(), number(),
@@ -283,7 +343,7 @@ class Person {
   std::vector<Mechanism> past_; // what every step ought to be
   std::size_t at_ = 0;
   std::uint64_t gestures_ = 0, gesture_ = 0;
-  int edits_ = 0;
+  int edits_ = 0, refused_ = 0, named_ = 0;
 };
 
 // What only compiling finds is told as an error.
@@ -300,9 +360,9 @@ bool settles(const Mechanism& m, bool details) {
 } // namespace
 
 TEST_CASE("thousands of random edits, undos, redos and jumps") {
-  const std::vector<Mechanism> starts{Document::empty_mechanism(), shipped("governor"),
+  const std::vector<Mechanism> starts{Document::empty_mechanism(), shipped("governor_parametric"),
                                       read_scene(everything)};
-  int edits = 0, valid = 0, solved = 0, settled = 0;
+  int edits = 0, named = 0, refused = 0, valid = 0, solved = 0, settled = 0;
   for (std::uint32_t seed = 1; seed <= 9; ++seed) {
     const Mechanism& start = starts[seed % starts.size()];
     Person person(seed, start);
@@ -325,6 +385,8 @@ TEST_CASE("thousands of random edits, undos, redos and jumps") {
       settled += settles(mended, i % 3 == 0);
     }
     edits += person.edits();
+    named += person.named();
+    refused += person.refused();
 
     const Mechanism end = document.mechanism();
     const std::size_t position = document.position();
@@ -340,7 +402,10 @@ TEST_CASE("thousands of random edits, undos, redos and jumps") {
       CHECK(document.mechanism() == person.past()[document.position()]);
     CHECK(document.mechanism() == person.past().back());
   }
-  CAPTURE(edits, valid, solved, settled);
+  CAPTURE(edits, named, refused, valid, solved, settled);
+  CHECK(named > 200);
+  CHECK(refused > 20);
+  CHECK(refused < 2000);
   CHECK(edits > 7000);
   CHECK(valid > 50);
   CHECK(solved > 400);
