@@ -47,11 +47,12 @@ void begin_report(App& app, const ExportRequest& request) {
   }
   app.notice = "Writing the report…";
   app.report.task->start([options, size, pictures, file = request.file, mechanism = app.document.shared(),
-                          scene = app.document.file().filename().string()](const Task::Watch& watch) mutable {
-    options.cancel = &watch.cancel;
-    options.progress = watch.progress;
+                          scene = app.document.file().filename().string()](
+                             const TaskContext<std::filesystem::path>& context) mutable {
+    options.cancel = &context.cancel;
+    options.progress = context.progress;
     ReportContents contents = report_contents(mechanism, options);
-    if (watch.cancel) return std::filesystem::path(); // nobody is there any more
+    if (context.cancel) return std::filesystem::path(); // nobody is there any more
     contents.scene = scene;
     contents.date = report_date();
     contents.picture.problem = pictures->problem;

@@ -55,7 +55,7 @@ void search_bounds(App& app, const StatesStudy::Found& search) {
   const AllSolutions& found = search.result;
   const UiColors& colors = colors_of(app);
   heading(app, "How it was searched");
-  paragraph(counted(static_cast<std::size_t>(found.starts), "run", "runs") +
+  paragraph(number_of(static_cast<std::size_t>(found.starts), "run", "runs") +
                 " of Newton-Raphson, from starts spread over these ranges and deflated at what was found. No "
                 "such search is complete.",
             colors.dim);
@@ -70,7 +70,7 @@ void search_bounds(App& app, const StatesStudy::Found& search) {
     row(app, "Run time", duration_text(search.run_time, app.options.numbers), "");
 }
 
-void words(App& app) {
+void states_words(App& app) {
   StatesStudy& states = app.study.states;
   const UiColors& colors = colors_of(app);
   if (states.running()) {
@@ -200,11 +200,11 @@ std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
   return columns;
 }
 
-void table(App& app) {
+void states_table(App& app) {
   const auto& found = app.study.states.found;
   if (!found || found->result.equilibria.empty()) return;
   const std::vector<Solution>& all = found->result.equilibria;
-  std::vector<Line> lines;
+  std::vector<StateLine> lines;
   lines.reserve(all.size());
   for (const Solution& solution : all)
     lines.push_back(line_of(solution, app.options.numbers, app.units));
