@@ -2,6 +2,7 @@
 
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
+#include "engine/linear/interruption.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -26,6 +27,8 @@ double since(Clock::time_point start) {
 } // namespace
 
 Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& context) {
+  // The simulator looks at the flag by itself, and keeps what it has; nothing is thrown away by others.
+  const Uninterrupted scope;
   SimulationOptions options = request.options;
   options.cancel = &context.cancel;
   std::shared_ptr<const Run> before = request.before;

@@ -92,6 +92,23 @@ TEST_CASE("a long motion is told of as it grows, and can be stopped") {
   CHECK(last.run->time.back() < 1e6);
 }
 
+TEST_CASE("a motion that is stopped in the midst of a step keeps what it has") {
+  SimulationOptions options = lasting(1e6);
+  options.damped = false;
+  for (int round = 0; round < 20; ++round) {
+    Motions live(BackgroundWorker::Mode::background);
+    start(live, shipped("governor"), options);
+    while (!live.take())
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::microseconds(100 * round));
+    live.cancel();
+    const Motion last = finished(live);
+    REQUIRE(last.run);
+    CHECK(last.run->status == RunStatus::cancelled);
+    CHECK(last.problem.empty());
+  }
+}
+
 TEST_CASE("a newer motion takes the place of the one that runs") {
   Motions live(BackgroundWorker::Mode::background);
   SimulationOptions endless = lasting(1e6);
