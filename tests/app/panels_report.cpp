@@ -1,9 +1,9 @@
 // A report from the File menu: asked where to, written in the background, and told of.
 #include "app/ui/commands.hpp"
 #include "app/ui/snapshot.hpp"
-#include "catch.hpp"
 #include "engine/mechanism/file.hpp"
 #include "robot.hpp"
+#include "tests/catch.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
