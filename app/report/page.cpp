@@ -27,7 +27,8 @@ Html picture_of(const ReportContents& contents) {
     return p.problem.empty() ? Html()
                              : element("p", "There is no picture: " + p.problem, {{"class", "note"}});
   const bool found = contents.solution.status == Status::converged;
-  const std::string words = found ? "In its steady state." : "As it is drawn.";
+  const std::string words =
+      found ? "In its steady state; a dashed outline is the pose it is drawn in." : "As it is drawn.";
   const std::string alt = contents.mechanism->name + ": " + words;
   return element("figure", image(p.light, "light", p, alt) + image(p.dark, "dark", p, alt) +
                                element("figcaption", words)) +

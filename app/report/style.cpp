@@ -87,7 +87,7 @@ sup { font-size: 0.72em; line-height: 0; }
   body { max-width: none; padding: 0; }
   .light, img.light { display: block; }
   .dark, img.dark { display: none; }
-  h2, h3, thead { break-after: avoid; }
+  h2, h3, thead, section > p { break-after: avoid; }
   figure, tr, dt, dd, .verdict { break-inside: avoid; }
   .wide { overflow: visible; }
   nav { padding: 0; }

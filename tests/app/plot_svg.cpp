@@ -120,6 +120,12 @@ TEST_CASE("SVG is well-formed for empty, tiny, dark and heat plots", "[plot]") {
   CHECK(svg.find("collar &lt;h&gt; [m]") != std::string::npos);
   CHECK(svg.find("linearGradient") != std::string::npos);
   CHECK(svg.find("nan") == std::string::npos);
+  // Several in one page have ids of their own.
+  const std::string named = to_svg(plot, {.prefix = "one-"});
+  CHECK(named.find("id=\"one-area\"") != std::string::npos);
+  CHECK(named.find("url(#one-area)") != std::string::npos);
+  CHECK(named.find("id=\"one-bar\"") != std::string::npos);
+  CHECK(named.find("url(#one-bar)") != std::string::npos);
 }
 
 TEST_CASE("an SVG of a million points is small", "[plot]") {

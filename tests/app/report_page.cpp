@@ -2,8 +2,8 @@
 #include "app/report/base64.hpp"
 #include "app/report/numbers.hpp"
 #include "app/report/page.hpp"
-#include "catch.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "tests/catch.hpp"
 
 #include <algorithm>
 #include <set>

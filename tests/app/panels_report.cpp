@@ -1,0 +1,56 @@
+// A report from the File menu: asked where to, written in the background, and told of.
+#include "app/ui/commands.hpp"
+#include "app/ui/snapshot.hpp"
+#include "engine/mechanism/file.hpp"
+#include "robot.hpp"
+#include "tests/catch.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+TEST_CASE("a report is exported of what is shown") {
+  Robot robot;
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_exported_report.html";
+  std::filesystem::remove(file);
+  open_scene(robot.app, FLYBALL_ASSETS "/scenes/governor.json");
+  robot.frames(3);
+  change_parameter(robot.app, "joints.spin.drive.speed", 12.5); // explored, not stored
+  const bool building = GENERATE(false, true);
+  set_mode(robot.app, building ? Mode::build : Mode::explore);
+  const Theme theme = robot.app.theme;
+  run_command(robot.app, "file.report");
+  robot.app.dialog.path = file.string(); // before the field has it
+  robot.frames(3);
+  robot.click("report/save");
+  REQUIRE(robot.app.export_request);
+  CHECK(robot.app.export_request->report);
+  robot.app.export_request->width = 160;
+  robot.app.export_request->height = 100;
+  export_picture(robot.app, robot.size);
+  robot.frames(2);
+  CHECK(robot.app.notice == "Saved " + file.string());
+  CHECK(robot.app.theme == theme);
+  CHECK(robot.app.mode == (building ? Mode::build : Mode::explore));
+  const std::string page = read_bytes(file);
+  CHECK(page.ends_with("</html>\n"));
+  // While building, what is explored is put aside.
+  CHECK(page.find(building ? "11.0174\u00a0rad/s" : "12.5\u00a0rad/s") != std::string::npos);
+  CHECK(page.find("governor.json") != std::string::npos);
+  const std::size_t light = page.find("data:image/png;base64,"),
+                    dark = page.find("data:image/png;base64,", light + 1);
+  REQUIRE(dark != std::string::npos);
+  CHECK(page.substr(light, 2000) != page.substr(dark, 2000));
+  std::filesystem::remove(file);
+}
+
+TEST_CASE("a report that cannot be written says so") {
+  Robot robot;
+  open_scene(robot.app, FLYBALL_ASSETS "/scenes/governor.json");
+  robot.frames(3);
+  robot.app.export_request =
+      ExportRequest{.file = "/no/such/folder/report.html", .width = 160, .height = 100, .report = true};
+  export_picture(robot.app, robot.size);
+  robot.frames(2);
+  CHECK(robot.app.notice.starts_with("Not saved: /no/such/folder"));
+  CHECK(is_error(robot.app));
+}
