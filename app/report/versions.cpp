@@ -1,16 +1,17 @@
 #include "app/report/versions.hpp"
 
 #include <Eigen/Core>
+#include "engine/mechanism/scene_keys.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace flyball {
 
 std::vector<std::pair<std::string, std::string>> program_versions() {
-  constexpr int format = 1; // "flyball": 1, at the beginning of scene files
   return {
       {"Flyball", FLYBALL_VERSION},
-      {"Scene file format", std::to_string(format)},
+      {"Scene file format", std::to_string(scene_keys::newest_version)},
       {"Eigen (linear algebra)",
        fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"{fmt} (numbers as text)",
