@@ -1,8 +1,8 @@
 #include "app/report/versions.hpp"
 
-#include <Eigen/Core>
 #include "engine/mechanism/scene_keys.hpp"
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

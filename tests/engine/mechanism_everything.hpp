@@ -48,7 +48,7 @@ inline constexpr std::string_view everything = R"({
      "coordinate": [0.2, 0.3], "spring": [null, {"stiffness": 70}], "damping": [5, null],
      "stop": [null, {"upper": 3, "stiffness": 11}], "drive": [{"speed": 6}, null]},
     {"name": "cardan", "type": "universal", "bodies": ["table", "cross"], "at": [0, 0, 4],
-     "axes": [[1, 0, 0], [0, 1, 0]], "spring": [{"stiffness": 21}, {"stiffness": 22}]},
+     "axes": [[1, 0, 0], [0, 1, 0]], "spring": [{"stiffness": 21}, {"stiffness": "=4 N * L"}]},
     {"name": "socket", "type": "spherical", "bodies": ["table", "ball"], "at": [0, 0, 5], "damping": [1, 2, 3]},
     {"name": "ice", "type": "planar", "bodies": ["table", "puck"], "at": [0, 0, 6], "axis": [0, 3, 0],
      "x_axis": [1, 0, 1], "drive": [null, null, {"speed": 7}]},
@@ -62,7 +62,7 @@ inline constexpr std::string_view everything = R"({
   ],
   "forces": [
     {"name": "coil", "description": "holds", "type": "spring", "bodies": ["ground", "arm"],
-     "points": [[0, 2, 0], [1, 1, 0]], "stiffness": 120, "free_length": 0.9, "damping": "=0.3 N s/m^2 * L"},
+     "points": [[0, 2, 0], [1, 1, 0]], "stiffness": 120, "free_length": 0.9, "damping": 1.5},
     {"name": "push", "type": "force", "body": "arm", "at": [1, 2, 3], "vector": [4, 5, 6], "frame": "body"},
     {"name": "turn", "type": "torque", "body": "arm", "vector": [7, 8, 9]},
     {"name": "air", "type": "drag", "body": "ball", "at": [0, 0, 5.5], "linear": 0.125, "quadratic": 0.375}
