@@ -118,13 +118,24 @@ void evaluate_names(Mechanism& mechanism) {
   throw SceneError(given.address, "given by \"=" + given.text + "\", which this would not be" + sources);
 }
 
-// The numbers that expressions rest on, found by Newton's method so that the expressions have these values.
-void solve_for_sources(Mechanism& next, const std::vector<GivenNumber>& wanted, const GivenNumber& first) {
+bool contains(const std::vector<std::string>& all, const std::string& one) {
+  return std::ranges::find(all, one) != all.end();
+}
+
+// The numbers that the moved ones rest on, found by Newton's method so that these have their values and the
+// others of their parts keep theirs.
+void solve_for_sources(Mechanism& next, std::vector<GivenNumber> wanted, const std::vector<GivenNumber>& others) {
+  const GivenNumber first = wanted.front();
   std::vector<std::string> sources;
   for (const GivenNumber& given : wanted)
     for (const std::string& source : sources_of(next, given.text))
-      if (std::ranges::find(sources, source) == sources.end()) sources.push_back(source);
+      if (!contains(sources, source)) sources.push_back(source);
   if (sources.empty()) refuse(next, first);
+  for (const GivenNumber& given : others) {
+    const std::vector<std::string> its = sources_of(next, given.text);
+    if (std::ranges::any_of(its, [&](const std::string& source) { return contains(sources, source); }))
+      wanted.push_back(given);
+  }
   const auto rows = static_cast<Eigen::Index>(wanted.size()), columns = static_cast<Eigen::Index>(sources.size());
   Eigen::MatrixXd jacobian(rows, columns);
   Eigen::VectorXd rest(rows);
@@ -155,6 +166,11 @@ void solve_for_sources(Mechanism& next, const std::vector<GivenNumber>& wanted, 
     if (!near(evaluated(named, given), given.value, solved)) refuse(next, first);
   next.parameters = std::move(named.parameters);
   next.points = std::move(named.points);
+}
+
+// Of a parameter or point.
+bool is_named(const GivenNumber& given) {
+  return given.part.starts_with("parameters.") || given.part.starts_with("points.");
 }
 
 template <class Parts>
@@ -251,11 +267,19 @@ void settle_formulas(const Mechanism& before, Mechanism& next) {
   for (GivenNumber& given : given_numbers(before))
     given_before.emplace(given.address, given);
 
-  std::unordered_set<std::string> moved_parts;
-  const GivenNumber* first = nullptr;
+  std::unordered_set<std::string> moved_parts, moved_numbers;
+  std::vector<GivenNumber> moved, others;
+  // Whether the edit has set it, and not what its expression says.
+  const auto is_moved = [&](const GivenNumber& given) {
+    const auto earlier = given_before.find(given.address);
+    return earlier != given_before.end() && earlier->second.text == given.text &&
+           earlier->second.value != given.value && !near(evaluated(settled, given), given.value, rounding);
+  };
+  for (const GivenNumber& given : given_numbers(next))
+    if (is_named(given) && is_moved(given)) moved.push_back(given);
   const std::vector<GivenNumber> all = given_numbers(settled);
   for (const GivenNumber& given : all) {
-    if (given.part.starts_with("parameters.") || given.part.starts_with("points.")) continue;
+    if (is_named(given)) continue;
     const std::string part = owner(given.part);
     const bool is_part = part.find('.') != std::string::npos && !part.starts_with("gravity");
     if (is_part && !former.contains(part)) {
@@ -267,18 +291,15 @@ void settle_formulas(const Mechanism& before, Mechanism& next) {
       if (!same) put(settled, given.address, "");
       continue;
     }
-    const auto earlier = given_before.find(given.address);
-    if (earlier == given_before.end() || earlier->second.text != given.text ||
-        earlier->second.value == given.value || near(evaluated(settled, given), given.value, rounding))
-      continue;
+    if (!is_moved(given)) continue;
     moved_parts.insert(given.part);
-    if (!first) first = &given;
+    moved_numbers.insert(given.address);
+    moved.push_back(given);
   }
-  if (first) {
-    std::vector<GivenNumber> wanted;
+  if (!moved.empty()) {
     for (const GivenNumber& given : all)
-      if (moved_parts.contains(given.part)) wanted.push_back(given);
-    solve_for_sources(settled, wanted, *first);
+      if (moved_parts.contains(given.part) && !moved_numbers.contains(given.address)) others.push_back(given);
+    solve_for_sources(settled, std::move(moved), others);
   }
   evaluate_formulas(settled);
   next = std::move(settled);

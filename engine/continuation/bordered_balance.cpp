@@ -15,10 +15,9 @@ void BorderedBalance::find_rates(const Unknowns& z, double parameter) {
   const Problem problem = family_.problem();
   const double h = 1e-6 * family_.scale();
   Eigen::VectorXd f[2], phi[2];
-  w_.zero_lambda.setZero(problem.system.rows);
   for (int i : {0, 1}) {
     family_.set(parameter + (i == 0 ? h : -h));
-    evaluate(problem, {z.q, w_.zero_lambda}, 0, w_);
+    evaluate(problem, z, 0, w_); // with multipliers: a length turns what they act along
     f[i] = w_.residual.f;
     phi[i] = w_.residual.phi;
   }

@@ -39,6 +39,11 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
 
   // A mistake of one point is one of all, unless expressions make the mechanism from the numbers.
   const bool geometry_varies = !mechanism.parameters.empty() || !mechanism.points.empty();
+  if (geometry_varies)
+    for (const Variation& variation : variations) { // numbers that can be set
+      Mechanism same = mechanism;
+      set_parameter(same, variation.address, get_parameter(same, variation.address));
+    }
   std::atomic<std::size_t> next = 0, done = 0;
   std::atomic<bool> stop = false; // a failure
   const auto cancelled = [&] { return stop || (cancel && cancel->load(std::memory_order_relaxed)); };

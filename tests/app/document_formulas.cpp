@@ -183,7 +183,8 @@ TEST_CASE("another type of joint and other shapes leave no expression behind") {
   });
   CHECK_FALSE(formula_at(document.stored(), "joints.slide.coordinate"));
   CHECK(formula_at(document.stored(), "joints.slide.at.1") == "S.y");
-  CHECK(read_scene(write_scene(document.stored())) == document.stored());
+  const std::string text = write_scene(document.stored());
+  CHECK(write_scene(parse_scene(text)) == text);
 }
 
 TEST_CASE("a joint stands at a point at a stroke") {

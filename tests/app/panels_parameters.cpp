@@ -23,7 +23,12 @@ struct Desk : Robot {
     select(app, {{{kind, name}}});
     frames(2);
   }
+  void build() {
+    key(258); // Tab
+    frames(3);
+  }
   void enter(const std::string& field, const std::string& text) {
+    frames(60); // no double click
     click(field);
     type(text);
     key(key_enter);
@@ -36,13 +41,14 @@ struct Desk : Robot {
 
 TEST_CASE("an expression is typed where a number is, and a number over it") {
   Desk d("governor_parametric");
-  d.key('B'); // build
+  d.build();
   d.pick(PartKind::body, "spindle");
   d.enter("inspector/mass", "=100*m + 50 kg");
   CHECK(d.m().bodies[0].mass == 150);
   CHECK(formula_at(d.m(), "bodies.spindle.mass") == "100*m + 50 kg");
   const std::size_t steps = d.app.document.position();
   SECTION("it is shown for typing, and stays as it is when nothing is changed") {
+    d.frames(60);
     d.click("inspector/mass");
     CHECK(d.app.inspector.typing.text == "=100*m + 50 kg");
     d.key(key_escape);
@@ -58,6 +64,7 @@ TEST_CASE("an expression is typed where a number is, and a number over it") {
     CHECK(formula_at(d.m(), "bodies.spindle.mass") == "100*m + 50 kg");
   }
   SECTION("what is wrong with it is said in its place") {
+    d.frames(60);
     d.click("inspector/mass");
     d.type("=L");
     d.frames(1);
@@ -84,6 +91,7 @@ TEST_CASE("a number is named in one gesture") {
 
 TEST_CASE("the list of parameters and points") {
   Desk d("governor_parametric");
+  d.build();
   select(d.app, {});
   d.frames(2);
   d.enter("inspector/parameter/L/name", "arm");
