@@ -26,7 +26,7 @@ void put(Mechanism& mechanism, const std::string& address, const std::string& te
   const auto [formulas, key] = formula_place(mechanism, address);
   if (!formulas) throw SceneError(address, "there is no such number");
   std::erase_if(*formulas, [&key = key](const Formula& formula) { return formula.key == key; });
-  if (!text.empty()) formulas->push_back({key, text});
+  if (!text.empty()) formulas->push_back({std::string(key), text});
   std::ranges::sort(*formulas, {}, &Formula::key); // as a file is read
 }
 

@@ -288,12 +288,12 @@ FormulaPlace formula_place(Mechanism& mechanism, std::string_view address) {
     return segment;
   };
   const std::string_view whole = address, list = next();
-  if (list == "gravity" || list == "simulation") return {&mechanism.formulas, std::string(whole)};
+  if (list == "gravity" || list == "simulation") return {&mechanism.formulas, whole};
   const std::string_view name = next();
   const auto of = [&](auto& parts) -> FormulaPlace {
     const int i = index_of_named(parts, name);
     if (i < 0) return {};
-    return {&parts[static_cast<std::size_t>(i)].formulas, std::string(address)};
+    return {&parts[static_cast<std::size_t>(i)].formulas, address};
   };
   if (list == "parameters") {
     address = "value";
@@ -310,7 +310,7 @@ FormulaPlace formula_place(Mechanism& mechanism, std::string_view address) {
   std::vector<Shape>& shapes = mechanism.bodies[static_cast<std::size_t>(i)].shapes;
   const auto shape = static_cast<std::size_t>(std::max(std::atoi(std::string(next()).c_str()), 0));
   if (shape >= shapes.size()) return {};
-  return {&shapes[shape].formulas, std::string(address)};
+  return {&shapes[shape].formulas, address};
 }
 
 std::optional<std::string> formula_at(const Mechanism& mechanism, std::string_view address) {

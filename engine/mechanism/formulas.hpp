@@ -31,7 +31,7 @@ std::optional<std::string> formula_at(const Mechanism& mechanism, std::string_vi
 // ("bodies.arm.rotation.0"), keeps its expression; null where there is no such part.
 struct FormulaPlace {
   Formulas* formulas = nullptr;
-  std::string key;
+  std::string_view key; // a part of the address
 };
 FormulaPlace formula_place(Mechanism& mechanism, std::string_view address);
 
