@@ -88,6 +88,15 @@ TEST_CASE("each kind of part has its inspector") {
     Hand hand("conical_pendulum.json");
     hand.check("inspector-scene");
   }
+  SECTION("parameters and points") {
+    Hand hand("governor_parametric.json");
+    hand.check("inspector-parameters");
+  }
+  SECTION("numbers that expressions give") {
+    Hand hand("governor_parametric.json");
+    hand.choose(PartKind::joint, "slide");
+    hand.check("inspector-expressions");
+  }
   SECTION("several parts") {
     Hand hand("governor.json");
     hand.key('A', true);

@@ -273,10 +273,11 @@ void number_menu(App& app, const QuantityField& field, const std::optional<std::
 }
 
 void pin_button(App& app, const QuantityField& field, bool row_hovered) {
-  if (field.address.empty() || formula_of(app, field)) return;
+  if (field.address.empty()) return;
+  const float side = ImGui::GetFrameHeight(), width = margin_width(app);
+  if (formula_of(app, field)) return ImGui::Dummy({width, side}); // what it rests on has the slider
   const bool pinned = is_pinned(app.mechanism(), field.address);
   const UiColors& colors = colors_of(app);
-  const float side = ImGui::GetFrameHeight(), width = margin_width(app);
   const std::string name = "inspector/pin/" + field.address;
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::PushID(name.c_str());
