@@ -76,8 +76,10 @@ void add_points(CLI::App& command, std::vector<std::string>& points) {
 
 void SceneArgument::add_to(CLI::App& command) {
   command.add_option("scene", file, "Scene file (-: standard input)")->required();
-  command.add_option("--set", settings, "Change a number: address=value, such as joints.spin.drive.speed=12, parameters.L=0.2 or "
-                 "parameters.L=\"20 cm\"")
+  command
+      .add_option("--set", settings,
+                  "Change a number: address=value, such as joints.spin.drive.speed=12, parameters.L=0.2 or "
+                  "parameters.L=\"20 cm\"")
       ->take_all()
       ->allow_extra_args(false);
 }

@@ -1,7 +1,7 @@
 #include "app/document/create.hpp"
 
-#include "engine/mechanism/mass_properties.hpp"
 #include "app/document/names.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 
 #include <cmath>
 

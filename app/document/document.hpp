@@ -55,11 +55,11 @@ class Document {
   // `next` is made from what is stored; what is explored stays beside it (see carried_explored). Throws
   // SceneError where expressions give numbers that it has set otherwise (see settle_formulas).
   void edit(std::string name, Mechanism next, Selection selection, std::uint64_t gesture = 0);
-  // The same of one number of the mechanism, which is explored no longer; of one that an expression gives, what
-  // this rests on changes. Throws SceneError.
+  // The same of one number of the mechanism, which is explored no longer; of one that an expression gives,
+  // what this rests on changes. Throws SceneError.
   void edit_number(std::string name, const std::string& address, double value, std::uint64_t gesture = 0);
-  // A step that only tries other numbers: nothing is unsaved by it. Throws SceneError where expressions can make
-  // nothing of them.
+  // A step that only tries other numbers: nothing is unsaved by it. Throws SceneError where expressions can
+  // make nothing of them.
   void explore(std::string name, const Explored& values, std::uint64_t gesture = 0);
   void keep_explored(); // they become the document's: an edit
   void drop_explored(); // back to what is stored

@@ -20,8 +20,8 @@ using Explored = std::vector<ExploredValue>; // each address once
 // this value anyway, or has no such number.
 void explore_value(Explored& explored, const Mechanism& mechanism, const std::string& address, double value);
 
-// The mechanism with these numbers. Those that it does not have, or that expressions give, are ignored. Throws
-// SceneError where expressions can make nothing of them.
+// The mechanism with these numbers. Those that it does not have, or that expressions give, are ignored.
+// Throws SceneError where expressions can make nothing of them.
 Mechanism with_explored(Mechanism mechanism, const Explored& explored);
 
 // What is left of them after an edit: a number that the edit has set counts from then on, what is gone is

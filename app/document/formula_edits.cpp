@@ -124,7 +124,8 @@ bool contains(const std::vector<std::string>& all, const std::string& one) {
 
 // The numbers that the moved ones rest on, found by Newton's method so that these have their values and the
 // others of their parts keep theirs.
-void solve_for_sources(Mechanism& next, std::vector<GivenNumber> wanted, const std::vector<GivenNumber>& others) {
+void solve_for_sources(Mechanism& next, std::vector<GivenNumber> wanted,
+                       const std::vector<GivenNumber>& others) {
   const GivenNumber first = wanted.front();
   std::vector<std::string> sources;
   for (const GivenNumber& given : wanted)
@@ -136,7 +137,8 @@ void solve_for_sources(Mechanism& next, std::vector<GivenNumber> wanted, const s
     if (std::ranges::any_of(its, [&](const std::string& source) { return contains(sources, source); }))
       wanted.push_back(given);
   }
-  const auto rows = static_cast<Eigen::Index>(wanted.size()), columns = static_cast<Eigen::Index>(sources.size());
+  const auto rows = static_cast<Eigen::Index>(wanted.size()),
+             columns = static_cast<Eigen::Index>(sources.size());
   Eigen::MatrixXd jacobian(rows, columns);
   Eigen::VectorXd rest(rows);
   Mechanism named;
@@ -229,8 +231,9 @@ void rename_parameter(Mechanism& mechanism, const std::string& name, const std::
 }
 
 void rename_point(Mechanism& mechanism, const std::string& name, const std::string& to) {
-  all_or_nothing(mechanism,
-                 [&](Mechanism& next) { rename_in(next, next.points, point_index(next, name), "points", to); });
+  all_or_nothing(mechanism, [&](Mechanism& next) {
+    rename_in(next, next.points, point_index(next, name), "points", to);
+  });
 }
 
 void remove_parameter(Mechanism& mechanism, const std::string& name) {

@@ -210,7 +210,8 @@ std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, con
   for (const Slider& slider : mechanism.sliders) {
     // Of an unfinished mechanism, it may be of a number that is not there.
     const std::optional<double> value = number_at(mechanism, slider.parameter);
-    if (!value || formula_at(mechanism, slider.parameter) || !pinned.insert(slider.parameter).second) continue;
+    if (!value || formula_at(mechanism, slider.parameter) || !pinned.insert(slider.parameter).second)
+      continue;
     ParameterControl& control = controls.emplace_back(
         named_control(slider.parameter, ParameterGroup::pinned, parameter_unit(mechanism, slider.parameter),
                       *value, number_at(file, slider.parameter)));

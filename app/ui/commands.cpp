@@ -132,7 +132,8 @@ const std::array all_commands{
             .separated = true},
     Command{.id = "file.report",
             .title = "Export report…",
-            .help = "Write all about the steady state into one page: picture, loads, modes, curves, assumptions.",
+            .help =
+                "Write all about the steady state into one page: picture, loads, modes, curves, assumptions.",
             .run = show_report_dialog,
             .enabled = [](const App& app) { return app.mistakes.empty() && !writing_report(app); }},
     Command{.id = "file.quit",

@@ -111,7 +111,8 @@ Number find_number(AMechanism& mechanism, std::string_view address) {
   }
   if (list == "parameters") { // "parameters.L" is its value
     auto&& parameter = changeable(find_part(list, name, mechanism.parameters));
-    if (!key.empty()) throw SceneError(path + "." + std::string(key), "expected the address to end before this");
+    if (!key.empty())
+      throw SceneError(path + "." + std::string(key), "expected the address to end before this");
     return std::move(numbers_of(parameter).front());
   }
   if (list == "points") {
@@ -161,8 +162,8 @@ void set_parameters(Mechanism& mechanism, std::span<const ParameterValue> values
       const Number number = find_number(mechanism, address);
       if (!std::isfinite(value)) throw SceneError(address, "expected a finite number");
       if (const std::optional<std::string> formula = formula_at(mechanism, address))
-        throw SceneError(address,
-                         "its value is given by \"=" + *formula + "\"" + changeable_instead(mechanism, *formula));
+        throw SceneError(address, "its value is given by \"=" + *formula + "\"" +
+                                      changeable_instead(mechanism, *formula));
       before.push_back(number.value);
       number.set(value);
     }

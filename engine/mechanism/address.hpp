@@ -20,8 +20,8 @@ struct ParameterValue {
 // The number at an address. Throws SceneError naming the part that does not exist and what does.
 double get_parameter(const Mechanism& mechanism, std::string_view address);
 // Changes it, and all that expressions make of it. Does not validate the mechanism as a whole; throws
-// SceneError like get_parameter, for a value that is not finite or of which an expression can make nothing, and
-// for a number that is itself given by an expression; the mechanism is then as it was.
+// SceneError like get_parameter, for a value that is not finite or of which an expression can make nothing,
+// and for a number that is itself given by an expression; the mechanism is then as it was.
 void set_parameter(Mechanism& mechanism, std::string_view address, double value);
 // The same of several numbers at once: expressions are evaluated with all of them.
 void set_parameters(Mechanism& mechanism, std::span<const ParameterValue> values);

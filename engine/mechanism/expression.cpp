@@ -14,10 +14,10 @@ namespace {
 
 // How a function treats dimensions.
 enum class Kind {
-  number,     // of a number, a number
-  same,       // of one or two of the same dimension, that dimension
-  root,       // half the exponents
-  ratio,      // of two of the same dimension, a number
+  number, // of a number, a number
+  same,   // of one or two of the same dimension, that dimension
+  root,   // half the exponents
+  ratio,  // of two of the same dimension, a number
 };
 
 struct Function {
@@ -46,10 +46,12 @@ constexpr std::array functions{
                const double t = std::tan(a.value);
                return chained(a, t, 1 + t * t);
              }},
-    Function{"asin", 1, Kind::number,
-             [](Dual a, Dual) { return chained(a, std::asin(a.value), 1 / std::sqrt(1 - a.value * a.value)); }},
-    Function{"acos", 1, Kind::number,
-             [](Dual a, Dual) { return chained(a, std::acos(a.value), -1 / std::sqrt(1 - a.value * a.value)); }},
+    Function{
+        "asin", 1, Kind::number,
+        [](Dual a, Dual) { return chained(a, std::asin(a.value), 1 / std::sqrt(1 - a.value * a.value)); }},
+    Function{
+        "acos", 1, Kind::number,
+        [](Dual a, Dual) { return chained(a, std::acos(a.value), -1 / std::sqrt(1 - a.value * a.value)); }},
     Function{"atan", 1, Kind::number,
              [](Dual a, Dual) { return chained(a, std::atan(a.value), 1 / (1 + a.value * a.value)); }},
     Function{"atan2", 2, Kind::ratio, arc_tangent},
@@ -64,12 +66,10 @@ constexpr std::array functions{
              }},
     Function{"exp", 1, Kind::number,
              [](Dual a, Dual) { return chained(a, std::exp(a.value), std::exp(a.value)); }},
-    Function{"log", 1, Kind::number,
-             [](Dual a, Dual) { return chained(a, std::log(a.value), 1 / a.value); }},
-    Function{"log10", 1, Kind::number,
-             [](Dual a, Dual) {
-               return chained(a, std::log10(a.value), 1 / (a.value * std::numbers::ln10));
-             }},
+    Function{"log", 1, Kind::number, [](Dual a, Dual) { return chained(a, std::log(a.value), 1 / a.value); }},
+    Function{
+        "log10", 1, Kind::number,
+        [](Dual a, Dual) { return chained(a, std::log10(a.value), 1 / (a.value * std::numbers::ln10)); }},
     Function{"sqrt", 1, Kind::root,
              [](Dual a, Dual) {
                const double root = std::sqrt(a.value);
@@ -83,7 +83,8 @@ constexpr std::array functions{
 };
 
 bool begins_name(char c) {
-  return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+  return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' ||
+         static_cast<unsigned char>(c) >= 0x80;
 }
 bool continues_name(char c) {
   return begins_name(c) || std::isdigit(static_cast<unsigned char>(c)) != 0;
@@ -114,7 +115,8 @@ class ExpressionParser {
   void run() {
     sum();
     skip_blanks();
-    if (at_ < text_.size()) fail("expected an operator, found \"" + std::string(text_.substr(at_, 20)) + "\"");
+    if (at_ < text_.size())
+      fail("expected an operator, found \"" + std::string(text_.substr(at_, 20)) + "\"");
   }
 
  private:
@@ -242,8 +244,7 @@ class ExpressionParser {
       sum();
     }
     if (!take(")")) fail("expected ) after the argument" + std::string(function->arguments > 1 ? "s" : ""));
-    put({.operation = Operation::call,
-         .index = static_cast<std::uint16_t>(function - functions.begin())},
+    put({.operation = Operation::call, .index = static_cast<std::uint16_t>(function - functions.begin())},
         function->arguments);
   }
 
@@ -326,8 +327,7 @@ Measure Expression::measure(std::span<const Measure> names) const {
       case Kind::root: stack.push_back({{last.dimension * 0.5, last.plain}, {}}); break;
       case Kind::same:
       case Kind::ratio: {
-        const Measure both =
-            function.arguments == 2 ? common(name + " of", pop().measure, last) : last;
+        const Measure both = function.arguments == 2 ? common(name + " of", pop().measure, last) : last;
         stack.push_back({function.kind == Kind::ratio ? Measure{{}, both.plain} : both, {}});
         break;
       }

@@ -36,8 +36,8 @@ inline constexpr std::string_view number = "a number", text = "a text", word = "
                                   object = "an object", point = "three numbers [x, y, z]",
                                   direction = "a direction of three numbers [x, y, z]",
                                   two_bodies = "two names [parent, child]",
-                                 named_objects = "an object of objects by name",
-                                 named_points = "an object of points by name";
+                                  named_objects = "an object of objects by name",
+                                  named_points = "an object of points by name";
 inline constexpr std::string_view two_points =
     "two points [[x, y, z], [x, y, z]], on the first body and on the second";
 } // namespace expected

@@ -67,7 +67,8 @@ class Names {
     const auto found = numbers_.find(name);
     if (found != numbers_.end()) return found->second;
     if (point_index(mechanism_, name) >= 0)
-      throw ExpressionError("expected a coordinate of the point: " + name + ".x, " + name + ".y or " + name + ".z");
+      throw ExpressionError("expected a coordinate of the point: " + name + ".x, " + name + ".y or " + name +
+                            ".z");
     std::vector<std::string_view> known;
     for (const auto& [each, number] : numbers_)
       known.push_back(each);
@@ -173,8 +174,8 @@ struct Definition {
 
 std::vector<Definition> definitions_of(Mechanism& m, const Names& names) {
   std::vector<Definition> all;
-  const auto define = [&](std::size_t name, const std::string& where, const std::string& text, std::string unit,
-                          double& place) {
+  const auto define = [&](std::size_t name, const std::string& where, const std::string& text,
+                          std::string unit, double& place) {
     at_place(where, text, [&] {
       all.push_back({name, where, text, std::move(unit), &place, Compiled(text, names)});
       all.back().compiled.expect_unit(all.back().unit, names);
@@ -189,8 +190,8 @@ std::vector<Definition> definitions_of(Mechanism& m, const Names& names) {
   for (std::size_t p = 0; p < m.points.size(); ++p)
     for (const Formula& formula : m.points[p].formulas) {
       const int i = std::clamp(std::atoi(formula.key.c_str()), 0, 2);
-      define(names.point(p, i), "points." + m.points[p].name + "[" + std::to_string(i) + "]", formula.text, "m",
-             m.points[p].at[i]);
+      define(names.point(p, i), "points." + m.points[p].name + "[" + std::to_string(i) + "]", formula.text,
+             "m", m.points[p].at[i]);
     }
   return all;
 }
@@ -233,8 +234,9 @@ std::vector<const Definition*> in_order(const std::vector<Definition>& all, std:
   std::string circle;
   for (auto it = std::ranges::find(path, at); it != path.end(); ++it)
     circle += (*it)->where + ", ";
-  throw SceneError(at->where, "\"=" + at->text + "\": expected no circle of expressions; this one goes through " +
-                                  circle + "and back");
+  throw SceneError(at->where, "\"=" + at->text +
+                                  "\": expected no circle of expressions; this one goes through " + circle +
+                                  "and back");
 }
 
 // Mass, mass centre and inertia by the density, to the same digits whatever they were before. False where the

@@ -37,7 +37,7 @@ FormulaPlace formula_place(Mechanism& mechanism, std::string_view address);
 
 // Every number that is given by an expression, as it stands.
 struct GivenNumber {
-  std::string part;    // "bodies.arm", "bodies.arm.shapes.0", "parameters.L", "points.A"; empty: the mechanism
+  std::string part; // "bodies.arm", "bodies.arm.shapes.0", "parameters.L", "points.A"; empty: the mechanism
   std::string address; // of the number
   std::string text;    // the expression
   double value = 0;
@@ -52,8 +52,9 @@ void drop_lost_formulas(Mechanism& mechanism);
 // points: "parameters.L", "points.A.0".
 std::vector<std::string> sources_of(const Mechanism& mechanism, std::string_view expression);
 
-// How fast an expression's value changes with each of these numbers, which no expression gives; by forward-mode
-// differentiation, through dependent parameters and points. Throws SceneError as evaluate_formulas does.
+// How fast an expression's value changes with each of these numbers, which no expression gives; by
+// forward-mode differentiation, through dependent parameters and points. Throws SceneError as
+// evaluate_formulas does.
 std::vector<double> expression_gradient(const Mechanism& mechanism, std::string_view expression,
                                         const std::vector<std::string>& sources);
 

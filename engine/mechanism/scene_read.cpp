@@ -166,7 +166,8 @@ void read(const ValueReader& value, std::vector<NamedParameter>& to) {
 void read(const ValueReader& value, std::vector<NamedPoint>& to) {
   read_named(value, to, [](const std::string& path, const Json& json) {
     NamedPoint point;
-    point.at = Vec3(ValueReader(json, path, expected::point, {&point.formulas, path.size()}).numbers<3>().data());
+    point.at =
+        Vec3(ValueReader(json, path, expected::point, {&point.formulas, path.size()}).numbers<3>().data());
     return point;
   });
 }

@@ -54,7 +54,8 @@ Json with_formulas(Json value, const Place& place, const std::string& key) {
   if (place.formulas->empty() || !place.gives(key)) return value;
   if (const Formula* formula = place.find(key)) return "=" + formula->text;
   if (!value.is_array()) return value;
-  const bool numbers = value.size() == 3 && std::ranges::all_of(value, [](const Json& e) { return e.is_number(); });
+  const bool numbers =
+      value.size() == 3 && std::ranges::all_of(value, [](const Json& e) { return e.is_number(); });
   if (const std::string point = numbers ? point_of(place, key) : ""; !point.empty()) return point;
   for (std::size_t i = 0; i < value.size(); ++i)
     value[i] = with_formulas(value[i], place, key + "." + std::to_string(i));
@@ -132,7 +133,7 @@ class ObjectWriter {
 
   template <class Value>
   Json value_of(const Field& field, const Value& value) const {
-    if constexpr (requires(ObjectWriter& writer) { visit_fields(writer, value); })
+    if constexpr (requires(ObjectWriter & writer) { visit_fields(writer, value); })
       return object_of(value, {place_.formulas, place_.key(field) + "."});
     else
       return with_formulas(json_of(value), place_, place_.key(field));

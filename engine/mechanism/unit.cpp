@@ -157,8 +157,9 @@ std::string dimension_text(const Dimension& of) {
   const Dimension dimension = of.without_angle();
   if (dimension.none()) return "a number";
   // What mechanics has names for.
-  constexpr std::array<std::string_view, 14> usual{"m",     "kg",     "s",   "rad/s",  "m/s",    "m/s^2",   "N",
-                                                   "N m",   "N/m",    "N s/m", "kg m^2", "kg/m^3", "N s^2/m^2", "N m s"};
+  constexpr std::array<std::string_view, 14> usual{"m",      "kg",     "s",         "rad/s", "m/s",
+                                                   "m/s^2",  "N",      "N m",       "N/m",   "N s/m",
+                                                   "kg m^2", "kg/m^3", "N s^2/m^2", "N m s"};
   for (const std::string_view text : usual)
     if (parse_unit(text)->dimension.without_angle() == dimension) return std::string(text);
   std::string above, below;

@@ -40,8 +40,8 @@ std::span<const std::string_view> unit_names();
 // number nearest to 0.003.
 double times_unit(double number, double unit);
 
-// Symbols with exponents, divided and multiplied: "N", "kg m^2", "N m s/rad", "rev/min"; a slash divides by the
-// symbol behind it. Nothing for any other text; the empty one is the unit 1. Without a name.
+// Symbols with exponents, divided and multiplied: "N", "kg m^2", "N m s/rad", "rev/min"; a slash divides by
+// the symbol behind it. Nothing for any other text; the empty one is the unit 1. Without a name.
 std::optional<Unit> parse_unit(std::string_view text);
 
 // The longest unit at the beginning of a text, without which the rest goes on; nothing where it begins

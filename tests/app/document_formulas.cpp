@@ -127,7 +127,8 @@ TEST_CASE("any number is given a name, and a name another") {
     for (Body& body : same.bodies) {
       std::erase_if(body.formulas, [](const Formula& f) { return f.text == "m"; });
       for (Shape& shape : body.shapes)
-        std::erase_if(shape.formulas, [](const Formula& f) { return f.text.find("(m /") != std::string::npos; });
+        std::erase_if(shape.formulas,
+                      [](const Formula& f) { return f.text.find("(m /") != std::string::npos; });
     }
     return same.bodies;
   }());
@@ -191,6 +192,7 @@ TEST_CASE("a joint stands at a point at a stroke") {
   Mechanism m = governor();
   stand_at_point(m, "joints.spin.at", "S");
   CHECK(m.joints[0].at == m.points[5].at);
-  says(refusal([&] { stand_at_point(m, "joints.spin.at", "nowhere"); }), "there is no parameter \"nowhere.x\"");
+  says(refusal([&] { stand_at_point(m, "joints.spin.at", "nowhere"); }),
+       "there is no parameter \"nowhere.x\"");
   CHECK(m.joints[0].at == m.points[5].at);
 }

@@ -299,7 +299,8 @@ class Person {
       try_to(m, [&] { name_number(m, dice_.one_of(parameter_addresses(m)), free_name(m, "p")); });
   }
   void express(Mechanism& m) {
-    static const std::vector<std::string> forms{"2*@", "@ + @", "-@", "sqrt(@*@ + @^2)", "@ + 1", "0.5", "@.x", "", "2 *"};
+    static const std::vector<std::string> forms{"2*@", "@ + @", "-@", "sqrt(@*@ + @^2)", "@ + 1", "0.5",
+                                                "@.x", "",      "2 *"};
     std::string text = dice_.one_of(forms);
     for (std::size_t at; (at = text.find('@')) != std::string::npos;)
       text.replace(at, 1, known_name(m));

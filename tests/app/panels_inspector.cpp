@@ -2,12 +2,12 @@
 #include "robot.hpp"
 
 #include "app/document/create.hpp"
-#include "engine/mechanism/mass_properties.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/session/quantity.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/layout.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/parts.hpp"

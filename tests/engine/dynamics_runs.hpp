@@ -11,10 +11,9 @@ namespace flyball::test {
 inline constexpr Integrator all_integrators[]{Integrator::bdf, Integrator::adams, Integrator::runge_kutta};
 
 // By name: "pendulum" and the like.
-inline const std::vector<std::string> shipped_names{"ball_on_string",    "chain20",   "conical_pendulum",
-                                                    "fourbar_turntable", "governor",  "governor_bearing",
-                                                    "pendulum",          "rate_gyro", "watt_governor",
-                                                    "governor_parametric"};
+inline const std::vector<std::string> shipped_names{
+    "ball_on_string",   "chain20",  "conical_pendulum", "fourbar_turntable", "governor",
+    "governor_bearing", "pendulum", "rate_gyro",        "watt_governor",     "governor_parametric"};
 
 inline SimulationOptions lasting(double duration, Integrator method = Integrator::automatic,
                                  double tolerance = 1e-10) {

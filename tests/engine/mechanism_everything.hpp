@@ -102,7 +102,8 @@ inline constexpr Mistake mistakes_of_form[] = {
     // parameters, points and expressions
     {R"("value": "=L/2", )", "", "parameters.half.value", "missing; a parameter needs it"},
     {R"("value": "=L/2")", R"("value": "L/2")", "parameters.half.value", "expected a number, found \"L/2\""},
-    {R"("range": [0.5, 8])", R"("range": ["=L", 8])", "parameters.L.range[0]", "expected a number, found \"=L\""},
+    {R"("range": [0.5, 8])", R"("range": ["=L", 8])", "parameters.L.range[0]",
+     "expected a number, found \"=L\""},
     {R"("half": {)", R"("a half": {)", "parameters.a half", "expected a name of letters"},
     {R"("W": [0, 0, 8])", R"("W": [0, 0])", "points.W", "three numbers"},
     {R"("at": [0, 0, 9])", R"("at": "a hole")", "joints.axle.at", "expected the name of a point or three"},

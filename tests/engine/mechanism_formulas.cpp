@@ -133,7 +133,8 @@ TEST_CASE("What is wrong with an expression is said by its place") {
   CHECK_THAT(mistake_in("sinus(a)", ""), ContainsSubstring("no function \"sinus\"; did you mean \"sin\"?"));
   CHECK_THAT(mistake_in("1/0", ""), ContainsSubstring("not finite"));
   CHECK_THAT(mistake_in("sqrt(-1)", ""), ContainsSubstring("not finite"));
-  CHECK_THAT(mistake_in("1 + ", ""), ContainsSubstring("column 5: expected a number, a name or (, found the end"));
+  CHECK_THAT(mistake_in("1 + ", ""),
+             ContainsSubstring("column 5: expected a number, a name or (, found the end"));
   CHECK_THAT(mistake_in("2 L", "m"), ContainsSubstring("column 3: expected an operator or a unit"));
   CHECK_THAT(mistake_in("L L", "m"), ContainsSubstring("column 3: expected an operator"));
   CHECK_THAT(mistake_in("atan2(L)", ""), ContainsSubstring("another argument of atan2"));
@@ -220,7 +221,8 @@ TEST_CASE("Circles, unknown names and wrong units of parameters are named") {
   CHECK_THAT(error_of([&] { evaluate_formulas(m); }), ContainsSubstring("points.A[1]"));
   m = with_lengths();
   m.parameters[1].unit = "mm";
-  CHECK_THAT(error_of([&] { evaluate_formulas(m); }), ContainsSubstring("parameters.a.unit: expected an SI unit"));
+  CHECK_THAT(error_of([&] { evaluate_formulas(m); }),
+             ContainsSubstring("parameters.a.unit: expected an SI unit"));
   m = with_lengths();
   m.parameters[1].name = "L";
   CHECK_FALSE(find_mistakes(m).empty());
@@ -256,7 +258,8 @@ TEST_CASE("Mass and inertia follow from a density") {
   Mechanism thick = m;
   set_parameter(thick, "parameters.r", 0.06);
   CHECK(std::abs(thick.bodies[0].mass - 4 * mass) < 1e-12);
-  CHECK_THAT(error_of([&] { set_parameter(thick, "bodies.rod.mass", 1); }), ContainsSubstring("there is no \"mass\""));
+  CHECK_THAT(error_of([&] { set_parameter(thick, "bodies.rod.mass", 1); }),
+             ContainsSubstring("there is no \"mass\""));
 }
 
 TEST_CASE("Names change in expressions, and in nothing that looks like them") {

@@ -121,8 +121,8 @@ constexpr Mistake mistakes_of_meaning[] = {
     {R"("distance": 4)", R"("distance": -4)", "view.camera.distance", "above zero"},
     // connections
     {R"({"name": "plate", "mass": "=2 kg)",
-     R"({"name": "ball 2", "mass": 1, "position": [0, 0, 0]}, {"name": "plate", "mass": "=2 kg)", "bodies.ball 2",
-     "ball 2 is not connected"},
+     R"({"name": "ball 2", "mass": 1, "position": [0, 0, 0]}, {"name": "plate", "mass": "=2 kg)",
+     "bodies.ball 2", "ball 2 is not connected"},
     {R"("cut": false)", R"("cut": true)", "joints.slide.cut", "without this joint slider is not connected"},
     // drives
     {R"("speed": 10})", R"("speed": 10}, "spring": {"stiffness": 1})", "joints.spin.spring", "never settles"},

@@ -59,8 +59,8 @@ TEST_CASE("a sweep over a length tells where no mechanism can be made, and goes 
     CAPTURE(arm);
     if (arm < 0.2184) {
       REQUIRE(point.solution.status == Status::converged);
-      CHECK(std::abs(value(point.solution, "slide") -
-                     value(Analysis(with_arm(arm)).solve({}), "slide")) < 1e-14);
+      CHECK(std::abs(value(point.solution, "slide") - value(Analysis(with_arm(arm)).solve({}), "slide")) <
+            1e-14);
     } else {
       CHECK(point.solution.status == Status::infeasible);
       CHECK_THAT(point.solution.message, ContainsSubstring("points.S[1]"));

@@ -169,7 +169,8 @@ void named_sections(App& app) {
         parameter.value = 1;
         changed.parameters.push_back(std::move(parameter));
       });
-    help_on_hover("A number with a name. Where a number stands, =name uses it, as in =2*p or =p*cos(30 deg).");
+    help_on_hover(
+        "A number with a name. Where a number stands, =name uses it, as in =2*p or =p*cos(30 deg).");
   }
   if (!inspector_section(app, "inspector/points section", "Points", !mechanism.points.empty())) return;
   for (const NamedPoint& point : mechanism.points)
@@ -180,7 +181,8 @@ void named_sections(App& app) {
       point.name = free_name(changed, "A");
       changed.points.push_back(std::move(point));
     });
-  help_on_hover("A place with a name. =A.x, =A.y and =A.z give its coordinates, and what they give moves with it.");
+  help_on_hover(
+      "A place with a name. =A.x, =A.y and =A.z give its coordinates, and what they give moves with it.");
 }
 
 } // namespace flyball

@@ -1,11 +1,11 @@
 // How a body looks: its shapes, their sizes and colours.
-#include "engine/mechanism/mass_properties.hpp"
 #include "app/render/icons.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/scene_list.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 
 #include <algorithm>
 #include <array>

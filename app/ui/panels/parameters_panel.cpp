@@ -211,7 +211,8 @@ void parameters_panel(App& app, const PanelRect& rect) {
     }
     app.panels.parameters_height = (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / app.scale;
   } else {
-    paragraph("Drive speeds, spring constants and named parameters get a slider here, and every number that is pinned.",
+    paragraph("Drive speeds, spring constants and named parameters get a slider here, and every number that "
+              "is pinned.",
               colors_of(app).dim);
   }
   ImGui::End();

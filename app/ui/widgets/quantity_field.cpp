@@ -184,7 +184,8 @@ std::string fitting_text(const App& app, double value, float room) {
 }
 
 // The number over the field at rest.
-void draw_resting(const App& app, const QuantityField& field, const ShownNumber& shown, float padding, bool given) {
+void draw_resting(const App& app, const QuantityField& field, const ShownNumber& shown, float padding,
+                  bool given) {
   const UiColors& colors = colors_of(app);
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   const float right = to.x - padding, gap = 5 * app.scale;
@@ -208,7 +209,8 @@ void draw_resting(const App& app, const QuantityField& field, const ShownNumber&
   list.PopClipRect();
 }
 
-std::string tooltip(const QuantityField& field, const ShownNumber& shown, const std::optional<std::string>& formula) {
+std::string tooltip(const QuantityField& field, const ShownNumber& shown,
+                    const std::optional<std::string>& formula) {
   std::string text = field.help;
   const auto line = [&](const std::string& more) { text += (text.empty() ? "" : "\n") + more; };
   if (field.various.empty()) {
@@ -238,7 +240,8 @@ std::string suggested_name(const Mechanism& mechanism, const std::string& addres
 }
 
 // Of a number of the scene, asked for by the right button or the menu key.
-void number_menu(App& app, const QuantityField& field, const std::optional<std::string>& formula, bool asked) {
+void number_menu(App& app, const QuantityField& field, const std::optional<std::string>& formula,
+                 bool asked) {
   if (field.address.empty() || !field.various.empty() || field.name.starts_with("parameters/")) return;
   ImGui::PushID(field.name.c_str());
   if (asked || takes_menu_key(app, field.name)) ImGui::OpenPopup("number");
@@ -248,12 +251,12 @@ void number_menu(App& app, const QuantityField& field, const std::optional<std::
       if (ImGui::Selectable("Name this number"))
         later(app, [address = field.address, phrase](App& changed) {
           const std::string name = suggested_name(changed.document.stored(), address);
-          edit(changed, "Name " + phrase, [&](Mechanism& mechanism, Selection&) {
-            name_number(mechanism, address, name);
-          });
+          edit(changed, "Name " + phrase,
+               [&](Mechanism& mechanism, Selection&) { name_number(mechanism, address, name); });
           if (parameter_index(changed.mechanism(), name) >= 0)
-            changed.notice = "The " + phrase + " is the parameter " + name +
-                             " now, with a slider. It is renamed in the scene's inspector, where nothing is selected.";
+            changed.notice =
+                "The " + phrase + " is the parameter " + name +
+                " now, with a slider. It is renamed in the scene's inspector, where nothing is selected.";
         });
       note_widget(app.widgets, field.name + "/name it");
     }
@@ -372,18 +375,18 @@ void quantity_field(App& app, const QuantityField& field, float width) {
   const ShownNumber shown(app, field);
   const std::optional<std::string> formula = formula_of(app, field);
   Stepping stepping{field, shown, app.inspector.typing};
-  TextField text{.name = field.name,
-                 .text = formula            ? "=" + *formula
-                         : field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text)
-                                                 : "",
-                 .check = [&app, field](const std::string& typed) { return mistake_in(app, typed, field); },
-                 .take =
-                     [field](App& changed, const std::string& typed) { take_typed(changed, field, typed); },
-                 .at_once = field.at_once,
-                 .drawn_here = false,
-                 .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
-                 .callback = step_typed,
-                 .callback_data = &stepping};
+  TextField text{
+      .name = field.name,
+      .text = formula                 ? "=" + *formula
+              : field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text)
+                                      : "",
+      .check = [&app, field](const std::string& typed) { return mistake_in(app, typed, field); },
+      .take = [field](App& changed, const std::string& typed) { take_typed(changed, field, typed); },
+      .at_once = field.at_once,
+      .drawn_here = false,
+      .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
+      .callback = step_typed,
+      .callback_data = &stepping};
   const bool bare = !field.framed && !typing_in(app, field.name);
   if (bare) ImGui::PushStyleColor(ImGuiCol_FrameBg, ImVec4(0, 0, 0, 0));
   if (bare) ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, colors.raised);
