@@ -180,6 +180,7 @@ bool is_right_at(const Mechanism& mechanism, std::string_view address) {
     return true;
   };
   bool found = true;
+  if (list == "parameters" || list == "points") return false; // any part may follow from it
   if (list == "gravity") {
     find_non_finite(mechanism.gravity, mistakes);
   } else if (list == "simulation") {

@@ -212,6 +212,15 @@ TEST_CASE("A value of which an expression can make nothing leaves the mechanism 
   CHECK_THAT(error_of([&] { get_parameter(m, "parameters.x"); }), ContainsSubstring("expected one of L, c"));
 }
 
+TEST_CASE("After a parameter was set all parts are looked at, whatever they are called") {
+  Mechanism m = load_scene(parametric);
+  m.joints[1].name = "M";
+  REQUIRE(find_mistakes(m).empty());
+  set_parameter(m, "parameters.M", -1);
+  REQUIRE(find_mistakes(m, "parameters.M").size() == 1);
+  CHECK(find_mistakes(m, "parameters.M").front().where() == "bodies.collar.mass");
+}
+
 TEST_CASE("Circles, unknown names and wrong units of parameters are named") {
   Mechanism m = with_lengths();
   m.parameters[0].formulas = {{"value", "A.x + 1 m"}};
