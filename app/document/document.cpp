@@ -39,12 +39,14 @@ void Document::push(Step step) {
   steps_[position_].selection = selection_;
   steps_.resize(position_ + 1);
   selection_ = step.selection = existing(std::move(step.selection), *step.mechanism);
-  step.tried = step.mechanism;
-  try {
-    if (!step.explored.empty())
-      step.tried = std::make_shared<const Mechanism>(with_explored(*step.mechanism, step.explored));
-  } catch (const SceneError&) { // after an edit that leaves nothing to try them on
-    step.explored.clear();
+  if (!step.tried) {
+    step.tried = step.mechanism;
+    try {
+      if (!step.explored.empty())
+        step.tried = std::make_shared<const Mechanism>(with_explored(*step.mechanism, step.explored));
+    } catch (const SceneError&) { // after an edit that leaves nothing to try them on
+      step.explored.clear();
+    }
   }
   step.hues = step.mechanism == before || same_bodies(*before, *step.mechanism)
                   ? now().hues
@@ -108,12 +110,14 @@ void Document::explore(std::string name, const Explored& values, std::uint64_t g
   for (const ExploredValue& each : values)
     explore_value(next, stored(), each.address, each.value);
   if (next == now().explored) return;
-  if (!stored().parameters.empty() || !stored().points.empty()) with_explored(stored(), next); // may refuse
+  std::shared_ptr<const Mechanism> tried = now().mechanism;
+  if (!next.empty()) tried = std::make_shared<const Mechanism>(with_explored(*tried, next)); // may refuse
   push({.name = std::move(name),
         .mechanism = now().mechanism,
         .selection = selection_,
         .gesture = gesture,
-        .explored = std::move(next)});
+        .explored = std::move(next),
+        .tried = std::move(tried)});
 }
 
 void Document::keep_explored() {
