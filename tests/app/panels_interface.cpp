@@ -137,6 +137,8 @@ TEST_CASE("the open dialog lists scenes and opens one") {
   robot.key('O', true);
   robot.frames(2);
   REQUIRE(robot.app.dialog.showing);
+  robot.type("pend"); // the list is longer than its window
+  robot.frames(2);
   robot.click("open/pendulum.json");
   robot.frames(2);
   CHECK_FALSE(robot.app.dialog.showing);
