@@ -50,8 +50,9 @@ Condition branches_cross(std::size_t parameter) {
 ExtendedBalance::ExtendedBalance(const System& system, const Mechanism& mechanism,
                                  std::vector<std::string> addresses, Eigen::VectorXd scales,
                                  std::vector<Condition> conditions, bool unfolded)
-    : system_(system), mechanism_(mechanism), addresses_(std::move(addresses)), scales_(std::move(scales)),
-      conditions_(std::move(conditions)), unfolded_(unfolded), form_(KktForm::dense) {
+    : system_(system), mechanism_(mechanism), addresses_(std::move(addresses)),
+      numbers_(mechanism_, addresses_), scales_(std::move(scales)), conditions_(std::move(conditions)),
+      unfolded_(unfolded), form_(KktForm::dense) {
   const bool gradients = std::ranges::all_of(conditions_, [](const Condition& c) { return !!c.gradient; });
   if (system.conservative && system.single_drives && gradients && !unfolded_) form_ = system.kkt_form;
   bind(system_, mechanism_, parameters_);
@@ -65,10 +66,7 @@ Problem ExtendedBalance::judged() const {
 }
 
 void ExtendedBalance::set(const Eigen::VectorXd& parameters) {
-  std::vector<ParameterValue> values;
-  for (std::size_t i = 0; i < addresses_.size(); ++i)
-    values.push_back({addresses_[i], parameters[static_cast<Eigen::Index>(i)]});
-  set_parameters(mechanism_, values);
+  numbers_.set({parameters.data(), addresses_.size()});
   bind(system_, mechanism_, parameters_);
 }
 

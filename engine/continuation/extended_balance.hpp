@@ -7,7 +7,7 @@
 
 #include "engine/continuation/bordered_kkt.hpp"
 #include "engine/continuation/singularity.hpp"
-#include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
 #include "engine/solve/newton.hpp"
 
 #include <functional>
@@ -57,6 +57,8 @@ class ExtendedBalance {
   // at a branch point the equations are regular only with it.
   ExtendedBalance(const System& system, const Mechanism& mechanism, std::vector<std::string> addresses,
                   Eigen::VectorXd scales, std::vector<Condition> conditions, bool unfolded = false);
+  ExtendedBalance(const ExtendedBalance&) = delete;
+  ExtendedBalance& operator=(const ExtendedBalance&) = delete;
 
   void set(const Eigen::VectorXd& parameters);
   // In the form that is solved.
@@ -128,6 +130,7 @@ class ExtendedBalance {
   const System& system_;
   Mechanism mechanism_;
   std::vector<std::string> addresses_;
+  VariedNumbers numbers_; // of mechanism_
   Eigen::VectorXd scales_;
   std::vector<Condition> conditions_;
   bool unfolded_;

@@ -4,17 +4,17 @@
 
 namespace flyball {
 
-Family::Family(const System& system, const Mechanism& mechanism, std::string address, double scale,
+Family::Family(const System& system, const Mechanism& mechanism, const std::string& address, double scale,
                KktForm form)
-    : system_(system), mechanism_(mechanism), address_(std::move(address)), scale_(scale), form_(form) {
-  value_ = get_parameter(mechanism_, address_);
+    : system_(system), mechanism_(mechanism), number_(mechanism_, {&address, 1}), scale_(scale),
+      value_(get_parameter(mechanism, address)), form_(form) {
   bind(system_, mechanism_, parameters_);
   set_scaling(system_, parameters_, scaling_);
 }
 
 void Family::set(double value) {
   if (value == value_) return; // bound already
-  set_parameter(mechanism_, address_, value);
+  number_.set({&value, 1});
   bind(system_, mechanism_, parameters_);
   value_ = value;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/kkt/problem.hpp"
-#include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
 
 #include <string>
 
@@ -11,8 +11,10 @@ namespace flyball {
 class Family {
  public:
   // `scale`: the range of interest, in the parameter's unit.
-  Family(const System& system, const Mechanism& mechanism, std::string address, double scale,
+  Family(const System& system, const Mechanism& mechanism, const std::string& address, double scale,
          KktForm form = KktForm::dense);
+  Family(const Family&) = delete;
+  Family& operator=(const Family&) = delete;
 
   void set(double value);
   double value() const { return value_; }
@@ -23,7 +25,7 @@ class Family {
  private:
   const System& system_;
   Mechanism mechanism_;
-  std::string address_;
+  VariedNumbers number_; // of mechanism_
   double scale_, value_ = 0;
   KktForm form_;
   Parameters parameters_;

@@ -4,6 +4,7 @@
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -133,12 +134,6 @@ void append_addresses(std::vector<std::string>& all, const std::string& prefix,
       all.push_back(prefix + number.key);
 }
 
-std::string changeable_instead(const Mechanism& mechanism, const std::string& formula) {
-  std::vector<std::string> sources = sources_of(mechanism, formula);
-  if (sources.empty()) return {};
-  return "; change " + word_list(std::vector<std::string_view>(sources.begin(), sources.end()));
-}
-
 } // namespace
 
 double get_parameter(const Mechanism& mechanism, std::string_view address) {
@@ -151,27 +146,17 @@ void set_parameter(Mechanism& mechanism, std::string_view address, double value)
 }
 
 void set_parameters(Mechanism& mechanism, std::span<const ParameterValue> values) {
-  std::vector<double> before;
-  const auto put_back = [&] {
-    for (std::size_t i = before.size(); i-- > 0;)
-      put_number(mechanism, values[i].address, before[i]);
-    evaluate_formulas(mechanism);
-  };
-  try {
-    for (const auto& [address, value] : values) {
-      const Number number = find_number(mechanism, address);
-      if (!std::isfinite(value)) throw SceneError(address, "expected a finite number");
-      if (const std::optional<std::string> formula = formula_at(mechanism, address))
-        throw SceneError(address, "its value is given by \"=" + *formula + "\"" +
-                                      changeable_instead(mechanism, *formula));
-      before.push_back(number.value);
-      number.set(value);
-    }
-    evaluate_formulas(mechanism);
-  } catch (...) {
-    put_back();
-    throw;
+  std::vector<std::string> addresses;
+  std::vector<double> numbers;
+  for (const auto& [address, value] : values) {
+    addresses.push_back(address);
+    numbers.push_back(value);
   }
+  VariedNumbers(mechanism, addresses).set(numbers);
+}
+
+Number addressed_number(Mechanism& mechanism, std::string_view address) {
+  return find_number(mechanism, address);
 }
 
 void put_number(Mechanism& mechanism, std::string_view address, double value) {

@@ -12,6 +12,8 @@
 
 namespace flyball {
 
+struct Number; // numbers.hpp
+
 struct ParameterValue {
   std::string address;
   double value = 0;
@@ -19,6 +21,8 @@ struct ParameterValue {
 
 // The number at an address. Throws SceneError naming the part that does not exist and what does.
 double get_parameter(const Mechanism& mechanism, std::string_view address);
+// The same, to be set again and again: valid as long as its part.
+Number addressed_number(Mechanism& mechanism, std::string_view address);
 // Changes it, and all that expressions make of it. Does not validate the mechanism as a whole; throws
 // SceneError like get_parameter, for a value that is not finite or of which an expression can make nothing,
 // and for a number that is itself given by an expression; the mechanism is then as it was.

@@ -259,13 +259,13 @@ Expression::Expression(std::string_view text) {
   ExpressionParser(text, *this).run();
 }
 
-Dual Expression::evaluate(std::span<const Dual> values) const {
+Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::size_t> places) const {
   std::array<Dual, most_values> stack;
   std::size_t top = 0; // the first free place
   for (const Step& step : steps_) {
     switch (step.operation) {
     case Operation::number: stack[top++] = {step.value, 0}; continue;
-    case Operation::name: stack[top++] = values[step.index]; continue;
+    case Operation::name: stack[top++] = values[places.empty() ? step.index : places[step.index]]; continue;
     case Operation::negate: stack[top - 1] = -stack[top - 1]; continue;
     case Operation::call: {
       const Function& function = functions[step.index];

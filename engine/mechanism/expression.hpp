@@ -44,8 +44,9 @@ class Expression {
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<Mention>& mentions() const { return mentions_; }
 
-  // Of values by name, as names() has them. No allocation. Not finite where it is undefined.
-  Dual evaluate(std::span<const Dual> values) const;
+  // The value of name i is values[places[i]], by default values[i]. No allocation. Not finite where it is
+  // undefined.
+  Dual evaluate(std::span<const Dual> values, std::span<const std::size_t> places = {}) const;
   // Throws ExpressionError where dimensions do not fit.
   Measure measure(std::span<const Measure> names) const;
 

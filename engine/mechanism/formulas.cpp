@@ -1,5 +1,6 @@
 #include "engine/mechanism/formulas.hpp"
 
+#include "engine/mechanism/formula_plan.hpp"
 #include "engine/mechanism/mass_properties.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
@@ -48,13 +49,17 @@ class Names {
   }
   // Their values by themselves.
   std::vector<Dual> values() const {
-    std::vector<Dual> all;
-    for (const NamedParameter& parameter : mechanism_.parameters)
-      all.push_back({parameter.value, 0});
-    for (const NamedPoint& point : mechanism_.points)
-      for (const int i : {0, 1, 2})
-        all.push_back({point.at[i], 0});
+    std::vector<Dual> all(size());
+    take_values(mechanism_, all);
     return all;
+  }
+  static void take_values(const Mechanism& mechanism, std::vector<Dual>& all) {
+    std::size_t at = 0;
+    for (const NamedParameter& parameter : mechanism.parameters)
+      all[at++] = {parameter.value, 0};
+    for (const NamedPoint& point : mechanism.points)
+      for (const int i : {0, 1, 2})
+        all[at++] = {point.at[i], 0};
   }
   std::string address(std::size_t number) const {
     const std::size_t parameters = mechanism_.parameters.size();
@@ -103,11 +108,7 @@ struct Compiled {
                             dimension_text(found.dimension));
   }
   Dual evaluate(const std::vector<Dual>& values) const {
-    std::vector<Dual> its;
-    its.reserve(names.size());
-    for (const std::size_t name : names)
-      its.push_back(values[name]);
-    const Dual value = expression.evaluate(its);
+    const Dual value = expression.evaluate(values, names);
     if (!std::isfinite(value.value)) throw ExpressionError("the value is not finite");
     return value;
   }
@@ -254,33 +255,68 @@ bool weigh(Body& body) {
 
 } // namespace
 
-void evaluate_formulas(Mechanism& mechanism) {
-  if (!has_formulas(mechanism)) return;
-  const Names names(mechanism);
-  const std::vector<Definition> definitions = definitions_of(mechanism, names);
-  std::vector<Dual> values = names.values();
-  for (const Definition* each : in_order(definitions, names.size())) {
-    values[each->name] = at_place(each->where, each->text, [&] { return each->compiled.evaluate(values); });
-    *each->place = values[each->name].value;
+// What expressions give, with its place; the definitions of names come first.
+struct FormulaPlan::State {
+  struct Assignment {
+    std::string where, text;
+    Compiled compiled;
+    std::function<void(double)> set;
+    std::optional<std::size_t> name; // that it defines
+  };
+  Mechanism& mechanism;
+  std::vector<Assignment> assignments;
+  std::vector<Dual> values; // of the names
+
+  explicit State(Mechanism& m) : mechanism(m) {
+    const Names names(m);
+    values.resize(names.size());
+    const std::vector<Definition> definitions = definitions_of(m, names);
+    for (const Definition* each : in_order(definitions, names.size()))
+      assignments.push_back({each->where, each->text, each->compiled,
+                             [place = each->place](double value) { *place = value; }, each->name});
+    visit_parts(m, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
+      const std::vector<Number> numbers = numbers_of_part();
+      for (const Formula& formula : formulas) {
+        const std::string where = joined_path(path, formula.key);
+        const auto number = std::ranges::find(numbers, formula.key, &Number::key);
+        if (number == numbers.end())
+          throw SceneError(where, "\"=" + formula.text + "\": there is no such number");
+        at_place(where, formula.text, [&] {
+          Compiled compiled(formula.text, names);
+          compiled.expect_unit(number->unit, names);
+          assignments.push_back({where, formula.text, std::move(compiled), number->set, {}});
+        });
+      }
+    });
   }
-  visit_parts(mechanism, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
-    const std::vector<Number> numbers = numbers_of_part();
-    for (const Formula& formula : formulas) {
-      const std::string where = joined_path(path, formula.key);
-      const auto number = std::ranges::find(numbers, formula.key, &Number::key);
-      if (number == numbers.end())
-        throw SceneError(where, "\"=" + formula.text + "\": there is no such number");
-      at_place(where, formula.text, [&] {
-        const Compiled compiled(formula.text, names);
-        compiled.expect_unit(number->unit, names);
-        number->set(compiled.evaluate(values).value);
-      });
+
+  void evaluate() {
+    Names::take_values(mechanism, values);
+    for (Assignment& each : assignments) {
+      const Dual value = at_place(each.where, each.text, [&] { return each.compiled.evaluate(values); });
+      if (each.name) values[*each.name] = value;
+      each.set(value.value);
     }
-  });
-  for (Body& body : mechanism.bodies)
-    if (body.density && !weigh(body))
-      throw SceneError("bodies." + body.name + ".density",
-                       "expected shapes with a volume and a density above zero, from which the mass follows");
+    for (Body& body : mechanism.bodies)
+      if (body.density && !weigh(body))
+        throw SceneError(
+            "bodies." + body.name + ".density",
+            "expected shapes with a volume and a density above zero, from which the mass follows");
+  }
+};
+
+FormulaPlan::FormulaPlan(Mechanism& mechanism)
+    : state_(has_formulas(mechanism) ? std::make_unique<State>(mechanism) : nullptr) {}
+FormulaPlan::~FormulaPlan() = default;
+FormulaPlan::FormulaPlan(FormulaPlan&&) noexcept = default;
+FormulaPlan& FormulaPlan::operator=(FormulaPlan&&) noexcept = default;
+
+void FormulaPlan::evaluate() {
+  if (state_) state_->evaluate();
+}
+
+void evaluate_formulas(Mechanism& mechanism) {
+  FormulaPlan(mechanism).evaluate();
 }
 
 FormulaPlace formula_place(Mechanism& mechanism, std::string_view address) {

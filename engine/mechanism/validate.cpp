@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/expression.hpp"
+#include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/numbers.hpp"
@@ -59,6 +60,65 @@ std::string json_key(std::string_view key) {
 // Beyond this the forces, products of up to seven numbers, overflow; no mechanism comes near.
 constexpr double largest_number = 1e30;
 
+// Whether all numbers among the fields that are visited are numbers, and not too large.
+class NumberCheck {
+ public:
+  bool right() const { return right_; }
+
+  void describe(const std::string&) {}
+  void type(const Field&, const auto&) {}
+  void field(const Field&, const auto& value) { check(value); }
+  template <class Value>
+  void field(const Field&, const Value& value, const Standard<Value>&) {
+    check(value);
+  }
+  template <class Value>
+  void field(const Field&, const std::optional<Value>& value, const Value& stands_for) {
+    check(value.value_or(stands_for));
+  }
+  void pair(const Field&, const Vec3& a, const Vec3& b) {
+    check(a);
+    check(b);
+  }
+  void coordinates(const Joint& joint) {
+    for (const Coordinate& coordinate : joint.coordinates)
+      visit_fields(*this, coordinate);
+  }
+
+ private:
+  void check(double value) { right_ = right_ && std::abs(value) <= largest_number; }
+  void check(const Vec3& value) {
+    for (const double each : value)
+      check(each);
+  }
+  template <std::size_t n>
+  void check(const std::array<double, n>& values) {
+    for (const double each : values)
+      check(each);
+  }
+  void check(const std::array<Vec3, 2>& points) {
+    check(points[0]);
+    check(points[1]);
+  }
+  void check(const CoordinateSpring& spring) { visit_fields(*this, spring); }
+  void check(const Stop& stop) { visit_fields(*this, stop); }
+  void check(const Drive& drive) { visit_fields(*this, drive); }
+  template <class Value>
+  void check(const std::optional<Value>& value) {
+    if (value) check(*value);
+  }
+  void check(const auto&) {} // no numbers, or not checked here
+
+  bool right_ = true;
+};
+
+template <class Part, class... Of>
+bool has_right_numbers(const Part& part, const Of&... of) {
+  NumberCheck check;
+  visit_fields(check, part, of...);
+  return check.right();
+}
+
 void expect_finite(const std::vector<Number>& numbers, const std::string& prefix, Mistakes& mistakes) {
   for (const Number& number : numbers) {
     const std::string where = prefix + json_key(number.key);
@@ -70,18 +130,24 @@ void expect_finite(const std::vector<Number>& numbers, const std::string& prefix
 }
 
 void find_non_finite(Vec3 gravity, Mistakes& mistakes) {
-  expect_finite(numbers_of_gravity(gravity), "", mistakes);
+  if (!gravity.allFinite() || gravity.cwiseAbs().maxCoeff() > largest_number)
+    expect_finite(numbers_of_gravity(gravity), "", mistakes);
 }
 
-void find_non_finite(Body body, const std::string& path, Mistakes& mistakes) {
-  expect_finite(numbers_of(body), path + ".", mistakes);
+void find_non_finite(const Body& body, const std::string& path, Mistakes& mistakes) {
+  if (!has_right_numbers(body)) {
+    Body copy = body;
+    expect_finite(numbers_of(copy), path + ".", mistakes);
+  }
   mistakes.expect(body.rotation.coeffs().allFinite(), path + ".rotation", "expected four finite numbers");
 }
 
 void find_non_finite(const Mechanism& mechanism, const NamedParameter& parameter, Mistakes& mistakes) {
   const std::string path = "parameters." + parameter.name;
-  NamedParameter copy = parameter;
-  expect_finite(numbers_of(copy), path + ".", mistakes);
+  if (!has_right_numbers(parameter)) {
+    NamedParameter copy = parameter;
+    expect_finite(numbers_of(copy), path + ".", mistakes);
+  }
   if (!is_expression_name(parameter.name) || point_index(mechanism, parameter.name) >= 0)
     mistakes.add(path, "expected a name of letters, figures and _ that no point and no function has");
   if (!parameter.range) return;
@@ -99,9 +165,11 @@ void find_non_finite(const NamedPoint& point, Mistakes& mistakes) {
 }
 
 template <class JointOrForce>
-void find_non_finite(const Mechanism& mechanism, JointOrForce part, const std::string& path,
+void find_non_finite(const Mechanism& mechanism, const JointOrForce& part, const std::string& path,
                      Mistakes& mistakes) {
-  expect_finite(numbers_of(mechanism, part), path + ".", mistakes);
+  if (has_right_numbers(part, &mechanism)) return;
+  JointOrForce copy = part;
+  expect_finite(numbers_of(mechanism, copy), path + ".", mistakes);
 }
 
 void find_formula_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
@@ -270,6 +338,32 @@ std::vector<SceneError> find_mistakes(const Mechanism& mechanism) {
 
 std::vector<SceneError> find_mistakes(const Mechanism& mechanism, std::string_view address) {
   return is_right_at(mechanism, address) ? std::vector<SceneError>() : find_mistakes(mechanism);
+}
+
+void validate_numbers(const Mechanism& mechanism) {
+  Mistakes mistakes;
+  for (const NamedParameter& parameter : mechanism.parameters)
+    mistakes.expect(has_right_numbers(parameter), parameter.name, "");
+  for (const NamedPoint& point : mechanism.points)
+    find_non_finite(point, mistakes);
+  find_non_finite(mechanism.gravity, mistakes);
+  bool geared = false;
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
+    find_non_finite(mechanism.bodies[i], mechanism.bodies[i].name, mistakes);
+    find_mistakes_of(mechanism.bodies[i], mechanism.bodies[i].name, mistakes);
+  }
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
+    find_non_finite(mechanism, mechanism.joints[j], mechanism.joints[j].name, mistakes);
+    find_mistakes_of_joint(mechanism, j, mistakes);
+    geared = geared || mechanism.joints[j].type == JointType::gear;
+  }
+  for (const Force& force : mechanism.forces) {
+    find_non_finite(mechanism, force, force.name, mistakes);
+    find_mistakes_of(force, force.name, mistakes);
+  }
+  find_setting_mistakes(mechanism, mistakes);
+  // Ratios above zero and drives that agree.
+  if (geared || !mistakes.all().empty()) validate(mechanism);
 }
 
 std::vector<SceneError> find_warnings(const Mechanism& mechanism) {

@@ -17,6 +17,9 @@ std::vector<SceneError> find_mistakes(const Mechanism& mechanism);
 std::vector<SceneError> find_mistakes(const Mechanism& mechanism, std::string_view address);
 // Throws the first of them.
 void validate(const Mechanism& mechanism);
+// The same of a mechanism that had none before numbers of it were set, and what expressions make of them: a
+// tenth of the work.
+void validate_numbers(const Mechanism& mechanism);
 
 // What is solved as it stands but is no real mechanism's, and so most likely a slip: one sentence each, with
 // its path as in SceneError. For a mechanism without mistakes.

@@ -3,6 +3,8 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/turning_part.hpp"
@@ -48,6 +50,17 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
       return false;
   }
   return true;
+}
+
+// By joints' coordinates and springs: whether there is a damper, which compiling looks at; all that numbers
+// decide of the topology.
+void find_dampers(const Mechanism& m, std::vector<bool>& dampers) {
+  dampers.clear();
+  for (const Joint& joint : m.joints)
+    for (const Coordinate& coordinate : joint.coordinates)
+      dampers.push_back(coordinate.damping != 0);
+  for (const Force& force : m.forces)
+    dampers.push_back(force.damping != 0);
 }
 
 // All eigenvalues need the matrices; beyond a size the pivots have to do.
@@ -105,7 +118,15 @@ void add_condition(const Problem& problem, SteadyState& steady, Solution& out) {
 } // namespace
 
 struct Analysis::State {
+  // Where numbers vary: the mechanism is of its own.
+  struct Varied {
+    std::shared_ptr<Mechanism> mechanism;
+    VariedNumbers numbers;
+    std::vector<bool> dampers, dampers_before;
+  };
+
   std::shared_ptr<const Mechanism> mechanism;
+  std::optional<Varied> varied;
   System system;
   Parameters parameters;
   Scaling scaling;
@@ -154,8 +175,33 @@ void Analysis::update(std::shared_ptr<const Mechanism> mechanism) {
     return;
   }
   s.mechanism = std::move(mechanism);
+  s.varied.reset();
   s.settled = false;
   s.bind_numbers();
+}
+
+void Analysis::vary(std::span<const std::string> addresses) {
+  State& s = *state_;
+  auto mechanism = std::make_shared<Mechanism>(*s.mechanism);
+  VariedNumbers numbers(*mechanism, addresses);
+  State::Varied varied{mechanism, std::move(numbers), {}, {}};
+  find_dampers(*mechanism, varied.dampers);
+  s.varied = std::move(varied);
+  s.mechanism = std::move(mechanism);
+}
+
+void Analysis::set(std::span<const double> values) {
+  State& s = *state_;
+  State::Varied& varied = *s.varied;
+  s.settled = false;
+  varied.numbers.set(values);
+  validate_numbers(*varied.mechanism);
+  varied.dampers_before.swap(varied.dampers);
+  find_dampers(*varied.mechanism, varied.dampers);
+  if (varied.dampers == varied.dampers_before) return s.bind_numbers();
+  std::optional<State::Varied> kept = std::move(s.varied);
+  *this = Analysis(s.mechanism);
+  state_->varied = std::move(kept);
 }
 
 Solution Analysis::solve(const SolveOptions& options) {

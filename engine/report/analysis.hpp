@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,6 +79,13 @@ class Analysis {
   // last answer as a warm start where it still fits.
   void update(const Mechanism& mechanism);
   void update(std::shared_ptr<const Mechanism> mechanism);
+
+  // Numbers that are going to be set again and again, until another mechanism is taken. Throws SceneError as
+  // VariedNumbers does.
+  void vary(std::span<const std::string> addresses);
+  // Takes new values of them, as update() takes a mechanism with these, at a fraction of the cost. Throws
+  // SceneError for values of which no mechanism can be made; then others have to be set before it is solved.
+  void set(std::span<const double> values);
 
   // Throws SceneError for starts and points that name nothing.
   Solution solve(const SolveOptions& options = {});

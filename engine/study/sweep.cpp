@@ -1,7 +1,6 @@
 #include "engine/study/sweep.hpp"
 
-#include "engine/mechanism/address.hpp"
-#include "engine/mechanism/validate.hpp"
+#include "engine/mechanism/error.hpp"
 
 #include <chrono>
 #include <exception>
@@ -39,11 +38,9 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
 
   // A mistake of one point is one of all, unless expressions make the mechanism from the numbers.
   const bool geometry_varies = !mechanism.parameters.empty() || !mechanism.points.empty();
-  if (geometry_varies)
-    for (const Variation& variation : variations) { // numbers that can be set
-      Mechanism same = mechanism;
-      set_parameter(same, variation.address, get_parameter(same, variation.address));
-    }
+  std::vector<std::string> addresses;
+  for (const Variation& variation : variations)
+    addresses.push_back(variation.address);
   std::atomic<std::size_t> next = 0, done = 0;
   std::atomic<bool> stop = false; // a failure
   const auto cancelled = [&] { return stop || (cancel && cancel->load(std::memory_order_relaxed)); };
@@ -51,32 +48,22 @@ std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variat
   std::exception_ptr failure;
   const auto work = [&] {
     try {
-      Mechanism varied = mechanism;
-      std::optional<Analysis> analysis;
-      std::vector<ParameterValue> values;
-      for (const Variation& variation : variations)
-        values.push_back({variation.address, get_parameter(varied, variation.address)});
+      Analysis analysis(mechanism);
+      analysis.vary(addresses);
       for (std::size_t i; !cancelled() && (i = next++) < total; ++done) {
-        for (std::size_t v = 0; v < variations.size(); ++v)
-          values[v].value = points[i].parameters[v];
         try {
-          set_parameters(varied, values);
-          validate(varied);
+          analysis.set(points[i].parameters);
         } catch (const SceneError& error) {
           if (!geometry_varies) throw;
           points[i].solution.status = Status::infeasible; // a parameter of which no mechanism can be made
           points[i].solution.message = error.what();
           continue;
         }
-        if (analysis)
-          analysis->update(varied);
-        else
-          analysis.emplace(varied);
         SolveOptions options;
         options.details = false;
         options.search = search;
         options.cancel = cancel ? cancel : &stop;
-        points[i].solution = analysis->solve(options);
+        points[i].solution = analysis.solve(options);
       }
     } catch (...) {
       const std::lock_guard lock(mutex);

@@ -5,6 +5,8 @@
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/refine.hpp"
@@ -168,6 +170,39 @@ void add_curve(const std::string& name, const Mechanism& mechanism, double to) {
         ->Apply(repeated);
 }
 
+// A point of a sweep, from the number to the solution: by numbers that were found beforehand, and as one
+// would solve a single mechanism.
+void add_points(const std::string& name, const std::string& address, double from, double to) {
+  constexpr int count = 200;
+  const auto solve = [](Analysis& analysis) {
+    SolveOptions options;
+    options.details = false;
+    benchmark::DoNotOptimize(analysis.solve(options));
+  };
+  const auto value = [from, to](int i) { return from + (to - from) * (i % count) / (count - 1); };
+  benchmark::RegisterBenchmark((name + "/point of a sweep").c_str(), [=](benchmark::State& state) {
+    Analysis analysis(scene(name));
+    analysis.vary({&address, 1});
+    int i = 0;
+    for ([[maybe_unused]] auto _ : state) {
+      const double x = value(i++);
+      analysis.set({&x, 1});
+      solve(analysis);
+    }
+  })->Apply(repeated);
+  benchmark::RegisterBenchmark((name + "/point by itself").c_str(), [=](benchmark::State& state) {
+    Mechanism varied = scene(name);
+    Analysis analysis(varied);
+    int i = 0;
+    for ([[maybe_unused]] auto _ : state) {
+      set_parameter(varied, address, value(i++));
+      validate(varied);
+      analysis.update(varied);
+      solve(analysis);
+    }
+  })->Apply(repeated);
+}
+
 // Prints the fastest of the repetitions of a benchmark, the one least disturbed, and remembers its time.
 class Fastest : public benchmark::ConsoleReporter {
  public:
@@ -208,6 +243,9 @@ int main(int argc, char** argv) {
   add_parts("governor standing", standing(scene("governor")));
   add_parts("governor without loops", without_loops(scene("governor")));
   add_curve("governor", scene("governor"), 30);
+  add_points("pendulum", "joints.spin.drive.speed", 2, 20);
+  add_points("governor", "joints.spin.drive.speed", 9, 20);
+  add_points("governor_parametric", "parameters.L", 0.1, 0.2);
   Fastest reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();
@@ -219,6 +257,8 @@ int main(int argc, char** argv) {
     print_ratio(reporter, name + "/warm", name + "/iteration");
     print_ratio(reporter, name + "/cold", name + "/warm");
   }
+  for (const std::string name : {"pendulum", "governor", "governor_parametric"})
+    print_ratio(reporter, name + "/point by itself", name + "/point of a sweep");
   for (const char* curve : {"governor/curve", "governor/curve with eigenvalues"})
     print_ratio(reporter, curve, "governor/cold");
   for (const char* part : {"residual", "iteration", "warm"})

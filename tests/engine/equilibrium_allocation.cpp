@@ -1,6 +1,7 @@
 // A repeated small solve allocates nothing. This program's allocation functions count, on demand.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
+#include "engine/mechanism/varied_numbers.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/refine.hpp"
 
@@ -159,5 +160,17 @@ TEST_CASE("a repeated small solve allocates nothing") {
     CHECK(arrived);
     // New numbers cost nothing either.
     CHECK(allocations_of([&] { solver.take_numbers(); }) == 0);
+  }
+}
+
+TEST_CASE("setting numbers again and again allocates nothing, nor do expressions of them") {
+  if (!FLYBALL_COUNT_ALLOCATIONS) return;
+  Mechanism m = shipped("governor_parametric");
+  const std::vector<std::string> addresses{"parameters.L", "parameters.k", "joints.slide.damping"};
+  VariedNumbers numbers(m, addresses);
+  for (const double arm : {0.1, 0.15, 0.2}) {
+    const std::array<double, 3> values{arm, 1000 * arm, 10};
+    CHECK(allocations_of([&] { numbers.set(values); }) == 0);
+    CHECK(m.bodies[1].position.x() == -arm);
   }
 }

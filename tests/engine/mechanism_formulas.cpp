@@ -4,9 +4,11 @@
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
 
 #include "tests/catch.hpp"
 
+#include <cmath>
 #include <complex>
 #include <functional>
 #include <numbers>
@@ -219,6 +221,49 @@ TEST_CASE("After a parameter was set all parts are looked at, whatever they are 
   set_parameter(m, "parameters.M", -1);
   REQUIRE(find_mistakes(m, "parameters.M").size() == 1);
   CHECK(find_mistakes(m, "parameters.M").front().where() == "bodies.collar.mass");
+}
+
+TEST_CASE("Numbers that are set again and again give what setting them from anew gives") {
+  const Mechanism m = load_scene(parametric);
+  const std::vector<std::string> addresses{"parameters.L", "points.P.0", "parameters.k", "gravity.1",
+                                           "joints.arm2.damping"};
+  Mechanism varied = m;
+  VariedNumbers numbers(varied, addresses);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> length(0.1, 0.3);
+  for (int i = 0; i < 50; ++i) {
+    std::vector<double> values;
+    std::vector<ParameterValue> anew;
+    for (const std::string& address : addresses) {
+      values.push_back(length(random));
+      anew.push_back({address, values.back()});
+    }
+    Mechanism expected = varied; // by what cannot be made of values it stays
+    const std::string mistake = error_of([&] { set_parameters(expected, anew); });
+    CHECK(error_of([&] { numbers.set(values); }) == mistake);
+    CHECK(varied == expected);
+    CHECK((mistake == "no error") == (values[0] / 2 <= 0.10922));
+  }
+  CHECK_THROWS_AS(numbers.set(std::vector{0.2, 0., std::nan(""), 1., 1.}), SceneError);
+  const std::vector<std::string> given{"parameters.c"}, lost{"parameters.x"};
+  CHECK_THAT(error_of([&] { VariedNumbers(varied, given); }), ContainsSubstring("change parameters.L"));
+  CHECK_THAT(error_of([&] { VariedNumbers(varied, lost); }), ContainsSubstring("expected one of"));
+}
+
+TEST_CASE("A mechanism is right by its numbers alone where it is right as a whole") {
+  for (const char* scene :
+       {"governor_parametric", "governor_bearing", "pendulum", "rate_gyro", "fourbar_turntable"}) {
+    const Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/" + std::string(scene) + ".json");
+    CHECK_NOTHROW(validate_numbers(m));
+    for (const std::string& address : parameter_addresses(m))
+      for (const double value : {0., -1., 1e-9, 1e31, 1e300, std::nan(""), HUGE_VAL}) {
+        Mechanism varied = m;
+        put_number(varied, address, value);
+        if (error_of([&] { evaluate_formulas(varied); }) != "no error") continue;
+        CAPTURE(scene, address, value);
+        CHECK(error_of([&] { validate_numbers(varied); }) == error_of([&] { validate(varied); }));
+      }
+  }
 }
 
 TEST_CASE("Circles, unknown names and wrong units of parameters are named") {

@@ -44,6 +44,8 @@ TEST_CASE("every row of a sweep equals a solve of its own") {
       {shipped("conical_pendulum"), {"joints.spin.drive.speed", 0, 9, 13}},
       {conical(0.7, 0.1, 1, -1.2), {"joints.spin.drive.speed", 3, 8, 11}},
       {shipped("governor"), {"joints.link1.length", 0.05, 0.4, 6}}, // infeasible at the far end
+      {shipped("governor"), {"joints.slide.damping", 0, 20, 3}},    // compiled without dampers, and with
+      {shipped("governor_parametric"), {"parameters.L", 0.1, 0.2, 9}},
   };
   for (const auto& [m, variation] : cases) {
     const std::vector<SweepPoint> points = sweep(m, std::span(&variation, 1), 1);
