@@ -59,13 +59,19 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
   point.stability_reason = stability.reason;
   if (stability.eigenvalues) point.eigenvalues = std::move(*stability.eigenvalues);
   Unknowns reported;
-  if (details.reactions)
+  const bool measured = details.measures && !mechanism.measures.empty();
+  if (measured) details.measures->bind(mechanism, problem.system, problem.parameters);
+  if (details.reactions || (measured && details.measures->needs_forces()))
     reported = evaluate_reported(problem, z.q, w);
   else
     forward<double>(problem.system, problem.parameters, z.q, 0, w.kinematics);
   point.coordinates = coordinate_solutions(
       problem.system, problem.parameters, z.q,
       error.size() > 0 ? error : Eigen::VectorXd::Zero(problem.system.nv).eval(), w.kinematics);
+  if (measured) {
+    if (reported.q.size() == 0) reported = z;
+    point.measures = details.measures->solutions(problem, reported, error, w);
+  }
   if (!details.reactions) return point;
   ReportedForces forces = report_forces(mechanism, problem, reported, w);
   point.reactions = std::move(forces.reactions);
@@ -99,7 +105,7 @@ BranchFollower::Described BranchFollower::describe(const BranchState& state) {
   const Problem problem = problem_at(state.parameter);
   Described d;
   d.point = response_point(family_.mechanism(), problem, state.z, {},
-                           {options_.eigenvalues, options_.reactions}, w_);
+                           {options_.eigenvalues, options_.reactions, &measures_}, w_);
   d.point.parameter = state.parameter;
   // Exponents have their frequencies but for whole turns a period: multipliers tell what crosses.
   if (!turns_with_drives(d.point)) d.right = right_of_axis(d.point.eigenvalues, families_);

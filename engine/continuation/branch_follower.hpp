@@ -4,6 +4,7 @@
 #include "engine/continuation/branches.hpp"
 #include "engine/continuation/continuation.hpp"
 #include "engine/continuation/pair_crossing.hpp"
+#include "engine/report/measures.hpp"
 
 #include <utility>
 
@@ -27,6 +28,7 @@ Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<Coord
 
 struct PointDetails {
   bool eigenvalues = true, reactions = false;
+  MeasureSet* measures = nullptr; // to be taken; null: none
 };
 
 // What there is to say about one steady state, its parameter left out. `error` by coordinate of q_R (rad, m),
@@ -115,6 +117,7 @@ class BranchFollower {
   Continuation continuation_;
   double from_, to_;
   bool families_ = false;
+  MeasureSet measures_;
   Workspace w_;
 };
 

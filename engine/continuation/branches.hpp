@@ -20,6 +20,7 @@ struct ResponsePoint {
   std::optional<Floquet> floquet;                // where the linearised motion turns with the drives
   std::vector<Reaction> reactions;               // where BranchOptions::reactions asks for them
   std::vector<DriveTorque> drive_torques;        // likewise
+  std::vector<MeasureSolution> measures;         // the scene's, in its order
 };
 
 enum class SpecialPointType {

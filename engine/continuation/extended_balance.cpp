@@ -5,6 +5,7 @@
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/report/measures.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
@@ -25,6 +26,31 @@ Condition coordinate_is(const CoordinateInfo& coordinate, double value) {
             return {coordinate_gradient(p.system, p.parameters, state.z.q, coordinate)
                             .cwiseProduct(p.scaling.column) /
                         unit(p),
+                    Eigen::VectorXd::Zero(p.system.rows)};
+          }};
+}
+
+Condition measure_is(std::size_t measure, double value, double scale) {
+  struct Taken {
+    MeasureSet measures;
+    Workspace at, beside;
+  };
+  const auto taken = std::make_shared<Taken>();
+  const auto i = static_cast<Eigen::Index>(measure);
+  const auto take = [=](const ExtendedBalance& balance, const ExtendedState& state) {
+    const Problem p = balance.problem();
+    taken->measures.bind(balance.mechanism(), p.system, p.parameters);
+    return (taken->measures.evaluate_at(p, state.z.q, taken->at)[i] - value) / scale;
+  };
+  return {[=](const ExtendedBalance& balance, const ExtendedState& state, Workspace&) {
+            return take(balance, state);
+          },
+          [=](const ExtendedBalance& balance, const ExtendedState& state,
+              Workspace&) -> SingularityTest::Gradient {
+            take(balance, state);
+            const Problem p = balance.problem();
+            const Eigen::MatrixXd& rates = taken->measures.gradient(p, state.z.q, taken->at, taken->beside);
+            return {rates.row(i).transpose().cwiseProduct(p.scaling.column) / scale,
                     Eigen::VectorXd::Zero(p.system.rows)};
           }};
 }

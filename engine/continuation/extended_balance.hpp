@@ -39,6 +39,8 @@ struct Condition {
 
 // A coordinate has a value (rad or m).
 Condition coordinate_is(const CoordinateInfo& coordinate, double value);
+// A measure of the mechanism has a value, in its unit; `scale` is how large it is.
+Condition measure_is(std::size_t measure, double value, double scale);
 // The balance is singular: ExtendedBalance::singularity.
 Condition balance_is_singular();
 // The balance does not leave its range as a parameter moves: ExtendedBalance::transversality.

@@ -31,6 +31,7 @@ void Recorder::use(std::shared_ptr<const MotionModel> model, Equations& equation
   tracked_.clear();
   for (const BodyPoint& point : points_)
     tracked_.push_back(find_point(model_->system, model_->mechanism, model_->parameters, point));
+  if (measured_) measures_.bind(model_->mechanism, model_->system, model_->parameters);
 }
 
 void Recorder::lay_out() {
@@ -64,6 +65,9 @@ void Recorder::lay_out() {
   }
   for (const BodyPoint& point : points_)
     run_.points.push_back({point, {}, {}, {}});
+  if (measured_)
+    for (const NamedMeasure& measure : model_->mechanism.measures)
+      run_.measures.push_back({measure.name, measure.unit, {}});
   if (reactions_)
     for (const Joint& j : model_->mechanism.joints)
       if (j.type != JointType::gear) run_.reactions.push_back({j.name, {}, {}});
@@ -202,8 +206,7 @@ Eigen::Vector3d Recorder::energies() const {
   return {run_.energy.dissipated.back(), run_.energy.delivered.back(), run_.energy.applied.back()};
 }
 
-void Recorder::record_reactions() {
-  const TransmittedForces forces = equations_->reactions();
+void Recorder::record_reactions(const TransmittedForces& forces) {
   const System& system = model_->system;
   for (ReactionTrack& track : run_.reactions) {
     const auto push = [&](const JointWrench& w) {
@@ -217,6 +220,27 @@ void Recorder::record_reactions() {
     for (std::size_t c = 0; c < system.cuts.size(); ++c)
       if (model_->mechanism.joints[index(system.cuts[c].joint)].name == track.joint) push(forces.cuts[c]);
   }
+}
+
+void Recorder::record_measures(TransmittedForces& forces) {
+  values_.clear();
+  rates_.clear();
+  for (const CoordinateTrack& track : run_.coordinates) {
+    values_.push_back(track.value.back());
+    rates_.push_back(track.rate.back());
+  }
+  const System& system = model_->system;
+  forces.drives.assign(system.drives.size(), 0);
+  std::size_t motor = 0;
+  for (std::size_t d = 0; d < system.drives.size(); ++d)
+    if (system.drives[d].motor == static_cast<int>(d)) forces.drives[d] = run_.drives[motor++].torque.back();
+  const bool accelerated = measures_.needs_accelerations() && !equations_->has_massless();
+  const Kinematics<double>& kinematics =
+      accelerated ? equations_->accelerated_kinematics() : equations_->kinematics();
+  const Eigen::VectorXd& values = measures_.evaluate({system, model_->parameters, equations_->configuration(),
+                                                      kinematics, &forces, accelerated, values_, rates_});
+  for (std::size_t i = 0; i < run_.measures.size(); ++i)
+    run_.measures[i].value.push_back(values[static_cast<Eigen::Index>(i)]);
 }
 
 void Recorder::record_points() {
@@ -257,7 +281,10 @@ void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
   const Eigen::VectorXd& u = equations_->velocity();
   run_.states.insert(run_.states.end(), q.data(), q.data() + system.nq);
   run_.states.insert(run_.states.end(), u.data(), u.data() + system.nv);
-  if (reactions_) record_reactions();
+  TransmittedForces forces;
+  if (reactions_ || measures_.needs_forces()) forces = equations_->reactions();
+  if (reactions_) record_reactions(forces);
+  if (!measures_.empty()) record_measures(forces);
   if (!tracked_.empty()) record_points();
 }
 

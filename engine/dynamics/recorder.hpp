@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/equations.hpp"
+#include "engine/report/measures.hpp"
 #include "engine/system/point_motion.hpp"
 
 #include <unordered_map>
@@ -10,9 +11,9 @@ namespace flyball {
 
 class Recorder {
  public:
-  // `reactions` and `points` as in SimulationOptions.
-  Recorder(Run& run, bool reactions, std::vector<BodyPoint> points)
-      : run_(run), reactions_(reactions), points_(std::move(points)) {}
+  // `reactions`, `points` and `measures` as in SimulationOptions.
+  Recorder(Run& run, bool reactions, std::vector<BodyPoint> points, bool measures)
+      : run_(run), reactions_(reactions), measured_(measures), points_(std::move(points)) {}
 
   // What the next samples are of; tracks are laid out at first. Throws SceneError for points of no body.
   void use(std::shared_ptr<const MotionModel> model, Equations& equations);
@@ -36,15 +37,18 @@ class Recorder {
   void record_coordinates(double t);
   double go_on_from(const CoordinateTrack& track, double value, double rate) const;
   void record_energies(double t, const Eigen::Vector3d& energies);
-  void record_reactions();
+  void record_reactions(const TransmittedForces& forces);
+  void record_measures(TransmittedForces& forces);
   void record_points();
   double jacobi(double t);
   bool has_jacobi();
 
   Run& run_;
-  bool reactions_;
+  bool reactions_, measured_;
   std::vector<BodyPoint> points_;
   std::vector<TrackedPoint> tracked_;
+  MeasureSet measures_;
+  std::vector<double> values_, rates_;                       // of the coordinates at a sample
   std::unordered_map<std::string, std::size_t> tree_joints_; // for reactions, by name
   std::shared_ptr<const MotionModel> model_;
   Equations* equations_ = nullptr;

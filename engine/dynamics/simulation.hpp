@@ -62,6 +62,7 @@ struct SimulationOptions {
   std::vector<std::pair<std::string, double>> kick; // joint = rate (rad/s, m/s) over the start's
   SimulationState state;                            // for Start::state
   bool reactions = false;                           // record what all joints transmit
+  bool measures = true;                             // record the scene's measures
   std::vector<BodyPoint> points{};                  // record how these move
   long max_steps = 50'000'000;
   double time_limit =
@@ -101,6 +102,12 @@ struct PointTrack {
   std::vector<Vec3> position, velocity; // m, m/s
   // m/s^2; empty where bodies without mass are, whose velocities are no states and have no known rates.
   std::vector<Vec3> acceleration;
+};
+
+// One of the scene's measures over time.
+struct MeasureTrack {
+  std::string name, unit;
+  std::vector<double> value; // in SI units; not a number where it is undefined or not known
 };
 
 // J, by sample.
@@ -155,6 +162,7 @@ struct Run {
   std::vector<DriveTrack> drives;
   std::vector<ReactionTrack> reactions; // where asked for
   std::vector<PointTrack> points;       // those asked for
+  std::vector<MeasureTrack> measures;
   EnergyTracks energy;
   std::vector<StopEvent> stops;
   RunStatistics statistics;

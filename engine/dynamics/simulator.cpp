@@ -464,7 +464,7 @@ Simulator::Simulator(const Mechanism& mechanism, const SimulationOptions& option
   }
   x.run.notes = notes(x.model->system, x.model->mechanism);
   x.begin = x.stepped_to;
-  x.recorder = std::make_unique<Recorder>(x.run, options.reactions, options.points);
+  x.recorder = std::make_unique<Recorder>(x.run, options.reactions, options.points, options.measures);
   x.recorder->use(x.model, *x.equations);
   if (!x.record(x.begin)) {
     x.stepper.reset();

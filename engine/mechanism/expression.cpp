@@ -110,7 +110,8 @@ Measure common(std::string_view doing, const Measure& a, const Measure& b) {
 // Recursive descent.
 class ExpressionParser {
  public:
-  ExpressionParser(std::string_view text, Expression& to) : text_(text), to_(to) {}
+  ExpressionParser(std::string_view text, bool results, Expression& to)
+      : text_(text), results_(results), to_(to) {}
 
   void run() {
     sum();
@@ -230,8 +231,17 @@ class ExpressionParser {
   }
   void call(std::string_view name, std::size_t begin) {
     const auto function = std::ranges::find(functions, name, &Function::name);
+    const auto result = std::ranges::find(result_functions(), name, &ResultFunction::name);
+    if (function == functions.end() && result != result_functions().end()) {
+      if (results_) return result_call(*result, begin);
+      at_ = begin;
+      fail("only measures can use results, as " + std::string(name) + "() is");
+    }
     if (function == functions.end()) {
       std::vector<std::string_view> names;
+      if (results_)
+        for (const ResultFunction& each : result_functions())
+          names.push_back(each.name);
       for (const Function& each : functions)
         names.push_back(each.name);
       at_ = begin;
@@ -248,24 +258,88 @@ class ExpressionParser {
         function->arguments);
   }
 
+  void result_call(const ResultFunction& function, std::size_t begin) {
+    const std::string name(function.name);
+    ResultCall call{.result = function.result, .arguments = {}, .begin = begin};
+    const auto expected = [&] {
+      const std::string count = std::to_string(function.most);
+      return (function.fewest == function.most ? count : std::to_string(function.fewest) + " or " + count) +
+             " argument" + (function.most > 1 ? "s" : "") + " of " + name + ", as in " +
+             std::string(function.example);
+    };
+    if (!take(")")) {
+      do {
+        call.arguments.push_back(argument());
+      } while (take(","));
+      if (!take(")")) fail("expected , or ) after a part's name");
+    }
+    const auto count = static_cast<int>(call.arguments.size());
+    if (count < function.fewest || count > function.most)
+      fail("expected " + expected() + ", found " + std::to_string(count));
+    const ArgumentKind kind = argument_kind(function, call.arguments.size());
+    for (const ResultCall::Argument& each : call.arguments) {
+      const bool point = !each.point.empty() && kind != ArgumentKind::point;
+      if (!point && (each.index < 0 || kind == ArgumentKind::coordinate)) continue;
+      at_ = each.begin;
+      fail("expected " + std::string(noun(kind)) + ", found a " + (point ? "point" : "coordinate"));
+    }
+    if (to_.results_.size() > 1000) fail("expected fewer results");
+    put({.operation = Operation::result, .index = static_cast<std::uint16_t>(to_.results_.size())}, 0);
+    to_.results_.push_back(std::move(call));
+  }
+  // "slide", "ball.1", "ball@A"; names that are no words in quotes of either kind.
+  ResultCall::Argument argument() {
+    skip_blanks();
+    ResultCall::Argument argument;
+    argument.begin = at_;
+    if (const char quote = take("\"'")) {
+      const std::size_t end = text_.find(quote, at_);
+      if (end == std::string_view::npos) fail("expected the end of a name in quotes");
+      argument.name = text_.substr(at_, end - at_);
+      at_ = end + 1;
+    } else {
+      if (at_ == text_.size() || !begins_name(text_[at_]))
+        fail("expected the name of a part, in quotes where it is no word");
+      argument.name = word();
+      at_ += argument.name.size();
+    }
+    argument.length = at_ - argument.begin;
+    if (take("@")) {
+      skip_blanks();
+      argument.point_begin = at_;
+      argument.point = word();
+      if (argument.point.empty()) fail("expected the name of a point after @");
+      at_ += argument.point.size();
+    } else if (at_ + 1 < text_.size() && text_[at_] == '.') {
+      const auto [end, error] =
+          std::from_chars(text_.data() + at_ + 1, text_.data() + text_.size(), argument.index);
+      if (error != std::errc() || argument.index < 0) fail("expected the number of a coordinate after the .");
+      at_ = static_cast<std::size_t>(end - text_.data());
+    }
+    return argument;
+  }
+
   std::string_view text_;
+  bool results_;
   Expression& to_;
   std::size_t at_ = 0;
   int depth_ = 0, values_ = 0;
 };
 
-Expression::Expression(std::string_view text) {
+Expression::Expression(std::string_view text, Results results) {
   if (find_invalid_utf8(text) != std::string::npos) throw ExpressionError("expected UTF-8 text");
-  ExpressionParser(text, *this).run();
+  ExpressionParser(text, results == Results::allowed, *this).run();
 }
 
-Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::size_t> places) const {
+Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::size_t> places,
+                          std::span<const Dual> results, std::span<const std::size_t> result_places) const {
   std::array<Dual, most_values> stack;
   std::size_t top = 0; // the first free place
   for (const Step& step : steps_) {
     switch (step.operation) {
     case Operation::number: stack[top++] = {step.value, 0}; continue;
     case Operation::name: stack[top++] = values[places.empty() ? step.index : places[step.index]]; continue;
+    case Operation::result: stack[top++] = results[result_places[step.index]]; continue;
     case Operation::negate: stack[top - 1] = -stack[top - 1]; continue;
     case Operation::call: {
       const Function& function = functions[step.index];
@@ -288,7 +362,7 @@ Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::siz
   return stack[0];
 }
 
-Measure Expression::measure(std::span<const Measure> names) const {
+Measure Expression::measure(std::span<const Measure> names, std::span<const Measure> results) const {
   struct Entry {
     Measure measure;
     std::optional<double> number; // where it is one by itself: an exponent
@@ -310,6 +384,7 @@ Measure Expression::measure(std::span<const Measure> names) const {
       stack.push_back({step.measure, step.measure.plain ? std::optional(step.value) : std::nullopt});
       continue;
     case Operation::name: stack.push_back({names[step.index], {}}); continue;
+    case Operation::result: stack.push_back({results[step.index], {}}); continue;
     case Operation::negate:
       if (stack.back().number) stack.back().number = -*stack.back().number;
       continue;
@@ -368,21 +443,69 @@ bool is_expression_name(std::string_view name) {
          std::ranges::find(functions, name, &Function::name) == functions.end();
 }
 
+namespace {
+
+// A part of a text, and what stands there instead.
+struct Replacement {
+  std::size_t begin, length;
+  std::string text;
+};
+
+std::string replaced(std::string_view text, std::vector<Replacement> all) {
+  std::ranges::sort(all, {}, &Replacement::begin);
+  std::string out;
+  std::size_t copied = 0;
+  for (const Replacement& each : all) {
+    out += std::string(text.substr(copied, each.begin - copied)) + each.text;
+    copied = each.begin + each.length;
+  }
+  return out + std::string(text.substr(copied));
+}
+
+} // namespace
+
 std::string renamed_in(std::string_view text, std::string_view from, std::string_view to) {
   try {
-    const Expression expression(text);
-    std::string renamed;
-    std::size_t copied = 0;
+    const Expression expression(text, Expression::Results::allowed);
+    std::vector<Replacement> all;
     for (const Expression::Mention& mention : expression.mentions()) {
       const std::string_view name = expression.names()[mention.name];
-      if (name.substr(0, name.find('.')) != from) continue;
-      renamed += std::string(text.substr(copied, mention.begin - copied)) + std::string(to);
-      copied = mention.begin + from.size();
+      if (name.substr(0, name.find('.')) == from)
+        all.push_back({mention.begin, from.size(), std::string(to)});
     }
-    return renamed + std::string(text.substr(copied));
+    for (const ResultCall& call : expression.results())
+      for (const ResultCall::Argument& argument : call.arguments)
+        if (argument.point == from) all.push_back({argument.point_begin, from.size(), std::string(to)});
+    return replaced(text, std::move(all));
   } catch (const ExpressionError&) {
     return std::string(text);
   }
+}
+
+std::string part_renamed_in(std::string_view text, ResultPart part, std::string_view from,
+                            std::string_view to) {
+  try {
+    const Expression expression(text, Expression::Results::allowed);
+    std::vector<Replacement> all;
+    for (const ResultCall& call : expression.results())
+      if (part_of(argument_kind(result_function(call.result), call.arguments.size())) == part)
+        for (const ResultCall::Argument& argument : call.arguments)
+          if (argument.name == from) all.push_back({argument.begin, argument.length, argument_text(to)});
+    return replaced(text, std::move(all));
+  } catch (const ExpressionError&) {
+    return std::string(text);
+  }
+}
+
+ResultPart part_of(ArgumentKind kind) {
+  switch (kind) {
+  case ArgumentKind::coordinate:
+  case ArgumentKind::joint: return ResultPart::joint;
+  case ArgumentKind::force: return ResultPart::force;
+  case ArgumentKind::body:
+  case ArgumentKind::point: break;
+  }
+  return ResultPart::body;
 }
 
 } // namespace flyball

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "engine/mechanism/dual.hpp"
+#include "engine/mechanism/result_functions.hpp"
 #include "engine/mechanism/unit.hpp"
 
 #include <cstdint>
@@ -29,10 +30,27 @@ struct Measure {
   bool plain = false;
 };
 
+// What a measure asks of results: "distance(ball1@A, collar)".
+struct ResultCall {
+  struct Argument {
+    std::string name;  // of a body, joint or force, without quotes
+    std::string point; // of "ball@A" A, else empty
+    int index = -1;    // of "ball.1" 1
+    // Where the name stands in the text, with its quotes, and the point.
+    std::size_t begin = 0, length = 0, point_begin = 0;
+  };
+  Result result{};
+  std::vector<Argument> arguments;
+  std::size_t begin = 0;
+};
+
 class Expression {
  public:
+  // Whether results may be asked for: of measures alone.
+  enum class Results { refused, allowed };
+
   // Throws ExpressionError that names the column.
-  explicit Expression(std::string_view text);
+  explicit Expression(std::string_view text, Results results = Results::refused);
 
   // A place in the text where a name stands.
   struct Mention {
@@ -43,20 +61,34 @@ class Expression {
   // Each once, as they first appear: "L", "A.x".
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<Mention>& mentions() const { return mentions_; }
+  // As they appear, each time.
+  const std::vector<ResultCall>& results() const { return results_; }
 
-  // The value of name i is values[places[i]], by default values[i]. No allocation. Not finite where it is
-  // undefined.
-  Dual evaluate(std::span<const Dual> values, std::span<const std::size_t> places = {}) const;
+  // The value of name i is values[places[i]], by default values[i]; that of result i
+  // results[result_places[i]]. No allocation. Not finite where it is undefined.
+  Dual evaluate(std::span<const Dual> values, std::span<const std::size_t> places = {},
+                std::span<const Dual> results = {}, std::span<const std::size_t> result_places = {}) const;
   // Throws ExpressionError where dimensions do not fit.
-  Measure measure(std::span<const Measure> names) const;
+  Measure measure(std::span<const Measure> names, std::span<const Measure> results = {}) const;
 
  private:
   friend class ExpressionParser;
-  enum class Operation : std::uint8_t { number, name, negate, add, subtract, multiply, divide, power, call };
+  enum class Operation : std::uint8_t {
+    number,
+    name,
+    result,
+    negate,
+    add,
+    subtract,
+    multiply,
+    divide,
+    power,
+    call
+  };
   // One of a stack machine's: operands are taken from the stack, the result is put there.
   struct Step {
     Operation operation = Operation::number;
-    std::uint16_t index = 0; // of the name or function
+    std::uint16_t index = 0; // of the name, result or function
     double value = 0;        // of the number, in SI units
     Measure measure{};       // of the number
   };
@@ -65,13 +97,20 @@ class Expression {
   std::vector<Step> steps_;
   std::vector<std::string> names_;
   std::vector<Mention> mentions_;
+  std::vector<ResultCall> results_;
 };
 
 // Whether a parameter or point may be called so: a letter or _, then letters, figures and _; no function's
 // name and not pi.
 bool is_expression_name(std::string_view name);
 
-// The text with another name for a parameter or point; the text as it is where it is no expression.
+// The text with another name for a parameter, point or measure; the text as it is where it is no expression.
 std::string renamed_in(std::string_view text, std::string_view from, std::string_view to);
+
+// The same for a part that results are asked of.
+enum class ResultPart { body, joint, force };
+std::string part_renamed_in(std::string_view text, ResultPart part, std::string_view from,
+                            std::string_view to);
+ResultPart part_of(ArgumentKind kind);
 
 } // namespace flyball

@@ -11,6 +11,7 @@
 //                                 stands for while absent
 //   pair(field, a, b)             two values in one array
 //   coordinates(joint)            of each coordinate the fields listed for one
+//   expression(field, text)       always an expression, in the file with "=" before it
 //   version(field)                of the format
 // The units of forces and joints that depend on other parts, and what absent fields stand for, need the
 // mechanism `of` which the part is; without one they are "" and zero.
@@ -37,7 +38,8 @@ inline constexpr std::string_view number = "a number", text = "a text", word = "
                                   direction = "a direction of three numbers [x, y, z]",
                                   two_bodies = "two names [parent, child]",
                                   named_objects = "an object of objects by name",
-                                  named_points = "an object of points by name";
+                                  named_points = "an object of points by name",
+                                  expression = "an expression of results, as \"=x(ball)\"";
 inline constexpr std::string_view two_points =
     "two points [[x, y, z], [x, y, z]], on the first body and on the second";
 } // namespace expected
@@ -89,6 +91,13 @@ void visit_fields(Visitor& v, Part& parameter) {
   v.field(value, parameter.value);
   v.field({"unit", "an SI unit, such as m, N/m or rad"}, parameter.unit, {});
   v.field({"range", "two numbers [from, to]"}, parameter.range);
+}
+
+template <class Visitor, PartOf<NamedMeasure> Part>
+void visit_fields(Visitor& v, Part& measure) {
+  v.describe(measure.description);
+  v.expression({"value", expected::expression, "", fields::required}, measure.text);
+  v.field({"unit", "an SI unit, such as m, N or rad"}, measure.unit, {});
 }
 
 template <class Visitor, PartOf<Shape> Part>
@@ -252,6 +261,7 @@ void visit_fields(Visitor& v, Part& mechanism) {
   v.field({"bodies", expected::list, "", required}, mechanism.bodies);
   v.field({"joints", expected::list, "", required}, mechanism.joints);
   v.field({"forces", expected::list}, mechanism.forces, {});
+  v.field({"measures", expected::named_objects}, mechanism.measures, {});
   v.field({"sliders", expected::list}, mechanism.sliders, {});
   v.field(fields::simulation, mechanism.simulation, {});
   v.field({"view", expected::object}, mechanism.view, {});

@@ -466,6 +466,7 @@ std::string used_of_version_2(const Mechanism& mechanism) {
   };
   if (!mechanism.parameters.empty()) return "parameters";
   if (!mechanism.points.empty()) return "points";
+  if (!mechanism.measures.empty()) return "measures";
   if (!mechanism.formulas.empty()) return first(mechanism, "");
   for (const Body& body : mechanism.bodies) {
     const std::string path = "bodies." + body.name;

@@ -54,6 +54,16 @@ struct NamedPoint {
   bool operator==(const NamedPoint&) const = default;
 };
 
+// A number that is made of results, by an expression that may ask for them: "y(ball1) - 0.2 m" (see
+// result_functions.hpp and measure_plan.hpp).
+struct NamedMeasure {
+  std::string name;
+  std::string description;
+  std::string text; // the expression, without its "="
+  std::string unit; // an SI unit, as of a parameter
+  bool operator==(const NamedMeasure&) const = default;
+};
+
 // How a body looks, and with a density what it weighs. World coordinates of the drawn pose.
 struct Shape {
   ShapeType type = ShapeType::sphere;
@@ -215,6 +225,7 @@ struct Mechanism {
   std::vector<Body> bodies;
   std::vector<Joint> joints;
   std::vector<Force> forces;
+  std::vector<NamedMeasure> measures;
   std::vector<Slider> sliders;
   Simulation simulation;
   View view;

@@ -19,6 +19,7 @@ class KeyList {
   void describe(const std::string&) {}
   void version(const Field& field) { all_.push_back(field); }
   void type(const Field& field, const auto&) { all_.push_back(field); }
+  void expression(const Field& field, const std::string&) { all_.push_back(field); }
   void pair(const Field& field, const auto&, const auto&) { all_.push_back(field); }
   void field(const Field& field, const auto&) { all_.push_back(field); }
   template <class Value>
@@ -83,6 +84,9 @@ Keys of(const Mechanism&) {
 }
 Keys of(const NamedParameter&) {
   return of_only_type<NamedParameter>();
+}
+Keys of(const NamedMeasure&) {
+  return of_only_type<NamedMeasure>();
 }
 Keys of(const Body&) {
   return of_only_type<Body>();

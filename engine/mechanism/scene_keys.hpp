@@ -17,6 +17,7 @@ inline constexpr int newest_version = 2;
 // Of objects such as this one, whose type matters only.
 Keys of(const Mechanism& mechanism);
 Keys of(const NamedParameter& parameter);
+Keys of(const NamedMeasure&);
 Keys of(const Body& body);
 Keys of(const Shape& shape);
 Keys of(const Joint& joint);

@@ -44,6 +44,9 @@ std::string noun(const Body&) {
 std::string noun(const NamedParameter&) {
   return "a parameter";
 }
+std::string noun(const NamedMeasure&) {
+  return "a measure";
+}
 std::string noun(const CoordinateSpring&) {
   return "a spring";
 }
@@ -163,6 +166,11 @@ void read(const ValueReader& value, std::vector<NamedParameter>& to) {
     return read_object<NamedParameter>(ValueReader(json, path, expected::object));
   });
 }
+void read(const ValueReader& value, std::vector<NamedMeasure>& to) {
+  read_named(value, to, [](const std::string& path, const Json& json) {
+    return read_object<NamedMeasure>(ValueReader(json, path, expected::object));
+  });
+}
 void read(const ValueReader& value, std::vector<NamedPoint>& to) {
   read_named(value, to, [](const std::string& path, const Json& json) {
     NamedPoint point;
@@ -209,6 +217,11 @@ class PresentFields {
   void describe(std::string& to) { to = object_.description(); }
   void version(const Field&) {}           // see check_version
   void type(const Field&, const auto&) {} // known before the keys are
+  void expression(const Field& field, std::string& to) {
+    const ValueReader value = object_.value(field);
+    if (!value.json().is_string() || !value.text().starts_with("=")) value.fail();
+    to = value.text().substr(1);
+  }
   template <class Value>
   void field(const Field& field, Value& to) {
     if (object_.has(field.key)) read(object_.value(field), to);

@@ -91,6 +91,7 @@ class ObjectWriter {
   }
   void version(const Field& field) { put(field, version_); }
   void type(const Field& field, const auto& type) { put(field, json_of(type)); }
+  void expression(const Field& field, const std::string& text) { put(field, "=" + text); }
   void pair(const Field& field, const auto& a, const auto& b) {
     put(field, with_formulas(Json::array({json_of(a), json_of(b)}), place_, place_.key(field)));
   }
@@ -154,12 +155,8 @@ class ObjectWriter {
       list.push_back(object_of(part));
     return list;
   }
-  Json value_of(const Field&, const std::vector<NamedParameter>& parameters) const {
-    Json all = Json::object();
-    for (const NamedParameter& parameter : parameters)
-      all[parameter.name] = object_of(parameter);
-    return all;
-  }
+  Json value_of(const Field&, const std::vector<NamedParameter>& all) const { return by_name(all); }
+  Json value_of(const Field&, const std::vector<NamedMeasure>& all) const { return by_name(all); }
   Json value_of(const Field&, const std::vector<NamedPoint>& points) const {
     Json all = Json::object();
     for (const NamedPoint& point : points) {
@@ -168,6 +165,14 @@ class ObjectWriter {
         at.at(static_cast<std::size_t>(std::stoul(formula.key))) = "=" + formula.text;
       all[point.name] = std::move(at);
     }
+    return all;
+  }
+
+  template <class Named>
+  static Json by_name(const std::vector<Named>& parts) {
+    Json all = Json::object();
+    for (const Named& part : parts)
+      all[part.name] = object_of(part);
     return all;
   }
 

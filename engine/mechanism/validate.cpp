@@ -4,6 +4,7 @@
 #include "engine/mechanism/expression.hpp"
 #include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
@@ -156,6 +157,13 @@ void find_non_finite(const Mechanism& mechanism, const NamedParameter& parameter
                   "expected two finite numbers, the smaller one first");
 }
 
+void find_measure_name_mistakes(const Mechanism& mechanism, const NamedMeasure& measure, Mistakes& mistakes) {
+  if (!is_expression_name(measure.name) || parameter_index(mechanism, measure.name) >= 0 ||
+      point_index(mechanism, measure.name) >= 0)
+    mistakes.add("measures." + measure.name,
+                 "expected a name of letters, figures and _ that no parameter, no point and no function has");
+}
+
 void find_non_finite(const NamedPoint& point, Mistakes& mistakes) {
   const std::string path = "points." + point.name;
   mistakes.expect(point.at.allFinite() && point.at.cwiseAbs().maxCoeff() <= largest_number, path,
@@ -187,6 +195,8 @@ void find_non_finite(const Mechanism& mechanism, Mistakes& mistakes) {
     find_non_finite(mechanism, parameter, mistakes);
   for (const NamedPoint& point : mechanism.points)
     find_non_finite(point, mistakes);
+  for (const NamedMeasure& measure : mechanism.measures)
+    find_measure_name_mistakes(mechanism, measure, mistakes);
   find_non_finite(mechanism.gravity, mistakes);
   for (std::size_t i = 0; i < mechanism.bodies.size(); ++i)
     find_non_finite(mechanism.bodies[i], part_path("bodies", i, mechanism.bodies[i].name), mistakes);
@@ -318,6 +328,7 @@ std::vector<SceneError> find_mistakes(const Mechanism& mechanism) {
   Mistakes mistakes;
   find_name_mistakes(mechanism.parameters, "parameters", mistakes);
   find_name_mistakes(mechanism.points, "points", mistakes);
+  find_name_mistakes(mechanism.measures, "measures", mistakes);
   find_name_mistakes(mechanism.bodies, "bodies", mistakes);
   find_name_mistakes(mechanism.joints, "joints", mistakes);
   find_name_mistakes(mechanism.forces, "forces", mistakes);
@@ -328,6 +339,7 @@ std::vector<SceneError> find_mistakes(const Mechanism& mechanism) {
   find_body_mistakes(mechanism, mistakes);
   find_joint_mistakes(mechanism, mistakes);
   find_force_mistakes(mechanism, mistakes);
+  find_measure_mistakes(mechanism, mistakes);
   find_slider_mistakes(mechanism, mistakes);
   find_setting_mistakes(mechanism, mistakes);
   if (!mistakes.all().empty()) return mistakes.all();

@@ -130,6 +130,7 @@ struct Analysis::State {
   System system;
   Parameters parameters;
   Scaling scaling;
+  MeasureSet measures;
   SteadyState steady; // of the last solve
   Eigen::VectorXd drawn, answer, start;
   bool answered = false;
@@ -144,11 +145,22 @@ struct Analysis::State {
     const auto rates = sensitivities(steady.factored(problem), *mechanism, addresses);
     for (std::size_t i = 0; i < rates.size(); ++i)
       out.sensitivities.push_back(name_rates(system, addresses[i], rates[i]));
+    if (measures.empty() || rates.empty()) return;
+    Workspace& w = steady.elsewhere();
+    const Eigen::VectorXd& q = steady.found.z.q;
+    measures.evaluate_at(problem, q, w);
+    const Eigen::MatrixXd along = measures.gradient(problem, q, w, w.elsewhere());
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      const Eigen::VectorXd rate =
+          along * rates[i] + measures.parameter_rates(problem, *mechanism, addresses[i], q, w);
+      out.sensitivities[i].measures.assign(rate.data(), rate.data() + rate.size());
+    }
   }
 
   void bind_numbers() {
     bind(system, *mechanism, parameters);
     set_scaling(system, parameters, scaling);
+    measures.bind(*mechanism, system, parameters);
     drawn_configuration(system, parameters, drawn);
   }
 };
@@ -288,7 +300,8 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     s.add_rates(problem, out);
   }
   report_progress(options.progress, "reactions");
-  const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability, options.points};
+  const ReportInput input{*s.mechanism, problem,        steady.found, steady.existence,
+                          stability,    options.points, &s.measures};
   report(input, steady.error.solution + steady.error.data, options.details, steady.reuse(), out);
   if (!without_modes.empty()) out.message += " " + without_modes;
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
@@ -385,7 +398,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
     if (options.details) add_condition(problem, steady, entry.solution);
-    report({*s.mechanism, problem, found, steady.existence, stability, options.points},
+    report({*s.mechanism, problem, found, steady.existence, stability, options.points, &s.measures},
            steady.error.solution + steady.error.data, options.details, steady.reuse(), entry.solution);
     if (!without_modes.empty()) entry.solution.message += " " + without_modes;
     if (s.system.conservative) entry.solution.potential = potential.value;

@@ -178,6 +178,8 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
   body_poses(system, in.mechanism, p, w.kinematics, out.poses);
   for (const BodyPoint& point : in.points)
     out.points.push_back({point, point_motion(p, w.kinematics, find_point(system, in.mechanism, p, point))});
+  if (in.measures)
+    out.measures = in.measures->solutions(in.problem, z, details ? error : Eigen::VectorXd(), w);
   if (details)
     for (const int l : system.body_link)
       out.centres.push_back(point_motion(p, w.kinematics, {l, p.links[static_cast<std::size_t>(l)].com}));
@@ -188,6 +190,8 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
     out.reactions = std::move(forces.reactions);
     out.gears = std::move(forces.gears);
     out.reactions_nonunique = forces.nonunique;
+    if (in.measures)
+      in.measures->mark_nonunique(in.mechanism, out.reactions, out.drive_torques, out.measures);
   }
   out.message = solution_message(in, rank, out);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/report/analysis.hpp"
+#include "engine/report/measures.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/existence.hpp"
 #include "engine/stability/stability.hpp"
@@ -15,6 +16,7 @@ struct ReportInput {
   const Existence& existence;
   const Stability& stability;
   std::span<const BodyPoint> points{};
+  MeasureSet* measures = nullptr; // bound to the numbers; null: none
 };
 
 // Whether every number in it is one: forces can overflow where coordinates do not.

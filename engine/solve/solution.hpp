@@ -120,6 +120,16 @@ struct PointSolution {
   PointMotion motion;
 };
 
+// One of the scene's measures, at the drawn drive phase.
+struct MeasureSolution {
+  std::string name, unit;      // an SI unit
+  std::optional<double> value; // nothing where `reason` says why
+  std::optional<double>
+      error;              // estimated, absolute, by the errors of the coordinates; nothing where not known
+  std::string reason;     // a sentence, or empty
+  bool nonunique = false; // rests on reactions of redundant loops: the minimum-norm ones
+};
+
 // Rates of the coordinates with one parameter: rad or m per its unit. Rotation vectors are left out.
 struct Sensitivity {
   std::string address;
@@ -129,6 +139,7 @@ struct Sensitivity {
     double value = 0;
   };
   std::vector<Rate> rates;
+  std::vector<double> measures{}; // of the scene's measures, in its order; not a number where one has no rate
 };
 
 // A coordinate along which the forces push on without end: nothing opposes them, so nothing settles.
@@ -169,6 +180,7 @@ struct Solution {
   std::vector<Pose> poses;                // in the order of the bodies, at the drawn drive phase
   std::vector<PointMotion> centres;       // mass centres likewise; with details only
   std::vector<PointSolution> points;      // those of SolveOptions::points
+  std::vector<MeasureSolution> measures;  // the scene's, in its order; errors with details only
   std::vector<Sensitivity> sensitivities; // to the scene's sliders; none at a singular state
   std::optional<double> potential;        // J, amended, where there is one
   std::optional<double> condition;        // 2-norm, of the scaled equations

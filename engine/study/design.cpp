@@ -5,6 +5,8 @@
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/report.hpp"
@@ -24,15 +26,19 @@ class Designer {
            const std::string& coordinate, double value, const DesignOptions& options)
       : mechanism_(mechanism), address_(address), from_(from), to_(to), name_(coordinate), value_(value),
         options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from))),
-        wanted_(free_coordinate(system_, coordinate)),
-        balance_(system_, with_parameter(mechanism, address, from), {address},
-                 Eigen::VectorXd::Constant(1, std::abs(to - from)), {coordinate_is(wanted_, value)}) {}
+        wanted_(find_wanted(mechanism, system_, coordinate)) {}
 
   DesignAnswer run() {
     const auto begin = std::chrono::steady_clock::now();
-    const TreeJoint& joint = system_.tree_joints[static_cast<std::size_t>(wanted_.tree_joint)];
-    out_.coordinate = {joint.name, wanted_.index, coordinate_count(joint.type), wanted_.angle, false, value_,
-                       0};
+    out_.wanted = name_;
+    out_.value = value_;
+    if (const CoordinateInfo* c = wanted_.coordinate) {
+      const TreeJoint& joint = system_.tree_joints[static_cast<std::size_t>(c->tree_joint)];
+      out_.coordinate = {joint.name, c->index, coordinate_count(joint.type), c->angle, false, value_, 0};
+      out_.unit = c->angle ? "rad" : "m";
+    } else {
+      out_.unit = mechanism_.measures[wanted_.measure].unit;
+    }
     BranchOptions follow;
     follow.largest_step = options_.largest_step;
     follow.eigenvalues = false;
@@ -45,6 +51,7 @@ class Designer {
     out_.message = diagram_.message;
     if (!diagram_.branches.empty()) {
       find_range();
+      prepare();
       solve_along();
       conclude();
     }
@@ -53,6 +60,34 @@ class Designer {
   }
 
  private:
+  // A coordinate, or where that is null a measure.
+  struct Wanted {
+    const CoordinateInfo* coordinate = nullptr;
+    std::size_t measure = 0;
+  };
+  static Wanted find_wanted(const Mechanism& mechanism, const System& system, const std::string& name) {
+    const int measure = measure_index(mechanism, name);
+    try {
+      return {&free_coordinate(system, name)};
+    } catch (const SceneError& error) {
+      if (measure >= 0) return {nullptr, static_cast<std::size_t>(measure)};
+      if (mechanism.measures.empty()) throw;
+      std::vector<std::string_view> names;
+      for (const NamedMeasure& each : mechanism.measures)
+        names.push_back(each.name);
+      throw SceneError(error.where(), error.expected() + "; or one of the measures " + word_list(names));
+    }
+  }
+
+  void prepare() {
+    const double largest = std::max({std::abs(value_), std::abs(out_.lowest), std::abs(out_.highest)});
+    if (!wanted_.coordinate && std::isfinite(largest) && largest > 0) scale_ = largest;
+    balance_.emplace(system_, with_parameter(mechanism_, address_, from_), std::vector{address_},
+                     Eigen::VectorXd::Constant(1, std::abs(to_ - from_)),
+                     std::vector{wanted_.coordinate ? coordinate_is(*wanted_.coordinate, value_)
+                                                    : measure_is(wanted_.measure, value_, scale_)});
+  }
+
   void solve_along() {
     const Interruptible scope(options_.cancel);
     try {
@@ -66,15 +101,24 @@ class Designer {
   }
 
   bool cancelled() const { return options_.cancel && options_.cancel->load(std::memory_order_relaxed); }
-  double unit() const { return wanted_.angle ? 1 : balance_.problem().parameters.length; }
-  double away(double value) const {
-    return away_from(system_, balance_.problem().parameters, wanted_, value, value_);
+  // What differences of values are measured by.
+  double unit() const {
+    if (!wanted_.coordinate) return scale_;
+    return wanted_.coordinate->angle ? 1 : balance_->problem().parameters.length;
   }
+  double away(double value) const {
+    if (!wanted_.coordinate) return value - value_;
+    return away_from(system_, balance_->problem().parameters, *wanted_.coordinate, value, value_);
+  }
+  // Not a number where the measure is undefined.
   double value_of(const ResponsePoint& p) const {
+    if (!wanted_.coordinate)
+      return p.measures[wanted_.measure].value.value_or(std::numeric_limits<double>::quiet_NaN());
     const auto& joint = out_.coordinate.joint;
-    return std::ranges::find_if(
-               p.coordinates,
-               [&](const CoordinateSolution& c) { return c.joint == joint && c.index == wanted_.index; })
+    return std::ranges::find_if(p.coordinates,
+                                [&](const CoordinateSolution& c) {
+                                  return c.joint == joint && c.index == wanted_.coordinate->index;
+                                })
         ->value;
   }
 
@@ -83,6 +127,7 @@ class Designer {
     out_.highest = -out_.lowest;
     for (const ResponseBranch& b : diagram_.branches)
       for (const ResponsePoint& p : b.points) {
+        if (!std::isfinite(value_of(p))) continue;
         out_.lowest = std::min(out_.lowest, value_of(p));
         out_.highest = std::max(out_.highest, value_of(p));
       }
@@ -126,14 +171,14 @@ class Designer {
     for (double t : {part, 0., 1., 0.5}) {
       ExtendedState state;
       state.parameters = Eigen::VectorXd::Constant(1, a.parameter + t * (b.parameter - a.parameter));
-      balance_.set(state.parameters);
-      const Problem problem = balance_.problem();
+      balance_->set(state.parameters);
+      const Problem problem = balance_->problem();
       state.z.q = configuration_of(problem, a.coordinates);
       const Eigen::VectorXd other = configuration_of(problem, b.coordinates);
       const Eigen::VectorXd step =
           t * scaled_difference(problem, state.z.q, other).cwiseProduct(problem.scaling.column);
       retract<double>(system_, step, state.z.q);
-      const ExtendedOutcome outcome = balance_.correct(state, {});
+      const ExtendedOutcome outcome = balance_->correct(state, {});
       const double p = state.parameters[0];
       if (!outcome.converged || std::abs(p - a.parameter) > near) continue;
       const double edge = 1e-12 * std::abs(to_ - from_);
@@ -144,7 +189,7 @@ class Designer {
   }
 
   void keep(std::size_t branch, const ExtendedState& state, const ExtendedOutcome& outcome) {
-    const Problem problem = balance_.problem();
+    const Problem problem = balance_->problem();
     for (std::size_t i = 0; i < states_.size(); ++i)
       if (std::abs(states_[i].parameters[0] - state.parameters[0]) < 1e-8 * std::abs(to_ - from_) &&
           same_pose(problem, states_[i].z.q, state.z.q, 1e-6))
@@ -154,20 +199,37 @@ class Designer {
     s.parameter = state.parameters[0];
     const double epsilon = std::numeric_limits<double>::epsilon();
     const Eigen::VectorXd last = outcome.step.cwiseAbs();
-    s.parameter_error = last[last.size() - 1] * balance_.scales()[0] + 2 * epsilon * std::abs(s.parameter);
+    s.parameter_error = last[last.size() - 1] * balance_->scales()[0] + 2 * epsilon * std::abs(s.parameter);
     const Eigen::VectorXd error =
         last.head(system_.nv).cwiseProduct(problem.scaling.column) + 4 * epsilon * problem.scaling.column;
     s.residual = outcome.residual;
     s.iterations = outcome.iterations;
     s.branch = static_cast<int>(branch);
     s.connected = diagram_.branches[branch].connected;
-    Workspace& w = balance_.workspace();
-    s.at = response_point(balance_.mechanism(), balance_.judged(), state.z, error, {true, true}, w);
+    Workspace& w = balance_->workspace();
+    s.at = response_point(balance_->mechanism(), balance_->judged(), state.z, error, {true, true, &measures_},
+                          w);
     s.at.parameter = s.parameter;
-    const auto rates = sensitivities(factor_at(problem, state.z, w), balance_.mechanism(), {&address_, 1});
-    if (!rates.empty())
-      s.rate = coordinate_gradient(system_, problem.parameters, state.z.q, wanted_).dot(rates[0]);
+    const auto rates = sensitivities(factor_at(problem, state.z, w), balance_->mechanism(), {&address_, 1});
+    if (!rates.empty()) {
+      if (wanted_.coordinate)
+        s.rate =
+            coordinate_gradient(system_, problem.parameters, state.z.q, *wanted_.coordinate).dot(rates[0]);
+      else
+        s.rate = measure_rate(problem, state.z.q, rates[0], w);
+    }
     out_.solutions.push_back(std::move(s));
+  }
+
+  // Along the equilibria, per unit of the parameter.
+  std::optional<double> measure_rate(const Problem& problem, const Eigen::VectorXd& q,
+                                     const Eigen::VectorXd& rate, Workspace& w) {
+    measures_.bind(balance_->mechanism(), system_, problem.parameters);
+    measures_.evaluate_at(problem, q, w);
+    const auto i = static_cast<Eigen::Index>(wanted_.measure);
+    const double along = measures_.gradient(problem, q, w, w.elsewhere()).row(i).dot(rate);
+    const double all = along + measures_.parameter_rates(problem, balance_->mechanism(), address_, q, w)[i];
+    return std::isfinite(all) ? std::optional(all) : std::nullopt;
   }
 
   void conclude() {
@@ -176,7 +238,7 @@ class Designer {
       if (x != y) return x;
       return a.connected != b.connected ? a.connected : a.parameter < b.parameter;
     });
-    const std::string unit = wanted_.angle ? " rad" : " m";
+    const std::string unit = shown_unit();
     const auto text = [&](double v) { return number_text(v) + unit; };
     const std::string limits = address_ + " from " + number_text(from_) + " to " + number_text(to_);
     const char* open = options_.all
@@ -196,10 +258,13 @@ class Designer {
           name_ + " is " + text(value_) + " all along a branch: no value of " + address_ + " is singled out.";
     } else {
       out_.status = Status::not_converged;
-      out_.message =
-          name_ + " never is " + text(value_) + " with " + limits + ": it covers " + covered() + "." + open;
+      out_.message = name_ + " never is " + text(value_) + " with " + limits +
+                     (covered().empty() ? ": it has no value there." : ": it covers " + covered() + ".") +
+                     open;
     }
   }
+
+  std::string shown_unit() const { return out_.unit.empty() ? "" : " " + out_.unit; }
 
   // "-1.4 rad to 1.4 rad and 3.14159 rad": what the branches cover, together where they overlap.
   std::string covered() const {
@@ -207,6 +272,7 @@ class Designer {
     for (const ResponseBranch& b : diagram_.branches) {
       double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
       for (const ResponsePoint& p : b.points) {
+        if (!std::isfinite(value_of(p))) continue;
         lowest = std::min(lowest, value_of(p));
         highest = std::max(highest, value_of(p));
       }
@@ -221,7 +287,7 @@ class Designer {
       else
         merged.push_back(part);
     }
-    const std::string unit_name = wanted_.angle ? " rad" : " m";
+    const std::string unit_name = shown_unit();
     std::string out;
     for (std::size_t i = 0; i < merged.size(); ++i) {
       const auto& [lowest, highest] = merged[i];
@@ -236,11 +302,13 @@ class Designer {
   const std::string& address_;
   double from_, to_;
   const std::string& name_;
-  double value_;
+  double value_; // in SI units
   const DesignOptions& options_;
   System system_;
-  const CoordinateInfo& wanted_;
-  ExtendedBalance balance_;
+  Wanted wanted_;
+  double scale_ = 1; // of the measure wanted
+  MeasureSet measures_;
+  std::optional<ExtendedBalance> balance_; // once the branches are known
   ResponseDiagram diagram_;
   std::vector<ExtendedState> states_;
   bool constant_ = false;

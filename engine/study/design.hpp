@@ -1,5 +1,5 @@
-// Design mode: the value of a parameter at which a coordinate stands where it is wanted. "At which speed is
-// the collar at 0.12 m?"
+// Design mode: the value of a parameter at which a coordinate stands where it is wanted, or a measure has the
+// value wanted. "At which speed is the collar at 0.12 m?"
 //
 // The branches over the parameter's range are followed, every crossing of the wanted value is bracketed on
 // them, and each is solved by Newton-Raphson on the balance together with q = v, the parameter among the
@@ -22,7 +22,7 @@ struct DesignSolution {
   double parameter_error = 0; // estimated, absolute
   double residual = 0;        // scaled, of the balance and of q = v, in extended precision
   int iterations = 0;         // of the Newton-Raphson run that ends here
-  std::optional<double> rate; // d coordinate / d parameter (rad or m per its unit); none at a fold
+  std::optional<double> rate; // d wanted / d parameter; none at a fold
   int branch = 0;             // in the diagram
   bool connected = true;      // ResponseBranch::connected
   ResponsePoint at;           // coordinates with errors, stability, eigenvalues, reactions, drive torques
@@ -32,14 +32,17 @@ struct DesignAnswer {
   Status status = Status::not_converged; // converged: at least one solution; else `message` says why not
   std::string message;                   // a sentence or two; the range covered where v is never reached
   std::vector<DesignSolution> solutions; // stable ones first, then connected ones, then by parameter
-  CoordinateSolution coordinate;         // name and kind of the coordinate; `value` as wanted
-  double lowest = 0, highest = 0;        // rad or m: what the coordinate covers on the branches followed
+  std::string wanted, unit;              // what is wanted, and in which unit
+  double value = 0;                      // of it
+  CoordinateSolution coordinate;         // name and kind of a coordinate wanted; of a measure empty
+  double lowest = 0, highest = 0;        // what it covers on the branches followed
   double run_time_s = 0;
 };
 
-// `coordinate` is "joint" or "joint.index", `value` in rad or m (angles without spring or stop modulo
-// turns). Throws SceneError for an address or a coordinate that does not exist or is driven.
+// `wanted` is a free coordinate, "joint" or "joint.index", else a measure; `value` in rad or m (angles
+// without spring or stop modulo turns) or the measure's unit. Throws SceneError for an address or a
+// coordinate that does not exist or is driven.
 DesignAnswer design(const Mechanism& mechanism, const std::string& address, double from, double to,
-                    const std::string& coordinate, double value, const DesignOptions& options = {});
+                    const std::string& wanted, double value, const DesignOptions& options = {});
 
 } // namespace flyball

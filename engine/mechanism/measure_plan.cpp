@@ -1,0 +1,341 @@
+#include "engine/mechanism/measure_plan.hpp"
+
+#include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/mistakes.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace flyball {
+namespace {
+
+constexpr std::size_t most_measures = 1000;
+
+std::size_t place(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+template <class Part>
+[[noreturn]] void fail_part(std::string_view kind, const std::string& name, const std::vector<Part>& parts) {
+  std::vector<std::string_view> names;
+  for (const Part& part : parts)
+    names.push_back(part.name);
+  throw ExpressionError("no " + std::string(kind) + " is called \"" + name + "\"" +
+                        did_you_mean(name, names) + (names.empty() ? "" : "; expected " + word_list(names)));
+}
+
+// What a measure asks of, by name to place.
+class Finder {
+ public:
+  explicit Finder(const Mechanism& mechanism) : m_(mechanism) {}
+
+  ResultQuantity find(const ResultCall& call) const {
+    ResultQuantity out{.result = call.result, .count = static_cast<int>(call.arguments.size())};
+    const ArgumentKind kind = argument_kind(result_function(call.result), call.arguments.size());
+    for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+      const ResultCall::Argument& argument = call.arguments[i];
+      try {
+        out.of[i] = find(kind, argument);
+        if (kind == ArgumentKind::coordinate) {
+          const Joint& joint = m_.joints[place(out.of[i].part)];
+          out.angle = is_angle(joint.type, out.of[i].coordinate);
+        }
+        expect_it(call.result, kind, out.of[i], argument.name);
+      } catch (const ExpressionError& error) {
+        throw ExpressionError("column " + std::to_string(argument.begin + 1) + ": " + error.what());
+      }
+    }
+    return out;
+  }
+
+ private:
+  ResultQuantity::Of find(ArgumentKind kind, const ResultCall::Argument& a) const {
+    switch (kind) {
+    case ArgumentKind::coordinate: {
+      const int j = joint_index(m_, a.name);
+      if (j < 0) fail_part("joint", a.name, m_.joints);
+      const int count = coordinate_count(m_.joints[place(j)].type);
+      const std::string joint =
+          std::string(type_name(m_.joints[place(j)].type)) + " joint \"" + a.name + "\"";
+      if (count == 0) throw ExpressionError("the " + joint + " has no coordinate");
+      if (a.index >= count || (a.index < 0 && count > 1))
+        throw ExpressionError(
+            "expected a coordinate of the " + joint +
+            (count == 1 ? ", which has one alone" : ": .0 to ." + std::to_string(count - 1)));
+      return {j, std::max(a.index, 0), -1};
+    }
+    case ArgumentKind::joint: {
+      const int j = joint_index(m_, a.name);
+      if (j < 0) fail_part("joint", a.name, m_.joints);
+      return {j, 0, -1};
+    }
+    case ArgumentKind::force: {
+      const int f = force_index(m_, a.name);
+      if (f < 0) fail_part("force", a.name, m_.forces);
+      return {f, 0, -1};
+    }
+    case ArgumentKind::body:
+    case ArgumentKind::point: break;
+    }
+    ResultQuantity::Of of{body_index(m_, a.name), 0, -1};
+    if (a.name == ground_name && kind == ArgumentKind::point && a.point.empty())
+      throw ExpressionError("expected a named point of the ground, as in ground@A");
+    if (of.part < 0 && (a.name != ground_name || kind == ArgumentKind::body))
+      fail_part("body", a.name, m_.bodies);
+    if (a.point.empty()) return of;
+    of.point = point_index(m_, a.point);
+    if (of.point < 0) fail_part("point", a.point, m_.points);
+    return of;
+  }
+
+  // That the part has what is asked for.
+  void expect_it(Result result, ArgumentKind kind, const ResultQuantity::Of& of,
+                 const std::string& name) const {
+    const std::string quoted = "\"" + name + "\"";
+    if (kind == ArgumentKind::coordinate) {
+      const Coordinate& c = m_.joints[place(of.part)].coordinates.at(place(of.coordinate));
+      if (result == Result::spring && !c.spring) throw ExpressionError(quoted + " has no spring");
+      if (result == Result::clearance && !c.stop) throw ExpressionError(quoted + " has no stop");
+      if ((result == Result::torque || result == Result::power) && !c.drive)
+        throw ExpressionError(quoted + " has no drive");
+    } else if (kind == ArgumentKind::joint && m_.joints[place(of.part)].type == JointType::gear) {
+      throw ExpressionError("expected a joint between two bodies; " + quoted +
+                            " is a gear, which the reactions of its two joints include");
+    } else if (kind == ArgumentKind::force && m_.forces[place(of.part)].type != ForceType::spring) {
+      throw ExpressionError("expected a spring; " + quoted + " is a " +
+                            std::string(type_name(m_.forces[place(of.part)].type)));
+    } else if (result == Result::clearance) {
+      const std::vector<Shape>& shapes = m_.bodies[place(of.part)].shapes;
+      if (shapes.empty()) throw ExpressionError(quoted + " has no shapes of its own");
+      for (const Shape& shape : shapes)
+        if (shape.type != ShapeType::sphere && shape.type != ShapeType::capsule)
+          throw ExpressionError("expected spheres and capsules, between which the clearance is known; " +
+                                quoted + " has a " + std::string(type_name(shape.type)));
+    }
+  }
+
+  const Mechanism& m_;
+};
+
+Dimension dimension_of(const ResultQuantity& quantity) {
+  constexpr Dimension number{}, length{.length = 1}, rate{.time = -1}, velocity{.length = 1, .time = -1},
+      acceleration{.length = 1, .time = -2}, force{.length = 1, .mass = 1, .time = -2},
+      moment{.length = 2, .mass = 1, .time = -2}, power{.length = 2, .mass = 1, .time = -3}, mass{.mass = 1};
+  switch (quantity.result) {
+  case Result::coordinate: return quantity.angle ? number : length;
+  case Result::rate: return quantity.angle ? rate : velocity;
+  case Result::x:
+  case Result::y:
+  case Result::z:
+  case Result::distance:
+  case Result::length: return length;
+  case Result::vx:
+  case Result::vy:
+  case Result::vz:
+  case Result::speed: return velocity;
+  case Result::ax:
+  case Result::ay:
+  case Result::az:
+  case Result::acceleration: return acceleration;
+  case Result::angle: return number;
+  case Result::tension:
+  case Result::reaction_x:
+  case Result::reaction_y:
+  case Result::reaction_z:
+  case Result::reaction: return force;
+  case Result::moment_x:
+  case Result::moment_y:
+  case Result::moment_z:
+  case Result::moment: return moment;
+  case Result::spring:
+  case Result::torque: return quantity.angle ? moment : force;
+  case Result::power: return power;
+  case Result::clearance: return quantity.angle ? number : length;
+  case Result::mass: break;
+  }
+  return mass;
+}
+
+} // namespace
+
+class MeasureCompiler {
+ public:
+  MeasureCompiler(const Mechanism& mechanism, Mistakes& mistakes)
+      : m_(mechanism), mistakes_(mistakes), finder_(mechanism) {}
+
+  MeasurePlan run() {
+    MeasurePlan plan;
+    if (m_.measures.size() > most_measures) {
+      mistakes_.add("measures", "expected at most " + std::to_string(most_measures) + " measures, found " +
+                                    std::to_string(m_.measures.size()));
+      return plan;
+    }
+    plan.texts_ = m_.measures;
+    for (const NamedParameter& parameter : m_.parameters) {
+      plan.parameters_.push_back(parameter.name);
+      places_.emplace(parameter.name, places_.size());
+      units_.push_back(unit_of(parameter.unit));
+    }
+    for (const NamedPoint& point : m_.points) {
+      plan.points_.push_back(point.name);
+      for (const int i : {0, 1, 2})
+        places_.emplace(point_coordinate(point.name, i), places_.size());
+    }
+    first_ = m_.parameters.size() + 3 * m_.points.size();
+    units_.resize(first_, {{.length = 1}, false});
+    for (const NamedMeasure& measure : m_.measures) {
+      places_.emplace(measure.name, places_.size());
+      units_.push_back(unit_of(measure.unit));
+    }
+    const std::size_t before = mistakes_.all().size();
+    for (const NamedMeasure& measure : m_.measures)
+      compile(measure, plan);
+    if (mistakes_.all().size() == before) put_in_order(plan);
+    plan.values_.resize(first_ + m_.measures.size());
+    return plan;
+  }
+
+ private:
+  static Measure unit_of(const std::string& unit) {
+    return {parse_unit(unit).value_or(Unit{}).dimension.without_angle(), false};
+  }
+  static std::string place_of(const NamedMeasure& measure) { return "measures." + measure.name; }
+
+  void compile(const NamedMeasure& measure, MeasurePlan& plan) {
+    const std::optional<Unit> unit = parse_unit(measure.unit);
+    if (!unit || unit->factor != 1)
+      mistakes_.add(place_of(measure) + ".unit",
+                    "expected an SI unit, such as m, N/m or rad, found \"" + measure.unit + "\"");
+    try {
+      plan.measures_.push_back({Expression(measure.text, Expression::Results::allowed), {}, {}});
+      MeasurePlan::Compiled& compiled = plan.measures_.back();
+      std::vector<Measure> names, results;
+      for (const std::string& name : compiled.expression.names()) {
+        compiled.names.push_back(place_of_name(name));
+        names.push_back(units_[compiled.names.back()]);
+      }
+      for (const ResultCall& call : compiled.expression.results()) {
+        const ResultQuantity quantity = finder_.find(call);
+        results.push_back({dimension_of(quantity), false});
+        const auto found = std::ranges::find(plan.quantities_, quantity);
+        compiled.results.push_back(static_cast<std::size_t>(found - plan.quantities_.begin()));
+        if (found == plan.quantities_.end()) plan.quantities_.push_back(quantity);
+      }
+      const Measure found = compiled.expression.measure(names, results);
+      if (unit && !found.plain && !(found.dimension == unit->dimension.without_angle()))
+        throw ExpressionError("expected " + (measure.unit.empty() ? "a number" : measure.unit) + ", found " +
+                              dimension_text(found.dimension));
+    } catch (const ExpressionError& error) {
+      mistakes_.add(place_of(measure), "\"=" + shortened(measure.text) + "\": " + error.what());
+    }
+  }
+
+  static std::string shortened(const std::string& text) {
+    constexpr std::size_t longest = 60;
+    return text.size() > longest ? text.substr(0, longest) + "..." : text;
+  }
+
+  std::size_t place_of_name(const std::string& name) const {
+    if (const auto found = places_.find(name); found != places_.end()) return found->second;
+    if (point_index(m_, name) >= 0)
+      throw ExpressionError("expected a coordinate of the point: " + name + ".x, " + name + ".y or " + name +
+                            ".z");
+    std::vector<std::string_view> known;
+    for (const auto& [each, place] : places_)
+      known.push_back(each);
+    std::ranges::sort(known);
+    const bool part = joint_index(m_, name) >= 0 || body_index(m_, name) >= 0 || force_index(m_, name) >= 0;
+    throw ExpressionError("there is no parameter or measure \"" + name + "\"" +
+                          (part ? "; of a part results are asked for, as in coordinate(slide) or x(ball)"
+                                : did_you_mean(name, known)));
+  }
+
+  void put_in_order(MeasurePlan& plan) {
+    enum class Mark { open, entered, done };
+    std::vector<Mark> marks(plan.measures_.size(), Mark::open);
+    std::vector<std::size_t> path;
+    const auto visit = [&](const auto& self, std::size_t i) -> bool {
+      if (marks[i] == Mark::done) return true;
+      path.push_back(i);
+      if (marks[i] == Mark::entered) return false;
+      marks[i] = Mark::entered;
+      for (const std::size_t name : plan.measures_[i].names)
+        if (name >= first_ && !self(self, name - first_)) return false;
+      marks[i] = Mark::done;
+      path.pop_back();
+      plan.order_.push_back(i);
+      return true;
+    };
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+      if (visit(visit, i)) continue;
+      std::string circle;
+      for (auto it = std::ranges::find(path, path.back()); it + 1 != path.end(); ++it)
+        circle += m_.measures[*it].name + ", ";
+      return mistakes_.add(place_of(m_.measures[path.back()]),
+                           "expected no circle of measures; this one goes through " + circle + "and back");
+    }
+  }
+
+  const Mechanism& m_;
+  Mistakes& mistakes_;
+  Finder finder_;
+  std::unordered_map<std::string, std::size_t> places_;
+  std::vector<Measure> units_; // by place
+  std::size_t first_ = 0;      // measure
+};
+
+MeasurePlan::MeasurePlan(const Mechanism& mechanism) {
+  if (mechanism.measures.empty()) return;
+  Mistakes mistakes;
+  *this = MeasureCompiler(mechanism, mistakes).run();
+  if (!mistakes.all().empty()) throw mistakes.all().front();
+  set_numbers(mechanism);
+}
+
+bool MeasurePlan::fits(const Mechanism& mechanism) const {
+  return mechanism.measures == texts_ &&
+         (texts_.empty() ||
+          (std::ranges::equal(mechanism.parameters, parameters_, {}, &NamedParameter::name) &&
+           std::ranges::equal(mechanism.points, points_, {}, &NamedPoint::name)));
+}
+
+void MeasurePlan::set_numbers(const Mechanism& mechanism) {
+  if (empty()) return;
+  std::size_t at = 0;
+  for (const NamedParameter& parameter : mechanism.parameters)
+    values_[at++] = {parameter.value, 0};
+  for (const NamedPoint& point : mechanism.points)
+    for (const int i : {0, 1, 2})
+      values_[at++] = {point.at[i], 0};
+}
+
+void MeasurePlan::evaluate(std::span<const Dual> quantities, std::span<Dual> measures) {
+  const std::size_t first = values_.size() - measures_.size();
+  for (const std::size_t i : order_) {
+    const Compiled& each = measures_[i];
+    measures[i] = values_[first + i] =
+        each.expression.evaluate(values_, each.names, quantities, each.results);
+  }
+}
+
+std::vector<bool> MeasurePlan::users_of(std::size_t quantity) const {
+  const std::size_t first = values_.size() - measures_.size();
+  std::vector<bool> users(measures_.size());
+  for (const std::size_t i : order_)
+    users[i] = std::ranges::find(measures_[i].results, quantity) != measures_[i].results.end() ||
+               std::ranges::any_of(measures_[i].names,
+                                   [&](std::size_t name) { return name >= first && users[name - first]; });
+  return users;
+}
+
+void find_measure_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
+  MeasureCompiler(mechanism, mistakes).run();
+}
+
+int measure_index(const Mechanism& mechanism, std::string_view name) {
+  const auto found = std::ranges::find(mechanism.measures, name, &NamedMeasure::name);
+  return found == mechanism.measures.end() ? -1 : static_cast<int>(found - mechanism.measures.begin());
+}
+
+} // namespace flyball

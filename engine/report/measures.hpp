@@ -1,0 +1,110 @@
+// The measures of a mechanism at a state: values, how they change along steps of the coordinates, and errors.
+// Everything is at the drawn phase of the drives.
+#pragma once
+
+#include "engine/kkt/workspace.hpp"
+#include "engine/mechanism/measure_plan.hpp"
+#include "engine/solve/solution.hpp"
+#include "engine/system/point_motion.hpp"
+#include "engine/system/reactions.hpp"
+
+namespace flyball {
+
+// A state that measures are taken of. Of a steady state coordinates and rates are found where they are asked
+// for; of a motion they are given, by System::reported.
+struct MeasuredState {
+  const System& system;
+  const Parameters& parameters;
+  const Eigen::VectorXd& q;
+  const Kinematics<double>& kinematics;
+  const TransmittedForces* forces = nullptr; // needed where MeasureSet::needs_forces()
+  bool accelerated = true;                   // the kinematics' accelerations are known
+  std::span<const double> coordinates{}, rates{};
+};
+
+// Read once a topology; a change of numbers reads nothing again.
+class MeasureSet {
+ public:
+  MeasureSet() = default;
+
+  // Takes the mechanism's measures and numbers. Throws SceneError for a measure that is wrong.
+  void bind(const Mechanism& mechanism, const System& system, const Parameters& parameters);
+
+  bool empty() const { return plan_.empty(); }
+  std::size_t size() const { return plan_.size(); }
+  // Whether some measure asks for reactions, torques or powers; for accelerations.
+  bool needs_forces() const { return needs_forces_; }
+  bool needs_accelerations() const { return needs_accelerations_; }
+
+  // The values of all measures in the scene's order, in SI units; not finite where one is undefined.
+  const Eigen::VectorXd& evaluate(const MeasuredState& state);
+  // The same of a steady state that is evaluated in the workspace with these multipliers.
+  const Eigen::VectorXd& evaluate(const Problem& problem, const Unknowns& z, const Workspace& w);
+  // The same by coordinates alone, multipliers being those that balance the forces best.
+  const Eigen::VectorXd& evaluate_at(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
+
+  // (measures, nv): their rates by the entries of a step of q_R, unscaled, multipliers following as in
+  // evaluate_at(). Exact by the kinematics; those of forces, of the rates of joints that close loops and of
+  // springs with dampers by central differences. Of what was evaluated last, which is evaluated in `w` (its
+  // kinematics); `elsewhere` is for states beside it. Not a number where a measure has no rate.
+  const Eigen::MatrixXd& gradient(const Problem& problem, const Eigen::VectorXd& q, const Workspace& w,
+                                  Workspace& elsewhere);
+
+  // Their rates by the number at an address, per its unit, while the coordinates stand: by central
+  // differences (relative error about 1e-9). Not a number where the number cannot be moved.
+  Eigen::VectorXd parameter_rates(const Problem& problem, const Mechanism& mechanism,
+                                  const std::string& address, const Eigen::VectorXd& q, Workspace& w);
+
+  // By name, with the errors that errors of the coordinates (by coordinate of q_R: rad, m) make; where these
+  // are empty or the rates take too long (more than 64 coordinates and forces) errors are left out. Of a
+  // steady state that is evaluated in `w` with these multipliers.
+  std::vector<MeasureSolution> solutions(const Problem& problem, const Unknowns& z,
+                                         const Eigen::VectorXd& error, Workspace& w);
+
+  // Which measures rest on the reaction of this joint, or on the torque of its drive.
+  void mark_nonunique(const Mechanism& mechanism, const std::vector<Reaction>& reactions,
+                      const std::vector<DriveTorque>& torques, std::vector<MeasureSolution>& out) const;
+
+ private:
+  // Where a quantity is found in the system.
+  struct Place {
+    std::array<TrackedPoint, 3> points;
+    int reported = -1, tree = -1, cut = -1, drive = -1, spring = -1;
+    double stiffness = 0, free = 0;     // of a coordinate's spring
+    std::optional<double> lower, upper; // stops
+    double mass = 0;
+    std::size_t first_solid = 0, second_solid = 0, last_solid = 0; // in solids_: of one body, of the other
+    bool differenced = false;                                      // its rates are found by differences
+  };
+  // A sphere, or what is within a radius of a line.
+  struct Solid {
+    TrackedPoint from, to;
+    double radius = 0;
+  };
+
+  void find_places(const Mechanism& mechanism, const System& system);
+  double value(const MeasuredState& state, std::size_t quantity) const;
+  void evaluate_quantities(const MeasuredState& state);
+  double clearance(const MeasuredState& state, const Place& place, Eigen::VectorXd* rates) const;
+  // Adds the rates of a quantity to a row of quantity_rates_.
+  void rates(const MeasuredState& state, std::size_t quantity, Eigen::VectorXd& out) const;
+  // By how much of it a quantity may be wrong by rounding alone, in parts of 1e-16.
+  double rounding_size(const MeasuredState& state, std::size_t quantity) const;
+  void difference(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
+  const Eigen::VectorXd& combine();
+
+  MeasurePlan plan_;
+  std::vector<Place> places_; // by quantity
+  std::vector<Solid> solids_;
+  std::vector<std::string> names_, units_;
+  bool needs_forces_ = false, needs_accelerations_ = false, differenced_ = false;
+  // Of the last state.
+  double largest_force_ = 0;  // N, moments by the mechanism's reach
+  std::vector<double> found_; // by quantity
+  std::vector<Dual> duals_, combined_;
+  Eigen::VectorXd values_;
+  Eigen::MatrixXd quantity_rates_, rates_; // (quantities, nv), (measures, nv)
+  Eigen::MatrixXd partials_;               // (measures, quantities)
+};
+
+} // namespace flyball
