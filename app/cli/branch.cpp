@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -28,6 +29,7 @@ using Json = nlohmann::ordered_json;
 
 Json point_json(const ResponsePoint& p) {
   Json out = {{"parameter", p.parameter}, {"coordinates", coordinates_json(p.coordinates)}};
+  if (!p.measures.empty()) out["measures"] = measures_json(p.measures);
   out["stable"] = p.stable ? Json(*p.stable) : Json(nullptr);
   out["stability_reason"] = p.stability_reason ? Json(word(*p.stability_reason)) : Json(nullptr);
   out["eigenvalues"] = Json::array();
@@ -60,16 +62,20 @@ Json diagram_json(const ResponseDiagram& d) {
   return out;
 }
 
-std::string diagram_csv(const std::string& address, const ResponseDiagram& d) {
+std::string diagram_csv(const Mechanism& m, const std::string& address, const ResponseDiagram& d) {
   std::string out = "branch," + csv_field(address);
   if (!d.branches.empty() && !d.branches.front().points.empty())
     for (const CoordinateSolution& c : d.branches.front().points.front().coordinates)
       if (!c.driven) out += "," + csv_field(coordinate_label(c));
+  for (const NamedMeasure& measure : m.measures)
+    out += "," + csv_field(measure.name);
   out += ",stable,special\n";
   const auto row = [&](int branch, const ResponsePoint& p, std::string_view special) {
     out += fmt::format("{},{}", branch, csv_number(p.parameter));
     for (const CoordinateSolution& c : p.coordinates)
       if (!c.driven) out += "," + csv_number(c.value);
+    for (const MeasureSolution& measure : p.measures)
+      out += "," + (measure.value ? csv_number(*measure.value) : "");
     out += fmt::format(",{},{}\n", p.stable ? (*p.stable ? "true" : "false") : "", special);
   };
   for (std::size_t b = 0; b < d.branches.size(); ++b)
@@ -80,17 +86,13 @@ std::string diagram_csv(const std::string& address, const ResponseDiagram& d) {
   return out;
 }
 
-// Index of the coordinate to draw: the one named, else the first free one. Throws SceneError naming those
-// there are.
-std::size_t plotted_coordinate(const ResponseDiagram& d, const std::string& name) {
-  std::string known;
+// What to draw: what is named, else the first free coordinate. Throws SceneError naming those there are.
+PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, const std::string& name) {
   const std::vector<CoordinateSolution>& all = d.branches.front().points.front().coordinates;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].driven) continue;
-    const std::string label = coordinate_label(all[i]);
-    if (name.empty() || name == label) return i;
-    known += (known.empty() ? "" : ", ") + label;
-  }
+  const auto free = std::ranges::find(all, false, &CoordinateSolution::driven);
+  if (name.empty() && free != all.end()) return {static_cast<std::size_t>(free - all.begin()), false};
+  if (const auto found = find_plotted(m, all, name)) return *found;
+  const std::string known = plotted_names(m, all);
   throw SceneError("--plot " + name,
                    known.empty() ? "there is no free coordinate to draw" : "expected one of " + known);
 }
@@ -134,8 +136,10 @@ void add_branch(CLI::App& app, Ending& ending) {
   command->add_option("--svg", options->svg, "Draw the curve into a file (-: standard output)");
   command->add_option("--png", options->png,
                       "Draw the curve into a picture, without a display (-: standard output)");
-  command->add_option("--plot", options->plot,
-                      "The coordinate that --svg and --png draw: joint, or joint.index (default: the first)");
+  command->add_option(
+      "--plot", options->plot,
+      "The coordinate or measure that --svg and --png draw: joint, joint.index or the measure's "
+      "name (default: the first coordinate)");
   command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
   command->footer("Example: flyball branch conical_pendulum.json --vary joints.spin.drive.speed=0:10 --json");
   command->callback([options, &ending] {
@@ -158,7 +162,7 @@ void add_branch(CLI::App& app, Ending& ending) {
     const bool any = diagram.status == Status::converged && !diagram.branches.empty();
     if ((!options->svg.empty() || !options->png.empty()) && any) {
       const Plot plot =
-          branch_plot(mechanism, range.address, diagram, plotted_coordinate(diagram, options->plot));
+          branch_plot(mechanism, range.address, diagram, plotted_quantity(mechanism, diagram, options->plot));
       if (!options->svg.empty()) write_bytes(options->svg, to_svg(plot));
       if (!options->png.empty()) {
         const OffscreenContext context;
@@ -167,7 +171,7 @@ void add_branch(CLI::App& app, Ending& ending) {
     }
     // Files of earlier runs are not replaced by empty ones.
     if (!options->csv.empty() && !diagram.branches.empty())
-      write_bytes(options->csv, diagram_csv(range.address, diagram));
+      write_bytes(options->csv, diagram_csv(mechanism, range.address, diagram));
     if (options->json)
       print_json(with_warnings(diagram_json(diagram), mechanism));
     else if (options->csv.empty() && options->svg != "-" && options->png != "-") // else it is theirs

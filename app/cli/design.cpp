@@ -20,13 +20,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json answer_json(const std::string& address, const std::string& coordinate, const DesignAnswer& a) {
-  Json out = {{"status", word(a.status)}, {"message", a.message},        {"parameter", address},
-              {"coordinate", coordinate}, {"value", a.coordinate.value}, {"solutions", Json::array()}};
+  Json out = {{"status", word(a.status)},  {"message", a.message}, {"parameter", address},
+              {"coordinate", coordinate},  {"value", a.value},     {"unit", a.unit},
+              {"solutions", Json::array()}};
   for (const DesignSolution& s : a.solutions) {
     Json entry = {
         {"parameter", s.parameter},
         {"error_estimate", s.parameter_error},
         {"coordinates", coordinates_json(s.at.coordinates)},
+        {"measures", measures_json(s.at.measures)},
         {"residual", s.residual},
         {"iterations", s.iterations},
         {"rate", s.rate ? Json(*s.rate) : Json(nullptr)},
@@ -55,6 +57,8 @@ std::string answer_text(const Mechanism& m, const std::string& address, const De
     out += "   ";
     for (const CoordinateSolution& c : s.at.coordinates)
       if (!c.driven) out += fmt::format(" {} = {:.12g} {} ", shown_label(c), c.value, c.angle ? "rad" : "m");
+    for (const MeasureSolution& measure : s.at.measures)
+      if (measure.value) out += fmt::format(" {} = {:.12g} {} ", measure.name, *measure.value, measure.unit);
     out += fmt::format("\n    {} iterations, scaled residual {:.1e}\n", s.iterations, s.residual);
   }
   return out + fmt::format("  {:.1f} ms\n", a.run_time_s * 1e3);
@@ -69,13 +73,14 @@ void add_design(CLI::App& app, Ending& ending) {
     bool connected = false, json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("design", "Find the value of a parameter at which a coordinate is as wanted");
+  CLI::App* command = app.add_subcommand(
+      "design", "Find the value of a parameter at which a coordinate or measure is as wanted");
   options->scene.add_to(*command);
   command->add_option("--vary", options->vary, "The parameter to solve for: address=from:to")->required();
   command
-      ->add_option("--want", options->want,
-                   "The coordinate wanted: joint=value, or joint.index=value (rad, m)")
+      ->add_option(
+          "--want", options->want,
+          "What is wanted: joint=value or joint.index=value (rad, m), or measure=value (in its unit)")
       ->required();
   command->add_flag("--connected", options->connected,
                     "Only on branches connected with the drawn pose's (quicker)");

@@ -80,10 +80,10 @@ void add_report(CLI::App& app, Ending& ending) {
   options->scene.add_to(*command);
   command->add_option("-o,--out", options->out, "HTML file to write (-: standard output)")->required();
   command
-      ->add_option(
-          "--plot", options->plotted,
-          "A coordinate that the response curves show: joint, or joint.index; may be given again (default: "
-          "the first angle and the first length)")
+      ->add_option("--plot", options->plotted,
+                   "What the response curves show: a coordinate (joint, or joint.index) or a measure; may be "
+                   "given again "
+                   "(default: the first angle and the first length)")
       ->take_all()
       ->allow_extra_args(false);
   command->add_option("--size", options->size, "Pixels of the picture")->capture_default_str();

@@ -39,7 +39,7 @@ struct Column {
   std::function<double(std::size_t sample)> value;
 };
 
-// Time, coordinates (driven ones too), their rates, drive torques, energies and points.
+// Time, coordinates (driven ones too), their rates, drive torques, energies, measures and points.
 std::vector<Column> columns_of(const Run& run) {
   std::vector<Column> columns;
   const auto add = [&](std::string name, const std::vector<double>& values) {
@@ -61,6 +61,8 @@ std::vector<Column> columns_of(const Run& run) {
            {"energy.delivered", &e.delivered},
            {"energy.balance", &e.balance}})
     if (values->size() == run.time.size()) add(name, *values);
+  for (const MeasureTrack& m : run.measures)
+    add(m.name, m.value);
   for (const PointTrack& p : run.points)
     for (const auto& [prefix, track] :
          std::initializer_list<std::pair<const char*, const std::vector<Vec3>*>>{
@@ -160,6 +162,11 @@ Json run_json(const Run& run, const std::optional<Settled>& settled) {
     Json& point = out["points"][point_label(p.point)] = to_json(last_motion(p));
     if (p.acceleration.empty()) point["acceleration"] = nullptr;
   }
+  out["measures"] = Json::object();
+  for (const MeasureTrack& m : run.measures) {
+    const bool known = !m.value.empty() && std::isfinite(m.value.back());
+    out["measures"][m.name] = {{"value", known ? Json(m.value.back()) : Json(nullptr)}, {"unit", m.unit}};
+  }
   const auto drift = jacobi_drift(run);
   out["energy"] = {{"balance_error", energy_error(run)},
                    {"at_play", energy_at_play(run)},
@@ -202,6 +209,10 @@ std::string run_text(const Mechanism& mechanism, const Run& run, const std::opti
                        c.driven      ? "  driven"
                        : c.dependent ? "  closes a loop"
                                      : "");
+  for (const MeasureTrack& m : run.measures)
+    out += std::isfinite(m.value.back())
+               ? fmt::format("  {:{}}  {:>18.12g} {}\n", m.name, width, m.value.back(), m.unit)
+               : fmt::format("  {:{}}  {:>18}\n", m.name, width, "not known");
   for (const PointTrack& p : run.points) {
     out += motion_text(printable(point_label(p.point)), width, last_motion(p), !p.acceleration.empty());
     if (p.acceleration.empty())

@@ -79,7 +79,7 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);
   for (const char* key :
        {"potential", "eigenvalues", "floquet", "neutral", "drive_torques", "drive_torque_ranges", "reactions",
-        "poses", "points", "sensitivities", "condition"})
+        "poses", "points", "measures", "sensitivities", "measure_sensitivities", "condition"})
     out[key] = nullptr;
   out["unheld"] = Json::array();
   for (const UnheldCoordinate& c : s.unheld)
@@ -140,6 +140,14 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["points"] = Json::object();
   for (const PointSolution& p : s.points)
     out["points"][point_label(p.point)] = to_json(p.motion);
+  out["measures"] = measures_json(s.measures);
+  out["measure_sensitivities"] = Json::object();
+  for (const Sensitivity& x : s.sensitivities) {
+    if (x.measures.empty()) continue;
+    Json& rates = out["measure_sensitivities"][x.address] = Json::object();
+    for (std::size_t i = 0; i < x.measures.size(); ++i)
+      rates[s.measures[i].name] = number(x.measures[i]);
+  }
   out["sensitivities"] = Json::object();
   for (const Sensitivity& x : s.sensitivities) {
     out["sensitivities"][x.address] = Json::object();
@@ -162,6 +170,18 @@ Json to_json(const Mechanism& mechanism, const AllSolutions& all) {
                    {"complete", false},           {"message", all.message},
                    {"end", word(all.end)},        {"expected_missing", number(all.unseen)},
                    {"not_steady", all.passing}};
+  return out;
+}
+
+Json measures_json(const std::vector<MeasureSolution>& measures) {
+  Json out = Json::object();
+  for (const MeasureSolution& m : measures) {
+    Json& entry = out[m.name] = {{"value", m.value ? number(*m.value) : Json(nullptr)},
+                                 {"unit", m.unit},
+                                 {"error_estimate", m.error ? number(*m.error) : Json(nullptr)}};
+    if (!m.value) entry["reason"] = m.reason;
+    if (m.nonunique) entry["nonunique"] = true;
+  }
   return out;
 }
 

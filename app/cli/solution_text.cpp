@@ -75,6 +75,8 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   std::size_t width = 10;
   for (const auto& c : s.coordinates)
     width = std::max(width, shown_label(c).size());
+  for (const auto& m : s.measures)
+    width = std::max(width, m.name.size());
   for (const auto& r : s.reactions)
     width = std::max(width, printable(r.joint).size());
   const auto heading = [&](const char* text) { out += fmt::format("\n{}\n", text); };
@@ -90,6 +92,17 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
                        rounded(c.value, c.error, 17), c.angle ? "rad" : "m",
                        rounded(c.value * shown, c.error * shown, 12), c.angle ? "°" : "mm", c.error,
                        c.angle ? "rad" : "m", c.dependent ? "  closes a loop" : "");
+  }
+  if (!s.measures.empty()) heading("measures, at the drawn phase");
+  for (const MeasureSolution& m : s.measures) {
+    if (!m.value) {
+      out += fmt::format("  {:{}}  {:>22}  {}\n", m.name, width, "-", m.reason);
+      continue;
+    }
+    out += fmt::format("  {:{}}  {:>22} {:6}", m.name, width,
+                       m.error ? rounded(*m.value, *m.error, 17) : number_text(*m.value), m.unit);
+    if (m.error) out += fmt::format("  ± {:.1g} {}", *m.error, m.unit);
+    out += m.nonunique ? "  (not unique)\n" : "\n";
   }
   if (!s.points.empty()) heading("points, world axes at the drawn phase");
   for (const PointSolution& p : s.points)

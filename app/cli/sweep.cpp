@@ -35,6 +35,12 @@ std::vector<ColumnName> coordinate_columns(const Mechanism& mechanism) {
   return columns;
 }
 
+// Empty where there is no value.
+std::string measure_cell(const Solution& solution, std::size_t i) {
+  if (i >= solution.measures.size() || !solution.measures[i].value) return "";
+  return csv_number(*solution.measures[i].value);
+}
+
 std::string to_csv(const Mechanism& m, const std::vector<Variation>& variations,
                    const std::vector<SweepPoint>& points) {
   const std::vector<ColumnName> columns = coordinate_columns(m);
@@ -44,6 +50,8 @@ std::string to_csv(const Mechanism& m, const std::vector<Variation>& variations,
   out += "status";
   for (const ColumnName& c : columns)
     out += "," + csv_field(c.text());
+  for (const NamedMeasure& measure : m.measures)
+    out += "," + csv_field(measure.name);
   out += ",stable,residual,run_time_s\n";
   for (const SweepPoint& p : points) {
     for (double value : p.parameters)
@@ -57,6 +65,8 @@ std::string to_csv(const Mechanism& m, const std::vector<Variation>& variations,
       }
     for (; at < columns.size(); ++at)
       out += ",";
+    for (std::size_t i = 0; i < m.measures.size(); ++i)
+      out += "," + measure_cell(p.solution, i);
     out += p.solution.stable ? (*p.solution.stable ? ",true," : ",false,") : ",,";
     out += csv_number(p.solution.residual) + "," + csv_number(p.solution.run_time_s) + "\n";
   }
@@ -75,6 +85,7 @@ nlohmann::ordered_json to_json(const std::vector<Variation>& variations,
     row["coordinates"] = nlohmann::ordered_json::object();
     for (const CoordinateSolution& c : p.solution.coordinates)
       if (!c.driven) row["coordinates"][ColumnName{c.joint, c.count == 1 ? -1 : c.index}.text()] = c.value;
+    if (!p.solution.measures.empty()) row["measures"] = measures_json(p.solution.measures);
     row["stable"] =
         p.solution.stable ? nlohmann::ordered_json(*p.solution.stable) : nlohmann::ordered_json(nullptr);
     row["stability_reason"] = p.solution.stability_reason
@@ -105,6 +116,9 @@ std::string to_table(const Mechanism& m, const std::vector<Variation>& variation
                               : is_angle(JointType::free, c.index);
     rows[0].push_back(fmt::format("{} [{}]", printable(c.text()), angle ? "rad" : "m"));
   }
+  for (const NamedMeasure& measure : m.measures)
+    rows[0].push_back(measure.unit.empty() ? measure.name
+                                           : fmt::format("{} [{}]", measure.name, measure.unit));
   rows[0].insert(rows[0].end(), {"stable", "residual", "time [µs]"});
   for (const SweepPoint& p : points) {
     auto& row = rows.emplace_back();
@@ -114,6 +128,10 @@ std::string to_table(const Mechanism& m, const std::vector<Variation>& variation
     for (const CoordinateSolution& c : p.solution.coordinates)
       if (!c.driven) row.push_back(fmt::format("{:.10f}", c.value));
     row.resize(variations.size() + 1 + columns.size());
+    for (std::size_t i = 0; i < m.measures.size(); ++i) {
+      const bool known = i < p.solution.measures.size() && p.solution.measures[i].value;
+      row.push_back(known ? fmt::format("{:.10g}", *p.solution.measures[i].value) : "-");
+    }
     row.push_back(p.solution.stable ? (*p.solution.stable ? "yes" : "no") : "-");
     row.push_back(std::isfinite(p.solution.residual) ? fmt::format("{:.1e}", p.solution.residual) : "-");
     row.push_back(fmt::format("{:.1f}", p.solution.run_time_s * 1e6));

@@ -45,6 +45,7 @@ struct FiniteFields {
 
   void describe(const std::string&) {}
   void version(const Field&) {}
+  void expression(const Field&, const std::string&) {}
   void type(const Field&, const auto&) {}
   void field(const Field&, const auto& value) { all = all && finite(value); }
   template <class Value>

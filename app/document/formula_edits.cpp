@@ -1,7 +1,9 @@
 #include "app/document/formula_edits.hpp"
 
+#include "app/document/measure_edits.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/numbers.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <Eigen/QR>
 
@@ -48,7 +50,10 @@ void visit_formulas(Mechanism& mechanism, const Visit& visit) {
 
 bool names(std::string_view text, std::string_view name) {
   try {
-    const Expression expression(text);
+    const Expression expression(text, Expression::Results::allowed);
+    for (const ResultCall& call : expression.results())
+      if (std::ranges::find(call.arguments, name, &ResultCall::Argument::point) != call.arguments.end())
+        return true;
     return std::ranges::any_of(expression.names(), [&](const std::string& each) {
       return std::string_view(each).substr(0, each.find('.')) == name;
     });
@@ -60,7 +65,7 @@ bool names(std::string_view text, std::string_view name) {
 void check_name(const Mechanism& mechanism, const std::string& name, const std::string& where) {
   if (!is_expression_name(name))
     throw SceneError(where, "expected a name of letters, figures and _ that is no function's");
-  if (parameter_index(mechanism, name) >= 0 || point_index(mechanism, name) >= 0)
+  if (free_name(mechanism, name) != name)
     throw SceneError(where, "expected a name of its own; there is a \"" + name + "\" already");
 }
 
@@ -76,6 +81,8 @@ void rename_in(Mechanism& mechanism, std::vector<Named>& list, int index, const 
     for (Formula& formula : formulas)
       formula.text = renamed_in(formula.text, from, to);
   });
+  for (NamedMeasure& measure : mechanism.measures)
+    measure.text = renamed_in(measure.text, from, to);
   for (Slider& slider : mechanism.sliders)
     if (slider.parameter == path || slider.parameter.starts_with(path + "."))
       slider.parameter.replace(0, path.size(), list_name + "." + to);
@@ -219,7 +226,11 @@ void name_number(Mechanism& mechanism, const std::string& address, const std::st
 
 std::string free_name(const Mechanism& mechanism, const std::string& wish) {
   std::string name = wish;
-  for (int i = 2; parameter_index(mechanism, name) >= 0 || point_index(mechanism, name) >= 0; ++i)
+  const auto taken = [&] {
+    return parameter_index(mechanism, name) >= 0 || point_index(mechanism, name) >= 0 ||
+           measure_index(mechanism, name) >= 0;
+  };
+  for (int i = 2; taken(); ++i)
     name = wish + std::to_string(i);
   return name;
 }
@@ -238,7 +249,14 @@ void rename_point(Mechanism& mechanism, const std::string& name, const std::stri
 
 void remove_parameter(Mechanism& mechanism, const std::string& name) {
   all_or_nothing(mechanism, [&](Mechanism& next) {
-    std::erase_if(next.parameters, [&](const NamedParameter& each) { return each.name == name; });
+    const int index = parameter_index(next, name);
+    if (index < 0) return;
+    const NamedParameter& parameter = next.parameters[static_cast<std::size_t>(index)];
+    const std::string value =
+        "(" + number_text(parameter.value) + (parameter.unit.empty() ? "" : " " + parameter.unit) + ")";
+    for (NamedMeasure& measure : next.measures)
+      measure.text = renamed_in(measure.text, name, value);
+    next.parameters.erase(next.parameters.begin() + index);
     forget(next, name, "parameters." + name);
   });
 }
@@ -247,6 +265,7 @@ void remove_point(Mechanism& mechanism, const std::string& name) {
   all_or_nothing(mechanism, [&](Mechanism& next) {
     std::erase_if(next.points, [&](const NamedPoint& each) { return each.name == name; });
     forget(next, name, "points." + name);
+    drop_lost_measures(next);
   });
 }
 
@@ -254,6 +273,8 @@ std::vector<std::string> users_of(const Mechanism& mechanism, std::string_view n
   std::vector<std::string> users;
   for (const GivenNumber& given : given_numbers(mechanism))
     if (names(given.text, name)) users.push_back(given.address);
+  for (const NamedMeasure& measure : mechanism.measures)
+    if (names(measure.text, name)) users.push_back("measures." + measure.name);
   return users;
 }
 

@@ -17,16 +17,17 @@ void set_expression(Mechanism& mechanism, const std::string& address, const std:
 void stand_at_point(Mechanism& mechanism, const std::string& vector, const std::string& point);
 // A named parameter of the number's value and unit, by which the number is given from then on.
 void name_number(Mechanism& mechanism, const std::string& address, const std::string& name);
-// A name that no parameter or point has: the wish, or with a figure behind it.
+// A name that no parameter, point or measure has: the wish, or with a figure behind it.
 std::string free_name(const Mechanism& mechanism, const std::string& wish);
 
-// Expressions and sliders follow.
+// Expressions, measures and sliders follow.
 void rename_parameter(Mechanism& mechanism, const std::string& name, const std::string& to);
 void rename_point(Mechanism& mechanism, const std::string& name, const std::string& to);
-// What it gave stays what it is, by itself where the expression cannot do without.
+// What it gave stays what it is, by itself where the expression cannot do without. A measure has the
+// parameter's value instead; without a point those that are about it are dropped.
 void remove_parameter(Mechanism& mechanism, const std::string& name);
 void remove_point(Mechanism& mechanism, const std::string& name);
-// Addresses of the numbers whose expressions name it.
+// Addresses of the numbers whose expressions name it, and of measures.
 std::vector<std::string> users_of(const Mechanism& mechanism, std::string_view name);
 
 // After an edit of `before` that has set numbers which expressions give: the numbers that these rest on are

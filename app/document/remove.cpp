@@ -1,5 +1,6 @@
 #include "app/document/remove.hpp"
 
+#include "app/document/measure_edits.hpp"
 #include "app/document/references.hpp"
 
 #include <algorithm>
@@ -49,6 +50,7 @@ void remove_parts(Mechanism& mechanism, const Selection& selection) {
   std::erase_if(mechanism.sliders, [&](const Slider& slider) {
     return std::ranges::any_of(all.parts, [&](const Part& part) { return is_of(slider.parameter, part); });
   });
+  drop_lost_measures(mechanism);
 }
 
 } // namespace flyball

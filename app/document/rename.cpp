@@ -1,5 +1,6 @@
 #include "app/document/rename.hpp"
 
+#include "app/document/measure_edits.hpp"
 #include "app/document/references.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
@@ -63,6 +64,7 @@ void rename_part(Mechanism& mechanism, const Part& part, const std::string& name
     break;
   case PartKind::force: mechanism.forces[i].name = name; break;
   }
+  follow_in_measures(mechanism, part, name);
   for (Slider& slider : mechanism.sliders)
     if (slider.parameter.starts_with(where + "."))
       slider.parameter.replace(0, where.size(), list + "." + name);

@@ -1,4 +1,4 @@
-// A diagram of branches as a plot of one coordinate over the parameter.
+// A diagram of branches as a plot of one coordinate or measure over the parameter.
 #pragma once
 
 #include "app/plot/plot.hpp"
@@ -6,9 +6,24 @@
 
 namespace flyball {
 
-// Stable parts solid, others dashed; special points are marked. `coordinate` is an index into the points'
-// coordinates, of which the diagram has at least one.
+// One of a point's coordinates, or of its measures.
+struct PlottedQuantity {
+  std::size_t index = 0;
+  bool measure = false;
+};
+
+// Stable parts solid, others dashed; special points are marked. The diagram has at least one point, and every
+// point the quantity; where it is undefined there is a gap.
 Plot branch_plot(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,
-                 std::size_t coordinate);
+                 const PlottedQuantity& shown);
+
+// A free coordinate by its label, else a measure of the mechanism; nothing where there is none.
+std::optional<PlottedQuantity> find_plotted(const Mechanism& mechanism,
+                                            const std::vector<CoordinateSolution>& coordinates,
+                                            const std::string& name);
+// What can be plotted, as find_plotted takes it: "slide, height".
+std::string plotted_names(const Mechanism& mechanism, const std::vector<CoordinateSolution>& coordinates);
+// Not a number where a measure is undefined.
+double plotted_value(const ResponsePoint& point, const PlottedQuantity& quantity);
 
 } // namespace flyball

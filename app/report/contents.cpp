@@ -8,6 +8,7 @@
 #include "engine/mechanism/validate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 
 namespace flyball {
@@ -35,21 +36,25 @@ std::vector<Slider> curve_parameters(const Mechanism& m) {
   return out;
 }
 
-// Indices of those to be drawn. Throws SceneError for a name that is none's.
-std::vector<std::size_t> plotted_coordinates(const std::vector<CoordinateSolution>& all,
-                                             const std::vector<std::string>& names) {
-  std::vector<std::size_t> out;
+// What is to be drawn: what is named, else the first angle and the first length. Throws SceneError for a name
+// that is none's.
+std::vector<PlottedQuantity> plotted_quantities(const Mechanism& m,
+                                                const std::vector<CoordinateSolution>& all,
+                                                const std::vector<std::string>& names) {
+  std::vector<PlottedQuantity> out;
   for (const std::string& name : names) {
-    const auto at = std::ranges::find_if(
-        all, [&](const CoordinateSolution& c) { return !c.driven && coordinate_label(c) == name; });
-    if (at == all.end()) throw SceneError("--plot " + name, "expected a coordinate that is not driven");
-    out.push_back(static_cast<std::size_t>(at - all.begin()));
+    const auto found = find_plotted(m, all, name);
+    if (!found)
+      throw SceneError("--plot " + name,
+                       "expected a coordinate that is not driven, or a measure" +
+                           (plotted_names(m, all).empty() ? "" : ": " + plotted_names(m, all)));
+    out.push_back(*found);
   }
   if (!out.empty()) return out;
   for (const bool angle : {true, false})
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].driven || all[i].dependent || all[i].angle != angle) continue;
-      out.push_back(i);
+      out.push_back({i, false});
       break;
     }
   return out;
@@ -76,12 +81,12 @@ ReportCurve follow(const ReportContents& contents, const Slider& over, const Rep
   out.message = diagram->message;
   if (diagram->branches.empty() || diagram->branches.front().points.empty()) return out;
   const std::vector<CoordinateSolution>& all = diagram->branches.front().points.front().coordinates;
-  for (const std::size_t i : plotted_coordinates(all, options.plotted)) {
-    Plot plot = branch_plot(m, over.parameter, *diagram, i);
+  for (const PlottedQuantity& shown : plotted_quantities(m, all, options.plotted)) {
+    Plot plot = branch_plot(m, over.parameter, *diagram, shown);
     plot.title.clear(); // the page has words for it
     plot.x.logarithmic = over.scale == SliderScale::log;
-    if (within && i < contents.solution.coordinates.size())
-      plot.marker = PlotMarker{out.present, contents.solution.coordinates[i].value, ""};
+    const double now = within ? plotted_value(response_point(contents.solution, out.present), shown) : 0;
+    if (within && std::isfinite(now)) plot.marker = PlotMarker{out.present, now, ""};
     out.plots.push_back(std::move(plot));
   }
   return out;
@@ -95,7 +100,8 @@ ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const
   out.warnings = find_warnings(*out.mechanism);
   Analysis analysis(out.mechanism);
   out.system = analysis.summary();
-  plotted_coordinates(out.system.coordinates, options.plotted); // before anything takes its time
+  plotted_quantities(*out.mechanism, out.system.coordinates,
+                     options.plotted); // before anything takes its time
   SolveOptions solve;
   solve.start = options.start;
   solve.nearest = options.nearest;

@@ -25,6 +25,20 @@ Html coordinates_table(const Solution& s) {
   return table.html();
 }
 
+Html measures_table(const Mechanism& m, const Solution& s) {
+  HtmlTable table({{"Measure", false}, {"Value"}, {"Estimated error"}, {"Expression", false}, {"", false}});
+  for (std::size_t i = 0; i < s.measures.size(); ++i) {
+    const MeasureSolution& measure = s.measures[i];
+    const Html value = !measure.value  ? Html(measure.reason)
+                       : measure.error ? quantity_within(*measure.value, *measure.error, measure.unit)
+                                       : quantity(*measure.value, measure.unit);
+    table.row({measure.name, value, measure.error ? magnitude(*measure.error, measure.unit) : Html("-"),
+               m.measures[i].text,
+               (measure.nonunique ? "Not unique: loops are redundant. " : "") + m.measures[i].description});
+  }
+  return table.empty() ? Html() : heading_of("Measures, at the drawn phase") + table.html();
+}
+
 // How the solver arrived.
 Html solver_terms(const Solution& s) {
   HtmlTerms terms;
@@ -58,6 +72,7 @@ OptionalSection steady_state_section(const ReportContents& contents) {
   Html body = element("p", s.message, {{"class", found ? "lead" : "lead refusal"}}) + "\n";
   if (found) {
     if (!s.coordinates.empty()) body += coordinates_table(s);
+    body += measures_table(*contents.mechanism, s);
     body += heading_of("How it was found") + solver_terms(s);
   } else {
     body += unheld_table(s) + heading_of("What was tried") + solver_terms(s);

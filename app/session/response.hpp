@@ -48,8 +48,8 @@ struct DesignRequest {
 
 // "Find the parameter so that the coordinate is this": design mode.
 struct ResponseDesign {
-  std::string coordinate; // "joint" or "joint.index"; empty: not chosen
-  double value = 0;       // rad or m
+  std::string coordinate; // "joint" or "joint.index", or a measure; empty: not chosen
+  double value = 0;       // rad or m, or in the measure's unit
   Study<DesignRequest, DesignAnswer> answer;
 };
 

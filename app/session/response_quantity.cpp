@@ -39,6 +39,7 @@ ResponsePoint response_point(const Solution& solution, double parameter) {
   if (solution.eigenvalues) point.eigenvalues = *solution.eigenvalues;
   point.reactions = solution.reactions;
   point.drive_torques = solution.drive_torques;
+  point.measures = solution.measures;
   return point;
 }
 
@@ -48,6 +49,8 @@ std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point) {
     if (!c.driven)
       out.push_back(
           {"value " + coordinate_label(c), coordinate_label(c), "Coordinates", c.angle ? "rad" : "m", 1});
+  for (const MeasureSolution& m : point.measures)
+    out.push_back({"measure " + m.name, m.name, "Measures", m.unit, 1});
   for (const DriveTorque& d : point.drive_torques)
     if (!d.varying)
       out.push_back({"drive " + coordinate_label(d),
@@ -73,6 +76,9 @@ std::vector<double> quantity_values(const ResponsePoint& point, const std::strin
   if (const auto name = after(key, "value ")) {
     for (const CoordinateSolution& c : point.coordinates)
       if (coordinate_label(c) == *name) return {c.value};
+  } else if (const auto measure = after(key, "measure ")) {
+    for (const MeasureSolution& m : point.measures)
+      if (m.name == *measure && m.value) return {*m.value};
   } else if (const auto drive = after(key, "drive ")) {
     for (const DriveTorque& d : point.drive_torques)
       if (coordinate_label(d) == *drive) return {d.value};

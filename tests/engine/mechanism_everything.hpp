@@ -67,6 +67,9 @@ inline constexpr std::string_view everything = R"({
     {"name": "turn", "type": "torque", "body": "arm", "vector": [7, 8, 9]},
     {"name": "air", "type": "drag", "body": "ball", "at": [0, 0, 5.5], "linear": 0.125, "quadratic": 0.375}
   ],
+  "measures": {
+    "gap": {"description": "between two", "value": "=distance(ball, drone) - half", "unit": "m"},
+    "share": {"value": "=gap / L"}},
   "sliders": [
     {"parameter": "joints.spin.drive.speed", "description": "main", "range": [0, 30]},
     {"parameter": "joints.hinge.spring.stiffness", "range": [10, 1000], "scale": "log"}
@@ -106,6 +109,12 @@ inline constexpr Mistake mistakes_of_form[] = {
      "expected a number, found \"=L\""},
     {R"("half": {)", R"("a half": {)", "parameters.a half", "expected a name of letters"},
     {R"("W": [0, 0, 8])", R"("W": [0, 0])", "points.W", "three numbers"},
+    {R"("value": "=gap / L")", "", "measures.share.value", "missing; a measure needs it"},
+    {R"("value": "=gap / L")", R"("value": 3)", "measures.share.value", "an expression of results"},
+    {R"("value": "=gap / L")", R"("value": "gap / L")", "measures.share.value", "an expression of results"},
+    {R"("value": "=gap / L")", R"("value": "=gap / L", "range": [0, 1])", "measures.share.range",
+     "unknown key of a measure"},
+    {R"("share": {)", R"("a share": {)", "measures.a share", "expected a name of letters"},
     {R"("at": [0, 0, 9])", R"("at": "a hole")", "joints.axle.at", "expected the name of a point or three"},
     {R"("color": [0.5, 0.25, 1])", R"("color": [0.5, "=half", 1])", "bodies.table.shapes[0].color[1]",
      "expected a number, found \"=half\""},

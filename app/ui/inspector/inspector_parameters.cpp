@@ -159,6 +159,7 @@ void point_rows(App& app, const NamedPoint& point) {
 
 void named_sections(App& app) {
   const Mechanism& mechanism = app.mechanism();
+  measures_section(app);
   if (inspector_section(app, "inspector/parameters section", "Parameters", !mechanism.parameters.empty())) {
     for (const NamedParameter& parameter : mechanism.parameters)
       parameter_row(app, parameter);

@@ -13,6 +13,7 @@ void several_inspector(App& app);
 
 // Parts of them.
 void named_sections(App& app);
+void measures_section(App& app);
 void mass_section(App& app, const Body& body);
 void rotation_section(App& app, const Body& body);
 void shapes_section(App& app, const Body& body);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace flyball {
 
@@ -84,6 +85,8 @@ ShownRun shown_quantity(const Run& run, const std::string& key) {
       return {
           (d.angle ? "drive torque of " : "drive force of ") + name, d.angle ? "N m" : "N", {{"", d.torque}}};
   }
+  for (const MeasureTrack& m : run.measures)
+    if (key == "measure " + m.name) return {m.name, m.unit, {{"", m.value}}};
   for (const ReactionTrack& r : run.reactions) {
     if (key == "force " + r.joint) return {"force through " + r.joint, "N", {{"", norms(r.force)}}};
     if (key == "torque " + r.joint) return {"torque through " + r.joint, "N m", {{"", norms(r.torque)}}};
@@ -116,6 +119,8 @@ std::optional<double> steady_value(const App& app, const std::string& key) {
   if (key.starts_with("rate ")) return 0;
   for (const CoordinateSolution& c : s.coordinates)
     if (key == "value " + coordinate_label(c) && !c.driven) return c.value;
+  for (const MeasureSolution& m : s.measures)
+    if (key == "measure " + m.name) return m.value;
   for (const DriveTorque& d : s.drive_torques)
     if (key == "drive " + coordinate_label(d) && !d.varying) return d.value;
   for (const Reaction& r : s.reactions) {
@@ -137,6 +142,8 @@ std::vector<MotionQuantity> motion_quantities(const Run& run) {
     if (!c.driven) add("value " + coordinate_label(c), "Coordinates");
   for (const CoordinateTrack& c : run.coordinates)
     if (!c.driven) add("rate " + coordinate_label(c), "Speeds");
+  for (const MeasureTrack& m : run.measures)
+    add("measure " + m.name, "Measures");
   for (const DriveTrack& d : run.drives)
     add("drive " + coordinate_label(d), "Drives");
   add("energies", "Energy");
@@ -186,7 +193,7 @@ Plot motion_plot(const App& app, const std::string& quantity) {
       const std::vector<double>& values = shown.lines[l].values;
       curve.points.reserve(values.size());
       for (std::size_t i = 0; i < values.size() && i < run.time.size(); ++i)
-        curve.points.push_back({run.time[i], values[i]});
+        if (std::isfinite(values[i])) curve.points.push_back({run.time[i], values[i]}); // where it is defined
       plot.curves.push_back(std::move(curve));
     }
     if (const auto steady = steady_value(app, quantity); steady && plot.references.empty())

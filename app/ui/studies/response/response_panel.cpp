@@ -6,11 +6,13 @@
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 namespace flyball {
 
@@ -147,9 +149,18 @@ const CoordinateSolution* design_coordinate(const App& app) {
   return nullptr;
 }
 
+// The unit of what design mode asks for: of a coordinate, else of a measure.
+std::string design_unit(const App& app) {
+  if (const CoordinateSolution* c = design_coordinate(app)) return c->angle ? "rad" : "m";
+  const int i = measure_index(app.mechanism(), app.study.response.design.coordinate);
+  return i < 0 ? "m" : app.mechanism().measures[static_cast<std::size_t>(i)].unit;
+}
+
 double present_value(const App& app, const std::string& name) {
   for (const CoordinateSolution& c : app.answer.solution.coordinates)
     if (coordinate_label(c) == name) return c.value;
+  for (const MeasureSolution& m : app.answer.solution.measures)
+    if (m.name == name) return m.value.value_or(0);
   return 0;
 }
 
@@ -157,11 +168,15 @@ void choose_design(App& app, const std::string& name) {
   ResponseDesign& design = app.study.response.design;
   design.coordinate = name;
   design.answer.found.reset();
-  const CoordinateSolution* c = design_coordinate(app);
+  const ShownUnit unit = shown_unit(design_unit(app), app.units);
+  const double shown = unit.shown(present_value(app, name));
+  if (!design_coordinate(app)) { // three digits
+    design.value = unit.si(std::strtod(rounded_text(shown, 3).c_str(), nullptr));
+    return;
+  }
   // The nearest whole degree, millimetre or hundredth of a radian.
-  const ShownUnit unit = coordinate_unit(c && c->angle, app.units);
   const double digits = unit.text == "rad" ? 100 : unit.text == "m" ? 1000 : 1;
-  design.value = unit.si(std::round(unit.shown(present_value(app, name)) * digits) / digits);
+  design.value = unit.si(std::round(shown * digits) / digits);
 }
 
 void solution_row(App& app, const DesignAnswer& answer, const DesignSolution& s, std::size_t i,
@@ -196,9 +211,10 @@ void solution_row(App& app, const DesignAnswer& answer, const DesignSolution& s,
                      magnitude_text(s.parameter_error * parameter.factor, numbers) + " " + unit + ", " +
                      std::to_string(s.iterations) + " iterations.";
   if (s.rate) {
-    const ShownUnit coordinate = coordinate_unit(answer.coordinate.angle, app.units);
-    help += "\nThe coordinate changes by " + short_text(*s.rate * coordinate.factor / parameter.factor, 4) +
-            " " + coordinate.text + " per " + (unit.empty() ? "unit." : unit + ".");
+    const ShownUnit coordinate = shown_unit(answer.unit, app.units);
+    help += "\n" + answer.wanted + " changes by " +
+            short_text(*s.rate * coordinate.factor / parameter.factor, 4) + " " + coordinate.text + " per " +
+            (unit.empty() ? "unit." : unit + ".");
   }
   constexpr std::size_t most_told = 8;
   for (std::size_t k = 0; k < s.at.coordinates.size() && k < most_told; ++k) {
@@ -236,27 +252,28 @@ void design_rows(App& app) {
   std::vector<std::string> names;
   for (const CoordinateSolution& c : app.answer.summary.coordinates)
     if (!c.driven && !c.dependent) names.push_back(coordinate_label(c));
+  const std::string first = names.empty() ? "" : names.back();
+  for (const NamedMeasure& measure : app.mechanism().measures)
+    names.push_back(measure.name);
   if (names.empty()) return;
   ResponseDesign& design = app.study.response.design;
   if (std::ranges::find(names, design.coordinate) == names.end()) {
     const std::string& quantity = app.study.response.choice.quantity;
-    const auto shown =
-        std::ranges::find_if(names, [&](const std::string& n) { return quantity == "value " + n; });
-    choose_design(app, shown == names.end() ? names.back() : *shown);
+    const auto shown = std::ranges::find_if(
+        names, [&](const std::string& n) { return quantity == "value " + n || quantity == "measure " + n; });
+    choose_design(app, shown == names.end() ? (first.empty() ? names.front() : first) : *shown);
   }
   heading(app, ("Find the " + parameter_phrase(control->address)).c_str());
-  help_on_hover("Solves for the number so that a coordinate has the value that is asked for.");
+  help_on_hover("Solves for the number so that a coordinate or measure has the value that is asked for.");
   if (const auto chosen = name_choice_row(app, "response/design", "so that", names, design.coordinate,
-                                          "The coordinate that is wanted somewhere."))
+                                          "The coordinate or measure that is wanted somewhere."))
     choose_design(app, *chosen);
-  const CoordinateSolution* c = design_coordinate(app);
-  const bool angle = c && c->angle;
   const float width = row_label(app, "is", "Where it is wanted.");
   const float button = 62 * app.scale, gap = 6 * app.scale;
   quantity_field(app,
                  {.name = "response/value",
                   .value = design.value,
-                  .unit = angle ? "rad" : "m",
+                  .unit = design_unit(app),
                   .help = "Where it is wanted.",
                   .set =
                       [](App& changed, double typed) {

@@ -1,0 +1,105 @@
+#include "app/document/measure_edits.hpp"
+
+#include "app/document/formula_edits.hpp"
+#include "engine/mechanism/mistakes.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+std::vector<SceneError> mistakes_of(const Mechanism& mechanism) {
+  Mistakes mistakes;
+  find_measure_mistakes(mechanism, mistakes);
+  return mistakes.all();
+}
+
+void check_measure_name(const Mechanism& mechanism, const std::string& name) {
+  if (!is_expression_name(name))
+    throw SceneError("measures." + name, "expected a name of letters, figures and _ that is no function's");
+  if (free_name(mechanism, name) != name)
+    throw SceneError("measures." + name, "expected a name of its own; there is a \"" + name + "\" already");
+}
+
+// Whether a measure asks of a part that is not there, or uses a name that is none.
+bool is_lost(const Mechanism& mechanism, const NamedMeasure& measure) {
+  Mechanism alone = mechanism;
+  std::erase_if(alone.measures, [&](const NamedMeasure& each) { return each.name == measure.name; });
+  for (NamedMeasure& each : alone.measures) // whatever else is wrong with them
+    each.text = "0";
+  alone.measures.push_back(measure);
+  return !mistakes_of(alone).empty();
+}
+
+} // namespace
+
+void set_measure(Mechanism& mechanism, const std::string& name, const NamedMeasure& measure) {
+  Mechanism next = mechanism;
+  const int index = measure_index(next, name);
+  if (name != measure.name) check_measure_name(next, measure.name);
+  if (index < 0) {
+    next.measures.push_back(measure);
+  } else {
+    next.measures[static_cast<std::size_t>(index)] = measure;
+    if (name != measure.name)
+      for (NamedMeasure& each : next.measures)
+        each.text = renamed_in(each.text, name, measure.name);
+  }
+  // Only its own mistakes: others may be being mended.
+  for (const SceneError& error : mistakes_of(next))
+    if (error.where() == "measures." + measure.name || error.where() == "measures." + measure.name + ".unit")
+      throw error;
+  mechanism = std::move(next);
+}
+
+std::string measure_mistake(const Mechanism& mechanism, const std::string& name,
+                            const NamedMeasure& measure) {
+  try {
+    Mechanism copy = mechanism;
+    set_measure(copy, name, measure);
+    return {};
+  } catch (const SceneError& error) {
+    return error.expected();
+  }
+}
+
+void remove_measure(Mechanism& mechanism, const std::string& name) {
+  const int index = measure_index(mechanism, name);
+  if (index < 0) throw SceneError("measures." + name, "there is no such measure");
+  const std::string text = "(" + mechanism.measures[static_cast<std::size_t>(index)].text + ")";
+  mechanism.measures.erase(mechanism.measures.begin() + index);
+  for (NamedMeasure& each : mechanism.measures)
+    each.text = renamed_in(each.text, name, text);
+}
+
+void follow_in_measures(Mechanism& mechanism, const Part& part, const std::string& name) {
+  const ResultPart kind = part.kind == PartKind::joint   ? ResultPart::joint
+                          : part.kind == PartKind::force ? ResultPart::force
+                                                         : ResultPart::body;
+  for (NamedMeasure& each : mechanism.measures)
+    each.text = part_renamed_in(each.text, kind, part.name, name);
+}
+
+void drop_lost_measures(Mechanism& mechanism) {
+  for (bool dropped = !mechanism.measures.empty(); dropped;) {
+    dropped = std::erase_if(mechanism.measures,
+                            [all = mechanism](const NamedMeasure& each) { return is_lost(all, each); }) > 0;
+  }
+}
+
+NamedMeasure suggested_measure(const Mechanism& mechanism, const Part& part) {
+  const auto named = [&](const char* wish, std::string text, const char* unit) {
+    return NamedMeasure{free_name(mechanism, wish), "", std::move(text), unit};
+  };
+  const std::string name = argument_text(part.name);
+  if (part.kind == PartKind::body) return named("height", "y(" + name + ")", "m");
+  if (part.kind == PartKind::joint && joint_index(mechanism, part.name) >= 0 &&
+      mechanism.joints[static_cast<std::size_t>(joint_index(mechanism, part.name))].type != JointType::gear)
+    return named("force", "reaction(" + name + ")", "N");
+  if (part.kind == PartKind::force && force_index(mechanism, part.name) >= 0 &&
+      mechanism.forces[static_cast<std::size_t>(force_index(mechanism, part.name))].type == ForceType::spring)
+    return named("pull", "tension(" + name + ")", "N");
+  return named("mass_of_all", "mass()", "kg");
+}
+
+} // namespace flyball

@@ -1,0 +1,140 @@
+// Measures of the scene, shown while nothing is selected: names, expressions, what they come to.
+#include "app/document/formula_edits.hpp"
+#include "app/document/measure_edits.hpp"
+#include "app/render/icons.hpp"
+#include "app/session/units.hpp"
+#include "app/ui/inspector/inspector_parts.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+namespace {
+
+// A text of a measure, which is checked in the place of the one there is.
+void measure_field(App& app, const NamedMeasure& measure, const std::string& widget, const std::string& step,
+                   const std::string& shown, float width, const char* hint,
+                   const std::function<NamedMeasure(const std::string& typed)>& with) {
+  text_field(app,
+             {.name = widget,
+              .text = shown,
+              .check =
+                  [&app, name = measure.name, with](const std::string& typed) {
+                    return measure_mistake(app.document.stored(), name, with(typed));
+                  },
+              .take =
+                  [name = measure.name, step, with](App& changed, const std::string& typed) {
+                    edit(changed, step, [&](Mechanism& mechanism, Selection&) {
+                      set_measure(mechanism, name, with(typed));
+                    });
+                  },
+              .hint = hint},
+             width);
+}
+
+// Unit, note and the way out.
+void measure_popup(App& app, const NamedMeasure& measure, const std::string& widget) {
+  if (!ImGui::BeginPopup("measure")) return;
+  const float labels = 52 * app.scale, width = 150 * app.scale;
+  const auto label = [&](const char* text) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text);
+    ImGui::SameLine(labels);
+  };
+  label("Unit");
+  measure_field(app, measure, widget + "/unit", "Unit of " + measure.name, measure.unit, width,
+                "a plain number", [measure](const std::string& typed) {
+                  NamedMeasure changed = measure;
+                  changed.unit = typed;
+                  return changed;
+                });
+  label("Note");
+  measure_field(app, measure, widget + "/note", "Describe " + measure.name, measure.description, width, "",
+                [measure](const std::string& typed) {
+                  NamedMeasure changed = measure;
+                  changed.description = typed;
+                  return changed;
+                });
+  if (text_button(app, widget + "/remove", "Remove")) {
+    edit_later(app, "Remove " + measure.name,
+               [name = measure.name](Mechanism& mechanism, Selection&) { remove_measure(mechanism, name); });
+    ImGui::CloseCurrentPopup();
+  }
+  help_on_hover("Measures that use it have its expression instead.");
+  ImGui::EndPopup();
+}
+
+// What it comes to now: "0.134 m".
+std::string present_text(const App& app, const std::string& name) {
+  const std::vector<MeasureSolution>& all = app.answer.solution.measures;
+  const auto found = std::ranges::find(all, name, &MeasureSolution::name);
+  if (found == all.end()) return "No value: there is no steady state.";
+  if (!found->value) return found->reason;
+  const ShownUnit unit = shown_unit(found->unit, app.units);
+  return short_text(unit.shown(*found->value), 6) + (unit.text.empty() ? "" : " " + unit.text);
+}
+
+// "=y(ball)", with or without what makes it an expression.
+std::string without_sign(const std::string& typed) {
+  return typed.starts_with("=") ? typed.substr(1) : typed;
+}
+
+void measure_row(App& app, const NamedMeasure& measure) {
+  const std::string widget = "inspector/measure/" + measure.name;
+  const float labels = label_width(app), margin = margin_width(app), start = ImGui::GetCursorPosX();
+  const float width = ImGui::GetContentRegionAvail().x;
+  measure_field(app, measure, widget + "/name", "Rename " + measure.name, measure.name,
+                labels - 4 * app.scale, "", [measure](const std::string& typed) {
+                  NamedMeasure changed = measure;
+                  changed.name = typed;
+                  return changed;
+                });
+  help_on_hover(present_text(app, measure.name).c_str());
+  ImGui::SameLine(0, 0);
+  ImGui::SetCursorPosX(start + labels);
+  measure_field(app, measure, widget, "Change " + measure.name, "=" + measure.text,
+                std::max(width - labels - margin, 20 * app.scale), "=y(ball)",
+                [measure](const std::string& typed) {
+                  NamedMeasure changed = measure;
+                  changed.text = without_sign(typed);
+                  return changed;
+                });
+  help_on_hover(present_text(app, measure.name).c_str());
+  ImGui::SameLine(0, 0);
+  ImGui::PushID(widget.c_str());
+  if (margin_button(app, widget + "/more", icon::gear, "Unit, note; remove it.")) ImGui::OpenPopup("measure");
+  measure_popup(app, measure, widget);
+  ImGui::PopID();
+}
+
+// "x(ball@A), torque(spin), ...": what can be asked for.
+std::string all_functions() {
+  std::string all;
+  for (const ResultFunction& function : result_functions())
+    all += (all.empty() ? "" : ", ") + std::string(function.example);
+  return all;
+}
+
+} // namespace
+
+void measures_section(App& app) {
+  const Mechanism& mechanism = app.mechanism();
+  if (!inspector_section(app, "inspector/measures section", "Measures", !mechanism.measures.empty())) return;
+  for (const NamedMeasure& measure : mechanism.measures)
+    measure_row(app, measure);
+  if (text_button(app, "inspector/measures/add", "Add a measure"))
+    edit_later(app, "Add a measure", [](Mechanism& changed, Selection&) {
+      const Part body = changed.bodies.empty() ? Part{} : Part{PartKind::body, changed.bodies.back().name};
+      changed.measures.push_back(suggested_measure(changed, body));
+    });
+  static const std::string help =
+      "A number made of results, shown with them, in curves and over time, and wanted in design. It may ask "
+      "for " +
+      all_functions() + "; names that are no words in quotes.";
+  help_on_hover(help.c_str());
+}
+
+} // namespace flyball

@@ -1,0 +1,346 @@
+// Measures of steady states, against closed forms; their rates, against differences; and in every study.
+#include "tests/engine/dynamics_runs.hpp"
+#include "tests/engine/reference/random_mechanism.hpp"
+#include "tests/support/dice.hpp"
+
+#include "engine/continuation/branches.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/report/measures.hpp"
+#include "engine/study/design.hpp"
+#include "engine/study/sweep.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+const std::string speed = "joints.spin.drive.speed";
+
+const MeasureSolution& measure(const std::vector<MeasureSolution>& all, const std::string& name) {
+  const auto found = std::ranges::find(all, name, &MeasureSolution::name);
+  REQUIRE(found != all.end());
+  return *found;
+}
+
+// Within what is claimed.
+void check_measure(const Solution& s, const std::string& name, double wanted) {
+  const MeasureSolution& found = measure(s.measures, name);
+  CAPTURE(name, wanted, found.reason, s.message);
+  REQUIRE(found.value.has_value());
+  REQUIRE(found.error.has_value());
+  CAPTURE(*found.value, *found.error);
+  CHECK(std::abs(*found.value - wanted) <= *found.error + 1e-15 * std::abs(wanted));
+  CHECK(*found.error < 1e-10 * (1 + std::abs(wanted)));
+}
+
+Mechanism measured_pendulum(double length, double w, double angle = 0.5) {
+  Mechanism m = conical(length, 0, w, angle, 1.7);
+  const std::string bob = m.bodies.back().name;
+  m.points = {{"P", Vec3::Zero(), {}}, {"U", Vec3(0, 1, 0), {}}};
+  m.measures = {{"lean", "", "angle(" + bob + ", ground@P, ground@U)", "rad"},
+                {"swing_angle", "", "coordinate(swing)", "rad"},
+                {"depth", "", "-y(" + bob + ")", "m"},
+                {"ball_speed", "", "speed(" + bob + ")", "m/s"},
+                {"pull", "", "acceleration(" + bob + ")*mass(" + bob + ")", "N"},
+                {"hinge", "", "reaction(swing)", "N"},
+                {"up", "", "reaction_y(swing)", "N"},
+                {"bend", "", "moment_y(swing)", "N m"},
+                {"drive", "", "torque(spin)", "N m"},
+                {"power_in", "", "power(spin)", "W"},
+                {"turning", "", "rate(spin)", "rad/s"},
+                {"rod", "", "distance(" + bob + ", ground@P)", "m"},
+                {"undefined", "", "sqrt(-rod / (1 m))", ""}};
+  return m;
+}
+
+// A body held by springs and stops, between spheres and rods.
+Mechanism hung() {
+  Mechanism m;
+  m.name = "hung";
+  m.gravity = Vec3(0, -10, 0);
+  m.bodies = {body("weight", 2, Vec3(0, -1, 0), Vec3::Constant(0.1)), body("fixed", 1, Vec3(3, 0, 0))};
+  m.bodies[0].shapes.emplace_back().radius = 0.25;
+  Shape post;
+  post.type = ShapeType::capsule;
+  post.radius = 0.5;
+  post.from = Vec3(3, 4, 0);
+  post.to = Vec3(3, -9, 0);
+  m.bodies[1].shapes = {post};
+  Joint fall = sprung(prismatic("fall", "ground", "weight", Vec3(0, -1, 0), -Vec3::UnitY()), 50, 0);
+  fall.coordinates[0].stop = Stop{-0.5, 2, 1000, ""};
+  m.joints = {fall, joint(JointType::fixed, "post", "ground", "fixed", Vec3(3, 0, 0))};
+  m.forces = {point_spring("coil", "ground", "weight", Vec3::Zero(), Vec3(0, -1, 0), 30)};
+  m.measures = {{"way", "", "coordinate(fall)", "m"},        {"held", "", "tension(coil)", "N"},
+                {"long", "", "length(coil)", "m"},           {"inner", "", "spring(fall)", "N"},
+                {"room", "", "clearance(fall)", "m"},        {"gap", "", "clearance(weight, fixed)", "m"},
+                {"sum", "", "held - inner + gap*1 N/m", "N"}};
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("measures of a conical pendulum are those of the closed form", "[measures]") {
+  for (const double w : {4., 6., 12.}) {
+    const double length = 0.7, g = standard_gravity, mass = 1.7;
+    const Solution s = solve(measured_pendulum(length, w));
+    REQUIRE(s.status == Status::converged);
+    const double cosine = std::min(1., g / (w * w * length)), sine = std::sqrt(1 - cosine * cosine);
+    CAPTURE(w);
+    check_measure(s, "depth", length * cosine);
+    check_measure(s, "ball_speed", w * length * sine);
+    check_measure(s, "pull", mass * w * w * length * sine);
+    check_measure(s, "hinge", mass * g / cosine);
+    check_measure(s, "up", mass * g);
+    check_measure(s, "bend", 0);
+    check_measure(s, "drive", 0);
+    check_measure(s, "power_in", 0);
+    check_measure(s, "turning", w);
+    check_measure(s, "rod", length);
+    if (w > 4) check_measure(s, "lean", std::numbers::pi - std::acos(cosine));
+    const MeasureSolution& undefined = measure(s.measures, "undefined");
+    CHECK_FALSE(undefined.value.has_value());
+    CHECK_FALSE(undefined.error.has_value());
+    CHECK_FALSE(undefined.reason.empty());
+  }
+}
+
+TEST_CASE("springs, stops and clearances are those of Hooke and Euclid", "[measures]") {
+  const Solution s = solve(hung());
+  REQUIRE(s.status == Status::converged);
+  const double way = 2. * 10 / 80;
+  check_measure(s, "way", way);
+  check_measure(s, "held", 30 * way);
+  check_measure(s, "long", 1 + way);
+  check_measure(s, "inner", -50 * way);
+  check_measure(s, "room", way + 0.5);
+  check_measure(s, "gap", 3 - 0.25 - 0.5);
+  check_measure(s, "sum", 80 * way + 2.25);
+}
+
+TEST_CASE("what is not asked for is not computed, and nothing changes without measures", "[measures]") {
+  Mechanism m = measured_pendulum(0.7, 6);
+  System system = compile(m);
+  Parameters p;
+  bind(system, m, p);
+  MeasureSet all;
+  all.bind(m, system, p);
+  CHECK(all.needs_forces());
+  CHECK(all.needs_accelerations());
+  m.measures.resize(3);
+  all.bind(m, system, p);
+  CHECK(all.size() == 3);
+  CHECK_FALSE(all.needs_forces());
+  CHECK_FALSE(all.needs_accelerations());
+  m.measures.clear();
+  CHECK(solve(m).measures.empty());
+}
+
+TEST_CASE("rates of measures along the coordinates agree with differences", "[measures]") {
+  Dice dice(7);
+  int compared = 0;
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    reference::RandomOptions options;
+    options.bodies = 4;
+    options.loops = seed % 3 == 0 ? 1 : 0;
+    options.drives = seed % 2 ? reference::RandomDrives::several : reference::RandomDrives::root;
+    options.steady = false;
+    Mechanism m = reference::random_mechanism(seed, options);
+    m.points = {{"A", Vec3(0.3, -0.2, 0.5), {}}};
+    m.measures.clear();
+    const auto add = [&](const std::string& text, const std::string& unit) {
+      m.measures.push_back({"m" + std::to_string(m.measures.size()), "", text, unit});
+    };
+    for (const Body& each : m.bodies) {
+      const std::string name = argument_text(each.name);
+      for (const char* axis : {"x", "y", "z"}) {
+        add(std::string(axis) + "(" + name + "@A)", "m");
+        add("v" + std::string(axis) + "(" + name + ")", "m/s");
+        add("a" + std::string(axis) + "(" + name + "@A)", "m/s^2");
+      }
+      add("speed(" + name + "@A)", "m/s");
+      add("acceleration(" + name + ")", "m/s^2");
+      add("distance(" + name + ", ground@A)", "m");
+      add("angle(" + name + ", ground@A, " + argument_text(m.bodies.front().name) + "@A)", "rad");
+    }
+    for (const Joint& each : m.joints)
+      for (int i = 0; i < coordinate_count(each.type); ++i)
+        add("coordinate(" + argument_text(each.name) +
+                (coordinate_count(each.type) > 1 ? "." + std::to_string(i) : "") + ")",
+            is_angle(each.type, i) ? "rad" : "m");
+    for (const Force& each : m.forces)
+      if (each.type == ForceType::spring) {
+        add("length(" + argument_text(each.name) + ")", "m");
+        add("tension(" + argument_text(each.name) + ")", "N");
+      }
+    const System system = compile(m);
+    if (system.nv == 0) continue;
+    Parameters p;
+    Scaling scaling;
+    bind(system, m, p);
+    set_scaling(system, p, scaling);
+    const Problem problem{system, p, scaling};
+    Eigen::VectorXd q;
+    drawn_configuration(system, p, q);
+    Eigen::VectorXd step(system.nv);
+    // Where a loop is open, the coordinates of the joint that closes it are not defined by its poses alone.
+    const double displaced = system.rows > 0 ? 0 : 0.4;
+    for (Eigen::Index v = 0; v < step.size(); ++v)
+      step[v] = dice.between(-displaced, displaced) * scaling.column[v];
+    retract<double>(system, step, q);
+    MeasureSet measures;
+    measures.bind(m, system, p);
+    CHECK_FALSE(measures.needs_forces());
+    Workspace w, beside;
+    measures.evaluate_at(problem, q, w);
+    const Eigen::MatrixXd rates = measures.gradient(problem, q, w, beside);
+    for (Eigen::Index v = 0; v < system.nv; ++v) {
+      const double h = 1e-4 * scaling.column[v];
+      std::array<Eigen::VectorXd, 4> at; // the error of the combination is of order h^4
+      for (std::size_t i = 0; i < 4; ++i) {
+        Eigen::VectorXd moved = q;
+        retract<double>(system, Eigen::VectorXd::Unit(system.nv, v) * h * std::array{1., -1., 2., -2.}[i],
+                        moved);
+        at[i] = measures.evaluate_at(problem, moved, beside);
+      }
+      const Eigen::VectorXd difference = (8 * (at[0] - at[1]) - (at[2] - at[3])) / (12 * h);
+      for (std::size_t i = 0; i < measures.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        const double expected = difference[k], size = std::abs(at[0][k]);
+        if (!std::isfinite(expected) || !std::isfinite(rates(k, v))) continue;
+        // An angle of joints may jump by a turn.
+        if (std::abs(at[2][k] - at[3][k]) > 1 && m.measures[i].unit == "rad") continue;
+        INFO("seed " << seed << " " << m.measures[i].text << " along " << v);
+        CHECK(std::abs(rates(k, v) - expected) < 1e-8 * (1 + std::abs(expected)) + 1e-11 * (1 + size) / h);
+        ++compared;
+      }
+    }
+  }
+  CHECK(compared > 10000);
+}
+
+TEST_CASE("measures move with the sliders as their closed form does", "[measures]") {
+  Mechanism m = measured_pendulum(0.7, 6);
+  m.sliders = {{speed, 0, 10, SliderScale::linear, ""}, {"gravity.1", -20, -5, SliderScale::linear, ""}};
+  const Solution s = solve(m);
+  const double w = 6, length = 0.7, mass = 1.7;
+  REQUIRE(s.sensitivities.size() == 2);
+  const auto rate = [&](std::size_t slider, const std::string& name) {
+    const auto at = std::ranges::find(m.measures, name, &NamedMeasure::name) - m.measures.begin();
+    return s.sensitivities[slider].measures.at(static_cast<std::size_t>(at));
+  };
+  CHECK(rate(0, "hinge") == Approx(mass * 2 * w * length).epsilon(1e-7)); // m g / cos = m w^2 L
+  CHECK(rate(0, "depth") == Approx(-2 * standard_gravity / (w * w * w)).epsilon(1e-7));
+  CHECK(rate(0, "turning") == Approx(1).epsilon(1e-8));
+  CHECK(rate(1, "hinge") == Approx(0).margin(1e-6));
+  CHECK(rate(1, "depth") == Approx(-1 / (w * w)).epsilon(1e-7)); // gravity is along -y
+}
+
+TEST_CASE("a number is found at which a measure is as wanted", "[measures]") {
+  const double length = 0.7, mass = 1.7;
+  const Mechanism m = measured_pendulum(length, 6);
+  DesignOptions connected;
+  connected.all = false;
+  struct Wanted {
+    std::string name;
+    double value, speed;
+  };
+  for (const auto& [name, value, expected] :
+       std::vector<Wanted>{{"hinge", 60, std::sqrt(60 / (mass * length))},
+                           {"depth", 0.3, std::sqrt(standard_gravity / 0.3)},
+                           {"ball_speed", 2.5, 0}}) {
+    const DesignAnswer answer = design(m, speed, 0, 12, name, value, connected);
+    INFO(name << " " << answer.message);
+    REQUIRE(answer.status == Status::converged);
+    REQUIRE(answer.solutions.size() == 2); // leaning to either side
+    for (const DesignSolution& s : answer.solutions) {
+      if (expected > 0) CHECK(s.parameter == Approx(expected).epsilon(1e-12));
+      CHECK(s.residual < 1e-12);
+      CHECK(*measure(s.at.measures, name).value == Approx(value).epsilon(1e-12));
+      Mechanism there = m;
+      set_parameter(there, speed, s.parameter);
+      CHECK(*measure(solve(there).measures, name).value == Approx(value).epsilon(1e-10));
+      REQUIRE(s.rate.has_value());
+    }
+    CHECK(answer.unit == m.measures[static_cast<std::size_t>(measure_index(m, name))].unit);
+  }
+  const DesignAnswer never = design(m, speed, 0, 12, "depth", 5, connected);
+  CHECK(never.status == Status::not_converged);
+  CHECK(never.message.find("depth never is 5 m") != std::string::npos);
+  try {
+    design(m, speed, 0, 12, "nothing", 1, connected);
+    FAIL("no mistake");
+  } catch (const SceneError& error) {
+    CHECK(std::string(error.what()).find("one of the measures") != std::string::npos);
+  }
+}
+
+TEST_CASE("every study tells the same of a measure", "[measures]") {
+  const Mechanism m = measured_pendulum(0.7, 6);
+  const Variation variation{speed, 5, 8, 4};
+  const std::vector<SweepPoint> points = sweep(m, {&variation, 1}, 1);
+  for (const SweepPoint& point : points) {
+    Mechanism there = m;
+    set_parameter(there, speed, point.parameters[0]);
+    const Solution s = solve(there);
+    REQUIRE(point.solution.measures.size() == m.measures.size());
+    for (std::size_t i = 0; i + 1 < m.measures.size(); ++i)
+      CHECK(*point.solution.measures[i].value == Approx(*s.measures[i].value).epsilon(1e-12).margin(1e-12));
+  }
+  const ResponseDiagram diagram = follow_branches(m, speed, 5, 8);
+  REQUIRE_FALSE(diagram.branches.empty());
+  for (const ResponsePoint& point : diagram.branches[0].points)
+    if (const double w = point.parameter; *measure(point.measures, "ball_speed").value > 0.1)
+      CHECK(*measure(point.measures, "hinge").value == Approx(1.7 * w * w * 0.7).epsilon(1e-9));
+}
+
+TEST_CASE("measures of the parametric governor", "[measures]") {
+  const Mechanism m = shipped("governor_parametric");
+  REQUIRE_FALSE(m.measures.empty());
+  const Solution s = solve(m);
+  REQUIRE(s.status == Status::converged);
+  for (const MeasureSolution& each : s.measures) {
+    INFO(each.name);
+    CHECK(each.value.has_value());
+    CHECK(each.error.value_or(1) < 1e-9);
+  }
+  const auto of = [&](const char* name) { return *measure(s.measures, name).value; };
+  const double a = value(s, "arm1"), w = get_parameter(m, "parameters.w");
+  CHECK(of("height") == Approx(0.16 * std::sin(a)).epsilon(1e-13));
+  CHECK(of("radius") == Approx(0.16 * std::cos(a)).epsilon(1e-13));
+  CHECK(of("ball_speed") == Approx(w * of("radius")).epsilon(1e-13));
+  CHECK(of("ball_pull") == Approx(w * w * of("radius")).epsilon(1e-13));
+}
+
+TEST_CASE("measures of a motion are recorded, and settle where the steady state has them", "[measures]") {
+  Mechanism m = shipped("governor_parametric");
+  m.measures.push_back({"drive", "", "torque(spin)", "N m"});
+  m.measures.push_back({"pull_on_collar", "", "reaction(slide)", "N"});
+  SimulationOptions options = lasting(40);
+  options.rate = 10;
+  const Run run = simulate(m, options);
+  REQUIRE(run.status == RunStatus::completed);
+  REQUIRE(run.measures.size() == m.measures.size());
+  const Solution s = solve(m);
+  for (std::size_t i = 0; i < m.measures.size(); ++i) {
+    REQUIRE(run.measures[i].value.size() == run.time.size());
+    if (m.measures[i].name == "drive") continue; // turns the settling parts yet
+    INFO(m.measures[i].name);
+    CHECK(run.measures[i].value.back() == Approx(*s.measures[i].value).epsilon(1e-3).margin(1e-3));
+  }
+  // By the coordinates and rates of the motion itself.
+  const auto track = [&](const char* joint) {
+    return *std::ranges::find(run.coordinates, joint, &CoordinateTrack::joint);
+  };
+  const auto measured = [&](const char* name) {
+    return std::ranges::find(run.measures, name, &MeasureTrack::name)->value;
+  };
+  for (std::size_t i = 0; i < run.time.size(); ++i) {
+    const double a = track("arm1").value[i], rate = track("arm1").rate[i];
+    CHECK(measured("height")[i] == Approx(0.16 * std::sin(a)).epsilon(1e-9));
+    const double round = 11.0174 * 0.16 * std::cos(a);
+    CHECK(measured("ball_speed")[i] == Approx(std::hypot(round, 0.16 * rate)).epsilon(1e-9));
+  }
+  SimulationOptions without = lasting(0.5);
+  without.measures = false;
+  CHECK(simulate(m, without).measures.empty());
+}
