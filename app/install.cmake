@@ -23,6 +23,9 @@ add_custom_target(flyball_words ALL DEPENDS ${words}/done)
 
 include(GNUInstallDirs)
 install(TARGETS flyball DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+if(TARGET flyball_mpi) # by itself (component `mpi`): the package asks for no MPI
+  install(TARGETS flyball_mpi LIBRARY DESTINATION ${mpi_folder} COMPONENT mpi)
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/assets/scenes DESTINATION share/flyball COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/assets/scene.schema.json DESTINATION share/flyball COMPONENT program)
 install(DIRECTORY ${words}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program)

@@ -32,6 +32,7 @@ int finish(const Ending& ending);
 
 void add_solve(CLI::App& app, Ending& ending);
 void add_sweep(CLI::App& app, Ending& ending);
+void add_merge(CLI::App& app, Ending& ending);
 void add_branch(CLI::App& app, Ending& ending);
 void add_design(CLI::App& app, Ending& ending);
 void add_simulate(CLI::App& app, Ending& ending);

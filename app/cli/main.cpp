@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
 
   add_solve(app, ending);
   add_sweep(app, ending);
+  add_merge(app, ending);
   add_branch(app, ending);
   add_design(app, ending);
   add_simulate(app, ending);

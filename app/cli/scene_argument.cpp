@@ -141,8 +141,8 @@ Range parse_range(std::string_view option, std::string_view text, bool count) {
   range.to = parse_number(where, parts[1]);
   if (count) {
     const double n = parse_number(where, parts[2]);
-    if (n != std::floor(n) || n < 1 || n > 1e7)
-      throw SceneError(where, "expected a whole number of values from 1 to 10000000");
+    if (n != std::floor(n) || n < 1 || n > 1e9)
+      throw SceneError(where, "expected a whole number of values from 1 to 1000000000");
     range.count = static_cast<int>(n);
   }
   return range;

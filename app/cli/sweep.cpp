@@ -1,170 +1,142 @@
 #include "engine/study/sweep.hpp"
 #include "app/cli/command.hpp"
 #include "app/cli/output.hpp"
+#include "app/cli/processes.hpp"
 #include "app/cli/progress.hpp"
+#include "app/cli/row_output.hpp"
 #include "app/cli/scene_argument.hpp"
-#include "app/cli/solution_json.hpp"
-#include "engine/mechanism/address.hpp"
+#include "app/cli/sweep_part.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/file.hpp"
-#include "engine/mechanism/safe_text.hpp"
-#include "engine/mechanism/text.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
 #include <memory>
+#include <optional>
 
 namespace flyball::cli {
 namespace {
 
-struct ColumnName {
-  std::string joint;
-  int index;
-  std::string text() const { return index < 0 ? joint : joint + "." + std::to_string(index); }
+constexpr double most_points = 1e12, most_in_table = 1e6;
+
+using Outputs = std::vector<std::unique_ptr<RowOutput>>;
+
+// A block of rows in all forms: how many have an answer, then each form's bytes after their number.
+std::string pack(const std::vector<SweepPoint>& points, const Outputs& outputs) {
+  std::string out;
+  const auto add_count = [&](std::uint64_t n) { out.append(reinterpret_cast<const char*>(&n), sizeof n); };
+  add_count(static_cast<std::uint64_t>(
+      std::ranges::count(points, Status::converged, [](const SweepPoint& p) { return p.solution.status; })));
+  for (const auto& output : outputs) {
+    const std::string rows = output->format(points);
+    add_count(rows.size());
+    out += rows;
+  }
+  return out;
+}
+
+// Returns how many have an answer.
+std::uint64_t unpack(std::size_t begin, std::size_t end, std::string_view block, const Outputs& outputs) {
+  const auto take_count = [&] {
+    std::uint64_t n = 0;
+    std::memcpy(&n, block.data(), sizeof n);
+    block.remove_prefix(sizeof n);
+    return n;
+  };
+  const std::uint64_t answers = take_count();
+  for (const auto& output : outputs) {
+    const std::uint64_t size = take_count();
+    output->take(begin, end, block.substr(0, size));
+    block.remove_prefix(size);
+  }
+  return answers;
+}
+
+struct SweepOptions {
+  SceneArgument scene;
+  std::vector<std::string> vary;
+  std::string csv, npz, shard;
+  bool json = false, no_times = false;
 };
 
-// The free coordinates; the same at every point, whether it has an answer or not.
-std::vector<ColumnName> coordinate_columns(const Mechanism& mechanism) {
-  std::vector<ColumnName> columns;
-  for (const CoordinateSolution& c : Analysis(mechanism).summary().coordinates)
-    if (!c.driven) columns.push_back({c.joint, c.count == 1 ? -1 : c.index});
-  return columns;
-}
-
-// Empty where there is no value.
-std::string measure_cell(const Solution& solution, std::size_t i) {
-  if (i >= solution.measures.size() || !solution.measures[i].value) return "";
-  return csv_number(*solution.measures[i].value);
-}
-
-std::string to_csv(const Mechanism& m, const std::vector<Variation>& variations,
-                   const std::vector<SweepPoint>& points) {
-  const std::vector<ColumnName> columns = coordinate_columns(m);
-  std::string out;
-  for (const Variation& v : variations)
-    out += csv_field(v.address) + ",";
-  out += "status";
-  for (const ColumnName& c : columns)
-    out += "," + csv_field(c.text());
-  for (const NamedMeasure& measure : m.measures)
-    out += "," + csv_field(measure.name);
-  out += ",stable,residual,run_time_s\n";
-  for (const SweepPoint& p : points) {
-    for (double value : p.parameters)
-      out += csv_number(value) + ",";
-    out += word(p.solution.status);
-    std::size_t at = 0;
-    for (const CoordinateSolution& c : p.solution.coordinates)
-      if (!c.driven) {
-        out += "," + csv_number(c.value);
-        ++at;
-      }
-    for (; at < columns.size(); ++at)
-      out += ",";
-    for (std::size_t i = 0; i < m.measures.size(); ++i)
-      out += "," + measure_cell(p.solution, i);
-    out += p.solution.stable ? (*p.solution.stable ? ",true," : ",false,") : ",,";
-    out += csv_number(p.solution.residual) + "," + csv_number(p.solution.run_time_s) + "\n";
+void run(const SweepOptions& options, Ending& ending) {
+  check_outputs(options.scene.file, {{"--csv", options.csv}, {"--npz", options.npz}});
+  const std::unique_ptr<WorkSharing> sharing = share_work();
+  const Mechanism mechanism = options.scene.load();
+  std::vector<Variation> variations;
+  double total = 1;
+  for (const std::string& text : options.vary) {
+    const Range range = parse_range("--vary", text, true);
+    variations.push_back({range.address, range.from, range.to, range.count});
+    total *= range.count;
   }
-  return out;
-}
+  const bool table = options.csv.empty() && options.npz.empty() && !options.json;
+  if (total > most_points) throw SceneError("--vary", "expected at most 10^12 combinations");
+  if (table && total > most_in_table)
+    throw SceneError("--vary",
+                     "expected at most 1000000 combinations in a table to read; --csv and --npz take more");
 
-nlohmann::ordered_json to_json(const std::vector<Variation>& variations,
-                               const std::vector<SweepPoint>& points) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const SweepPoint& p : points) {
-    nlohmann::ordered_json row;
-    for (std::size_t v = 0; v < variations.size(); ++v)
-      row["parameters"][variations[v].address] = p.parameters[v];
-    row["status"] = word(p.solution.status);
-    row["message"] = p.solution.message;
-    row["coordinates"] = nlohmann::ordered_json::object();
-    for (const CoordinateSolution& c : p.solution.coordinates)
-      if (!c.driven) row["coordinates"][ColumnName{c.joint, c.count == 1 ? -1 : c.index}.text()] = c.value;
-    if (!p.solution.measures.empty()) row["measures"] = measures_json(p.solution.measures);
-    row["stable"] =
-        p.solution.stable ? nlohmann::ordered_json(*p.solution.stable) : nlohmann::ordered_json(nullptr);
-    row["stability_reason"] = p.solution.stability_reason
-                                  ? nlohmann::ordered_json(word(*p.solution.stability_reason))
-                                  : nlohmann::ordered_json(nullptr);
-    if (p.solution.floquet) row["floquet"] = floquet_json(*p.solution.floquet);
-    row["residual"] = std::isfinite(p.solution.residual) ? nlohmann::ordered_json(p.solution.residual)
-                                                         : nlohmann::ordered_json(nullptr);
-    row["run_time_s"] = p.solution.run_time_s;
-    rows.push_back(std::move(row));
-  }
-  return {{"points", std::move(rows)}};
-}
+  const bool times = !options.no_times && options.shard.empty() && !started_together();
+  const SweepColumns columns(mechanism, variations, times);
+  const Shard shard = options.shard.empty() ? Shard() : parse_shard("--shard", options.shard);
+  const SweepPart part(mechanism, columns, shard);
+  Outputs outputs;
+  if (!options.csv.empty())
+    outputs.push_back(
+        csv_output(columns, options.csv, options.shard.empty() ? csv_head(columns.names()) : part.head()));
+  if (!options.npz.empty()) outputs.push_back(npz_output(columns, options.npz, part.rows));
+  if (options.json) outputs.push_back(json_output(columns, mechanism));
+  if (table) outputs.push_back(table_output(columns, mechanism));
 
-std::string to_table(const Mechanism& m, const std::vector<Variation>& variations,
-                     const std::vector<SweepPoint>& points) {
-  const std::vector<ColumnName> columns = coordinate_columns(m);
-  std::vector<std::vector<std::string>> rows(1);
-  for (const Variation& v : variations) {
-    const std::string unit = parameter_unit(m, v.address);
-    const std::string name = printable(v.address);
-    rows[0].push_back(unit.empty() ? name : fmt::format("{} [{}]", name, unit));
-  }
-  rows[0].push_back("status");
-  for (const ColumnName& c : columns) {
-    const int j = joint_index(m, c.joint);
-    const bool angle = j >= 0 ? is_angle(m.joints[static_cast<std::size_t>(j)].type, std::max(0, c.index))
-                              : is_angle(JointType::free, c.index);
-    rows[0].push_back(fmt::format("{} [{}]", printable(c.text()), angle ? "rad" : "m"));
-  }
-  for (const NamedMeasure& measure : m.measures)
-    rows[0].push_back(measure.unit.empty() ? measure.name
-                                           : fmt::format("{} [{}]", measure.name, measure.unit));
-  rows[0].insert(rows[0].end(), {"stable", "residual", "time [µs]"});
-  for (const SweepPoint& p : points) {
-    auto& row = rows.emplace_back();
-    for (double value : p.parameters)
-      row.push_back(fmt::format("{:.8g}", value));
-    row.emplace_back(word(p.solution.status));
-    for (const CoordinateSolution& c : p.solution.coordinates)
-      if (!c.driven) row.push_back(fmt::format("{:.10f}", c.value));
-    row.resize(variations.size() + 1 + columns.size());
-    for (std::size_t i = 0; i < m.measures.size(); ++i) {
-      const bool known = i < p.solution.measures.size() && p.solution.measures[i].value;
-      row.push_back(known ? fmt::format("{:.10g}", *p.solution.measures[i].value) : "-");
+  const auto in_scene = [&options](const SceneError& error) {
+    return SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
+  };
+  std::uint64_t answers = 0;
+  SharedWork work;
+  work.count = part.end() - part.begin();
+  work.maker = [&]() -> BlockMaker {
+    try {
+      return [&, solver = std::make_shared<GridSolver>(mechanism, variations)](std::size_t begin,
+                                                                               std::size_t end) {
+        std::vector<SweepPoint> points;
+        try {
+          for (std::size_t i = begin; i < end; ++i)
+            points.push_back(solver->solve(part.begin() + i));
+        } catch (const SceneError& error) {
+          throw in_scene(error);
+        }
+        return pack(points, outputs);
+      };
+    } catch (const SceneError& error) {
+      throw in_scene(error);
     }
-    row.push_back(p.solution.stable ? (*p.solution.stable ? "yes" : "no") : "-");
-    row.push_back(std::isfinite(p.solution.residual) ? fmt::format("{:.1e}", p.solution.residual) : "-");
-    row.push_back(fmt::format("{:.1f}", p.solution.run_time_s * 1e6));
+  };
+  work.take = [&](std::size_t begin, std::size_t end, std::string_view block) {
+    answers += unpack(begin, end, block, outputs);
+  };
+  if (!sharing->takes()) return sharing->run(work);
+  for (const auto& output : outputs)
+    output->begin();
+  {
+    ProgressBar progress("solving");
+    work.progress = [&](std::size_t done, std::size_t all) { progress.show("solving", done, all); };
+    sharing->run(work);
   }
-  std::vector<std::size_t> widths(rows[0].size());
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], row[i].size());
-  std::string out;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i)
-      out += fmt::format("{}{:>{}}", i ? "  " : "", row[i], widths[i]);
-    out += "\n";
-  }
-  return out;
-}
-
-// Why no point has an answer: what is said of the first.
-std::string reason_of(const std::vector<SweepPoint>& points) {
-  return fmt::format("no steady state at any of the {} points; at the first: {}", points.size(),
-                     points.empty() ? "" : points.front().solution.message);
+  for (const auto& output : outputs)
+    output->finish();
+  if (answers > 0 || work.count == 0) return;
+  // Why no point has an answer: what is said of the first.
+  ending = end_with(false, options.scene.file,
+                    fmt::format("no steady state at any of the {} points; at the first: {}", work.count,
+                                GridSolver(mechanism, variations).solve(part.begin()).solution.message));
 }
 
 } // namespace
 
 void add_sweep(CLI::App& app, Ending& ending) {
-  struct Options {
-    SceneArgument scene;
-    std::vector<std::string> vary;
-    std::string csv;
-    bool json = false;
-  };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SweepOptions>();
   CLI::App* command =
       app.add_subcommand("sweep", "Find the steady state over a range of one or more parameters");
   options->scene.add_to(*command);
@@ -176,38 +148,18 @@ void add_sweep(CLI::App& app, Ending& ending) {
       ->allow_extra_args(false);
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "Write a table to a file (-: standard output)");
-  command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
+  CLI::Option* npz = command->add_option("--npz", options->npz, "Write columns for NumPy to a file");
+  CLI::Option* json = command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
+  json->excludes(npz);
+  command->add_flag("--no-times", options->no_times, "Leave out run times: the same bytes in every run");
+  command
+      ->add_option("--shard", options->shard,
+                   "Compute part K of N alone, K/N, and write it to --csv for `flyball merge`; without times")
+      ->needs(csv)
+      ->excludes(npz);
   command->footer(
       "Example: flyball sweep governor.json --vary joints.spin.drive.speed=5:20:31 --csv curve.csv");
-  command->callback([options, &ending] {
-    check_outputs(options->scene.file, {{"--csv", options->csv}});
-    const Mechanism mechanism = options->scene.load();
-    std::vector<Variation> variations;
-    double total = 1;
-    for (const std::string& text : options->vary) {
-      const Range range = parse_range("--vary", text, true);
-      variations.push_back({range.address, range.from, range.to, range.count});
-      total *= variations.back().count;
-    }
-    if (total > 1e7) throw SceneError("--vary", "expected at most 10000000 combinations");
-    std::vector<SweepPoint> points;
-    try {
-      ProgressBar progress("solving");
-      points = sweep(mechanism, variations, 0,
-                     [&](std::size_t done, std::size_t all) { progress.show("solving", done, all); });
-    } catch (const SceneError& error) {
-      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
-    }
-    if (!options->csv.empty())
-      write_bytes(options->csv, to_csv(mechanism, variations, points));
-    else if (options->json)
-      print_json(with_warnings(to_json(variations, points), mechanism));
-    else
-      print_text(to_table(mechanism, variations, points));
-    const bool any = std::ranges::any_of(
-        points, [](const SweepPoint& p) { return p.solution.status == Status::converged; });
-    ending = end_with(any, options->scene.file, reason_of(points));
-  });
+  command->callback([options, &ending] { run(*options, ending); });
 }
 
 } // namespace flyball::cli

@@ -1,7 +1,9 @@
 // Files as bytes: read whole, and written so that nobody ever sees half of one.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +25,25 @@ std::string read_bytes(const std::filesystem::path& file, std::optional<double> 
 // file (a pipe, /dev/stdout) is written directly, and a named pipe waits for its reader. Throws SceneError
 // (`where` is the path), and then leaves the old file as it was.
 void write_bytes(const std::filesystem::path& file, std::string_view bytes);
+// The same in pieces, with nothing in the file's place before the last.
+class FileWriter {
+ public:
+  // Throws where nothing can be written there, as far as that is known beforehand. A pipe or standard output
+  // gets each piece at once.
+  explicit FileWriter(const std::filesystem::path& file);
+  ~FileWriter(); // without finish() the file stays as it was
+  FileWriter(FileWriter&&) noexcept;
+  FileWriter& operator=(FileWriter&&) noexcept;
+
+  void write(std::string_view bytes);
+  // From this place (bytes) on, whatever is written elsewhere. Throws for what is no regular file.
+  void write_at(std::uint64_t place, std::string_view bytes);
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 // The same for whoever may not wait: refuses what is there and no regular file, "-" too.
 void replace_file(const std::filesystem::path& file, std::string_view bytes);
 

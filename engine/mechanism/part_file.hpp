@@ -3,6 +3,7 @@
 // being written, by this machine or another one on a shared disk.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
@@ -23,6 +24,8 @@ class PartFile {
   const std::filesystem::path& path() const { return path_; }
   // Appends to a file.
   void write(std::string_view bytes);
+  // Into a file from this place (bytes) on; what is appended does not move for it.
+  void write_at(std::uint64_t place, std::string_view bytes);
   // Moves a file, by whomever it was written, over the target once it is on disk.
   void put_in_place();
 

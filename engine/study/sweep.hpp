@@ -14,6 +14,7 @@ struct Variation {
   double from = 0, to = 0;
   int count = 2; // values, ends included; 1: `from` alone
   double value(int i) const;
+  bool operator==(const Variation&) const = default;
 };
 
 struct SweepPoint {
@@ -21,10 +22,31 @@ struct SweepPoint {
   Solution solution;              // without details
 };
 
-// All combinations, the last variation moving fastest. Uses up to `threads` threads (0: all cores);
-// `progress` is called from the calling thread with the number of points done. `cancel` is polled between
-// points and iterations; points that were not reached are then not_converged. Throws SceneError for an
-// address or a value that the mechanism does not take.
+// How many combinations there are, and the values of one of them, the last variation moving fastest.
+std::size_t grid_size(std::span<const Variation> variations);
+std::vector<double> grid_values(std::span<const Variation> variations, std::size_t i);
+
+// Solves points of a grid one after the other, in any order; for one thread.
+class GridSolver {
+ public:
+  // Throws SceneError for an address that the mechanism does not take.
+  GridSolver(const Mechanism& mechanism, std::span<const Variation> variations);
+
+  // Throws SceneError for a value that the mechanism does not take, unless expressions make it from
+  // parameters: then it is one of the point's. `cancel` is polled between iterations; the point is then
+  // not_converged.
+  SweepPoint solve(std::size_t i, const std::atomic<bool>* cancel = nullptr);
+
+ private:
+  std::vector<Variation> variations_;
+  Analysis analysis_;
+  bool geometry_varies_;
+};
+
+// All combinations. Uses up to `threads` threads (0: all cores); `progress` is called from the calling thread
+// with the number of points done. `cancel` is polled between points and iterations; points that were not
+// reached are then not_converged. Throws SceneError for an address or a value that the mechanism does not
+// take.
 std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variation> variations,
                               int threads = 0,
                               const std::function<void(std::size_t done, std::size_t all)>& progress = {},

@@ -38,20 +38,47 @@ std::string read_bytes(const fs::path& file, std::optional<double>) {
   return bytes;
 }
 
-void write_bytes(const fs::path& file, std::string_view bytes) {
-  if (file != "-") return replace_file(file, bytes);
-  if (!std::cout.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush())
+struct FileWriter::State {
+  std::optional<PartFile> part; // else standard output
+};
+
+FileWriter::FileWriter(const fs::path& file) : state_(std::make_unique<State>()) {
+  if (file == "-") return;
+  const fs::path target = follow_links(file);
+  std::error_code ignored;
+  if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
+    throw SceneError(file.string(), "cannot write: it is no regular file");
+  state_->part.emplace(file, target, PartFile::Kind::file);
+}
+FileWriter::~FileWriter() = default;
+FileWriter::FileWriter(FileWriter&&) noexcept = default;
+FileWriter& FileWriter::operator=(FileWriter&&) noexcept = default;
+
+void FileWriter::write(std::string_view bytes) {
+  if (state_->part)
+    state_->part->write(bytes);
+  else if (!std::cout.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush())
     throw SceneError("-", "cannot write");
 }
 
+void FileWriter::write_at(std::uint64_t place, std::string_view bytes) {
+  if (!state_->part) throw SceneError("-", "cannot write: it is no regular file");
+  state_->part->write_at(place, bytes);
+}
+
+void FileWriter::finish() {
+  if (state_->part) state_->part->put_in_place();
+}
+
+void write_bytes(const fs::path& file, std::string_view bytes) {
+  FileWriter out(file);
+  out.write(bytes);
+  out.finish();
+}
+
 void replace_file(const fs::path& file, std::string_view bytes) {
-  const fs::path target = follow_links(file);
-  std::error_code ignored;
-  if (file == "-" || (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored)))
-    throw SceneError(file.string(), "cannot write: it is no regular file");
-  PartFile part(file, target, PartFile::Kind::file);
-  part.write(bytes);
-  part.put_in_place();
+  if (file == "-") throw SceneError(file.string(), "cannot write: it is no regular file");
+  write_bytes(file, bytes);
 }
 
 bool same_file(const fs::path& input, const fs::path& output) {

@@ -38,6 +38,13 @@ void PartFile::write(std::string_view bytes) {
   if (!out.flush()) throw SceneError(file_.string(), "cannot write: the disk takes no more");
 }
 
+void PartFile::write_at(std::uint64_t place, std::string_view bytes) {
+  std::fstream out(path_, std::ios::binary | std::ios::in | std::ios::out);
+  out.seekp(static_cast<std::streamoff>(place));
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!out.flush()) throw SceneError(file_.string(), "cannot write: the disk takes no more");
+}
+
 void PartFile::put_in_place() {
   std::error_code failed;
   fs::rename(path_, target_, failed);

@@ -106,14 +106,11 @@ fs::path follow_links(const fs::path& file) {
   fail(file, "write", ELOOP);
 }
 
-// Writes a regular file, or one that is not there yet.
-void replace_regular(const fs::path& file, const fs::path& target, bool exists, std::string_view bytes) {
+// Of a regular file, or one that is not there yet.
+void check_replaceable(const fs::path& file, const fs::path& target, bool exists) {
   // A file marked read-only is meant to stay; renaming over it would not ask.
   if (exists && ::access(target.c_str(), W_OK) != 0) fail(file, "write", errno);
   if (!target.has_filename()) fail(file, "write", ENOENT);
-  PartFile part(file, target, PartFile::Kind::file);
-  part.write(bytes);
-  part.put_in_place();
 }
 
 // What a path stands for, through links; nothing where there is nothing.
@@ -155,19 +152,59 @@ int open_for_writing(const fs::path& file, const fs::path& target, bool pipe) {
 
 } // namespace
 
-void write_bytes(const fs::path& file, std::string_view bytes) {
-  if (const int own = own_descriptor(file, STDOUT_FILENO); own >= 0) {
-    std::fflush(nullptr);
-    return write_all(file, own, bytes);
+struct FileWriter::State {
+  fs::path file;
+  std::optional<PartFile> part{}; // else written directly
+  std::optional<Descriptor> opened{};
+  int direct = -1;
+
+  explicit State(const fs::path& f) : file(f) {
+    direct = own_descriptor(file, STDOUT_FILENO);
+    if (direct >= 0) {
+      std::fflush(nullptr);
+      return;
+    }
+    const fs::path target = follow_links(file);
+    struct stat old {};
+    const bool exists = ::stat(target.c_str(), &old) == 0;
+    if (exists && S_ISDIR(old.st_mode)) fail(file, "write", EISDIR);
+    if (!exists || S_ISREG(old.st_mode)) {
+      check_replaceable(file, target, exists);
+      part.emplace(file, target, PartFile::Kind::file);
+    } else {
+      opened.emplace(open_for_writing(file, target, S_ISFIFO(old.st_mode)));
+      direct = opened->get();
+    }
   }
-  const fs::path target = follow_links(file);
-  struct stat old {};
-  const bool exists = ::stat(target.c_str(), &old) == 0;
-  if (exists && S_ISDIR(old.st_mode)) fail(file, "write", EISDIR);
-  if (!exists || S_ISREG(old.st_mode)) return replace_regular(file, target, exists, bytes);
-  Descriptor out(open_for_writing(file, target, S_ISFIFO(old.st_mode)));
-  write_all(file, out.get(), bytes);
-  if (!out.close()) fail(file, "write", errno);
+};
+
+FileWriter::FileWriter(const fs::path& file) : state_(std::make_unique<State>(file)) {}
+FileWriter::~FileWriter() = default;
+FileWriter::FileWriter(FileWriter&&) noexcept = default;
+FileWriter& FileWriter::operator=(FileWriter&&) noexcept = default;
+
+void FileWriter::write(std::string_view bytes) {
+  if (state_->part)
+    state_->part->write(bytes);
+  else
+    write_all(state_->file, state_->direct, bytes);
+}
+
+void FileWriter::write_at(std::uint64_t place, std::string_view bytes) {
+  if (!state_->part)
+    throw SceneError(state_->file.string(), "cannot write: it is no regular file, but a pipe or a device");
+  state_->part->write_at(place, bytes);
+}
+
+void FileWriter::finish() {
+  if (state_->part) state_->part->put_in_place();
+  if (state_->opened && !state_->opened->close()) fail(state_->file, "write", errno);
+}
+
+void write_bytes(const fs::path& file, std::string_view bytes) {
+  FileWriter out(file);
+  out.write(bytes);
+  out.finish();
 }
 
 void replace_file(const fs::path& file, std::string_view bytes) {
@@ -177,7 +214,10 @@ void replace_file(const fs::path& file, std::string_view bytes) {
   if (exists && S_ISDIR(old.st_mode)) fail(file, "write", EISDIR);
   if (own_descriptor(file, STDOUT_FILENO) >= 0 || (exists && !S_ISREG(old.st_mode)))
     throw SceneError(file.string(), "cannot write: it is no regular file, but a pipe or a device");
-  replace_regular(file, target, exists, bytes);
+  check_replaceable(file, target, exists);
+  PartFile part(file, target, PartFile::Kind::file);
+  part.write(bytes);
+  part.put_in_place();
 }
 
 bool same_file(const fs::path& input, const fs::path& output) {

@@ -142,6 +142,16 @@ void PartFile::write(std::string_view bytes) {
   }
 }
 
+void PartFile::write_at(std::uint64_t place, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
+    if (count < 0 && errno != EINTR) fail(file_);
+    if (count < 0) continue;
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+    place += static_cast<std::uint64_t>(count);
+  }
+}
+
 void PartFile::put_in_place() {
   if (::fsync(descriptor_) != 0) fail(file_);
   // Some file systems report a failed write only here.

@@ -1,0 +1,135 @@
+#include "engine/study/message_sharing.hpp"
+
+#include "engine/mechanism/error.hpp"
+#include "engine/study/block_queue.hpp"
+
+#include <cstring>
+#include <deque>
+#include <thread>
+
+namespace flyball {
+namespace {
+
+// A message is one of these, and what belongs to it.
+enum class Kind : char {
+  ready,   // to the first: a block can be made
+  block,   // from it: to be made; to it: as made, whoever sends it is ready for another
+  failure, // to it: where, zero, expected
+  stop,    // from it: an answer to each `ready` and `block` once there is nothing more to do
+};
+
+constexpr int in_hand = 2; // blocks that a process has asked for: the one being made, and the next
+
+std::string message(Kind kind, const IndexBlock& block = {}, std::string_view bytes = {}) {
+  std::string out(1 + sizeof block + bytes.size(), static_cast<char>(kind));
+  std::memcpy(out.data() + 1, &block, sizeof block);
+  std::memcpy(out.data() + 1 + sizeof block, bytes.data(), bytes.size());
+  return out;
+}
+
+Kind kind_of(const std::string& message) {
+  return static_cast<Kind>(message.at(0));
+}
+
+IndexBlock block_of(const std::string& message) {
+  IndexBlock block;
+  std::memcpy(&block, message.data() + 1, sizeof block);
+  return block;
+}
+
+std::string bytes_of(const std::string& message) {
+  return message.substr(1 + sizeof(IndexBlock));
+}
+
+std::exception_ptr failure_of(const std::string& message) {
+  const std::string bytes = bytes_of(message);
+  const std::size_t zero = bytes.find('\0');
+  return std::make_exception_ptr(SceneError(bytes.substr(0, zero), bytes.substr(zero + 1)));
+}
+
+} // namespace
+
+MessageSharing::~MessageSharing() {
+  if (ran_) return;
+  try {
+    SharedWork none; // nobody waits for this process
+    none.maker = []() -> BlockMaker {
+      throw std::runtime_error("one of the processes ended before its work");
+    };
+    run(none);
+  } catch (const std::exception&) { // this process has told what it ends for
+  }
+}
+
+void MessageSharing::run(const SharedWork& work) {
+  ran_ = true;
+  if (takes())
+    serve(work);
+  else
+    make(work);
+}
+
+void MessageSharing::serve(const SharedWork& work) {
+  const int others = passing_.size() - 1;
+  BlockQueue queue(work.count, static_cast<std::size_t>(passing_.size()));
+  std::deque<int> ready; // processes that wait for an answer, once for each
+  int answers = in_hand * others;
+  const auto handle = [&](const MessagePassing::Message& m) {
+    if (kind_of(m.bytes) == Kind::failure)
+      queue.stop(failure_of(m.bytes));
+    else if (kind_of(m.bytes) == Kind::block)
+      queue.put(block_of(m.bytes), bytes_of(m.bytes));
+    if (kind_of(m.bytes) != Kind::failure) ready.push_back(m.from);
+  };
+  const auto answer = [&] {
+    IndexBlock block;
+    for (BlockQueue::Next next{}; !ready.empty() && (next = queue.next(block)) != BlockQueue::Next::later;) {
+      answers -= next == BlockQueue::Next::none;
+      passing_.send(ready.front(), message(next == BlockQueue::Next::none ? Kind::stop : Kind::block, block));
+      ready.pop_front();
+    }
+  };
+  {
+    const std::jthread own([&] { queue.make(work); });
+    constexpr double moment = 0.001; // s, from one look for messages to the next
+    do {
+      while (const auto m = passing_.receive(false))
+        handle(*m);
+      answer();
+    } while (queue.deliver(work, moment));
+    queue.stop();
+    // All others have to be told; what they made meanwhile is not wanted.
+    for (answer(); answers > 0; answer())
+      handle(*passing_.receive(true));
+  }
+  queue.rethrow();
+}
+
+void MessageSharing::make(const SharedWork& work) {
+  for (int i = 0; i < in_hand; ++i)
+    passing_.send(0, message(Kind::ready));
+  BlockMaker maker;
+  bool failed = false;
+  for (int open = in_hand; open > 0;) {
+    const std::string order = passing_.receive(true)->bytes;
+    if (kind_of(order) == Kind::stop) {
+      --open;
+      continue;
+    }
+    const IndexBlock block = block_of(order);
+    std::string bytes;
+    try {
+      if (!failed && !maker) maker = work.maker();
+      if (!failed) bytes = maker(block.begin, block.end);
+    } catch (const SceneError& error) {
+      failed = true;
+      passing_.send(0, message(Kind::failure, {}, error.where() + '\0' + error.expected()));
+    } catch (const std::exception& error) {
+      failed = true;
+      passing_.send(0, message(Kind::failure, {}, std::string(1, '\0') + error.what()));
+    }
+    passing_.send(0, failed ? message(Kind::ready) : message(Kind::block, block, bytes));
+  }
+}
+
+} // namespace flyball

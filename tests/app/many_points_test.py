@@ -1,0 +1,208 @@
+"""Sweeps of many points: the same bytes by one process, by shards put together and by processes under MPI; columns
+for NumPy; memory that does not grow with the points.
+
+Usage: many_points_test.py FLYBALL SCENE [--processes]
+
+With --processes under mpirun alone; exit 77 where there is none, or the program was built without MPI.
+"""
+import pathlib
+import resource
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import zipfile
+
+FLYBALL, SCENE = sys.argv[1:3]
+SKIPPED = 77
+SPEED = "joints.spin.drive.speed"
+failures = []
+
+
+def check(right, what):
+    if not right:
+        failures.append(what)
+        print("failed:", what)
+
+
+def run(*words, before=()):
+    done = subprocess.run([*before, FLYBALL, *map(str, words)], capture_output=True, text=True, timeout=120)
+    return done.returncode, done.stdout, done.stderr
+
+
+def sweep(*words, **more):
+    return run("sweep", SCENE, "--vary", f"{SPEED}=5:20:501", "--vary", "bodies.collar.mass=0.5:3:3", *words, **more)
+
+
+def columns_of(file):
+    """The arrays of an .npz file by name, read without NumPy: (descr, values)."""
+    columns = {}
+    with zipfile.ZipFile(file) as archive:
+        check(archive.testzip() is None, f"checksums of {file}")
+        for name in archive.namelist():
+            data = archive.read(name)
+            check(data[:8] == b"\x93NUMPY\x01\x00", f"magic of {name}")
+            length = struct.unpack("<H", data[8:10])[0]
+            check((10 + length) % 64 == 0 and data[9 + length:10 + length] == b"\n", f"head of {name}")
+            head = eval(data[10:10 + length])  # a dictionary of constants, by the format
+            count = head["shape"][0]
+            body = data[10 + length:]
+            kind = head["descr"]
+            if kind == "<f8":
+                values = struct.unpack(f"<{count}d", body)
+            elif kind == "|i1":
+                values = struct.unpack(f"{count}b", body)
+            else:
+                size = int(kind[2:])
+                values = [body[i * size:(i + 1) * size].rstrip(b"\0").decode() for i in range(count)]
+            columns[name.removesuffix(".npy")] = values
+    return columns
+
+
+def check_columns(csv, npz):
+    head, *rows = [line.split(",") for line in csv.read_text().splitlines()]
+    columns = columns_of(npz)
+    check(list(columns) == head, "npz has the columns of the CSV")
+    for i, name in enumerate(head):
+        cells = [row[i] for row in rows]
+        values = columns[name]
+        if name == "status":
+            check(list(values) == cells, "status in npz")
+        elif name == "stable":
+            check([{"true": 1, "false": 0, "": -1}[cell] for cell in cells] == list(values), "stable in npz")
+        else:
+            same = all(value != value if cell == "" else float(cell) == value for cell, value in zip(cells, values))
+            check(same and len(cells) == len(values), f"{name} in npz")
+    try:
+        import numpy
+    except ImportError:
+        print("without NumPy: read by hand alone")
+        return
+    with numpy.load(npz) as arrays:
+        check(list(arrays) == head, "NumPy finds the columns")
+        check(arrays["slide"].dtype == numpy.float64 and len(arrays["slide"]) == len(rows), "NumPy reads numbers")
+        check(arrays["status"][0].decode() == rows[0][head.index("status")], "NumPy reads words")
+
+
+def check_shards(folder):
+    whole, npz, merged = folder / "whole.csv", folder / "whole.npz", folder / "merged.csv"
+    code, _, error = sweep("--csv", whole, "--npz", npz, "--no-times")
+    check(code == 0, f"whole sweep: {error}")
+    check_columns(whole, npz)
+    code, out, _ = sweep("--csv", "-", "--no-times")
+    check(out == whole.read_text(), "standard output has the same bytes")
+
+    parts = [folder / f"part{i}.csv" for i in range(1, 8)]
+    for i, part in enumerate(parts, 1):
+        code, _, error = sweep("--shard", f"{i}/7", "--csv", part)
+        check(code == 0, f"shard {i}: {error}")
+    code, _, error = run("merge", *reversed(parts), "-o", merged)
+    check(code == 0 and merged.read_bytes() == whole.read_bytes(), f"merged CSV is the whole's: {error}")
+    code, _, error = run("merge", *parts, "-o", folder / "merged.npz")
+    check(code == 0 and (folder / "merged.npz").read_bytes() == npz.read_bytes(), f"merged npz is the whole's: {error}")
+
+    # A killed shard leaves nothing in its place, and is done again alone.
+    long = ["sweep", SCENE, "--vary", f"{SPEED}=5:20:300000", "--shard", "2/2", "--csv", str(folder / "killed.csv")]
+    killed = subprocess.Popen([FLYBALL, *long])
+    time.sleep(0.3)
+    killed.send_signal(signal.SIGKILL)
+    killed.wait()
+    check(not (folder / "killed.csv").exists(), "a killed shard leaves no file")
+    parts[3].unlink()
+    code, _, error = run("merge", *parts, "-o", merged)
+    check(code == 2 and str(parts[3]) in error, f"a part that is not there is named: {error}")
+    code, _, error = run("merge", *parts[:3], *parts[4:], "-o", merged)
+    check(code == 2 and "missing 4" in error, f"what is missing is told: {error}")
+    check(sweep("--shard", "4/7", "--csv", parts[3])[0] == 0, "a shard again")
+    merged.unlink()
+    check(run("merge", *parts, "-o", merged)[0] == 0 and merged.read_bytes() == whole.read_bytes(), "merged again")
+
+    # Parts that do not belong together.
+    def refused(words, replace, what, expected):
+        kept = parts[2].read_bytes()
+        if words:
+            run("sweep", *words, "--csv", parts[2])
+        else:
+            parts[2].write_bytes(replace(kept))
+        merged.unlink(missing_ok=True)
+        code, _, error = run("merge", *parts, "-o", merged)
+        check(code == 2 and expected in error and parts[2].name in error, f"{what}: {code} {error}")
+        check(not merged.exists(), f"{what}: no file")
+        parts[2].write_bytes(kept)
+
+    vary = ["--vary", f"{SPEED}=5:20:501", "--vary", "bodies.collar.mass=0.5:3:3"]
+    refused([SCENE, *vary, "--set", "gravity.1=-9", "--shard", "3/7"], None, "another scene", "its scene")
+    refused([SCENE, *vary[:3], "bodies.collar.mass=0.5:3:4", "--shard", "3/7"], None, "another grid", "its variations")
+    refused([SCENE, *vary, "--shard", "3/8"], None, "another division", "its number of parts")
+    refused([SCENE, *vary, "--shard", "2/7"], None, "one twice", "expected each part once")
+    refused(None, lambda b: b[:-40], "cut off", "damaged")
+    refused(None, lambda b: b + b"1,2,3\n", "too long", "damaged")
+    refused(None, lambda b: b[5:], "no part", "expected a part of a sweep")
+    code, _, error = run("merge", *parts, "-o", parts[0])
+    check(code == 2, f"a part is not written over: {error}")
+    check(sweep("--shard", "8/7", "--csv", merged)[0] == 2, "part 8 of 7")
+    check(sweep("--shard", "1/7")[0] == 2, "a shard without a file")
+    # More parts than points.
+    few = ["sweep", SCENE, "--vary", f"{SPEED}=5:20:2", "--no-times"]
+    run(*few, "--csv", whole)
+    for i in range(1, 4):
+        run(*few, "--shard", f"{i}/3", "--csv", folder / f"few{i}.csv")
+    run("merge", *[folder / f"few{i}.csv" for i in range(1, 4)], "-o", merged)
+    check(merged.read_bytes() == whole.read_bytes(), "more parts than points")
+
+
+def check_turning(folder):
+    """What turns with the drives has no cell, and moves no other out of its column."""
+    scene, file = pathlib.Path(SCENE).with_name("governor_bearing.json"), folder / "turning.csv"
+    run("sweep", scene, "--vary", f"{SPEED}=10:20:3", "--csv", file)
+    head, *rows = [line.split(",") for line in file.read_text().splitlines()]
+    for row in rows:
+        check(row[head.index("bearing")] == "" and row[head.index("lift")] == row[head.index("slide")], f"{row}")
+
+
+def check_memory(folder):
+    def memory(points):  # kB, of the largest child so far
+        code, _, error = run("sweep", SCENE, "--vary", f"{SPEED}=10:20:{points}", "--csv", folder / "many.csv",
+                             "--npz", folder / "many.npz")
+        check(code == 0, f"{points} points: {error}")
+        return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+
+    few, many = memory(20_000), memory(200_000)
+    print(f"memory: {few} kB for 20000 points, {many} kB for 200000")
+    check(many < few + 8_000, "memory does not grow with the points")
+
+
+def check_processes(folder):
+    mpirun = shutil.which("mpirun")
+    if not mpirun:
+        sys.exit(SKIPPED)
+    whole, npz, together = folder / "whole.csv", folder / "whole.npz", folder / "together.csv"
+    sweep("--csv", whole, "--npz", npz, "--no-times")
+    for count in (1, 2, 5):
+        start = [mpirun, "--allow-run-as-root", "--oversubscribe", "-n", str(count)]
+        code, _, error = sweep("--csv", together, "--npz", folder / "together.npz", before=start)
+        if "was built where MPI is" in error:
+            sys.exit(SKIPPED)
+        check(code == 0, f"{count} processes: {error}")
+        check(together.read_bytes() == whole.read_bytes(), f"{count} processes give the same CSV")
+        check((folder / "together.npz").read_bytes() == npz.read_bytes(), f"{count} processes give the same npz")
+        together.unlink()
+    code, _, error = run("sweep", SCENE, "--vary", "bodies.collar.mass=1:-1:2001", "--csv", together, before=start)
+    check(code == 2 and "bodies.collar.mass: expected zero or more" in error, f"a mistake at some point: {error}")
+    code, _, error = sweep("--csv", folder / "nowhere" / "x.csv", before=start)
+    check(code == 2 and "cannot write" in error, f"a file that cannot be written: {error}")
+    code, _, error = run("sweep", folder / "none.json", "--vary", "a=1:2:3", "--csv", together, before=start)
+    check(code == 2 and "cannot read" in error and not together.exists(), f"a scene that is not there: {error}")
+
+
+with tempfile.TemporaryDirectory() as name:
+    if "--processes" in sys.argv:
+        check_processes(pathlib.Path(name))
+    else:
+        check_shards(pathlib.Path(name))
+        check_turning(pathlib.Path(name))
+        check_memory(pathlib.Path(name))
+sys.exit(1 if failures else 0)
