@@ -87,19 +87,10 @@ void drop_lost_measures(Mechanism& mechanism) {
   }
 }
 
-NamedMeasure suggested_measure(const Mechanism& mechanism, const Part& part) {
-  const auto named = [&](const char* wish, std::string text, const char* unit) {
-    return NamedMeasure{free_name(mechanism, wish), "", std::move(text), unit};
-  };
-  const std::string name = argument_text(part.name);
-  if (part.kind == PartKind::body) return named("height", "y(" + name + ")", "m");
-  if (part.kind == PartKind::joint && joint_index(mechanism, part.name) >= 0 &&
-      mechanism.joints[static_cast<std::size_t>(joint_index(mechanism, part.name))].type != JointType::gear)
-    return named("force", "reaction(" + name + ")", "N");
-  if (part.kind == PartKind::force && force_index(mechanism, part.name) >= 0 &&
-      mechanism.forces[static_cast<std::size_t>(force_index(mechanism, part.name))].type == ForceType::spring)
-    return named("pull", "tension(" + name + ")", "N");
-  return named("mass_of_all", "mass()", "kg");
+NamedMeasure new_measure(const Mechanism& mechanism) {
+  if (mechanism.bodies.empty()) return {free_name(mechanism, "mass_of_all"), "", "mass()", "kg"};
+  const std::string body = argument_text(mechanism.bodies.back().name);
+  return {free_name(mechanism, "height"), "", "y(" + body + ")", "m"};
 }
 
 } // namespace flyball

@@ -21,7 +21,7 @@ void follow_in_measures(Mechanism& mechanism, const Part& part, const std::strin
 // Drops those that ask of parts that are not there, and what uses these.
 void drop_lost_measures(Mechanism& mechanism);
 
-// An expression that suits a new measure of this part: "=y(ball)" of a body; of none, the first free one.
-NamedMeasure suggested_measure(const Mechanism& mechanism, const Part& part);
+// To begin with: how high the last body stands.
+NamedMeasure new_measure(const Mechanism& mechanism);
 
 } // namespace flyball

@@ -319,6 +319,39 @@ TEST_CASE("a closed response takes everything with it but what was chosen") {
   CHECK_FALSE(drawn.plot.curves.empty());
 }
 
+TEST_CASE("measures are drawn over the parameter, and wanted") {
+  ResponseRobot robot("governor_parametric");
+  App& app = robot.app;
+  ResponseState& state = robot.state();
+  choose_response(app, "parameters.w");
+  robot.frames(3);
+  for (const ResponseQuantity& quantity : offered_quantities(app)) {
+    if (quantity.group != "Measures") continue;
+    CAPTURE(quantity.key);
+    choose_quantity(app, quantity);
+    robot.frames(2);
+    CHECK(robot.drawn().plot.y.label == quantity.title);
+    REQUIRE(robot.drawn().plot.marker);
+    CHECK(robot.drawn().plot.marker->x == 11.0174);
+    CHECK_FALSE(robot.drawn().plot.curves.empty());
+  }
+  state.design.coordinate = "ball_pull";
+  robot.frames(2);
+  robot.click("response/value");
+  robot.key('A', true);
+  robot.type("20 N");
+  robot.key(key_enter);
+  robot.frames(2);
+  REQUIRE(state.design.answer.found);
+  REQUIRE_FALSE(state.design.answer.found->result.solutions.empty());
+  robot.click("response/solution/1");
+  robot.frames(3);
+  const auto pull =
+      std::ranges::find(app.answer.solution.measures, "ball_pull", &MeasureSolution::name)->value;
+  REQUIRE(pull.has_value());
+  CHECK(*pull == Approx(20).epsilon(1e-10));
+}
+
 TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   ResponseRobot robot;
   App& app = robot.app;

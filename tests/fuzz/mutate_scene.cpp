@@ -54,12 +54,16 @@ constexpr const char* words[] = {"revolute",    "prismatic",
                                  "=1/0",        "=L^L",
                                  "=((((",       "=sqrt(-L)",
                                  "=300 rpm",    "parameters.L",
-                                 "points.A.0",  "="};
+                                 "points.A.0",  "=",
+                                 "=x(hub@A)",   "=torque(spin) / reaction(spin)",
+                                 "=x(",         "=clearance('hub', \"hub\")"};
 constexpr const char* parts[] = {
     R"("drive": {"speed": 5})",
     R"("density": 7850)",
     R"("parameters": {"L": {"value": 0.1, "unit": "m"}, "a": {"value": "=L / 2 m"}})",
     R"("points": {"A": [0, "=L", "=A.y + L"]})",
+    R"-("measures": {"a": {"value": "=speed(hub) + b", "unit": "m/s"}, "b": {"value": "=1 / 0"}})-",
+    R"-("measures": {"m": {"value": "=power(spin) + moment_x(spin) * 1 rad/s", "unit": "W"}})-",
     R"("spring": {"stiffness": 100, "free": 0.1})",
     R"("damping": 2)",
     R"("stop": {"lower": -0.1, "upper": 0.2, "stiffness": 1000})",

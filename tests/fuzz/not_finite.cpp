@@ -38,6 +38,9 @@ std::optional<std::string> not_finite(const Solution& s) {
     if (!reaction.force.allFinite() || !reaction.torque.allFinite()) return "reaction of " + reaction.joint;
   for (const Pose& pose : s.poses)
     if (!finite(pose)) return "pose";
+  for (const MeasureSolution& measure : s.measures)
+    if (!std::isfinite(measure.value.value_or(0) + measure.error.value_or(0)))
+      return "measure " + measure.name;
   for (const Sensitivity& sensitivity : s.sensitivities)
     for (const Sensitivity::Rate& rate : sensitivity.rates)
       if (!std::isfinite(rate.value)) return "sensitivity to " + sensitivity.address;

@@ -126,10 +126,8 @@ void measures_section(App& app) {
   for (const NamedMeasure& measure : mechanism.measures)
     measure_row(app, measure);
   if (text_button(app, "inspector/measures/add", "Add a measure"))
-    edit_later(app, "Add a measure", [](Mechanism& changed, Selection&) {
-      const Part body = changed.bodies.empty() ? Part{} : Part{PartKind::body, changed.bodies.back().name};
-      changed.measures.push_back(suggested_measure(changed, body));
-    });
+    edit_later(app, "Add a measure",
+               [](Mechanism& changed, Selection&) { changed.measures.push_back(new_measure(changed)); });
   static const std::string help =
       "A number made of results, shown with them, in curves and over time, and wanted in design. It may ask "
       "for " +

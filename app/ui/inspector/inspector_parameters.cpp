@@ -155,11 +155,23 @@ void point_rows(App& app, const NamedPoint& point) {
                .address = "points." + point.name});
 }
 
+void points_section(App& app) {
+  for (const NamedPoint& point : app.mechanism().points)
+    point_rows(app, point);
+  if (text_button(app, "inspector/points/add", "Add a point"))
+    edit_later(app, "Add a point", [](Mechanism& changed, Selection&) {
+      NamedPoint point;
+      point.name = free_name(changed, "A");
+      changed.points.push_back(std::move(point));
+    });
+  help_on_hover(
+      "A place with a name. =A.x, =A.y and =A.z give its coordinates, and what they give moves with it.");
+}
+
 } // namespace
 
 void named_sections(App& app) {
   const Mechanism& mechanism = app.mechanism();
-  measures_section(app);
   if (inspector_section(app, "inspector/parameters section", "Parameters", !mechanism.parameters.empty())) {
     for (const NamedParameter& parameter : mechanism.parameters)
       parameter_row(app, parameter);
@@ -173,17 +185,9 @@ void named_sections(App& app) {
     help_on_hover(
         "A number with a name. Where a number stands, =name uses it, as in =2*p or =p*cos(30 deg).");
   }
-  if (!inspector_section(app, "inspector/points section", "Points", !mechanism.points.empty())) return;
-  for (const NamedPoint& point : mechanism.points)
-    point_rows(app, point);
-  if (text_button(app, "inspector/points/add", "Add a point"))
-    edit_later(app, "Add a point", [](Mechanism& changed, Selection&) {
-      NamedPoint point;
-      point.name = free_name(changed, "A");
-      changed.points.push_back(std::move(point));
-    });
-  help_on_hover(
-      "A place with a name. =A.x, =A.y and =A.z give its coordinates, and what they give moves with it.");
+  if (inspector_section(app, "inspector/points section", "Points", !mechanism.points.empty()))
+    points_section(app);
+  measures_section(app);
 }
 
 } // namespace flyball

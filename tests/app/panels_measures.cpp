@@ -1,0 +1,153 @@
+// Measures by mouse and keys: added, changed, renamed, shown, plotted, wanted, removed.
+#include "robot.hpp"
+
+#include "app/document/measure_edits.hpp"
+#include "app/document/rename.hpp"
+#include "app/session/response_quantity.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+struct MeasureDesk : Robot {
+  explicit MeasureDesk(const char* scene = "governor") : Robot({1200, 1000}) {
+    const std::string file = FLYBALL_ASSETS "/scenes/" + std::string(scene) + ".json";
+    open_document(app, Document(load_scene(file), file));
+    frames(3);
+  }
+  void build() {
+    key(258); // Tab
+    frames(3);
+    select(app, {});
+    frames(2);
+  }
+  void enter(const std::string& field, const std::string& text) {
+    frames(60); // no double click
+    click(field);
+    type(text);
+    key(key_enter);
+    frames(2);
+  }
+  void solved() {
+    for (int i = 0; i < 2000 && solving(app); ++i)
+      frames(1);
+    REQUIRE(converged(app));
+  }
+  double value(const std::string& name) {
+    solved();
+    const auto& all = app.answer.solution.measures;
+    const auto found = std::ranges::find(all, name, &MeasureSolution::name);
+    REQUIRE(found != all.end());
+    REQUIRE(found->value.has_value());
+    return *found->value;
+  }
+  const Mechanism& m() const { return app.mechanism(); }
+};
+
+double slide_of(const Session& session) {
+  const auto& all = session.answer.solution.coordinates;
+  return std::ranges::find(all, "slide", &CoordinateSolution::joint)->value;
+}
+
+} // namespace
+
+TEST_CASE("a measure is added, changed, renamed and removed by hand") {
+  MeasureDesk d;
+  d.build();
+  d.click("inspector/measures section");
+  d.frames(2);
+  d.click("inspector/measures/add");
+  d.frames(2);
+  REQUIRE(d.m().measures.size() == 1);
+  CHECK(d.m().measures[0].name == "height");
+  CHECK(d.m().measures[0].text == "y(collar)");
+  CHECK(std::abs(d.value("height") - (0.2 - slide_of(d.app))) < 1e-12);
+  CHECK(d.app.widgets.contains("results/measure/height"));
+
+  d.enter("inspector/measure/height", "=coordinate(slide) - 0.1 m");
+  CHECK(std::abs(d.value("height") - (slide_of(d.app) - 0.1)) < 1e-12);
+  d.enter("inspector/measure/height/name", "rise");
+  CHECK(d.m().measures[0].name == "rise");
+  const std::size_t steps = d.app.document.position();
+
+  SECTION("what is wrong with it is said while it is typed") {
+    d.frames(60);
+    d.click("inspector/measure/rise");
+    d.type("=coordinate(slid)");
+    d.frames(1);
+    CHECK(d.app.inspector.typing.mistake.find("did you mean \"slide\"") != std::string::npos);
+    d.key(key_escape);
+    d.frames(2);
+    CHECK(d.app.document.position() == steps);
+    CHECK(d.m().measures[0].text == "coordinate(slide) - 0.1 m");
+  }
+  SECTION("parts that are renamed are renamed in it") {
+    edit(d.app, "rename", [](Mechanism& mechanism, Selection&) {
+      rename_part(mechanism, {PartKind::joint, "slide"}, "the slide");
+    });
+    d.frames(2);
+    CHECK(d.m().measures[0].text == "coordinate(\"the slide\") - 0.1 m");
+    CHECK(d.value("rise") > 0);
+    d.key('Z', true);
+    d.frames(2);
+    CHECK(d.m().measures[0].text == "coordinate(slide) - 0.1 m");
+  }
+  SECTION("it goes, and comes back") {
+    d.click("inspector/measure/rise/more");
+    d.frames(2);
+    d.click("inspector/measure/rise/remove");
+    d.frames(2);
+    CHECK(d.m().measures.empty());
+    d.key('Z', true);
+    d.frames(2);
+    CHECK(d.m().measures.size() == 1);
+  }
+  SECTION("units are as a person wants them") {
+    d.app.units.length = LengthUnit::millimetre;
+    d.frames(2);
+    CHECK(d.app.widgets.contains("results/measure/rise"));
+  }
+}
+
+TEST_CASE("a measure that rests on a part goes with it") {
+  Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  m.measures = {{"a", "", "x(ball1)", "m"}, {"b", "", "2*a", "m"}, {"c", "", "y(collar)", "m"}};
+  drop_lost_measures(m);
+  CHECK(m.measures.size() == 3);
+  m.bodies[1].name = "other";
+  drop_lost_measures(m);
+  REQUIRE(m.measures.size() == 1);
+  CHECK(m.measures[0].name == "c");
+}
+
+TEST_CASE("without a measure others have its expression, without a parameter its value") {
+  Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/governor_parametric.json");
+  m.measures = {{"a", "", "x(ball1) + L", "m"}, {"b", "", "2*a", "m"}};
+  remove_measure(m, "a");
+  REQUIRE(m.measures.size() == 1);
+  CHECK(m.measures[0].text == "2*(x(ball1) + L)");
+  set_measure(m, "b", {"twice", "", "2*L", "m"});
+  CHECK(m.measures[0].name == "twice");
+  CHECK(measure_mistake(m, "twice", {"L", "", "2 m", "m"}).find("there is a \"L\" already") !=
+        std::string::npos);
+  CHECK(measure_mistake(m, "twice", {"twice", "", "2*L", "N"}).find("expected N, found m") !=
+        std::string::npos);
+}
+
+TEST_CASE("measures are drawn over a number and wanted") {
+  MeasureDesk d("governor_parametric");
+  d.solved();
+  const auto offered = response_quantities(response_point(d.app.answer.solution, 0));
+  const auto quantity = std::ranges::find(offered, "measure ball_pull", &ResponseQuantity::key);
+  REQUIRE(quantity != offered.end());
+  CHECK(quantity->unit == "N");
+  CHECK(quantity->group == "Measures");
+  CHECK(quantity_values(response_point(d.app.answer.solution, 0), "measure ball_pull").size() == 1);
+}
