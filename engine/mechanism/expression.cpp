@@ -93,13 +93,13 @@ bool is_figure(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-[[noreturn]] void fail_sum(std::string_view doing, const Measure& a, const Measure& b) {
+[[noreturn]] void fail_sum(std::string_view doing, const ValueDimension& a, const ValueDimension& b) {
   throw ExpressionError(std::string(doing) + " " + dimension_text(a.dimension) + " and " +
                         dimension_text(b.dimension));
 }
 
 // The measure of what takes both as the same.
-Measure common(std::string_view doing, const Measure& a, const Measure& b) {
+ValueDimension common(std::string_view doing, const ValueDimension& a, const ValueDimension& b) {
   if (a.plain) return b;
   if (!b.plain && !(a.dimension == b.dimension)) fail_sum(doing, a, b);
   return a;
@@ -188,12 +188,12 @@ class ExpressionParser {
     const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
     if (error != std::errc() || !std::isfinite(value)) fail("expected a number");
     at_ = static_cast<std::size_t>(end - text_.data());
-    Expression::Step step{.operation = Operation::number, .value = value, .measure = {{}, true}};
+    Expression::Step step{.operation = Operation::number, .value = value, .dimension = {{}, true}};
     const std::size_t before = at_;
     skip_blanks();
     if (const auto read = read_unit(text_.substr(at_))) {
       step.value = times_unit(step.value, read->unit.factor);
-      step.measure = {read->unit.dimension.without_angle(), false};
+      step.dimension = {read->unit.dimension.without_angle(), false};
       at_ += read->length;
     } else if (at_ < text_.size() && begins_name(text_[at_])) {
       fail("expected an operator or a unit, found \"" + std::string(word()) + "\"");
@@ -214,7 +214,7 @@ class ExpressionParser {
     at_ += found.size();
     if (take("(")) return call(found, begin);
     if (found == "pi")
-      return put({.operation = Operation::number, .value = std::numbers::pi, .measure = {{}, true}}, 0);
+      return put({.operation = Operation::number, .value = std::numbers::pi, .dimension = {{}, true}}, 0);
     std::string full(found);
     if (at_ + 1 < text_.size() && text_[at_] == '.' && begins_name(text_[at_ + 1])) {
       ++at_;
@@ -362,9 +362,10 @@ Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::siz
   return stack[0];
 }
 
-Measure Expression::measure(std::span<const Measure> names, std::span<const Measure> results) const {
+ValueDimension Expression::dimension(std::span<const ValueDimension> names,
+                                     std::span<const ValueDimension> results) const {
   struct Entry {
-    Measure measure;
+    ValueDimension dimension;
     std::optional<double> number; // where it is one by itself: an exponent
   };
   std::vector<Entry> stack;
@@ -373,7 +374,7 @@ Measure Expression::measure(std::span<const Measure> names, std::span<const Meas
     stack.pop_back();
     return entry;
   };
-  const auto expect_number = [](const Measure& m, const std::string& of) {
+  const auto expect_number = [](const ValueDimension& m, const std::string& of) {
     if (!m.plain && !(m.dimension == Dimension{}))
       throw ExpressionError("expected a number or an angle as " + of + ", found " +
                             dimension_text(m.dimension));
@@ -381,7 +382,7 @@ Measure Expression::measure(std::span<const Measure> names, std::span<const Meas
   for (const Step& step : steps_) {
     switch (step.operation) {
     case Operation::number:
-      stack.push_back({step.measure, step.measure.plain ? std::optional(step.value) : std::nullopt});
+      stack.push_back({step.dimension, step.dimension.plain ? std::optional(step.value) : std::nullopt});
       continue;
     case Operation::name: stack.push_back({names[step.index], {}}); continue;
     case Operation::result: stack.push_back({results[step.index], {}}); continue;
@@ -392,7 +393,7 @@ Measure Expression::measure(std::span<const Measure> names, std::span<const Meas
     }
     if (step.operation == Operation::call) {
       const Function& function = functions[step.index];
-      const Measure last = pop().measure;
+      const ValueDimension last = pop().dimension;
       const std::string name(function.name);
       switch (function.kind) {
       case Kind::number:
@@ -402,39 +403,41 @@ Measure Expression::measure(std::span<const Measure> names, std::span<const Meas
       case Kind::root: stack.push_back({{last.dimension * 0.5, last.plain}, {}}); break;
       case Kind::same:
       case Kind::ratio: {
-        const Measure both = function.arguments == 2 ? common(name + " of", pop().measure, last) : last;
-        stack.push_back({function.kind == Kind::ratio ? Measure{{}, both.plain} : both, {}});
+        const ValueDimension both =
+            function.arguments == 2 ? common(name + " of", pop().dimension, last) : last;
+        stack.push_back({function.kind == Kind::ratio ? ValueDimension{{}, both.plain} : both, {}});
         break;
       }
       }
       continue;
     }
     const Entry b = pop(), a = pop();
-    Measure result;
+    ValueDimension result;
     std::optional<double> number;
     switch (step.operation) {
-    case Operation::add: result = common("cannot add", a.measure, b.measure); break;
-    case Operation::subtract: result = common("cannot subtract", a.measure, b.measure); break;
+    case Operation::add: result = common("cannot add", a.dimension, b.dimension); break;
+    case Operation::subtract: result = common("cannot subtract", a.dimension, b.dimension); break;
     case Operation::multiply:
     case Operation::divide: {
       const double sign = step.operation == Operation::multiply ? 1 : -1;
-      result = {a.measure.dimension + b.measure.dimension * sign, a.measure.plain && b.measure.plain};
+      result = {a.dimension.dimension + b.dimension.dimension * sign, a.dimension.plain && b.dimension.plain};
       if (a.number && b.number) number = sign > 0 ? *a.number * *b.number : *a.number / *b.number;
       break;
     }
     default:
-      expect_number(b.measure, "an exponent");
-      if (a.measure.plain || a.measure.dimension == Dimension{})
-        result = {{}, a.measure.plain && b.measure.plain};
+      expect_number(b.dimension, "an exponent");
+      if (a.dimension.plain || a.dimension.dimension == Dimension{})
+        result = {{}, a.dimension.plain && b.dimension.plain};
       else if (b.number)
-        result = {a.measure.dimension * *b.number, false};
+        result = {a.dimension.dimension * *b.number, false};
       else
-        throw ExpressionError("expected a number as the exponent of " + dimension_text(a.measure.dimension));
+        throw ExpressionError("expected a number as the exponent of " +
+                              dimension_text(a.dimension.dimension));
       break;
     }
     stack.push_back({result, number});
   }
-  return stack.back().measure;
+  return stack.back().dimension;
 }
 
 bool is_expression_name(std::string_view name) {

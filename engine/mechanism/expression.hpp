@@ -25,7 +25,7 @@ class ExpressionError : public std::runtime_error {
 };
 
 // Of a value: its dimension, or that it is a plain number, which fits any.
-struct Measure {
+struct ValueDimension {
   Dimension dimension;
   bool plain = false;
 };
@@ -69,7 +69,8 @@ class Expression {
   Dual evaluate(std::span<const Dual> values, std::span<const std::size_t> places = {},
                 std::span<const Dual> results = {}, std::span<const std::size_t> result_places = {}) const;
   // Throws ExpressionError where dimensions do not fit.
-  Measure measure(std::span<const Measure> names, std::span<const Measure> results = {}) const;
+  ValueDimension dimension(std::span<const ValueDimension> names,
+                           std::span<const ValueDimension> results = {}) const;
 
  private:
   friend class ExpressionParser;
@@ -88,9 +89,9 @@ class Expression {
   // One of a stack machine's: operands are taken from the stack, the result is put there.
   struct Step {
     Operation operation = Operation::number;
-    std::uint16_t index = 0; // of the name, result or function
-    double value = 0;        // of the number, in SI units
-    Measure measure{};       // of the number
+    std::uint16_t index = 0;    // of the name, result or function
+    double value = 0;           // of the number, in SI units
+    ValueDimension dimension{}; // of the number
   };
   static constexpr std::size_t most_values = 64; // on the stack at a time
 

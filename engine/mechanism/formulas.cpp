@@ -32,18 +32,18 @@ class Names {
       if (!unit || unit->factor != 1)
         throw SceneError("parameters." + parameter.name + ".unit",
                          "expected an SI unit, such as m, N/m or rad, found \"" + parameter.unit + "\"");
-      measures_.push_back({unit->dimension.without_angle(), false});
+      dimensions_.push_back({unit->dimension.without_angle(), false});
     }
     for (const NamedPoint& point : mechanism.points)
       for (const int i : {0, 1, 2}) {
         numbers_.emplace(point_coordinate(point.name, i), numbers_.size());
-        measures_.push_back({{.length = 1}, false});
+        dimensions_.push_back({{.length = 1}, false});
       }
-    if (numbers_.size() != measures_.size())
+    if (numbers_.size() != dimensions_.size())
       throw SceneError("parameters", "expected names that no other parameter or point has");
   }
 
-  std::size_t size() const { return measures_.size(); }
+  std::size_t size() const { return dimensions_.size(); }
   std::size_t point(std::size_t point, int i) const {
     return mechanism_.parameters.size() + 3 * point + static_cast<std::size_t>(i);
   }
@@ -67,7 +67,7 @@ class Names {
     const std::size_t coordinate = number - parameters;
     return "points." + mechanism_.points[coordinate / 3].name + "." + std::to_string(coordinate % 3);
   }
-  Measure measure(std::size_t number) const { return measures_[number]; }
+  ValueDimension dimension(std::size_t number) const { return dimensions_[number]; }
   std::size_t find(const std::string& name) const {
     const auto found = numbers_.find(name);
     if (found != numbers_.end()) return found->second;
@@ -85,7 +85,7 @@ class Names {
  private:
   const Mechanism& mechanism_;
   std::unordered_map<std::string, std::size_t> numbers_;
-  std::vector<Measure> measures_;
+  std::vector<ValueDimension> dimensions_;
 };
 
 // An expression with its names found.
@@ -98,10 +98,10 @@ struct Compiled {
       names.push_back(known.find(name));
   }
   void expect_unit(std::string_view unit, const Names& known) const {
-    std::vector<Measure> measures;
+    std::vector<ValueDimension> dimensions;
     for (const std::size_t name : names)
-      measures.push_back(known.measure(name));
-    const Measure found = expression.measure(measures);
+      dimensions.push_back(known.dimension(name));
+    const ValueDimension found = expression.dimension(dimensions);
     const Dimension wanted = parse_unit(unit).value_or(Unit{}).dimension.without_angle();
     if (!found.plain && !(found.dimension == wanted))
       throw ExpressionError("expected " + (unit.empty() ? "a number" : std::string(unit)) + ", found " +

@@ -197,7 +197,7 @@ class MeasureCompiler {
   }
 
  private:
-  static Measure unit_of(const std::string& unit) {
+  static ValueDimension unit_of(const std::string& unit) {
     return {parse_unit(unit).value_or(Unit{}).dimension.without_angle(), false};
   }
   static std::string place_of(const NamedMeasure& measure) { return "measures." + measure.name; }
@@ -210,7 +210,7 @@ class MeasureCompiler {
     try {
       plan.measures_.push_back({Expression(measure.text, Expression::Results::allowed), {}, {}});
       MeasurePlan::Compiled& compiled = plan.measures_.back();
-      std::vector<Measure> names, results;
+      std::vector<ValueDimension> names, results;
       for (const std::string& name : compiled.expression.names()) {
         compiled.names.push_back(place_of_name(name));
         names.push_back(units_[compiled.names.back()]);
@@ -222,7 +222,7 @@ class MeasureCompiler {
         compiled.results.push_back(static_cast<std::size_t>(found - plan.quantities_.begin()));
         if (found == plan.quantities_.end()) plan.quantities_.push_back(quantity);
       }
-      const Measure found = compiled.expression.measure(names, results);
+      const ValueDimension found = compiled.expression.dimension(names, results);
       if (unit && !found.plain && !(found.dimension == unit->dimension.without_angle()))
         throw ExpressionError("expected " + (measure.unit.empty() ? "a number" : measure.unit) + ", found " +
                               dimension_text(found.dimension));
@@ -281,8 +281,8 @@ class MeasureCompiler {
   Mistakes& mistakes_;
   Finder finder_;
   std::unordered_map<std::string, std::size_t> places_;
-  std::vector<Measure> units_; // by place
-  std::size_t first_ = 0;      // measure
+  std::vector<ValueDimension> units_; // by place
+  std::size_t first_ = 0;             // measure
 };
 
 MeasurePlan::MeasurePlan(const Mechanism& mechanism) {
