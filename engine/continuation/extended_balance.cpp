@@ -49,7 +49,8 @@ Condition measure_is(std::size_t measure, double value, double scale) {
               Workspace&) -> SingularityTest::Gradient {
             take(balance, state);
             const Problem p = balance.problem();
-            const Eigen::MatrixXd& rates = taken->measures.gradient(p, state.z.q, taken->at, taken->beside);
+            const Eigen::MatrixXd& rates =
+                taken->measures.gradient(p, state.z.q, taken->at, taken->beside, true);
             return {rates.row(i).transpose().cwiseProduct(p.scaling.column) / scale,
                     Eigen::VectorXd::Zero(p.system.rows)};
           }};

@@ -14,7 +14,7 @@
 namespace flyball {
 namespace {
 
-constexpr int largest_for_force_rates = 64; // coordinates: the balance is evaluated twice for each
+constexpr int largest_for_differences = 64; // coordinates: the balance is evaluated twice for each
 
 std::size_t slot(int i) {
   return static_cast<std::size_t>(i);
@@ -494,11 +494,17 @@ void MeasureSet::difference(const Problem& problem, const Eigen::VectorXd& q, Wo
 }
 
 const Eigen::MatrixXd& MeasureSet::gradient(const Problem& problem, const Eigen::VectorXd& q,
-                                            const Workspace& w, Workspace& elsewhere) {
+                                            const Workspace& w, Workspace& elsewhere, bool all_differences) {
   const auto count = static_cast<Eigen::Index>(places_.size());
   const auto measures = static_cast<Eigen::Index>(size());
   quantity_rates_.setZero(count, problem.system.nv);
-  if (differenced_) difference(problem, q, elsewhere);
+  if (all_differences || problem.system.nv <= largest_for_differences) {
+    if (differenced_) difference(problem, q, elsewhere);
+  } else {
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (places_[static_cast<std::size_t>(i)].differenced)
+        quantity_rates_.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
   const MeasuredState state{problem.system, problem.parameters, q, w.kinematics};
   Eigen::VectorXd row;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -594,8 +600,7 @@ std::vector<MeasureSolution> MeasureSet::solutions(const Problem& problem, const
     else
       out[i].reason = "Its value is not finite here.";
   }
-  const bool too_many = differenced_ && problem.system.nv > largest_for_force_rates;
-  if (error.size() != problem.system.nv || too_many) return out;
+  if (error.size() != problem.system.nv) return out;
   gradient(problem, z.q, w, w.elsewhere());
   // Beside the coordinates' errors what rounds: positions by the mechanism's reach, all else by its own size.
   const double epsilon = std::numeric_limits<double>::epsilon();

@@ -46,9 +46,10 @@ class MeasureSet {
   // (measures, nv): their rates by the entries of a step of q_R, unscaled, multipliers following as in
   // evaluate_at(). Exact by the kinematics; those of forces, of the rates of joints that close loops and of
   // springs with dampers by central differences. Of what was evaluated last, which is evaluated in `w` (its
-  // kinematics); `elsewhere` is for states beside it. Not a number where a measure has no rate.
+  // kinematics); `elsewhere` is for states beside it. Not a number where a measure has no rate, and of more
+  // than 64 coordinates where it takes differences, two balances a coordinate, unless these are asked for.
   const Eigen::MatrixXd& gradient(const Problem& problem, const Eigen::VectorXd& q, const Workspace& w,
-                                  Workspace& elsewhere);
+                                  Workspace& elsewhere, bool all_differences = false);
 
   // Their rates by the number at an address, per its unit, while the coordinates stand: by central
   // differences (relative error about 1e-9). Not a number where the number cannot be moved.
@@ -56,8 +57,8 @@ class MeasureSet {
                                   const std::string& address, const Eigen::VectorXd& q, Workspace& w);
 
   // By name, with the errors that errors of the coordinates (by coordinate of q_R: rad, m) make; where these
-  // are empty or the rates take too long (more than 64 coordinates and forces) errors are left out. Of a
-  // steady state that is evaluated in `w` with these multipliers.
+  // are empty or there are no rates errors are left out. Of a steady state that is evaluated in `w` with
+  // these multipliers.
   std::vector<MeasureSolution> solutions(const Problem& problem, const Unknowns& z,
                                          const Eigen::VectorXd& error, Workspace& w);
 

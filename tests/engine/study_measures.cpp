@@ -293,6 +293,19 @@ TEST_CASE("every study tells the same of a measure", "[measures]") {
       CHECK(*measure(point.measures, "hinge").value == Approx(1.7 * w * w * 0.7).epsilon(1e-9));
 }
 
+TEST_CASE("of many coordinates places have errors, forces none", "[measures]") {
+  Mechanism m = hanging_chain(80, 0.5);
+  m.sliders.clear();
+  m.measures = {{"tip", "", "y(" + argument_text(m.bodies.back().name) + ")", "m"},
+                {"top", "", "reaction(" + argument_text(m.joints[1].name) + ")", "N"}};
+  const Solution s = solve(m);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.measures[0].error.value_or(1) < 1e-10);
+  CHECK(s.measures[1].value.has_value());
+  CHECK_FALSE(s.measures[1].error.has_value());
+  CHECK(*s.measures[1].value == Approx(standard_gravity).epsilon(1e-9)); // 1 kg in all
+}
+
 TEST_CASE("measures of the parametric governor", "[measures]") {
   const Mechanism m = shipped("governor_parametric");
   REQUIRE_FALSE(m.measures.empty());
