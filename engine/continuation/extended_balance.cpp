@@ -9,6 +9,7 @@
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace flyball {
@@ -113,8 +114,9 @@ void ExtendedBalance::rates(const ExtendedState& state, std::size_t index, Eigen
   Parameters numbers;
   Workspace w;
   Eigen::VectorXd f[2], p[2];
+  VariedNumbers number(varied, {&addresses_[index], 1});
   for (int i : {0, 1}) {
-    set_parameter(varied, addresses_[index], value + (i == 0 ? h : -h) * scale);
+    number.set(std::array{value + (i == 0 ? h : -h) * scale});
     bind(system_, varied, numbers);
     evaluate({system_, numbers, scaling_}, state.z, 0, w);
     f[i] = w.residual.f;

@@ -16,9 +16,12 @@ class Mistakes {
   void add(std::string where, std::string expected) {
     all_.emplace_back(std::move(where), std::move(expected));
   }
-  // Adds a mistake unless it is all right.
-  void expect(bool right, const std::string& where, const char* expected) {
-    if (!right) add(where, expected);
+  // Adds a mistake unless it is all right; texts are made only then.
+  void expect(bool right, std::string_view where, const char* expected) {
+    expect(right, where, "", expected);
+  }
+  void expect(bool right, std::string_view where, std::string_view key, const char* expected) {
+    if (!right) add(std::string(where) + std::string(key), expected);
   }
   const std::vector<SceneError>& all() const { return all_; }
 

@@ -140,7 +140,7 @@ void find_non_finite(const Body& body, const std::string& path, Mistakes& mistak
     Body copy = body;
     expect_finite(numbers_of(copy), path + ".", mistakes);
   }
-  mistakes.expect(body.rotation.coeffs().allFinite(), path + ".rotation", "expected four finite numbers");
+  mistakes.expect(body.rotation.coeffs().allFinite(), path, ".rotation", "expected four finite numbers");
 }
 
 void find_non_finite(const Mechanism& mechanism, const NamedParameter& parameter, Mistakes& mistakes) {
@@ -153,7 +153,7 @@ void find_non_finite(const Mechanism& mechanism, const NamedParameter& parameter
     mistakes.add(path, "expected a name of letters, figures and _ that no point and no function has");
   if (!parameter.range) return;
   const auto [from, to] = *parameter.range;
-  mistakes.expect(std::isfinite(from) && std::isfinite(to) && from < to, path + ".range",
+  mistakes.expect(std::isfinite(from) && std::isfinite(to) && from < to, path, ".range",
                   "expected two finite numbers, the smaller one first");
 }
 

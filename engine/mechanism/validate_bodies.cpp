@@ -39,22 +39,23 @@ std::optional<PrincipalMoments> principal_moments(const Body& body) {
                                       std::max(body.mass, 0.) * nanometre * nanometre};
 }
 
-void find_shape_mistakes(const Shape& shape, const std::string& path, Mistakes& mistakes) {
+// Calls add(key, expected) for each.
+template <class Add>
+void find_shape_mistakes(const Shape& shape, const Add& add) {
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   if (shape.type == ShapeType::box) {
-    mistakes.expect(positive(shape.size.x()) && positive(shape.size.y()) && positive(shape.size.z()),
-                    path + ".size", "expected three numbers above zero");
-  } else {
-    mistakes.expect(positive(shape.radius), path + ".radius", "expected a number above zero");
+    if (!positive(shape.size.x()) || !positive(shape.size.y()) || !positive(shape.size.z()))
+      add(".size", "expected three numbers above zero");
+  } else if (!positive(shape.radius)) {
+    add(".radius", "expected a number above zero");
   }
-  const bool ends_right = shape.from.allFinite() && shape.to.allFinite() &&
-                          (shape.type != ShapeType::cylinder || shape.from != shape.to);
-  mistakes.expect(ends_right, path + ".to", "expected a point apart from `from`");
-  if (shape.at) mistakes.expect(shape.at->allFinite(), path + ".at", "expected three finite numbers");
+  if (!shape.from.allFinite() || !shape.to.allFinite() ||
+      (shape.type == ShapeType::cylinder && shape.from == shape.to))
+    add(".to", "expected a point apart from `from`");
+  if (shape.at && !shape.at->allFinite()) add(".at", "expected three finite numbers");
   if (shape.color)
     for (const double part : *shape.color)
-      if (!(part >= 0 && part <= 1))
-        return mistakes.add(path + ".color", "expected three numbers from 0 to 1");
+      if (!(part >= 0 && part <= 1)) return add(".color", "expected three numbers from 0 to 1");
 }
 
 } // namespace
@@ -69,7 +70,9 @@ void find_mistakes_of(const Body& body, const std::string& path, Mistakes& mista
     mistakes.add(path + ".rotation",
                  "expected a unit quaternion [w, x, y, z], found one of length " + number_text(norm));
   for (std::size_t k = 0; k < body.shapes.size(); ++k)
-    find_shape_mistakes(body.shapes[k], path + ".shapes[" + std::to_string(k) + "]", mistakes);
+    find_shape_mistakes(body.shapes[k], [&](const char* key, const char* expected) {
+      mistakes.add(path + ".shapes[" + std::to_string(k) + "]" + key, expected);
+    });
 }
 
 void find_body_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {

@@ -25,9 +25,9 @@ void find_axis_mistakes(const Joint& joint, const std::string& path, Mistakes& m
   if (!has_axis(joint.type)) return;
   constexpr const char* expected = "expected a direction, not zero";
   const bool universal = joint.type == JointType::universal;
-  mistakes.expect(has_direction(joint.axis), path + (universal ? ".axes[0]" : ".axis"), expected);
+  mistakes.expect(has_direction(joint.axis), path, universal ? ".axes[0]" : ".axis", expected);
   if (!has_axis2(joint.type)) return;
-  mistakes.expect(has_direction(joint.axis2), path + (universal ? ".axes[1]" : ".x_axis"), expected);
+  mistakes.expect(has_direction(joint.axis2), path, universal ? ".axes[1]" : ".x_axis", expected);
   if (!has_direction(joint.axis) || !has_direction(joint.axis2) || !parallel(joint.axis, joint.axis2)) return;
   if (universal)
     mistakes.add(path + ".axes", "expected two directions that are not parallel");
@@ -44,7 +44,7 @@ void find_coordinate_mistakes(const Mechanism& mechanism, std::size_t j, std::si
   if (coordinate.stop) {
     const Stop& stop = *coordinate.stop;
     mistakes.expect(stop.lower || stop.upper, path("stop"), "expected lower, upper or both");
-    mistakes.expect(!stop.lower || !stop.upper || *stop.lower <= *stop.upper, path("stop") + ".lower",
+    mistakes.expect(!stop.lower || !stop.upper || *stop.lower <= *stop.upper, path("stop"), ".lower",
                     "expected no more than `upper`");
     if (!(stop.stiffness > 0))
       mistakes.add(path("stop") + ".stiffness",
@@ -116,7 +116,7 @@ void find_gear_mistakes(const Mechanism& mechanism, const Joint& gear, const std
       mistakes.add(where, "expected a joint that is not cut; a cut joint has no coordinate");
   }
   if (gear.joints[0] == gear.joints[1]) mistakes.add(path + ".joints", "expected two different coordinates");
-  mistakes.expect(gear.ratio != 0, path + ".ratio", "expected a number other than zero");
+  mistakes.expect(gear.ratio != 0, path, ".ratio", "expected a number other than zero");
 }
 
 } // namespace

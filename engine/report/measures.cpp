@@ -3,11 +3,13 @@
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
 #include "engine/report/report_forces.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/residual.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -539,8 +541,9 @@ Eigen::VectorXd MeasureSet::parameter_rates(const Problem& problem, const Mechan
   Mechanism varied = mechanism;
   Parameters numbers;
   try {
+    VariedNumbers number(varied, {&address, 1});
     for (const int side : {0, 1}) {
-      set_parameter(varied, address, side == 0 ? value + h : value - h);
+      number.set(std::array{side == 0 ? value + h : value - h});
       flyball::bind(problem.system, varied, numbers);
       bind(varied, problem.system, numbers);
       sides[side] = evaluate_at({problem.system, numbers, problem.scaling}, q, w);

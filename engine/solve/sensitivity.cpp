@@ -1,6 +1,9 @@
 #include "engine/solve/sensitivity.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
+
+#include <array>
 
 namespace flyball {
 namespace {
@@ -46,8 +49,9 @@ std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechan
   for (const std::string& address : addresses) {
     const double value = get_parameter(mechanism, address);
     const double h = 1e-6 * (std::abs(value) > 1e-100 ? std::abs(value) : 1.);
+    VariedNumbers number(varied, {&address, 1});
     for (int i : {0, 1}) {
-      set_parameter(varied, address, i == 0 ? value + h : value - h);
+      number.set(std::array{i == 0 ? value + h : value - h});
       bind(system, varied, numbers);
       evaluate(there, at.z, 0, varied_balance);
       f[i] = varied_balance.residual.f;

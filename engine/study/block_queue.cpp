@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t largest_block = 1000;  // indices
 constexpr std::size_t blocks_per_maker = 16; // of a small range
-constexpr std::size_t waiting_per_maker = 8; // blocks
+constexpr std::size_t waiting_per_maker = 4; // blocks
 
 } // namespace
 

@@ -18,7 +18,7 @@ enum class Kind : char {
   stop,    // from it: an answer to each `ready` and `block` once there is nothing more to do
 };
 
-constexpr int in_hand = 2; // blocks that a process has asked for: the one being made, and the next
+constexpr int in_hand = 3; // blocks that a process has asked for: the one being made, and the next ones
 
 std::string message(Kind kind, const IndexBlock& block = {}, std::string_view bytes = {}) {
   std::string out(1 + sizeof block + bytes.size(), static_cast<char>(kind));

@@ -1,6 +1,6 @@
 // Work shared by processes that pass messages: the first one hands blocks out to whoever is free, makes some
 // itself on a thread beside, and takes all of them in order. Each process makes one block at a time and has
-// the next one at hand, so that nobody waits for the first one's answer.
+// the next ones at hand, so that nobody waits for the first one's answer.
 #pragma once
 
 #include "engine/study/work_sharing.hpp"
