@@ -7,11 +7,13 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/study/goals.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 
 namespace flyball::cli {
@@ -64,50 +66,149 @@ std::string answer_text(const Mechanism& m, const std::string& address, const De
   return out + fmt::format("  {:.1f} ms\n", a.run_time_s * 1e3);
 }
 
+Json reached_json(const GoalAnswer::Reached& goal, const char* other) {
+  return {{"name", goal.wanted}, {"value", goal.value}, {other, goal.goal}, {"unit", goal.unit}};
+}
+
+Json answer_json(const Mechanism& m, const GoalAnswer& a) {
+  Json out = {{"status", word(a.status)},
+              {"reached", a.reached},
+              {"message", a.message},
+              {"parameters", Json::array()},
+              {"goals", Json::array()}};
+  for (const GoalAnswer::Number& number : a.numbers)
+    out["parameters"].push_back({{"address", number.address},
+                                 {"value", number.value},
+                                 {"unit", parameter_unit(m, number.address)},
+                                 {"at_limit", number.at_limit}});
+  for (const GoalAnswer::Reached& goal : a.goals)
+    out["goals"].push_back(reached_json(goal, "wanted"));
+  out["minimized"] = a.least ? reached_json(*a.least, "before") : Json(nullptr);
+  out["solution"] = to_json(m, a.solution);
+  out["iterations"] = a.iterations;
+  out["run_time_s"] = a.run_time_s;
+  return out;
+}
+
+std::string answer_text(const Mechanism& m, const GoalAnswer& a) {
+  const auto with_unit = [](const std::string& unit) { return unit.empty() ? "" : " " + unit; };
+  std::string out = fmt::format("{}: {}\n", printable(m.name), printable(a.message));
+  for (const GoalAnswer::Number& number : a.numbers)
+    out += fmt::format("  {} = {}{}{}\n", printable(number.address), number_text(number.value),
+                       with_unit(parameter_unit(m, number.address)),
+                       number.at_limit ? ", at the end of its range" : "");
+  if (a.least)
+    out += fmt::format("  least: {} = {:.12g}{}\n", printable(a.least->wanted), a.least->value,
+                       with_unit(a.least->unit));
+  out += "   ";
+  for (const CoordinateSolution& c : a.solution.coordinates)
+    if (!c.driven)
+      out += fmt::format(" {} = {:.12g} {} (± {:.0e}) ", shown_label(c), c.value, c.angle ? "rad" : "m",
+                         c.error);
+  for (const MeasureSolution& measure : a.solution.measures)
+    if (measure.value)
+      out += fmt::format(" {} = {:.12g}{} ", measure.name, *measure.value, with_unit(measure.unit));
+  const char* stability = !a.solution.stable ? "stability open" : *a.solution.stable ? "stable" : "unstable";
+  return out + fmt::format("\n    {}, scaled residual {:.1e}, {} iterations, {:.1f} ms\n", stability,
+                           a.solution.residual, a.iterations, a.run_time_s * 1e3);
+}
+
+struct DesignArguments {
+  SceneArgument scene;
+  std::vector<std::string> vary, want;
+  std::string minimized;
+  bool connected = false, json = false;
+};
+
+// Of one parameter and one wish: every branch over the range is followed.
+Ending find_one(const DesignArguments& arguments, const Mechanism& mechanism, const Range& range,
+                const std::pair<std::string, double>& want, std::optional<ProgressBar>& progress) {
+  DesignOptions ask;
+  ask.all = !arguments.connected;
+  ask.progress = progress->reporter();
+  const DesignAnswer answer =
+      design(mechanism, range.address, range.from, range.to, want.first, want.second, ask);
+  progress.reset();
+  if (arguments.json)
+    print_json(with_warnings(answer_json(range.address, want.first, answer), mechanism));
+  else
+    print_text(answer_text(mechanism, range.address, answer));
+  return end_with(answer.status == Status::converged, arguments.scene.file, answer.message);
+}
+
+// Of several: from the steady state of the drawn pose, along its branch.
+Ending find_several(const DesignArguments& arguments, const Mechanism& mechanism,
+                    const std::vector<Range>& ranges,
+                    const std::vector<std::pair<std::string, double>>& wants,
+                    std::optional<ProgressBar>& progress) {
+  if (arguments.connected)
+    throw SceneError("--connected",
+                     "expected with one --vary and one --want: several follow one branch anyway");
+  std::vector<FreeNumber> free;
+  for (const Range& range : ranges)
+    free.push_back({range.address, std::min(range.from, range.to), std::max(range.from, range.to)});
+  std::vector<Goal> goals;
+  for (const auto& [wanted, value] : wants)
+    goals.push_back({wanted, value});
+  const GoalAnswer answer = arguments.minimized.empty()
+                                ? seek_goals(mechanism, free, goals)
+                                : minimize(mechanism, free, arguments.minimized, goals);
+  progress.reset();
+  if (arguments.json)
+    print_json(with_warnings(answer_json(mechanism, answer), mechanism));
+  else
+    print_text(answer_text(mechanism, answer));
+  return end_with(answer.reached, arguments.scene.file, answer.message);
+}
+
 } // namespace
 
 void add_design(CLI::App& app, Ending& ending) {
-  struct Options {
-    SceneArgument scene;
-    std::string vary, want;
-    bool connected = false, json = false;
-  };
-  auto options = std::make_shared<Options>();
+  auto arguments = std::make_shared<DesignArguments>();
   CLI::App* command = app.add_subcommand(
-      "design", "Find the value of a parameter at which a coordinate or measure is as wanted");
-  options->scene.add_to(*command);
-  command->add_option("--vary", options->vary, "The parameter to solve for: address=from:to")->required();
+      "design", "Find the values of parameters at which coordinates or measures are as wanted");
+  arguments->scene.add_to(*command);
   command
-      ->add_option(
-          "--want", options->want,
-          "What is wanted: joint=value or joint.index=value (rad, m), or measure=value (in its unit)")
-      ->required();
-  command->add_flag("--connected", options->connected,
+      ->add_option("--vary", arguments->vary,
+                   "A parameter to solve for: address=from:to; given again, several move by the least change")
+      ->required()
+      ->take_all()
+      ->allow_extra_args(false);
+  CLI::Option* want = command
+                          ->add_option("--want", arguments->want,
+                                       "What is wanted: joint=value or joint.index=value (rad, m), or "
+                                       "measure=value (in its unit); given "
+                                       "again, several")
+                          ->take_all()
+                          ->allow_extra_args(false);
+  CLI::Option* least =
+      command->add_option("--minimize", arguments->minimized,
+                          "A coordinate or measure to be made least, what is wanted being kept");
+  command->add_flag("--connected", arguments->connected,
                     "Only on branches connected with the drawn pose's (quicker)");
-  command->add_flag("--json", options->json, "Print a JSON object");
+  command->add_flag("--json", arguments->json, "Print a JSON object");
   command->footer(
       "Example: flyball design governor.json --vary joints.spin.drive.speed=0:30 --want slide=0.12");
-  command->callback([options, &ending] {
+  command->callback([arguments, want, least, &ending] {
+    if (want->empty() && least->empty()) throw SceneError("design", "expected --want or --minimize");
     std::optional<ProgressBar> progress(std::in_place, "reading");
-    const Mechanism mechanism = options->scene.load();
-    const Range range = parse_range("--vary", options->vary);
-    if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
-    const auto [coordinate, value] = parse_assignment("--want", options->want);
-    DesignAnswer answer;
-    try {
-      DesignOptions ask;
-      ask.all = !options->connected;
-      ask.progress = progress->reporter();
-      answer = design(mechanism, range.address, range.from, range.to, coordinate, value, ask);
-    } catch (const SceneError& error) {
-      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+    const Mechanism mechanism = arguments->scene.load();
+    std::vector<Range> ranges;
+    for (const std::string& text : arguments->vary) {
+      ranges.push_back(parse_range("--vary", text));
+      if (ranges.back().from == ranges.back().to)
+        throw SceneError("--vary " + ranges.back().address, "expected two different ends");
     }
-    progress.reset();
-    if (options->json)
-      print_json(with_warnings(answer_json(range.address, coordinate, answer), mechanism));
-    else
-      print_text(answer_text(mechanism, range.address, answer));
-    ending = end_with(answer.status == Status::converged, options->scene.file, answer.message);
+    std::vector<std::pair<std::string, double>> wants;
+    for (const std::string& text : arguments->want)
+      wants.push_back(parse_assignment("--want", text));
+    try {
+      ending = ranges.size() == 1 && wants.size() == 1 && least->empty()
+                   ? find_one(*arguments, mechanism, ranges[0], wants[0], progress)
+                   : find_several(*arguments, mechanism, ranges, wants, progress);
+    } catch (const SceneError& error) {
+      throw SceneError(arguments->scene.file.string() + ": " + error.where(), error.expected());
+    }
   });
 }
 

@@ -26,9 +26,9 @@ nlohmann::ordered_json warnings_json(const std::vector<SceneError>& warnings);
 // A command's answer with what is to be said of the mechanism, as "warnings".
 nlohmann::ordered_json with_warnings(nlohmann::ordered_json answer, const Mechanism& mechanism);
 
-// {joint: value or array}, driven ones left out.
 // {name: {value, unit, error_estimate}}; values that are not there are null, with the reason.
 nlohmann::ordered_json measures_json(const std::vector<MeasureSolution>& measures);
+// {joint: value or array}, driven ones left out.
 nlohmann::ordered_json coordinates_json(const std::vector<CoordinateSolution>& coordinates);
 
 // {"equilibria": [as above], "search": {"bounds", "starts", "complete"}}.

@@ -211,6 +211,18 @@ void set_parameter_from(Session& session, const std::string& address, double val
     ask(session, false, true, std::move(start));
 }
 
+// While exploring; `warm` solves from the last answer, or from `start` where there is one.
+void explore_numbers(Session& session, const std::string& step, const Explored& values, bool warm,
+                     StartValues start) {
+  const std::uint64_t revision = session.document.revision();
+  try {
+    session.document.explore(step, values, session.gesture);
+  } catch (const SceneError& error) {
+    return show_error(session, error.what());
+  }
+  if (session.document.revision() != revision) take_document(session, false, warm, std::move(start));
+}
+
 } // namespace
 
 void edit_parameter(Session& session, const std::string& address, double value) {
@@ -237,13 +249,11 @@ void change_parameters(Session& session, const std::string& step, const Explored
       for (const ExploredValue& each : values)
         set_parameter(mechanism, each.address, each.value);
     });
-  const std::uint64_t revision = session.document.revision();
-  try {
-    session.document.explore(step, values, session.gesture);
-  } catch (const SceneError& error) {
-    return show_error(session, error.what());
-  }
-  if (session.document.revision() != revision) take_document(session, false, false);
+  explore_numbers(session, step, values, false, {});
+}
+
+void go_to_numbers(Session& session, const std::string& step, const Explored& values, StartValues start) {
+  explore_numbers(session, step, values, true, std::move(start));
 }
 
 void go_to_state(Session& session, const std::string& address, double value, StartValues start) {
@@ -350,6 +360,7 @@ void update(Session& session, double seconds) {
   advance_mode(session, seconds);
   take_answer(session);
   update_motion(session);
+  update_goals(session);
   update_studies(session);
   session.waited = solving(session) ? session.waited + seconds : 0;
 }

@@ -4,6 +4,7 @@
 
 #include "app/document/document.hpp"
 #include "app/live/live_solver.hpp"
+#include "app/session/goals.hpp"
 #include "app/session/files.hpp"
 #include "app/session/motion.hpp"
 #include "app/session/parameter_list.hpp"
@@ -68,6 +69,7 @@ struct Session {
   ToldPoints points;
   StudyState study;
   MotionState motion;
+  GoalState goals;
   DisplayUnits units;
   std::string notice;  // what was last done, in words; whoever shows it takes it away
   std::string failure; // the notice that tells what went wrong; see show_error()
@@ -104,6 +106,9 @@ void edit_parameter(Session& session, const std::string& address, double value);
 void change_parameter(Session& session, const std::string& address, double value);
 // The same of several, as one step of this name.
 void change_parameters(Session& session, const std::string& step, const Explored& values);
+// The same, solved from these coordinates ("joint" or "joint.index" and rad or m).
+void go_to_numbers(Session& session, const std::string& step, const Explored& values,
+                   std::vector<std::pair<std::string, double>> start);
 // What is explored becomes the document's, or goes back to what is stored. Both can be undone.
 void keep_explored(Session& session);
 void drop_explored(Session& session);

@@ -352,7 +352,8 @@ const std::array all_commands{
     Command{.id = "view.pull",
             .title = "Pull",
             .help =
-                "Drag a body: along its joints while building, by a spring while exploring (or hold Alt).",
+                "Drag a body: along its joints while building, by a spring while exploring (or hold Alt); "
+                "with Shift pinned sliders bring it where the hand is.",
             .key = plain('H'),
             .run = choose_tool<Tool::pull>,
             .enabled = holds_parts,

@@ -102,6 +102,7 @@ struct ToolState {
   std::optional<Grab> grab{};
   std::optional<AssemblyGrab> assembly{};
   std::optional<PullGrab> pull{};
+  std::optional<ReachGrab> reach{};
   std::optional<Vec2> frame{}; // pixel of the view where a selecting frame began
   std::optional<Aim> first{};  // where the button went down, or the first of two clicks
   bool first_clicked = false;  // the latter

@@ -1,6 +1,7 @@
 // Where everything settles: each coordinate in the units of the screen and in SI.
 #include "app/session/units.hpp"
 #include "app/ui/panels.hpp"
+#include "app/ui/widgets/goal_handle.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -21,7 +22,13 @@ void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
   row(app, coordinate_label(c), value_text(unit.shown(c.value), c.error * unit.factor, numbers),
       unit.text.c_str(),
       c.dependent ? "The joint closes a loop: this follows from the other coordinates." : nullptr);
-  note_widget(app.widgets, "results/" + coordinate_label(c));
+  if (c.dependent)
+    note_widget(app.widgets, "results/" + coordinate_label(c));
+  else
+    goal_handle(app, {.name = "results/" + coordinate_label(c),
+                      .wanted = coordinate_label(c),
+                      .value = c.value,
+                      .unit = si});
   std::string second = value_text(c.value, c.error, numbers) + " " + si;
   if (c.error > 0) second += "  ± " + magnitude_text(std::max(c.error, numbers.noise), numbers) + " " + si;
   if (compact)

@@ -87,6 +87,18 @@ bool small_icon(App& app, const std::string& name, const char* icon, const char*
   return pressed;
 }
 
+// Whether the number stays where it is while others go where a goal wants them.
+void hold_button(App& app, const ParameterControl& control, bool pointed, float width) {
+  const bool held = is_held(app, control.address);
+  if (small_icon(app, "parameters/" + control.address + "/hold", icon::lock,
+                 held
+                     ? "Held: it stays while sliders follow a goal. Click to let it go."
+                     : "Hold it where it is while sliders follow a goal, which a read-out below or a body in "
+                       "the view (Alt+Shift) is dragged to.",
+                 pointed || held, width))
+    hold_number(app, control.address, !held);
+}
+
 // The name and what of it, as far as there is room.
 void control_label(App& app, const ParameterControl& control, float width) {
   ImGui::AlignTextToFramePadding();
@@ -120,8 +132,9 @@ void parameter(App& app, const ParameterControl& control) {
   const bool pointed =
       ImGui::IsWindowHovered() &&
       ImGui::IsMouseHoveringRect(from, {from.x + room, from.y + row_height(app, control.group)});
-  const float value_width = std::min((room - icon_width) * 0.5f, 150 * s);
-  const float value_at = room - value_width - icon_width;
+  const float icons = 2 * icon_width; // held, range
+  const float value_width = std::min((room - icons) * 0.5f, 150 * s);
+  const float value_at = room - value_width - icons;
   const bool changed = control.value != control.file_value;
   const ShownUnit unit = shown_unit(control.unit, app.units);
   const auto set = [address = control.address](App& app_then, double value) {
@@ -147,6 +160,11 @@ void parameter(App& app, const ParameterControl& control) {
                   .set = set,
                   .framed = false},
                  value_width);
+  ImGui::SameLine(0, 0);
+  if (control.group == ParameterGroup::pinned)
+    hold_button(app, control, pointed, icon_width);
+  else
+    ImGui::Dummy({icon_width, 0});
   ImGui::SameLine(0, 0);
   if (small_icon(app, name + "/gear", icon::gear, "Range of the slider, pin and unpin.", pointed, icon_width))
     ImGui::OpenPopup("range");

@@ -56,4 +56,17 @@ struct PullGrab {
   std::uint64_t ticket = 0;   // of that
 };
 
+// While exploring: where a point of a body should be, which sliders bring it to.
+struct ReachGrab {
+  std::string body;
+  Vec3 local = Vec3::Zero(); // m, of it, in its axes from its mass centre
+  HandPlane plane;
+  Vec3 hand = Vec3::Zero(); // m, world, at the phase shown
+  std::optional<std::string>
+      holder;               // the body that the hand turns along with, once it is known; empty: ground
+  std::uint64_t opened = 0; // of the session, see Session::opened
+  bool playing = false;     // as it was
+  bool moved = false;
+};
+
 } // namespace flyball

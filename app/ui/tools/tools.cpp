@@ -62,7 +62,7 @@ bool take_size_key(App& app, const KeyPress& key) {
 
 bool take_key(App& app, const KeyPress& key) {
   // What is held is not to be deleted or turned into something else by a shortcut.
-  if (app.tool.grab || app.tool.assembly || app.tool.pull) {
+  if (app.tool.grab || app.tool.assembly || app.tool.pull || app.tool.reach) {
     take_key_while_holding(app, key);
     return true;
   }
@@ -112,7 +112,7 @@ void keep_tool_state(App& app) {
 
 bool takes_left_drag(const App& app, const ViewInput& input) {
   const ToolState& tool = app.tool;
-  if (tool.grab || tool.assembly || tool.pull || tool.frame || tool.spent) return true;
+  if (tool.grab || tool.assembly || tool.pull || tool.reach || tool.frame || tool.spent) return true;
   return drags(tool.tool) || ((input.ctrl || frames_with_left(app.navigation)) && !places(tool.tool));
 }
 
@@ -170,7 +170,7 @@ std::string tool_hint(const App& app) {
     return app.selection().empty() ? "Select what is to be turned." : "Drag a ring. Esc ends.";
   case Tool::pull:
     return app.mode == Mode::build ? "Drag a body: it moves along its joints. Esc ends."
-                                   : "Drag a body: a spring pulls it. Esc ends.";
+                                   : "Drag a body: a spring pulls it; with Shift sliders bring it there. Esc ends.";
   case Tool::box: return "Drag a frame round the parts; Shift adds. Esc ends.";
   case Tool::ball:
     return "Click where the centre is, or drag from there to the radius; it can be typed. Esc ends.";

@@ -17,7 +17,7 @@ bool is_hand(const App& app, const ViewInput& input) {
 }
 
 bool holds(const App& app) {
-  return app.tool.assembly || (app.tool.pull && !app.tool.pull->released);
+  return app.tool.assembly || app.tool.reach || (app.tool.pull && !app.tool.pull->released);
 }
 
 } // namespace
@@ -44,8 +44,10 @@ std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray) {
 bool use_hand(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
   follow_pull(app);
+  follow_reach(app);
   if (tool.assembly && app.mode != Mode::build) let_go_assembly(app, true);
   if (tool.pull && app.mode != Mode::explore) let_go_pull(app, true);
+  if (tool.reach && app.mode != Mode::explore) let_go_reach(app, true);
   if (!holds(app)) {
     if (!is_hand(app, input) || tool.grab || tool.frame || tool.spent || !input.hovered) return false;
     if (!input.pressed) {
@@ -57,6 +59,8 @@ bool use_hand(App& app, const ViewInput& input) {
     if (!hit) return false;
     if (app.mode == Mode::build)
       take_assembly(app, input, *hit);
+    else if (input.shift)
+      take_reach(app, input, *hit);
     else
       take_pull(app, input, *hit);
     return holds(app);
@@ -68,6 +72,8 @@ bool use_hand(App& app, const ViewInput& input) {
   }
   if (tool.assembly)
     hold_assembly(app, input);
+  else if (tool.reach)
+    hold_reach(app, input);
   else
     hold_pull(app, input);
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
@@ -82,6 +88,8 @@ bool let_go_hand(App& app, bool keep) {
   if (!holds(app)) return false;
   if (app.tool.assembly)
     let_go_assembly(app, keep);
+  else if (app.tool.reach)
+    let_go_reach(app, keep);
   else
     let_go_pull(app, keep);
   return true;
@@ -89,6 +97,7 @@ bool let_go_hand(App& app, bool keep) {
 
 std::string hand_hint(const App& app) {
   if (app.tool.assembly) return "Its joints lead the way. Esc takes it back.";
+  if (app.tool.reach) return "The sliders that are not held follow. Esc takes it back.";
   if (holds(app)) return "The wheel makes the spring stiffer or softer. Esc takes it back.";
   return "";
 }

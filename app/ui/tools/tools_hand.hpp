@@ -1,5 +1,5 @@
-// Pulling at a body: along its joints while building (tools_assembly.cpp), by a spring while exploring
-// (tools_pull.cpp).
+// A hand at a body: while building it moves along its joints (tools_assembly.cpp), while exploring a spring
+// pulls it (tools_pull.cpp), or sliders bring it where the hand is (tools_reach.cpp).
 #pragma once
 
 #include "app/ui/panels/view_input.hpp"
@@ -23,7 +23,7 @@ std::optional<HandHit> body_under_cursor(App& app, const ViewInput& input);
 // Where the cursor is on the plane; nothing where one looks along it.
 std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray);
 
-// One each of the two.
+// Of each.
 void take_assembly(App& app, const ViewInput& input, const HandHit& hit);
 void hold_assembly(App& app, const ViewInput& input);
 void let_go_assembly(App& app, bool keep);
@@ -32,6 +32,11 @@ void hold_pull(App& app, const ViewInput& input);
 void let_go_pull(App& app, bool keep);
 // Takes what has been found since: how to take hold, and what it settles in once it is let go.
 void follow_pull(App& app);
+
+void take_reach(App& app, const ViewInput& input, const HandHit& hit);
+void hold_reach(App& app, const ViewInput& input);
+void let_go_reach(App& app, bool keep);
+void follow_reach(App& app);
 
 // N, with which the hand pulls now; nothing where it does not.
 std::optional<double> hand_force(const App& app);

@@ -26,8 +26,6 @@ namespace flyball {
 
 namespace {
 
-constexpr float pixels_a_step = 4; // points the hand travels
-
 std::string with_unit(const std::string& number, const std::string& unit) {
   return unit.empty() ? number : number + " " + unit;
 }

@@ -43,6 +43,7 @@ bool is_pinned(const Mechanism& mechanism, const std::string& address);
 
 // What one step of the hand changes a number by: about a hundredth of it, a power of ten.
 double hand_step(double value, const std::string& unit);
+inline constexpr float pixels_a_step = 4; // points that a hand travels for one
 
 // Pixels that labels take in rows of the present width.
 float label_width(const App& app);

@@ -1,0 +1,104 @@
+#include "app/session/goals.hpp"
+
+#include "app/session/session.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+namespace {
+
+GoalAnswer find_numbers(const GoalRequest& request, const TaskContext<GoalAnswer>& context) {
+  GoalOptions options;
+  options.start = request.start;
+  options.details = false;
+  options.cancel = &context.cancel;
+  return seek_goals(*request.mechanism, request.free, request.goals, options);
+}
+
+// Where a hand that begins now counts changes from.
+void begin_gesture(Session& session) {
+  GoalState& state = session.goals;
+  if (state.gesture == session.gesture) return;
+  state.gesture = session.gesture;
+  state.reference.clear();
+  for (const ParameterControl& control : session.parameters)
+    if (control.group == ParameterGroup::pinned) state.reference.emplace_back(control.address, control.value);
+}
+
+std::vector<FreeNumber> free_numbers(const Session& session, const std::string& but) {
+  std::vector<FreeNumber> free;
+  for (const ParameterControl& control : session.parameters) {
+    if (control.group != ParameterGroup::pinned || is_held(session, control.address) ||
+        control.address == but)
+      continue;
+    const auto before =
+        std::ranges::find(session.goals.reference, control.address, &std::pair<std::string, double>::first);
+    // A number that was typed beyond its slider may go back, not farther out.
+    free.push_back({control.address, std::min({control.from, control.to, control.value}),
+                    std::max({control.from, control.to, control.value}),
+                    before == session.goals.reference.end() ? control.value : before->second});
+  }
+  return free;
+}
+
+} // namespace
+
+bool is_held(const Session& session, const std::string& address) {
+  return std::ranges::find(session.goals.held, address) != session.goals.held.end();
+}
+
+void hold_number(Session& session, const std::string& address, bool held) {
+  std::erase(session.goals.held, address);
+  if (held) session.goals.held.push_back(address);
+}
+
+std::string goal_refusal(const Session& session) {
+  if (!converged(session)) return "There is no steady state to set out from.";
+  const auto pinned =
+      std::ranges::count(session.parameters, ParameterGroup::pinned, &ParameterControl::group);
+  if (pinned == 0) return "No number may move: pin one as a slider first.";
+  if (free_numbers(session, {}).empty()) return "No number may move: all pinned sliders are held.";
+  return {};
+}
+
+void seek(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but) {
+  seek(session, step, std::move(goals), but, {session.document.shared()});
+}
+
+void seek(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but,
+         SharedMechanism mechanism) {
+  begin_gesture(session);
+  std::string refusal = goal_refusal(session);
+  GoalRequest request{std::move(mechanism), free_numbers(session, but), std::move(goals),
+                     start_values(session.answer.solution.coordinates), step};
+  if (refusal.empty() && request.free.empty())
+    refusal = "No other number may move: pin one as a slider first.";
+  if (!refusal.empty()) return show_error(session, refusal);
+  Study<GoalRequest, GoalAnswer>& seeking = session.goals.seeking;
+  // What the hand asks for last is sought when the one before is found: something new is seen all the time.
+  if (!seeking.asked || seeking.asked->goals != request.goals || !seeking.running())
+    seeking.ask(session.options, std::move(request), find_numbers, BackgroundWorker::Running::finished);
+}
+
+const GoalAnswer* sought(const Session& session) {
+  const GoalState& state = session.goals;
+  return state.gesture == session.gesture && state.seeking.found ? &state.seeking.found->result : nullptr;
+}
+
+void update_goals(Session& session) {
+  Study<GoalRequest, GoalAnswer>& seeking = session.goals.seeking;
+  if (!seeking.take()) return;
+  if (!seeking.problem.empty()) return show_error(session, seeking.problem);
+  if (!seeking.found) return;
+  const GoalRequest& of = seeking.found->of;
+  const GoalAnswer& answer = seeking.found->result;
+  if (answer.status != Status::converged) return show_error(session, answer.message);
+  Explored values;
+  for (const GoalAnswer::Number& number : answer.numbers)
+    values.push_back({number.address, number.value});
+  go_to_numbers(session, of.step, values, start_values(answer.solution.coordinates));
+  session.notice = answer.reached ? "" : answer.message;
+}
+
+} // namespace flyball

@@ -1,0 +1,54 @@
+// Sliders in reverse: where the steady state is wanted, and the pinned numbers that go where it is. Those
+// that a person holds stay.
+#pragma once
+
+#include "app/session/shared_mechanism.hpp"
+#include "app/session/study.hpp"
+#include "engine/study/goals.hpp"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace flyball {
+
+struct Session;
+
+struct GoalRequest {
+  SharedMechanism mechanism; // of the document, perhaps with measures of the hand's own
+  std::vector<FreeNumber> free;
+  std::vector<Goal> goals;
+  std::vector<std::pair<std::string, double>> start; // the state it sets out from
+  std::string step;                                  // of the history
+  bool operator==(const GoalRequest&) const = default;
+};
+
+struct GoalState {
+  std::vector<std::string> held; // addresses of pinned numbers that stay where they are
+  std::uint64_t gesture = 0;     // of the hand that seeks, and
+  std::vector<std::pair<std::string, double>> reference; // where the numbers were when it began
+  Study<GoalRequest, GoalAnswer> seeking;
+};
+
+// Whether a pinned number may move, and whether it stays from now on.
+bool is_held(const Session& session, const std::string& address);
+void hold_number(Session& session, const std::string& address, bool held);
+
+// Why no goal can be sought, a sentence; empty where one can.
+std::string goal_refusal(const Session& session);
+
+// Seeks in the background; what is found becomes the present state, as a step `step` of the history. Asked
+// again and again while a hand moves, which is one gesture: the numbers go the least way from where it began.
+// `but`: an address that stays, beside those that are held. A refusal becomes the notice.
+void seek(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but = {});
+// The same for goals of measures that another mechanism has, like the document's else.
+void seek(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but,
+         SharedMechanism mechanism);
+// What came last for the present gesture; null where there is nothing.
+const GoalAnswer* sought(const Session& session);
+
+// Takes what was found.
+void update_goals(Session& session);
+
+} // namespace flyball

@@ -1,0 +1,87 @@
+#include "app/ui/widgets/goal_handle.hpp"
+
+#include "app/session/units.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+void seek_value(App& app, const GoalHandle& handle, double value) {
+  later(app, [wanted = handle.wanted, value](App& changed) {
+    seek(changed, "Bring " + wanted + " to a goal", {{wanted, value}});
+  });
+}
+
+// Instead of the read-out while a number is typed.
+void typed_goal(App& app, const GoalHandle& handle, const std::string& field, ImVec2 from, ImVec2 to) {
+  const float width = std::min(to.x - from.x, 150 * app.scale);
+  ImGui::SetCursorScreenPos({to.x - width, from.y});
+  quantity_field(app,
+                 {.name = field,
+                  .value = handle.value,
+                  .unit = handle.unit,
+                  .help = "Where it should be.",
+                  .set =
+                      [wanted = handle.wanted](App& changed, double value) {
+                        seek(changed, "Bring " + wanted + " to a goal", {{wanted, value}});
+                      }},
+                 width);
+}
+
+} // namespace
+
+void goal_handle(App& app, const GoalHandle& handle) {
+  if (app.mode != Mode::explore) return;
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax(),
+               back = ImGui::GetCursorScreenPos();
+  const float right = from.x + ImGui::GetContentRegionAvail().x;
+  const std::string field = handle.name + "/goal";
+  if (typing_in(app, field)) {
+    typed_goal(app, handle, field, from, {std::max(to.x, right), to.y});
+    ImGui::SetCursorScreenPos(back);
+    return;
+  }
+  ImGui::SetCursorScreenPos(from);
+  const bool pressed =
+      ImGui::InvisibleButton(handle.name.c_str(), {std::max(to.x, right) - from.x, to.y - from.y});
+  note_widget(app.widgets, handle.name, KeyUse::aside);
+  ImGui::SetCursorScreenPos(back);
+  const ShownUnit unit = shown_unit(handle.unit, app.units);
+  const double shown = unit.shown(handle.value);
+  const bool by_key = has_keyboard(app, handle.name);
+  const bool typed =
+      (pressed && by_key) || (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left));
+  if (typed)
+    return later(app, [field, text = short_text(shown, 12) + " " + unit.text](App& changed) {
+      start_typing(changed, field, text);
+    });
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive() || by_key) {
+    if (!by_key) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    const ImVec2 line(from.x, to.y - 1);
+    ImGui::GetWindowDrawList()->AddLine(line, {std::max(to.x, right), line.y}, packed(colors_of(app).accent),
+                                        std::max(1.f, std::round(app.scale)));
+  }
+  if (!ImGui::IsItemActive()) {
+    const std::string refusal = goal_refusal(app);
+    help_on_hover(refusal.empty()
+                      ? "Drag sideways to where it should be, or double-click to type it: the pinned sliders "
+                        "that are not held follow."
+                      : ("Could be dragged to where it should be. " + refusal).c_str());
+  }
+  Scrub& scrub = app.inspector.scrub;
+  if (ImGui::IsItemActivated()) scrub = {handle.name, shown, hand_step(shown, unit.text), 0};
+  if (!ImGui::IsItemActive() || scrub.name != handle.name || ImGui::GetIO().MouseDelta.x == 0) return;
+  scrub.travelled += ImGui::GetIO().MouseDelta.x;
+  const double steps = static_cast<double>(scrub.travelled / (pixels_a_step * app.scale));
+  seek_value(app, handle,
+             unit.si(scrub.start + steps * (ImGui::GetIO().KeyShift ? scrub.step / 10 : scrub.step)));
+}
+
+} // namespace flyball

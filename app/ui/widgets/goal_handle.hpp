@@ -1,0 +1,21 @@
+// A read-out by which the steady state is told where to go: dragged sideways, or typed over after a double
+// click or Enter. The pinned sliders that are not held follow (see session/goals.hpp).
+#pragma once
+
+#include "app/ui/app.hpp"
+
+#include <string>
+
+namespace flyball {
+
+struct GoalHandle {
+  std::string name;   // of the widget
+  std::string wanted; // a free coordinate, or a measure; see Goal
+  double value = 0;   // in SI units
+  std::string unit;   // SI
+};
+
+// Over the last item, which shows the number.
+void goal_handle(App& app, const GoalHandle& handle);
+
+} // namespace flyball

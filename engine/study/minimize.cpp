@@ -1,0 +1,229 @@
+#include "engine/linear/interruption.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/study/goals.hpp"
+
+#include <nlopt.h>
+
+#include <chrono>
+#include <exception>
+#include <memory>
+
+namespace flyball {
+namespace {
+
+using State = SteadyMap::State;
+
+constexpr int most_evaluations = 1000;
+constexpr double kept_within = 1e-11; // scaled: the goals
+constexpr int most_halvings = 12;     // of a way along which the state does not follow
+
+class Minimizer {
+ public:
+  Minimizer(const Mechanism& mechanism, std::span<const FreeNumber> free, const std::string& objective,
+            std::span<const Goal> goals, const GoalOptions& options)
+      : options_(options), free_(free), goals_(goals), objective_(objective),
+        map_(mechanism, free, wanted(objective, goals), options.cancel) {}
+
+  // From a state where the goals are reached.
+  void run(const std::vector<std::pair<std::string, double>>& start, GoalAnswer& out) {
+    std::optional<State> first = map_.begin(start, out.solution);
+    if (!first) {
+      out.status = out.solution.status;
+      out.message = out.solution.message;
+      return;
+    }
+    if (!first->values.allFinite())
+      throw SceneError("minimize", "expected a value to start from; there is none at the steady state");
+    now_ = std::move(*first);
+    set_scales();
+    const double before = now_.values[objective_row()];
+    const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> search(
+        nlopt_create(NLOPT_LD_SLSQP, static_cast<unsigned>(free_.size())), nlopt_destroy);
+    nlopt_set_lower_bounds1(search.get(), 0);
+    nlopt_set_upper_bounds1(search.get(), 1);
+    nlopt_set_min_objective(search.get(), objective_at, this);
+    for (std::size_t i = 0; i < goals_.size(); ++i)
+      constraints_.push_back({this, static_cast<Eigen::Index>(i)});
+    for (Constraint& each : constraints_)
+      nlopt_add_equality_constraint(search.get(), constraint_at, &each, kept_within);
+    nlopt_set_xtol_rel(search.get(), 1e-11);
+    nlopt_set_ftol_rel(search.get(), 1e-14);
+    nlopt_set_maxeval(search.get(), most_evaluations);
+    search_ = search.get();
+    Eigen::VectorXd x = (now_.p - map_.lower()).cwiseQuotient(map_.range());
+    double least = 0;
+    nlopt_optimize(search.get(), x.data(), &least); // what it says, its state and the goals tell better
+    if (interrupted_) std::rethrow_exception(interrupted_);
+    go_to(x);
+    out.iterations = nlopt_get_numevals(search.get());
+    const bool exhausted = out.iterations >= most_evaluations;
+    tell_state(map_, now_, free_, goals_, options_.details, out);
+    out.least =
+        GoalAnswer::Reached{objective_, map_.unit(goals_.size()), now_.values[objective_row()], before};
+    if (out.status != Status::converged) return;
+    bool kept = true;
+    for (std::size_t i = 0; i < goals_.size(); ++i)
+      kept = kept && std::abs(residual(static_cast<Eigen::Index>(i))) < 1e-8;
+    out.reached = kept && !exhausted && !lost_;
+    out.message = sentence(out, kept, exhausted);
+  }
+
+ private:
+  struct Constraint {
+    Minimizer* self;
+    Eigen::Index goal;
+  };
+
+  static std::vector<std::string> wanted(const std::string& objective, std::span<const Goal> goals) {
+    std::vector<std::string> out;
+    for (const Goal& goal : goals)
+      out.push_back(goal.wanted);
+    out.push_back(objective);
+    return out;
+  }
+
+  Eigen::Index objective_row() const { return static_cast<Eigen::Index>(goals_.size()); }
+
+  Eigen::VectorXd unscaled(const Eigen::VectorXd& x) const {
+    return map_.inside(map_.lower() + x.cwiseProduct(map_.range()));
+  }
+
+  void set_scales() {
+    scales_.resize(now_.values.size());
+    for (std::size_t i = 0; i <= goals_.size(); ++i) {
+      const double size = std::abs(now_.values[static_cast<Eigen::Index>(i)]);
+      scales_[static_cast<Eigen::Index>(i)] = map_.scale(i).value_or(size > 0 ? size : 1);
+    }
+    known_ = map_.find_rates(now_);
+  }
+
+  double residual(Eigen::Index goal) const {
+    return map_.away(static_cast<std::size_t>(goal), now_.values[goal],
+                     goals_[static_cast<std::size_t>(goal)].value) /
+           scales_[goal];
+  }
+
+  // Moves now_ along its branch towards x, as far as there are steady states; whether it arrived.
+  bool go_to(const Eigen::VectorXd& x) {
+    const Eigen::VectorXd end = unscaled(x);
+    double part = 1;
+    for (int halvings = 0; now_.p != end && known_;) {
+      interruption_point();
+      std::optional<State> next =
+          map_.step_to(now_, part == 1 ? end : (now_.p + part * (end - now_.p)).eval());
+      if (!next) {
+        if (++halvings > most_halvings) break;
+        part /= 2;
+        continue;
+      }
+      now_ = std::move(*next);
+      known_ = map_.find_rates(now_);
+      part = std::min(1., 2 * part);
+    }
+    lost_ = now_.p != end;
+    return !lost_;
+  }
+
+  // Of row i at x, scaled, with its slope where one is asked for. Where no steady state follows, a wall that
+  // leads back.
+  double at(unsigned n, const double* shares, double* slope, Eigen::Index row) {
+    try {
+      const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(shares, n);
+      const bool arrived = go_to(x), goal = row < objective_row();
+      double value = goal ? residual(row) : now_.values[row] / scales_[row];
+      Eigen::VectorXd gradient = map_.rates().row(row).transpose().cwiseProduct(map_.range()) / scales_[row];
+      if (!arrived && !goal) {
+        const Eigen::VectorXd beyond = (unscaled(x) - now_.p).cwiseQuotient(map_.range());
+        const double steep = 10 * (1 + gradient.norm());
+        value += steep * beyond.norm();
+        gradient += steep * beyond.normalized();
+      }
+      if (slope) Eigen::Map<Eigen::VectorXd>(slope, n) = gradient;
+      return value;
+    } catch (...) { // not through the C of NLopt
+      interrupted_ = std::current_exception();
+      nlopt_force_stop(search_);
+      return 0;
+    }
+  }
+
+  static double objective_at(unsigned n, const double* x, double* slope, void* self) {
+    auto& minimizer = *static_cast<Minimizer*>(self);
+    return minimizer.at(n, x, slope, minimizer.objective_row());
+  }
+  static double constraint_at(unsigned n, const double* x, double* slope, void* constraint) {
+    const auto& each = *static_cast<Constraint*>(constraint);
+    return each.self->at(n, x, slope, each.goal);
+  }
+
+  std::string sentence(const GoalAnswer& out, bool kept, bool exhausted) const {
+    const GoalAnswer::Reached& least = *out.least;
+    const std::string unit = least.unit.empty() ? "" : " " + least.unit;
+    std::string text = least.wanted + " is " + rounded_text(least.value, 8) + unit + ", from " +
+                       rounded_text(least.goal, 8) + unit;
+    if (!kept)
+      text += "; the goals are not kept";
+    else if (exhausted)
+      text += "; the search was not at its end";
+    else if (lost_)
+      text += "; beyond it no steady state follows";
+    else
+      text += ": a minimum nearby, which need not be the least of all";
+    std::vector<std::string_view> names;
+    for (const GoalAnswer::Number& number : out.numbers)
+      if (number.at_limit) names.push_back(number.address);
+    if (!names.empty())
+      text +=
+          std::string(names.size() == 1 ? ". At the end of its range: " : ". At the ends of their ranges: ") +
+          word_list(names, "and");
+    return text + "." + (out.solution.stable == false ? " The state is unstable." : "");
+  }
+
+  const GoalOptions& options_;
+  std::span<const FreeNumber> free_;
+  std::span<const Goal> goals_;
+  std::string objective_;
+  SteadyMap map_;
+  State now_;          // that was evaluated last
+  bool known_ = false; // its rates are the map's
+  bool lost_ = false;  // it is not where it was asked for
+  Eigen::VectorXd scales_;
+  std::vector<Constraint> constraints_;
+  nlopt_opt search_ = nullptr;
+  std::exception_ptr interrupted_;
+};
+
+} // namespace
+
+GoalAnswer minimize(const Mechanism& mechanism, std::span<const FreeNumber> free,
+                    const std::string& objective, std::span<const Goal> goals, const GoalOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Interruptible scope(options.cancel);
+  GoalAnswer out;
+  try {
+    // Where the goals are reached it begins.
+    std::vector<std::pair<std::string, double>> start = options.start;
+    Mechanism from = mechanism;
+    if (!goals.empty()) {
+      out = seek_goals(mechanism, free, goals, options);
+      if (!out.reached) return out;
+      std::vector<ParameterValue> values;
+      for (const GoalAnswer::Number& number : out.numbers)
+        values.push_back({number.address, number.value});
+      set_parameters(from, values);
+      start = start_values(out.solution.coordinates);
+      out = {};
+    }
+    Minimizer minimizer(from, free, objective, goals, options);
+    minimizer.run(start, out);
+  } catch (const Interrupted&) {
+    out.status = Status::not_converged;
+    out.message = "Cancelled.";
+  }
+  out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,206 @@
+#include "engine/study/steady_map.hpp"
+
+#include "engine/continuation/branch_follower.hpp"
+#include "engine/kkt/coordinate_gradient.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/measure_plan.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/report/report.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/solve/sensitivity.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+constexpr double longest_correction = 0.25; // scaled, of the predicted state: more has left the branch
+
+SteadyMap::SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> free,
+                     std::vector<std::string> wanted, const std::atomic<bool>* cancel)
+    : varied_(mechanism), system_(compile_for_drives(mechanism)), cancel_(cancel) {
+  if (free.empty()) throw SceneError("free numbers", "expected one or more");
+  const auto n = static_cast<Eigen::Index>(free.size());
+  lower_.resize(n);
+  upper_.resize(n);
+  p_.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FreeNumber& number = free[static_cast<std::size_t>(i)];
+    const double value = get_parameter(mechanism, number.address);
+    if (!(number.from < number.to)) throw SceneError(number.address, "expected a range from < to");
+    if (std::ranges::find(addresses_, number.address) != addresses_.end())
+      throw SceneError(number.address, "expected each number once");
+    set_parameter(varied_, number.address, value); // that it may be set at all
+    addresses_.push_back(number.address);
+    lower_[i] = number.from;
+    upper_[i] = number.to;
+    p_[i] = std::clamp(value, number.from, number.to);
+  }
+  range_ = upper_ - lower_;
+  for (const std::string& name : wanted)
+    wanted_.push_back(find_wanted(name));
+}
+
+SteadyMap::Wanted SteadyMap::find_wanted(const std::string& name) const {
+  const int measure = measure_index(varied_, name);
+  try {
+    return {&free_coordinate(system_, name)};
+  } catch (const SceneError& error) {
+    if (measure >= 0) return {nullptr, static_cast<std::size_t>(measure)};
+    if (varied_.measures.empty()) throw;
+    std::vector<std::string_view> names;
+    for (const NamedMeasure& each : varied_.measures)
+      names.push_back(each.name);
+    throw SceneError(error.where(), error.expected() + "; or one of the measures " + word_list(names));
+  }
+}
+
+bool SteadyMap::measures_wanted() const {
+  return std::ranges::any_of(wanted_, [](const Wanted& w) { return !w.coordinate; });
+}
+
+// Throws SceneError where no mechanism can be made of them.
+void SteadyMap::set(const Eigen::VectorXd& p) {
+  std::vector<ParameterValue> values;
+  for (Eigen::Index i = 0; i < p.size(); ++i)
+    values.push_back({addresses_[static_cast<std::size_t>(i)], p[i]});
+  set_parameters(varied_, values);
+  validate(varied_);
+  bind(system_, varied_, parameters_);
+  set_scaling(system_, parameters_, scaling_);
+}
+
+void SteadyMap::find_values(State& state) {
+  const Eigen::VectorXd* measured = nullptr;
+  if (measures_wanted()) {
+    measures_.bind(varied_, system_, parameters_);
+    measured = &measures_.evaluate_at(problem(), state.z.q, w_);
+  }
+  state.values.resize(static_cast<Eigen::Index>(wanted_.size()));
+  for (std::size_t i = 0; i < wanted_.size(); ++i)
+    state.values[static_cast<Eigen::Index>(i)] =
+        wanted_[i].coordinate ? coordinate_value(system_, parameters_, state.z.q, *wanted_[i].coordinate)
+                              : (*measured)[static_cast<Eigen::Index>(wanted_[i].measure)];
+}
+
+std::optional<SteadyMap::State> SteadyMap::begin(const std::vector<std::pair<std::string, double>>& start,
+                                                 Solution& first) {
+  set(p_);
+  SolveOptions solve;
+  solve.start = start;
+  solve.nearest = !start.empty();
+  solve.details = false;
+  solve.cancel = cancel_;
+  first = Analysis(varied_).solve(solve);
+  if (first.status != Status::converged) return std::nullopt;
+  State state{p_, {configuration_of(problem(), first.coordinates), {}}, {}};
+  if (!correct(state.z)) { // neutral, say: the state itself is known
+    state.z.q = configuration_of(problem(), first.coordinates);
+    evaluate_with_multipliers(problem(), state.z, w_);
+  }
+  find_values(state);
+  return state;
+}
+
+bool SteadyMap::correct(Unknowns& z) {
+  const Problem p = problem();
+  evaluate_with_multipliers(p, z, w_);
+  NewtonSettings settings;
+  settings.max_iterations = 12;
+  const NewtonOutcome outcome = newton(p, z, w_, settings, nullptr);
+  return outcome.converged && outcome.largest_step < longest_correction;
+}
+
+bool SteadyMap::find_rates(const State& state) {
+  set(state.p);
+  const Problem p = problem();
+  const FactoredState factored = factor_at(p, state.z, w_);
+  negative_ = factored.kkt().negative_count();
+  const std::vector<Eigen::VectorXd> found = sensitivities(factored, varied_, addresses_);
+  if (found.empty()) return false;
+  state_rates_.resize(system_.nv, count());
+  for (Eigen::Index k = 0; k < count(); ++k)
+    state_rates_.col(k) = found[static_cast<std::size_t>(k)];
+  rates_.resize(static_cast<Eigen::Index>(wanted_.size()), count());
+  Eigen::MatrixXd gradient,
+      beside; // of the measures: by the coordinates, and by the numbers while those stand
+  if (measures_wanted()) {
+    measures_.bind(varied_, system_, parameters_);
+    measures_.evaluate_at(p, state.z.q, w_);
+    gradient = measures_.gradient(p, state.z.q, w_, w_.elsewhere());
+    beside.resize(gradient.rows(), count());
+    for (Eigen::Index k = 0; k < count(); ++k)
+      beside.col(k) =
+          measures_.parameter_rates(p, varied_, addresses_[static_cast<std::size_t>(k)], state.z.q, w_);
+  }
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i), m = static_cast<Eigen::Index>(wanted_[i].measure);
+    if (wanted_[i].coordinate)
+      rates_.row(row) =
+          coordinate_gradient(system_, parameters_, state.z.q, *wanted_[i].coordinate).transpose() *
+          state_rates_;
+    else
+      rates_.row(row) = gradient.row(m) * state_rates_ + beside.row(m);
+  }
+  return state_rates_.allFinite() && rates_.allFinite();
+}
+
+double SteadyMap::way(const Eigen::VectorXd& step) const {
+  if (system_.nv == 0) return 0;
+  return (state_rates_ * step).cwiseQuotient(scaling_.column).lpNorm<Eigen::Infinity>();
+}
+
+std::optional<SteadyMap::State> SteadyMap::step_to(const State& from, const Eigen::VectorXd& p) {
+  try {
+    set(p);
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+  State to{p, from.z, {}};
+  retract<double>(system_, state_rates_ * (p - from.p), to.z.q);
+  if (!correct(to.z)) return std::nullopt;
+  // Past a fold, or where branches cross, the steady states are others.
+  if (problem().symmetric() && factor_at(problem(), to.z, w_).kkt().negative_count() != negative_)
+    return std::nullopt;
+  find_values(to);
+  if (!to.values.allFinite()) return std::nullopt;
+  return to;
+}
+
+Solution SteadyMap::solution(const State& state, bool details) {
+  set(state.p);
+  forward<double>(system_, parameters_, state.z.q, 0, w_.kinematics);
+  SolveOptions solve;
+  solve.start = start_values(coordinate_solutions(system_, parameters_, state.z.q,
+                                                  Eigen::VectorXd::Zero(system_.nv), w_.kinematics));
+  solve.nearest = true;
+  solve.details = details;
+  solve.cancel = cancel_;
+  return Analysis(varied_).solve(solve);
+}
+
+Eigen::VectorXd SteadyMap::inside(Eigen::VectorXd p) const {
+  for (Eigen::Index i = 0; i < count(); ++i)
+    for (const double end : {lower_[i], upper_[i]})
+      if (std::abs(p[i] - end) < 1e-12 * range_[i]) p[i] = end;
+  return p.cwiseMax(lower_).cwiseMin(upper_);
+}
+
+double SteadyMap::away(std::size_t wanted, double value, double goal) const {
+  const CoordinateInfo* coordinate = wanted_[wanted].coordinate;
+  return coordinate ? away_from(system_, parameters_, *coordinate, value, goal) : value - goal;
+}
+
+std::string SteadyMap::unit(std::size_t wanted) const {
+  if (const CoordinateInfo* coordinate = wanted_[wanted].coordinate) return coordinate->angle ? "rad" : "m";
+  return varied_.measures[wanted_[wanted].measure].unit;
+}
+
+std::optional<double> SteadyMap::scale(std::size_t wanted) const {
+  if (const CoordinateInfo* coordinate = wanted_[wanted].coordinate)
+    return coordinate->angle ? 1 : parameters_.length;
+  return std::nullopt;
+}
+
+} // namespace flyball

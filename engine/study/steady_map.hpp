@@ -1,0 +1,103 @@
+// A steady state as a function of several numbers of its mechanism: along its branch, with what is asked of
+// it and the rates of both by the implicit function theorem.
+//
+// The state beside one that is known is predicted by its rates and corrected by Newton-Raphson. Where a fold
+// or a crossing of branches lies between there is none: the inertia of the balance tells where there is a
+// potential.
+#pragma once
+
+#include "engine/kkt/workspace.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/report/measures.hpp"
+
+#include <optional>
+#include <span>
+
+namespace flyball {
+
+// A number that may be moved, by its address, in its unit; from < to.
+struct FreeNumber {
+  std::string address;
+  double from = 0, to = 0;
+  // Where change is counted from; as a rule the mechanism's own.
+  std::optional<double> reference{};
+  bool operator==(const FreeNumber&) const = default;
+};
+
+class SteadyMap {
+ public:
+  struct State {
+    Eigen::VectorXd p;      // the numbers, in their units
+    Unknowns z;             // at the drawn phase
+    Eigen::VectorXd values; // of what is asked for: rad, m or the measure's unit
+  };
+
+  // `wanted`: free coordinates, "joint" or "joint.index", else measures. Throws SceneError for addresses,
+  // coordinates and measures that do not exist, for ranges without an extent and for a number that is free
+  // twice.
+  SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> free, std::vector<std::string> wanted,
+            const std::atomic<bool>* cancel);
+  SteadyMap(const SteadyMap&) = delete;
+  SteadyMap& operator=(const SteadyMap&) = delete;
+
+  // The steady state of the mechanism's own numbers, inside their ranges: from `start` (as of SolveOptions),
+  // or where that is empty what a solve answers. Nothing where there is none: `first` says why.
+  std::optional<State> begin(const std::vector<std::pair<std::string, double>>& start, Solution& first);
+
+  // At a state that was found: state_rates() of the coordinates (rad or m, as a step; (nv, numbers)) and
+  // rates() of what is asked for ((wanted, numbers)), per unit of the numbers. False where the state is
+  // singular.
+  bool find_rates(const State& state);
+  const Eigen::MatrixXd& state_rates() const { return state_rates_; }
+  const Eigen::MatrixXd& rates() const { return rates_; }
+  // How far the state would go with a step of the numbers: the largest coordinate, in rad or reaches.
+  double way(const Eigen::VectorXd& step) const;
+
+  // From the state whose rates were found last. Nothing where no steady state follows from it there.
+  std::optional<State> step_to(const State& from, const Eigen::VectorXd& p);
+
+  // All that a solve tells of a state.
+  Solution solution(const State& state, bool details);
+
+  // What of `value` is left to `goal`, of angles that turn freely the short way round.
+  double away(std::size_t wanted, double value, double goal) const;
+  std::string unit(std::size_t wanted) const;
+  // What differences are measured by: 1 rad, the mechanism's reach, of a measure nothing by itself.
+  std::optional<double> scale(std::size_t wanted) const;
+
+  // Moved into the ranges, and to an end from where only rounding keeps it away.
+  Eigen::VectorXd inside(Eigen::VectorXd p) const;
+  Eigen::Index count() const { return range_.size(); }
+  const Eigen::VectorXd& range() const { return range_; } // to - from
+  const Eigen::VectorXd& lower() const { return lower_; }
+  const Eigen::VectorXd& upper() const { return upper_; }
+
+ private:
+  // A coordinate, or where that is null a measure.
+  struct Wanted {
+    const CoordinateInfo* coordinate = nullptr;
+    std::size_t measure = 0;
+  };
+
+  Problem problem() const { return {system_, parameters_, scaling_, cancel_, system_.kkt_form}; }
+  Wanted find_wanted(const std::string& name) const;
+  bool measures_wanted() const;
+  void set(const Eigen::VectorXd& p);
+  void find_values(State& state);
+  bool correct(Unknowns& z);
+
+  Mechanism varied_;
+  System system_;
+  Parameters parameters_;
+  Scaling scaling_;
+  const std::atomic<bool>* cancel_;
+  std::vector<std::string> addresses_;
+  std::vector<Wanted> wanted_;
+  Eigen::VectorXd lower_, upper_, range_, p_;
+  MeasureSet measures_;
+  Eigen::MatrixXd state_rates_, rates_;
+  int negative_ = 0; // eigenvalues of the balance, at the state with these rates
+  Workspace w_;
+};
+
+} // namespace flyball
