@@ -7,6 +7,8 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
+#include <algorithm>
+
 using namespace flyball;
 using namespace flyball::test;
 
@@ -110,4 +112,21 @@ TEST_CASE("a body is dragged to where it should settle, and Escape takes it back
   CHECK_FALSE(robot.app.tool.reach);
   CHECK(robot.app.document.can_undo() == !back);
   CHECK((robot.number("parameters.w") == w) == back);
+}
+
+TEST_CASE("a measure's read-out takes a goal, too") {
+  GoalRobot robot;
+  const auto height = [&] {
+    const auto& all = robot.app.answer.solution.measures;
+    return std::ranges::find(all, "height", &MeasureSolution::name)->value.value();
+  };
+  const double before = height();
+  robot.double_click("results/measure/height");
+  robot.frames(2);
+  robot.key('A', true);
+  robot.type("10 cm");
+  robot.key(key_enter);
+  robot.frames(3);
+  CHECK(before != Approx(0.1));
+  CHECK(height() == Approx(0.1).epsilon(1e-9));
 }

@@ -1,6 +1,7 @@
 // The scene's measures, live: in the units of the screen, with the error that the coordinates' errors make.
 #include "app/session/units.hpp"
 #include "app/ui/panels.hpp"
+#include "app/ui/widgets/goal_handle.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
@@ -21,16 +22,20 @@ void measure_results(App& app) {
     help += "=" + named[i].text;
     if (!m.value) {
       row(app, m.name, "-", "", (help + "\n" + m.reason).c_str());
+      note_widget(app.widgets, "results/measure/" + m.name);
     } else {
       const double error = m.error.value_or(numbers.noise * std::abs(*m.value));
       if (m.error)
         help += "\n± " + magnitude_text(std::max(*m.error, numbers.noise) * unit.factor, numbers) + " " +
                 unit.text;
       if (m.nonunique) help += "\nNot unique: loops are redundant, and share their forces in many ways.";
-      row(app, m.name, value_text(unit.shown(*m.value), error * unit.factor, numbers), unit.text.c_str(),
-          help.c_str());
+      row(app, m.name, value_text(unit.shown(*m.value), error * unit.factor, numbers), unit.text.c_str());
+      goal_handle(app, {.name = "results/measure/" + m.name,
+                        .wanted = m.name,
+                        .value = *m.value,
+                        .unit = m.unit,
+                        .help = std::move(help)});
     }
-    note_widget(app.widgets, "results/measure/" + m.name);
   }
 }
 

@@ -38,7 +38,11 @@ void typed_goal(App& app, const GoalHandle& handle, const std::string& field, Im
 } // namespace
 
 void goal_handle(App& app, const GoalHandle& handle) {
-  if (app.mode != Mode::explore) return;
+  if (app.mode != Mode::explore) {
+    note_widget(app.widgets, handle.name);
+    help_on_hover(handle.help.c_str());
+    return;
+  }
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax(),
                back = ImGui::GetCursorScreenPos();
   const float right = from.x + ImGui::GetContentRegionAvail().x;
@@ -70,10 +74,12 @@ void goal_handle(App& app, const GoalHandle& handle) {
   }
   if (!ImGui::IsItemActive()) {
     const std::string refusal = goal_refusal(app);
-    help_on_hover(refusal.empty()
-                      ? "Drag sideways to where it should be, or double-click to type it: the pinned sliders "
-                        "that are not held follow."
-                      : ("Could be dragged to where it should be. " + refusal).c_str());
+    std::string help = handle.help.empty() ? "" : handle.help + "\n";
+    help += refusal.empty()
+                ? "Drag sideways to where it should be, or double-click to type it: the pinned sliders that "
+                  "are not held follow."
+                : "Could be dragged to where it should be. " + refusal;
+    help_on_hover(help.c_str());
   }
   Scrub& scrub = app.inspector.scrub;
   if (ImGui::IsItemActivated()) scrub = {handle.name, shown, hand_step(shown, unit.text), 0};

@@ -13,6 +13,7 @@ struct GoalHandle {
   std::string wanted; // a free coordinate, or a measure; see Goal
   double value = 0;   // in SI units
   std::string unit;   // SI
+  std::string help{}; // told first
 };
 
 // Over the last item, which shows the number.
