@@ -29,6 +29,8 @@ using Json = nlohmann::ordered_json;
 
 Json point_json(const ResponsePoint& p) {
   Json out = {{"parameter", p.parameter}, {"coordinates", coordinates_json(p.coordinates)}};
+  if (std::ranges::any_of(p.coordinates, [](const CoordinateSolution& c) { return c.speed.has_value(); }))
+    out["speeds"] = speeds_json(p.coordinates);
   if (!p.measures.empty()) out["measures"] = measures_json(p.measures);
   out["stable"] = p.stable ? Json(*p.stable) : Json(nullptr);
   out["stability_reason"] = p.stability_reason ? Json(word(*p.stability_reason)) : Json(nullptr);
@@ -66,14 +68,14 @@ std::string diagram_csv(const Mechanism& m, const std::string& address, const Re
   std::string out = "branch," + csv_field(address);
   if (!d.branches.empty() && !d.branches.front().points.empty())
     for (const CoordinateSolution& c : d.branches.front().points.front().coordinates)
-      if (!c.driven) out += "," + csv_field(coordinate_label(c));
+      if (c.speed || !c.driven) out += "," + csv_field(coordinate_label(c) + (c.speed ? ".speed" : ""));
   for (const NamedMeasure& measure : m.measures)
     out += "," + csv_field(measure.name);
   out += ",stable,special\n";
   const auto row = [&](int branch, const ResponsePoint& p, std::string_view special) {
     out += fmt::format("{},{}", branch, csv_number(p.parameter));
     for (const CoordinateSolution& c : p.coordinates)
-      if (!c.driven) out += "," + csv_number(c.value);
+      if (c.speed || !c.driven) out += "," + csv_number(c.speed.value_or(c.value));
     for (const MeasureSolution& measure : p.measures)
       out += "," + (measure.value ? csv_number(*measure.value) : "");
     out += fmt::format(",{},{}\n", p.stable ? (*p.stable ? "true" : "false") : "", special);
@@ -108,8 +110,12 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
   }
   for (const SpecialPoint& s : d.special) {
     out += fmt::format("  {} on branch {} at {:.12g} {}:", word(s.type), s.branch, s.at.parameter, unit);
-    for (const CoordinateSolution& c : s.at.coordinates)
-      if (!c.driven) out += fmt::format("  {} = {:.9g} {}", shown_label(c), c.value, c.angle ? "rad" : "m");
+    for (const CoordinateSolution& c : s.at.coordinates) {
+      if (c.speed)
+        out += fmt::format("  speed of {} = {:.9g} {}", shown_label(c), *c.speed, c.angle ? "rad/s" : "m/s");
+      else if (!c.driven)
+        out += fmt::format("  {} = {:.9g} {}", shown_label(c), c.value, c.angle ? "rad" : "m");
+    }
     out += "\n";
   }
   return out + fmt::format("  {:.1f} ms\n", d.run_time_s * 1e3);

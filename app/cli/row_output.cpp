@@ -122,8 +122,12 @@ nlohmann::ordered_json row_json(const SweepColumns& columns, const SweepPoint& p
   row["status"] = word(p.solution.status);
   row["message"] = p.solution.message;
   row["coordinates"] = nlohmann::ordered_json::object();
-  for (const CoordinateSolution& c : p.solution.coordinates)
-    if (!c.driven) row["coordinates"][coordinate_label(c)] = c.value;
+  for (const CoordinateSolution& c : p.solution.coordinates) {
+    if (c.speed)
+      row["coordinates"][coordinate_label(c) + ".speed"] = *c.speed;
+    else if (!c.driven)
+      row["coordinates"][coordinate_label(c)] = c.value;
+  }
   if (!p.solution.measures.empty()) row["measures"] = measures_json(p.solution.measures);
   row["stable"] =
       p.solution.stable ? nlohmann::ordered_json(*p.solution.stable) : nlohmann::ordered_json(nullptr);

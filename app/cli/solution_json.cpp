@@ -29,6 +29,13 @@ void put(Json& object, const std::string& joint, int index, int count, Json valu
   object[joint][static_cast<std::size_t>(index)] = std::move(value);
 }
 
+Json eigenvalues_json(const std::vector<std::complex<double>>& eigenvalues) {
+  Json out = Json::array();
+  for (const auto& e : eigenvalues)
+    out.push_back({number(e.real()), number(e.imag())});
+  return out;
+}
+
 } // namespace
 
 Json with_warnings(Json answer, const Mechanism& mechanism) {
@@ -78,8 +85,9 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["stable"] = s.stable ? Json(*s.stable) : Json(nullptr);
   out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);
   for (const char* key :
-       {"potential", "eigenvalues", "floquet", "neutral", "drive_torques", "drive_torque_ranges", "reactions",
-        "poses", "points", "measures", "sensitivities", "measure_sensitivities", "condition"})
+       {"potential", "eigenvalues", "floquet", "at_constant_speed", "speeds", "speed_errors", "neutral",
+        "drive_torques", "drive_torque_ranges", "reactions", "poses", "points", "measures", "sensitivities",
+        "measure_sensitivities", "condition"})
     out[key] = nullptr;
   out["unheld"] = Json::array();
   for (const UnheldCoordinate& c : s.unheld)
@@ -97,12 +105,18 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
     for (double value : m.values)
       out["multipliers"][m.joint].push_back(number(value));
   }
-  if (s.eigenvalues) {
-    out["eigenvalues"] = Json::array();
-    for (const auto& e : *s.eigenvalues)
-      out["eigenvalues"].push_back({number(e.real()), number(e.imag())});
-  }
+  if (s.eigenvalues) out["eigenvalues"] = eigenvalues_json(*s.eigenvalues);
   if (s.floquet) out["floquet"] = floquet_json(*s.floquet);
+  if (const auto& at = s.at_constant_speed) {
+    out["at_constant_speed"] = {
+        {"stable", at->stable ? Json(*at->stable) : Json(nullptr)},
+        {"stability_reason", at->stability_reason ? Json(word(*at->stability_reason)) : Json(nullptr)},
+        {"eigenvalues", at->eigenvalues ? eigenvalues_json(*at->eigenvalues) : Json(nullptr)}};
+  }
+  out["speeds"] = speeds_json(s.coordinates);
+  out["speed_errors"] = Json::object();
+  for (const CoordinateSolution& c : s.coordinates)
+    if (c.speed) put(out["speed_errors"], c.joint, c.index, c.count, number(c.speed_error));
   out["neutral"] = s.neutral;
   out["drive_torques"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)
@@ -152,7 +166,8 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   for (const Sensitivity& x : s.sensitivities) {
     out["sensitivities"][x.address] = Json::object();
     for (const Sensitivity::Rate& r : x.rates)
-      put(out["sensitivities"][x.address], r.joint, r.index, r.count, number(r.value));
+      put(out["sensitivities"][x.address], r.speed ? r.joint + ".speed" : r.joint, r.index, r.count,
+          number(r.value));
   }
   if (s.condition) out["condition"] = number(*s.condition);
   return out;
@@ -165,7 +180,7 @@ Json to_json(const Mechanism& mechanism, const AllSolutions& all) {
     out["equilibria"].push_back(to_json(mechanism, s));
   Json bounds = Json::object();
   for (const AllSolutions::Bound& b : all.bounds)
-    put(bounds, b.joint, b.index, b.count, {b.lower, b.upper});
+    put(bounds, b.speed ? b.joint + ".speed" : b.joint, b.index, b.count, {b.lower, b.upper});
   out["search"] = {{"bounds", std::move(bounds)}, {"starts", all.starts},
                    {"complete", false},           {"message", all.message},
                    {"end", word(all.end)},        {"expected_missing", number(all.unseen)},
@@ -182,6 +197,13 @@ Json measures_json(const std::vector<MeasureSolution>& measures) {
     if (!m.value) entry["reason"] = m.reason;
     if (m.nonunique) entry["nonunique"] = true;
   }
+  return out;
+}
+
+Json speeds_json(const std::vector<CoordinateSolution>& coordinates) {
+  Json out = Json::object();
+  for (const CoordinateSolution& c : coordinates)
+    if (c.speed) put(out, c.joint, c.index, c.count, number(*c.speed));
   return out;
 }
 

@@ -31,6 +31,9 @@ nlohmann::ordered_json measures_json(const std::vector<MeasureSolution>& measure
 // {joint: value or array}, driven ones left out.
 nlohmann::ordered_json coordinates_json(const std::vector<CoordinateSolution>& coordinates);
 
+// {joint: value or array}: of drives by torque, as found.
+nlohmann::ordered_json speeds_json(const std::vector<CoordinateSolution>& coordinates);
+
 // {"equilibria": [as above], "search": {"bounds", "starts", "complete"}}.
 nlohmann::ordered_json to_json(const Mechanism& mechanism, const AllSolutions& all);
 

@@ -32,9 +32,9 @@ std::string flags(bool varying, bool nonunique) {
   return std::string(varying ? "  (changes with the phase)" : "") + (nonunique ? "  (not unique)" : "");
 }
 
-std::string stability(const Solution& s) {
-  if (!s.stability_reason) return "";
-  switch (*s.stability_reason) {
+std::string stability(std::optional<bool> stable, std::optional<StabilityReason> reason) {
+  if (!reason) return "";
+  switch (*reason) {
   case StabilityReason::minimum: return "stable: a strict minimum of the amended potential";
   case StabilityReason::asymptotic: return "stable: every small motion about it dies out";
   case StabilityReason::gyroscopic_only: return "held by gyroscopic forces alone: any damping destroys it";
@@ -42,12 +42,22 @@ std::string stability(const Solution& s) {
   case StabilityReason::marginal: return "marginal: too close to the border of stability to tell";
   case StabilityReason::unstable: return "unstable";
   case StabilityReason::floquet:
-    return s.stable == true    ? "stable by its Floquet multipliers"
-           : s.stable == false ? "unstable: a Floquet multiplier is larger than 1"
-                               : "a Floquet multiplier is too close to 1 to tell";
+    return stable == true    ? "stable by its Floquet multipliers"
+           : stable == false ? "unstable: a Floquet multiplier is larger than 1"
+                             : "a Floquet multiplier is too close to 1 to tell";
   case StabilityReason::varying: return "stability not known: the linearised motion turns with the drives";
   }
   return "";
+}
+
+std::string lines_of(const std::vector<std::complex<double>>& eigenvalues) {
+  std::string out;
+  for (const auto& e : eigenvalues)
+    if (e.imag() >= 0)
+      out += e.imag() > 0 ? fmt::format("  {:>13.6g} ± {:.6g} i 1/s  ({:.4g} Hz)\n", e.real(), e.imag(),
+                                        e.imag() / (2 * std::numbers::pi))
+                          : fmt::format("  {:>13.6g} 1/s\n", e.real());
+  return out;
 }
 
 } // namespace
@@ -71,7 +81,12 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
                        s.run_time_s * 1e6);
     return out;
   }
-  if (const std::string words = stability(s); !words.empty()) out += "  " + words + "\n";
+  const std::string with_engine = s.at_constant_speed ? "with the drives' torques: " : "";
+  if (const std::string words = stability(s.stable, s.stability_reason); !words.empty())
+    out += "  " + with_engine + words + "\n";
+  if (s.at_constant_speed)
+    out += "  at constant speed: " +
+           stability(s.at_constant_speed->stable, s.at_constant_speed->stability_reason) + "\n";
   std::size_t width = 10;
   for (const auto& c : s.coordinates)
     width = std::max(width, shown_label(c).size());
@@ -83,6 +98,14 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   if (!s.coordinates.empty()) heading("coordinates");
   for (const CoordinateSolution& c : s.coordinates) {
     const std::string name = shown_label(c);
+    if (c.speed) {
+      const double shown = c.angle ? 30 / std::numbers::pi : 1000;
+      out += fmt::format("  {:{}}  {:>22} {:5}  {:>18} {:4}  ± {:.1g} {}  speed by its torque\n", name, width,
+                         rounded(*c.speed, c.speed_error, 17), c.angle ? "rad/s" : "m/s",
+                         rounded(*c.speed * shown, c.speed_error * shown, 12), c.angle ? "rpm" : "mm/s",
+                         c.speed_error, c.angle ? "rad/s" : "m/s");
+      continue;
+    }
     if (c.driven) {
       out += fmt::format("  {:{}}  driven\n", name, width);
       continue;
@@ -145,12 +168,13 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
                          s.floquet->multipliers[i].real(), s.floquet->multipliers[i].imag(),
                          std::abs(s.floquet->multipliers[i]), s.floquet->growth[i]);
   } else if (s.eigenvalues && !s.eigenvalues->empty()) {
-    heading("eigenvalues of the linearised motion");
-    for (const auto& e : *s.eigenvalues)
-      if (e.imag() >= 0)
-        out += e.imag() > 0 ? fmt::format("  {:>13.6g} ± {:.6g} i 1/s  ({:.4g} Hz)\n", e.real(), e.imag(),
-                                          e.imag() / (2 * std::numbers::pi))
-                            : fmt::format("  {:>13.6g} 1/s\n", e.real());
+    heading(s.at_constant_speed ? "eigenvalues of the linearised motion, with the drives' torques"
+                                : "eigenvalues of the linearised motion");
+    out += lines_of(*s.eigenvalues);
+  }
+  if (s.at_constant_speed && s.at_constant_speed->eigenvalues && !s.at_constant_speed->eigenvalues->empty()) {
+    heading("eigenvalues at constant speed");
+    out += lines_of(*s.at_constant_speed->eigenvalues);
   }
   out += fmt::format("\nresidual {:.1e}, {} iterations{}, {:.1f} µs", s.residual, s.iterations,
                      s.fallback ? fmt::format(" (fallback: {})", word(*s.fallback)) : std::string(),
@@ -164,13 +188,17 @@ std::string to_text(const Mechanism& mechanism, const AllSolutions& all) {
                                 all.equilibria.size(), all.starts, printable(all.message));
   out += "searched";
   for (const AllSolutions::Bound& b : all.bounds)
-    out += fmt::format("  {} {:.4g} to {:.4g} {}", shown_label(b), b.lower, b.upper, b.angle ? "rad" : "m");
+    out += fmt::format("  {} {:.4g} to {:.4g} {}", shown_label(b), b.lower, b.upper,
+                       b.angle ? (b.speed ? "rad/s" : "rad") : (b.speed ? "m/s" : "m"));
   for (std::size_t i = 0; i < all.equilibria.size(); ++i) {
     const Solution& s = all.equilibria[i];
-    out += fmt::format("\n\n{}  {}", i + 1, stability(s));
+    out += fmt::format("\n\n{}  {}", i + 1, stability(s.stable, s.stability_reason));
     if (s.potential) out += fmt::format(", potential {:.9g} J", *s.potential);
     for (const CoordinateSolution& c : s.coordinates)
-      if (!c.driven)
+      if (c.speed)
+        out += fmt::format("\n   speed of {} = {} {}  ± {:.1g}", shown_label(c),
+                           rounded(*c.speed, c.speed_error, 17), c.angle ? "rad/s" : "m/s", c.speed_error);
+      else if (!c.driven)
         out += fmt::format("\n   {} = {} {}  ± {:.1g}", shown_label(c), rounded(c.value, c.error, 17),
                            c.angle ? "rad" : "m", c.error);
   }

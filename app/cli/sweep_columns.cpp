@@ -10,8 +10,12 @@ namespace flyball::cli {
 SweepColumns::SweepColumns(const Mechanism& mechanism, std::vector<Variation> varied, bool with_times)
     : variations(std::move(varied)), times(with_times) {
   const std::vector<CoordinateSolution> all = Analysis(mechanism).summary().coordinates;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (!all[i].driven) values.push_back({coordinate_label(all[i]), all[i].angle ? "rad" : "m", false, i});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].speed)
+      values.push_back({coordinate_label(all[i]) + ".speed", all[i].angle ? "rad/s" : "m/s", false, i});
+    else if (!all[i].driven)
+      values.push_back({coordinate_label(all[i]), all[i].angle ? "rad" : "m", false, i});
+  }
   for (std::size_t i = 0; i < mechanism.measures.size(); ++i)
     values.push_back({mechanism.measures[i].name, mechanism.measures[i].unit, true, i});
 }
@@ -32,8 +36,9 @@ double value_at(const Solution& solution, const SweepColumns::Value& value) {
   const std::size_t i = value.place;
   if (value.measure)
     return i < solution.measures.size() ? solution.measures[i].value.value_or(std::nan("")) : std::nan("");
-  if (i >= solution.coordinates.size() || solution.coordinates[i].driven) return std::nan("");
-  return solution.coordinates[i].value;
+  if (i >= solution.coordinates.size()) return std::nan("");
+  const CoordinateSolution& c = solution.coordinates[i];
+  return c.speed ? *c.speed : c.driven ? std::nan("") : c.value;
 }
 
 } // namespace flyball::cli

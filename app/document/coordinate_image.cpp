@@ -48,7 +48,11 @@ Coordinate with_sign(Coordinate c, double sign) {
   if (sign > 0) return c;
   c.drawn = 0.0 - c.drawn;
   if (c.spring) c.spring->free = 0.0 - c.spring->free;
-  if (c.drive) c.drive->speed = 0.0 - c.drive->speed;
+  if (c.drive) {
+    c.drive->speed = 0.0 - c.drive->speed;
+    if (c.drive->torque) c.drive->torque = 0.0 - *c.drive->torque;
+    if (c.drive->load) c.drive->load = 0.0 - *c.drive->load;
+  }
   if (c.stop) {
     std::swap(c.stop->lower, c.stop->upper);
     for (std::optional<double>* bound : {&c.stop->lower, &c.stop->upper})

@@ -2,6 +2,7 @@
 
 #include "app/document/measure_edits.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -303,7 +304,7 @@ void settle_formulas(const Mechanism& before, Mechanism& next) {
     if (is_named(given) && is_moved(given)) moved.push_back(given);
   const std::vector<GivenNumber> all = given_numbers(settled);
   for (const GivenNumber& given : all) {
-    if (is_named(given)) continue;
+    if (is_named(given) || is_of_state(given.text)) continue;
     const std::string part = owner(given.part);
     const bool is_part = part.find('.') != std::string::npos && !part.starts_with("gravity");
     if (is_part && !former.contains(part)) {

@@ -1,6 +1,7 @@
 #include "app/document/measure_edits.hpp"
 
 #include "app/document/formula_edits.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/mistakes.hpp"
 
 #include <algorithm>
@@ -78,6 +79,9 @@ void follow_in_measures(Mechanism& mechanism, const Part& part, const std::strin
                                                          : ResultPart::body;
   for (NamedMeasure& each : mechanism.measures)
     each.text = part_renamed_in(each.text, kind, part.name, name);
+  for (Joint& joint : mechanism.joints)
+    for (Formula& formula : joint.formulas)
+      if (is_drive_law(formula)) formula.text = part_renamed_in(formula.text, kind, part.name, name);
 }
 
 void drop_lost_measures(Mechanism& mechanism) {

@@ -9,11 +9,21 @@
 namespace flyball {
 namespace {
 
+// Drives by torque, by name.
+Html torques(const Mechanism& m) {
+  Html out;
+  for (const Joint& joint : m.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
+      if (const auto& drive = joint.coordinates[i].drive; drive && drive->torque)
+        out += (out.empty() ? Html() : Html(", ")) + coordinate_name(joint, static_cast<int>(i));
+  return out;
+}
+
 Html speeds(const Mechanism& m) {
   Html out;
   for (const Joint& joint : m.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
-      if (const auto& drive = joint.coordinates[i].drive)
+      if (const auto& drive = joint.coordinates[i].drive; drive && !drive->torque)
         out += (out.empty() ? Html() : Html(", ")) + coordinate_name(joint, static_cast<int>(i)) + " at " +
                quantity(drive->speed, is_angle(joint.type, static_cast<int>(i)) ? "rad/s" : "m/s");
   return out;
@@ -48,9 +58,14 @@ OptionalSection assumptions_section(const ReportContents& contents) {
   terms.term("Gravity", m.gravity.isZero() ? Html("None.")
                                            : vector_quantity(m.gravity, "m/s^2", 9) + ", size " +
                                                  quantity(m.gravity.norm(), "m/s^2", 9) + ".");
-  const Html driven = speeds(m);
-  terms.term("Drives", driven.empty() ? Html("None: an equilibrium at rest.")
-                                      : "Constant speeds, whatever torque they take: " + driven + ".");
+  const Html driven = speeds(m), by_torque = torques(m);
+  if (!driven.empty() || by_torque.empty())
+    terms.term("Drives", driven.empty() ? Html("None: an equilibrium at rest.")
+                                        : "Constant speeds, whatever torque they take: " + driven + ".");
+  if (!by_torque.empty())
+    terms.term("Drives by torque",
+               "Each turns at the speed at which its torque less its load is what turning takes: " +
+                   by_torque + ". Stability is told with the torques, which may change with the state.");
   terms.term("Steady state", "Every other coordinate is constant.");
   terms.term("Damping", damped(m)
                             ? "Viscous dampers count in stability and modes; they move no steady state of "

@@ -15,7 +15,9 @@ const char* flags(bool varying, bool nonunique) {
                               : "";
 }
 
-double drive_speed(const Mechanism& m, const DriveTorque& d) {
+double drive_speed(const Mechanism& m, const Solution& s, const DriveTorque& d) {
+  for (const CoordinateSolution& c : s.coordinates)
+    if (c.speed && c.joint == d.joint && c.index == d.index) return *c.speed;
   const int joint = joint_index(m, d.joint);
   if (joint < 0) return 0;
   const auto& drive =
@@ -23,13 +25,14 @@ double drive_speed(const Mechanism& m, const DriveTorque& d) {
   return drive ? drive->speed : 0;
 }
 
-Html drives(const Mechanism& m, const std::vector<DriveTorque>& all) {
+Html drives(const Mechanism& m, const Solution& s) {
+  const std::vector<DriveTorque>& all = s.drive_torques;
   if (all.empty()) return {};
   HtmlTable table(
       {{"Drive", false}, {"Speed"}, {"Torque or force"}, {"Power"}, {"Over all phases", false}, {"", false}});
   for (const DriveTorque& d : all) {
     const std::string_view unit = force_unit_of(d.angle);
-    const double speed = drive_speed(m, d);
+    const double speed = drive_speed(m, s, d);
     Html range;
     if (d.varying && d.range)
       range = quantity(d.range->least, unit) + " to " + quantity(d.range->most, unit) + ", mean " +
@@ -106,7 +109,7 @@ Html springs(const std::vector<SpringLoad>& all) {
 } // namespace
 
 OptionalSection loads_section(const ReportContents& contents) {
-  const Html body = drives(*contents.mechanism, contents.solution.drive_torques) + springs(contents.springs) +
+  const Html body = drives(*contents.mechanism, contents.solution) + springs(contents.springs) +
                     reactions(contents.solution) + gears(contents.solution);
   if (body.empty()) return std::nullopt;
   return ReportSection{"loads", "Loads", body};

@@ -13,6 +13,13 @@ Html coordinates_table(const Solution& s) {
       {{"Coordinate", false}, {"Value"}, {"Estimated error"}, {"In everyday units"}, {"", false}});
   for (const CoordinateSolution& c : s.coordinates) {
     const std::string label = coordinate_label(c);
+    if (c.speed) {
+      const std::string_view unit = c.angle ? "rad/s" : "m/s";
+      const double shown = c.angle ? 30 / std::numbers::pi : 1000;
+      table.row({label, quantity_within(*c.speed, c.speed_error, unit), magnitude(c.speed_error, unit),
+                 quantity(*c.speed * shown, c.angle ? "rpm" : "mm/s"), "speed, by its torque"});
+      continue;
+    }
     if (c.driven) {
       table.row({label, "driven", "", "", ""});
       continue;
@@ -85,6 +92,7 @@ OptionalSection sensitivities_section(const ReportContents& contents) {
   HtmlTable table({{"Coordinate", false}, {"Slider", false}, {"Rate"}});
   for (const Sensitivity& s : contents.solution.sensitivities)
     for (const Sensitivity::Rate& r : s.rates) {
+      if (r.speed) continue; // those of the coordinates
       const int joint = joint_index(m, r.joint);
       const bool angle = joint < 0 || is_angle(m.joints[static_cast<std::size_t>(joint)].type, r.index);
       table.row({coordinate_label(r), s.address, rate_quantity(m, r.value, angle, s.address)});

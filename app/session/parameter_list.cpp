@@ -1,6 +1,7 @@
 #include "app/session/parameter_list.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/formulas.hpp"
 
@@ -164,16 +165,26 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
       const bool angle = is_angle(joint.type, static_cast<int>(i));
       const std::string path = "joints." + joint.name + ".";
       const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
-      std::optional<double> stiffness, speed, damping;
+      std::optional<double> stiffness, speed, torque, load, damping;
       if (before && before->spring) stiffness = before->spring->stiffness;
-      if (before && before->drive) speed = before->drive->speed;
+      if (before && before->drive) {
+        speed = before->drive->speed;
+        torque = before->drive->torque;
+        load = before->drive->load;
+      }
       if (before && before->damping != 0) damping = before->damping;
       if (coordinate.spring)
         controls.push_back(named_control(path + "spring" + index + ".stiffness", ParameterGroup::springs,
                                          angle ? "N m/rad" : "N/m", coordinate.spring->stiffness, stiffness));
-      if (coordinate.drive)
+      if (coordinate.drive && !coordinate.drive->torque)
         controls.push_back(named_control(path + "drive" + index + ".speed", ParameterGroup::drives,
                                          angle ? "rad/s" : "m/s", coordinate.drive->speed, speed));
+      if (coordinate.drive && coordinate.drive->torque && !drive_law(joint, static_cast<int>(i), "torque"))
+        controls.push_back(named_control(path + "drive" + index + ".torque", ParameterGroup::drives,
+                                         angle ? "N m" : "N", *coordinate.drive->torque, torque));
+      if (coordinate.drive && coordinate.drive->load && !drive_law(joint, static_cast<int>(i), "load"))
+        controls.push_back(named_control(path + "drive" + index + ".load", ParameterGroup::drives,
+                                         angle ? "N m" : "N", *coordinate.drive->load, load));
       if (coordinate.damping != 0 || damping)
         controls.push_back(named_control(path + "damping" + index, ParameterGroup::dampers,
                                          angle ? "N m s/rad" : "N s/m", coordinate.damping, damping));

@@ -30,6 +30,10 @@ bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<Coor
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (a[i].joint != b[i].joint || a[i].index != b[i].index) return false;
+    if (a[i].speed && b[i].speed &&
+        !(std::abs(*a[i].speed - *b[i].speed) <=
+          1e-6 * std::abs(*a[i].speed) + 10 * (a[i].speed_error + b[i].speed_error)))
+      return false;
     if (a[i].driven || std::ranges::find(neutral, a[i].joint) != neutral.end()) continue;
     double apart = a[i].value - b[i].value;
     if (a[i].angle) apart = std::remainder(apart, 2 * std::numbers::pi);

@@ -21,6 +21,19 @@ namespace {
 
 constexpr double off_crossing = 0.01; // scaled: how far from a crossing a branch off it is looked for
 
+// The speed of a drive by torque is found: nothing follows from where its search begins.
+void expect_no_found_speed(const Mechanism& mechanism, const std::string& address) {
+  for (const Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      const auto& drive = joint.coordinates[i].drive;
+      const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
+      if (drive && drive->torque && address == "joints." + joint.name + ".drive" + index + ".speed")
+        throw SceneError(address,
+                         "is found by the drive's torque, and this is where the search for it begins; "
+                         "expected another number, such as its load");
+    }
+}
+
 // Gathers the branches of one diagram.
 class Diagram {
  public:
@@ -324,6 +337,7 @@ std::string_view word(SpecialPointType type) {
 
 ResponseDiagram follow_branches(const Mechanism& mechanism, const std::string& address, double from,
                                 double to, const BranchOptions& options) {
+  expect_no_found_speed(mechanism, address);
   return Diagram(mechanism, address, from, to, options).from_drawn();
 }
 

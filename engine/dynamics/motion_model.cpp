@@ -45,13 +45,14 @@ bool has_pairs(const System& system) {
 MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   MotionModel m;
   m.mechanism = mechanism;
-  m.system = compile_for_drives(mechanism);
+  m.system = compile_for_motion(mechanism);
   m.released = released(m.system);
   bind(m.system, mechanism, m.parameters);
   set_scaling(m.system, m.parameters, m.scaling);
   m.parameters.moving = true;
-  m.along_tree = is_tree(m.system) && m.system.nv > few;
-  m.sparse = no_drive_rides(m.system) && m.system.nv > few_of_bodies;
+  const bool torques = !m.system.torques.empty(); // which only the matrices know
+  m.along_tree = is_tree(m.system) && m.system.nv > few && !torques;
+  m.sparse = no_drive_rides(m.system) && m.system.nv > few_of_bodies && !torques;
   if (damped) return m;
   for (LinkParameters& l : m.parameters.links)
     for (CoordinateForce& f : l.force)

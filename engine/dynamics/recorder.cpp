@@ -1,6 +1,7 @@
 #include "engine/dynamics/recorder.hpp"
 
 #include "engine/report/report.hpp"
+#include "engine/system/drive_torque.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/potential.hpp"
 #include "engine/system/reactions.hpp"
@@ -59,6 +60,12 @@ void Recorder::lay_out() {
   for (std::size_t d = 0; d < system.drives.size(); ++d) {
     if (system.drives[d].motor != static_cast<int>(d)) continue;
     const Link& link = system.links[index(system.drives[d].link)];
+    const TreeJoint& joint = system.tree_joints[index(link.tree_joint)];
+    run_.drives.push_back(
+        {joint.name, link.coordinate, coordinate_count(joint.type), link.type == LinkType::revolute, {}});
+  }
+  for (const DriveTorqueElement& drive : system.torques) {
+    const Link& link = system.links[index(drive.link)];
     const TreeJoint& joint = system.tree_joints[index(link.tree_joint)];
     run_.drives.push_back(
         {joint.name, link.coordinate, coordinate_count(joint.type), link.type == LinkType::revolute, {}});
@@ -150,6 +157,7 @@ bool Recorder::has_jacobi() {
     const Force& f = model_->mechanism.forces[index(e.force)];
     if (e.link >= 0 && (f.type != ForceType::force || f.frame != ForceFrame::world)) return false;
   }
+  if (!system.torques.empty()) return false;
   if (system.drives.empty() || p.phase_free) return true;
   Eigen::VectorXd q, all_q(model_->released.nq), all_u(model_->released.nv), step(system.nv);
   drawn_configuration(system, p, q);
@@ -273,6 +281,9 @@ void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
                   model_->parameters.links[index(system.drives[e].link)].gear_ratio;
     run_.drives[motor++].torque.push_back(torque);
   }
+  for (std::size_t i = 0; i < system.torques.size(); ++i)
+    run_.drives[motor++].torque.push_back(drive_torque(
+        model_->released, model_->parameters, i, equations_->configuration(), equations_->kinematics()));
   RunStatistics& s = run_.statistics;
   s.position_drift = std::max(s.position_drift, equations_->position_drift());
   s.velocity_drift = std::max(s.velocity_drift, equations_->velocity_drift());

@@ -18,6 +18,8 @@ double distance_from(const Run& run, std::size_t sample, const Solution& steady)
     const CoordinateTrack& track = run.coordinates[i];
     const CoordinateSolution& there = steady.coordinates[i];
     if (track.joint != there.joint || track.index != there.index) return infinity;
+    if (there.speed && !track.driven)
+      worst = std::max(worst, std::abs(track.rate[sample] / *there.speed - 1));
     if (track.driven || there.driven ||
         std::ranges::find(steady.neutral, track.joint) != steady.neutral.end())
       continue;

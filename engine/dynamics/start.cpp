@@ -5,6 +5,7 @@
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/search/steady_state.hpp"
@@ -125,8 +126,39 @@ bool close_velocity_of_many(const MotionModel& model, double t, const Eigen::Vec
   return true;
 }
 
+// What torques drive turns at the speed where the search for the steady one begins.
+void turn_on(const MotionModel& model, Eigen::VectorXd& u) {
+  for (const DriveTorqueElement& drive : model.system.torques) {
+    const auto l = static_cast<std::size_t>(drive.link);
+    u[model.system.links[l].v] = model.parameters.links[l].speed;
+  }
+}
+
+// The same where speeds are found.
+void start_at_found_speeds(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q,
+                           Eigen::VectorXd& u) {
+  SolveOptions solve;
+  solve.details = false;
+  solve.cancel = options.cancel;
+  const Solution steady = Analysis(model.mechanism).solve(solve);
+  if (steady.status != Status::converged)
+    throw SceneError("", "there is no steady state to start from: " + steady.message);
+  std::vector<std::pair<std::string, double>> start;
+  for (const CoordinateSolution& c : steady.coordinates) {
+    if (!c.driven && !c.dependent) start.emplace_back(coordinate_label(c), c.value);
+    if (!c.speed) continue;
+    const int found = coordinate_called(model.system, coordinate_label(c));
+    u[model.system
+          .links[static_cast<std::size_t>(model.system.coordinates[static_cast<std::size_t>(found)].link)]
+          .v] = *c.speed;
+  }
+  set_start(model.system, model.parameters, start, q);
+}
+
 // The steady state that `solve` answers with.
-void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q) {
+void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q,
+                          Eigen::VectorXd& u) {
+  if (!model.system.torques.empty()) return start_at_found_speeds(options, model, q, u);
   const Problem problem{model.system, model.parameters, model.scaling, options.cancel, model.system.kkt_form};
   SteadyState steady;
   steady.find(problem, q, q, {.seconds = SolveOptions{}.search});
@@ -234,7 +266,8 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
     if (!options.at.empty() && model.system.rows > 0) close_around(options, model, q);
     u.setZero(model.system.nv);
   }
-  if (options.start == Start::equilibrium) start_at_equilibrium(options, model, q);
+  if (options.start == Start::rest) turn_on(model, u);
+  if (options.start == Start::equilibrium) start_at_equilibrium(options, model, q, u);
   Workspace w;
   const Problem problem = model.problem();
   if (model.system.rows > 0) {
@@ -259,7 +292,12 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
     close_velocity(model, t, q, prescribed, from_rest, velocity);
   };
   const bool from_rest = options.start == Start::drawn;
-  const std::vector<int> prescribed = apply_kick(options, model, q, u);
+  std::vector<int> prescribed = apply_kick(options, model, q, u);
+  if (options.start == Start::rest || options.start == Start::equilibrium)
+    for (const DriveTorqueElement& drive : model.system.torques)
+      if (const int v = model.system.links[static_cast<std::size_t>(drive.link)].v;
+          std::ranges::find(prescribed, v) == prescribed.end())
+        prescribed.push_back(v);
   if (from_rest && !prescribed.empty()) {
     // At rest first, then the kick on top.
     Eigen::VectorXd still = Eigen::VectorXd::Zero(model.system.nv);

@@ -28,7 +28,8 @@ void distances(const Problem& problem, const Eigen::VectorXd& a, const Eigen::Ve
       continue;
     }
     double d = a[link.q] - b[link.q];
-    if (link.type == LinkType::revolute && (all_turns || !problem.parameters.links[l].elastic))
+    if (link.type == LinkType::revolute && !finds_speed(link) &&
+        (all_turns || !problem.parameters.links[l].elastic))
       d = std::remainder(d, turn);
     visit(link.v, 1, d / problem.scaling.column[link.v]);
   }
@@ -70,7 +71,8 @@ Eigen::VectorXd scaled_difference(const Problem& problem, const Eigen::VectorXd&
       continue;
     }
     double d = to[link.q] - from[link.q];
-    if (link.type == LinkType::revolute && !problem.parameters.links[l].elastic) d = std::remainder(d, turn);
+    if (link.type == LinkType::revolute && !finds_speed(link) && !problem.parameters.links[l].elastic)
+      d = std::remainder(d, turn);
     out[link.v] = d / problem.scaling.column[link.v];
   }
   return out;

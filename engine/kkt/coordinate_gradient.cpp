@@ -11,7 +11,7 @@ Eigen::VectorXd coordinate_gradient(const System& system, const Parameters& para
                                     const Eigen::VectorXd& q, const CoordinateInfo& coordinate) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(system.nv);
   const Link& link = system.links[static_cast<std::size_t>(coordinate.link)];
-  if (link.v < 0) return out;
+  if (link.v < 0 || link.drive >= 0) return out;
   if (link.type != LinkType::spherical) {
     out[link.v] = 1;
     return out;
@@ -26,7 +26,7 @@ std::complex<double> coordinate_change(const System& system, const Parameters& p
                                        const Eigen::VectorXd& q, const CoordinateInfo& coordinate,
                                        const Eigen::VectorXcd& step) {
   const Link& link = system.links[static_cast<std::size_t>(coordinate.link)];
-  if (link.v < 0) return 0;
+  if (link.v < 0 || link.drive >= 0) return 0;
   if (link.type != LinkType::spherical) return step[link.v];
   const Mat3 rate =
       rotation_vector_rate(link, parameters.links[static_cast<std::size_t>(coordinate.link)], q);

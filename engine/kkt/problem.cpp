@@ -7,9 +7,12 @@ namespace flyball {
 void set_scaling(const System& system, const Parameters& p, Scaling& out) {
   out.column.resize(system.nv);
   out.row.resize(system.rows);
-  for (const Link& link : system.links) {
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const Link& link = system.links[l];
     if (link.v < 0) continue;
-    if (link.type == LinkType::spherical)
+    if (finds_speed(link))
+      out.column[link.v] = p.links[l].speed != 0 ? std::abs(p.links[l].speed) : 1;
+    else if (link.type == LinkType::spherical)
       out.column.segment<3>(link.v).setOnes();
     else
       out.column[link.v] = link.type == LinkType::revolute ? 1 : p.length;

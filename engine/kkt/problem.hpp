@@ -9,9 +9,10 @@
 namespace flyball {
 
 // Unknowns are scaled to radians and characteristic lengths, constraint rows likewise; forces then have units
-// of energy in every equation, and a change of the unit of length changes nothing.
+// of energy in every equation, and a change of the unit of length changes nothing. Speeds that are found are
+// scaled to where their search begins, and their equations have units of power.
 struct Scaling {
-  Eigen::VectorXd column; // rad or m per scaled unit, by coordinate of q_R
+  Eigen::VectorXd column; // rad or m (or a second) per scaled unit, by coordinate of q_R
   Eigen::VectorXd row;    // scaled units per m, rad or 1, by constraint row
 };
 void set_scaling(const System& system, const Parameters& parameters, Scaling& scaling);

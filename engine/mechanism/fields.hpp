@@ -61,6 +61,9 @@ constexpr std::string_view value_unit(bool angle) {
 constexpr std::string_view stiffness_unit(bool angle) {
   return angle ? "N m/rad" : "N/m";
 }
+constexpr std::string_view force_unit(bool angle) {
+  return angle ? "N m" : "N";
+}
 constexpr std::string_view damping_unit(bool angle) {
   return angle ? "N m s/rad" : "N s/m";
 }
@@ -150,6 +153,8 @@ void visit_fields(Visitor& v, Part& stop, bool angle = true) {
 template <class Visitor, PartOf<Drive> Part>
 void visit_fields(Visitor& v, Part& drive, bool angle = true) {
   v.describe(drive.description);
+  v.field({"torque", expected::number, fields::force_unit(angle)}, drive.torque);
+  v.field({"load", expected::number, fields::force_unit(angle)}, drive.load);
   v.field({"speed", expected::number, fields::speed_unit(angle), fields::required}, drive.speed);
 }
 

@@ -1,5 +1,6 @@
 #include "engine/mechanism/formulas.hpp"
 
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/formula_plan.hpp"
 #include "engine/mechanism/mass_properties.hpp"
 #include "engine/mechanism/numbers.hpp"
@@ -277,6 +278,7 @@ struct FormulaPlan::State {
     visit_parts(m, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
       const std::vector<Number> numbers = numbers_of_part();
       for (const Formula& formula : formulas) {
+        if (is_drive_law(formula)) continue; // has a value at each state
         const std::string where = joined_path(path, formula.key);
         const auto number = std::ranges::find(numbers, formula.key, &Number::key);
         if (number == numbers.end())
@@ -475,8 +477,11 @@ std::string used_of_version_2(const Mechanism& mechanism) {
     for (const Shape& shape : body.shapes)
       if (!shape.formulas.empty()) return first(shape, path + ".shapes");
   }
-  for (const Joint& joint : mechanism.joints)
+  for (const Joint& joint : mechanism.joints) {
     if (!joint.formulas.empty()) return first(joint, "joints." + joint.name);
+    for (const Coordinate& c : joint.coordinates)
+      if (c.drive && (c.drive->torque || c.drive->load)) return "joints." + joint.name + ".drive.torque";
+  }
   for (const Force& force : mechanism.forces)
     if (!force.formulas.empty()) return first(force, "forces." + force.name);
   return {};

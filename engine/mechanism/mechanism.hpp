@@ -123,9 +123,13 @@ struct Stop {
   bool operator==(const Stop&) const = default;
 };
 
+// Turns or moves at constant speed: a given one, or where a torque is given the one at which this, less the
+// load, is what turning takes. Torque and load (N m, or N along a slide; positive along the coordinate, the
+// load against it) may be expressions of the state, see drive_law.hpp.
 struct Drive {
-  double speed = 0; // rad/s or m/s, constant
+  double speed = 0; // rad/s or m/s; with a torque where the search for it begins
   std::string description{};
+  std::optional<double> torque{}, load{};
   bool operator==(const Drive&) const = default;
 };
 

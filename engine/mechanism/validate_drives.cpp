@@ -117,6 +117,23 @@ void find_springs_on_driven(const Mechanism& mechanism, const DrivenCoordinates&
     }
 }
 
+// A drive that gives a torque moves one coordinate, and not others through gears.
+void find_gears_on_torques(const Mechanism& mechanism, Mistakes& mistakes) {
+  for (std::size_t g = 0; g < mechanism.joints.size(); ++g) {
+    const Joint& gear = mechanism.joints[g];
+    if (gear.type != JointType::gear) continue;
+    for (std::size_t end = 0; end < 2; ++end) {
+      const auto [joint, i] = find_coordinate(mechanism, gear.joints[end]);
+      const auto& drive =
+          mechanism.joints[static_cast<std::size_t>(joint)].coordinates[static_cast<std::size_t>(i)].drive;
+      if (drive && drive->torque)
+        mistakes.add(joint_path(mechanism, g) + ".joints[" + std::to_string(end) + "]",
+                     "expected a coordinate without a drive by torque: through gears such drives are not "
+                     "solved for yet");
+    }
+  }
+}
+
 // The joints on the path between two bodies (as BodyNumbers has them) among `joints`, which form no loop.
 std::vector<std::size_t> path_between(const Mechanism& mechanism, const BodyNumbers& numbers,
                                       const std::vector<std::size_t>& joints, std::size_t from,
@@ -179,6 +196,7 @@ void find_driven_loops(const Mechanism& mechanism, const DrivenCoordinates& driv
 void find_drive_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
   const DrivenCoordinates driven(mechanism, mistakes);
   find_springs_on_driven(mechanism, driven, mistakes);
+  find_gears_on_torques(mechanism, mistakes);
   find_driven_loops(mechanism, driven, mistakes);
 }
 

@@ -1,3 +1,4 @@
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -35,6 +36,29 @@ void find_axis_mistakes(const Joint& joint, const std::string& path, Mistakes& m
     mistakes.add(path + ".x_axis", "expected a direction that is not parallel to `axis`, the normal");
 }
 
+// Of a drive whose speed is to be found.
+void find_torque_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t i, Mistakes& mistakes) {
+  const Joint& joint = mechanism.joints[j];
+  const Drive& drive = *joint.coordinates[i].drive;
+  const std::string path = coordinate_path(mechanism, j, "drive", i);
+  if (!drive.torque) {
+    mistakes.expect(!drive.load, path + ".load",
+                    "expected none, or a torque: at a given speed the drive gives what it takes");
+    return;
+  }
+  mistakes.expect(drive.speed != 0, path + ".speed",
+                  "expected a speed other than zero, at which the search for the steady one begins");
+  const bool angle = is_angle(joint.type, static_cast<int>(i));
+  for (const char* which : {"torque", "load"}) {
+    const Formula* law = drive_law(joint, static_cast<int>(i), which);
+    try {
+      if (law) check_drive_law(mechanism, *law, angle, path + "." + which);
+    } catch (const SceneError& error) {
+      mistakes.add(error.where(), error.expected());
+    }
+  }
+}
+
 void find_coordinate_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t i, Mistakes& mistakes) {
   const Joint& joint = mechanism.joints[j];
   const Coordinate& coordinate = joint.coordinates[i];
@@ -51,6 +75,7 @@ void find_coordinate_mistakes(const Mechanism& mechanism, std::size_t j, std::si
                    "expected a number above zero, found " + number_text(stop.stiffness));
   }
   if (!coordinate.drive) return;
+  find_torque_mistakes(mechanism, j, i, mistakes);
   if (is_rotation_vector(joint.type, static_cast<int>(i)))
     mistakes.add(path("drive"),
                  "expected no drive: a rotation vector that changes at a constant rate is no constant "

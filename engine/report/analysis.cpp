@@ -2,9 +2,11 @@
 
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
+#include "engine/report/found_speeds.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/turning_part.hpp"
@@ -24,6 +26,20 @@
 namespace flyball {
 namespace {
 
+// Drives of coordinate i: none, by speed, or by torques that are both numbers or the same expressions.
+bool same_kind(const Joint& a, const Joint& b, int i) {
+  const auto &x = a.coordinates[static_cast<std::size_t>(i)].drive,
+             &y = b.coordinates[static_cast<std::size_t>(i)].drive;
+  if (!x || !y) return x.has_value() == y.has_value();
+  if (x->torque.has_value() != y->torque.has_value()) return false;
+  if (!x->torque) return true;
+  for (const char* which : {"torque", "load"}) {
+    const Formula *of_a = drive_law(a, i, which), *of_b = drive_law(b, i, which);
+    if ((of_a == nullptr) != (of_b == nullptr) || (of_a && of_a->text != of_b->text)) return false;
+  }
+  return true;
+}
+
 // Parts and connections, as opposed to numbers: what a compiled system depends on.
 bool same_topology(const Mechanism& a, const Mechanism& b) {
   if (a.bodies.size() != b.bodies.size() || a.joints.size() != b.joints.size() ||
@@ -39,7 +55,7 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
     for (std::size_t k = 0; k < x.coordinates.size(); ++k) {
       const Coordinate &c = x.coordinates[k], &d = y.coordinates[k];
       if (c.spring.has_value() != d.spring.has_value() || c.stop.has_value() != d.stop.has_value() ||
-          c.drive.has_value() != d.drive.has_value() || (c.damping != 0) != (d.damping != 0))
+          !same_kind(x, y, static_cast<int>(k)) || (c.damping != 0) != (d.damping != 0))
         return false;
     }
   }
@@ -129,6 +145,7 @@ struct Analysis::State {
   std::optional<Varied> varied;
   System system;
   Parameters parameters;
+  Parameters found; // see turning()
   Scaling scaling;
   MeasureSet measures;
   SteadyState steady; // of the last solve
@@ -155,6 +172,17 @@ struct Analysis::State {
           along * rates[i] + measures.parameter_rates(problem, *mechanism, addresses[i], q, w);
       out.sensitivities[i].measures.assign(rate.data(), rate.data() + rate.size());
     }
+  }
+
+  // Where drives give torques: with the speeds that were found, for what turns with them.
+  const Parameters& turning() {
+    if (system.torques.empty() || !answered) return parameters;
+    found = parameters;
+    for (const DriveTorqueElement& torque : system.torques) {
+      const auto l = static_cast<std::size_t>(torque.link);
+      found.links[l].speed = answer[system.links[l].q];
+    }
+    return found;
   }
 
   void bind_numbers() {
@@ -272,6 +300,15 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     explain_unbounded(problem, steady.start, steady.elsewhere(), out);
     out.weight_turns = out.status == Status::no_steady_state && !steady.existence.loops_open &&
                        weight_turns(problem, steady.found.z.q, steady.existence.phase, steady.elsewhere());
+    if (!s.system.torques.empty() && out.status == Status::not_converged && !problem.cancelled())
+      if (const std::string why = missing_speed_message(*s.mechanism, problem, steady.elsewhere());
+          !why.empty())
+        out.message = why + " " + out.message;
+    return out;
+  }
+  if (const auto drives = undetermined_speeds(s.system, stability.neutral); !drives.empty()) {
+    out.status = Status::not_converged;
+    out.message = undetermined_speed_message(drives);
     return out;
   }
   s.answer = steady.found.z.q;
@@ -304,6 +341,8 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                           stability,    options.points, &s.measures};
   report(input, steady.error.solution + steady.error.data, options.details, steady.reuse(), out);
   if (!without_modes.empty()) out.message += " " + without_modes;
+  if (options.details && !s.system.torques.empty())
+    out.at_constant_speed = stability_at_constant_speed(*s.mechanism, s.system, s.answer, out.coordinates);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
     explain_unbounded(problem, steady.start, steady.elsewhere(), out);
   if (!is_finite(out)) {
@@ -346,10 +385,11 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   for (std::size_t c = 0; c < s.system.coordinates.size(); ++c) {
     const CoordinateInfo& info = s.system.coordinates[c];
     const TreeJoint& joint = s.system.tree_joints[static_cast<std::size_t>(info.tree_joint)];
-    if (s.system.links[static_cast<std::size_t>(info.link)].drive >= 0) continue;
+    const Link& link = s.system.links[static_cast<std::size_t>(info.link)];
+    if (link.drive >= 0 && !finds_speed(link)) continue;
     const SearchRange& r = list.report.ranges[c];
-    out.bounds.push_back(
-        {joint.name, info.index, coordinate_count(joint.type), info.angle, r.lower, r.upper});
+    out.bounds.push_back({joint.name, info.index, coordinate_count(joint.type), info.angle, r.lower, r.upper,
+                          finds_speed(link)});
   }
   struct Entry {
     Potential potential;
@@ -358,6 +398,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     std::vector<int> neutral;
   };
   std::vector<Entry> entries;
+  std::vector<std::string> undetermined; // drives whose speed nothing determines
   SteadyState steady;
   for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i) {
     report_progress(options.progress, "classifying what was found",
@@ -378,6 +419,10 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     const bool by_pivots = pivots_decide(problem);
     const Problem classified = by_pivots ? problem : by_matrices(problem);
     Stability stability = find_stability(steady.factored(classified), !many);
+    if (auto drives = undetermined_speeds(s.system, stability.neutral); !drives.empty()) {
+      undetermined = std::move(drives);
+      continue;
+    }
     const bool varies = stability.floquet || stability.floquet_failure;
     std::string without_modes;
     if (by_pivots && options.modes > 0 && options.details && !varies)
@@ -401,6 +446,9 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     report({*s.mechanism, problem, found, steady.existence, stability, options.points, &s.measures},
            steady.error.solution + steady.error.data, options.details, steady.reuse(), entry.solution);
     if (!without_modes.empty()) entry.solution.message += " " + without_modes;
+    if (options.details && !s.system.torques.empty())
+      entry.solution.at_constant_speed =
+          stability_at_constant_speed(*s.mechanism, s.system, found.z.q, entry.solution.coordinates);
     if (s.system.conservative) entry.solution.potential = potential.value;
     if (!is_finite(entry.solution)) continue;
     entries.push_back(std::move(entry));
@@ -408,7 +456,8 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.potential.value; });
   for (Entry& e : entries)
     out.equilibria.push_back(std::move(e.solution));
-  out.message = message(out);
+  out.message =
+      entries.empty() && !undetermined.empty() ? undetermined_speed_message(undetermined) : message(out);
   return out;
 }
 
@@ -420,7 +469,7 @@ std::vector<Pose> Analysis::poses_at(double t) {
   State& s = *state_;
   std::vector<Pose> poses;
   Kinematics<double>& kinematics = s.steady.elsewhere().kinematics;
-  forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, kinematics);
+  forward<double>(s.system, s.turning(), s.answered ? s.answer : s.drawn, t, kinematics);
   body_poses(s.system, *s.mechanism, s.parameters, kinematics, poses);
   return poses;
 }
@@ -429,7 +478,7 @@ std::vector<AngularMotion> Analysis::turning_at(double t) {
   State& s = *state_;
   std::vector<AngularMotion> turning;
   Kinematics<double>& kinematics = s.steady.elsewhere().kinematics;
-  forward<double>(s.system, s.parameters, s.answered ? s.answer : s.drawn, t, kinematics);
+  forward<double>(s.system, s.turning(), s.answered ? s.answer : s.drawn, t, kinematics);
   for (const int link : s.system.body_link)
     turning.push_back({kinematics.at(link).w, kinematics.at(link).dw});
   return turning;
@@ -447,14 +496,14 @@ std::vector<VibrationMode> Analysis::modes(int count) {
 
 std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitude, double phase, double t) {
   State& s = *state_;
-  const Problem problem{s.system, s.parameters, s.scaling};
+  const Problem problem{s.system, s.turning(), s.scaling};
   Workspace& w = s.steady.elsewhere();
   const Eigen::VectorXd& steady = s.answered ? s.answer : s.drawn;
   std::vector<Pose> poses;
   const Eigen::VectorXd q = mode.shape.size() == static_cast<std::size_t>(s.system.nv)
                                 ? along_mode(problem, steady, mode, amplitude, phase, t, w)
                                 : steady;
-  forward<double>(s.system, s.parameters, q, t, w.kinematics);
+  forward<double>(s.system, problem.parameters, q, t, w.kinematics);
   body_poses(s.system, *s.mechanism, s.parameters, w.kinematics, poses);
   return poses;
 }

@@ -51,6 +51,7 @@ struct AllSolutions {
     int index = 0, count = 1;
     bool angle = false;
     double lower = 0, upper = 0; // rad or m
+    bool speed = false;          // of a drive by torque: rad/s or m/s
   };
   std::vector<Bound> bounds; // free coordinates
   int starts = 0;            // Newton-Raphson runs

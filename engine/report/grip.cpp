@@ -67,7 +67,7 @@ Mat3 compliance(const FactoredState& at, const TrackedPoint& point) {
   Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(3, system.nv); // by scaled steps
   for (int l = point.link; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
     const Link& link = system.links[static_cast<std::size_t>(l)];
-    if (link.v < 0) continue;
+    if (link.v < 0 || link.drive >= 0) continue;
     for (int v = link.v; v < link.v + (link.type == LinkType::spherical ? 3 : 1); ++v)
       moves.col(v) = k.columns[static_cast<std::size_t>(v)].at(p) * at.problem.scaling.column[v];
   }

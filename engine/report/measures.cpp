@@ -190,7 +190,8 @@ void MeasureSet::bind(const Mechanism& m, const System& system, const Parameters
       for (std::size_t b = 0; b < m.bodies.size(); ++b)
         if (quantity.count == 0 || slot(quantity.of[0].part) == b) place.mass += m.bodies[b].mass;
     }
-    if (quantity.result == Result::tension) place.differenced = p.springs[slot(place.spring)].damping != 0;
+    if (quantity.result == Result::tension)
+      place.differenced = !system.torques.empty() || p.springs[slot(place.spring)].damping != 0;
     differenced_ = differenced_ || place.differenced;
   }
 }
@@ -216,7 +217,7 @@ void MeasureSet::find_places(const Mechanism& m, const System& system) {
     const bool forces = asks_for_forces(quantity.result);
     needs_forces_ = needs_forces_ || forces;
     needs_accelerations_ = needs_accelerations_ || asks_for_acceleration(quantity.result);
-    place.differenced = forces;
+    place.differenced = forces || !system.torques.empty(); // which change with the speeds found, too
     switch (argument_kind(result_function(quantity.result), slot(quantity.count))) {
     case ArgumentKind::coordinate:
       for (std::size_t r = 0; r < system.reported.size(); ++r)
@@ -271,6 +272,7 @@ double rate_at(const MeasuredState& s, int reported) {
            relative_velocity(cut, numbers, s.kinematics);
   }
   const auto link = slot(s.system.coordinates[slot(r.coordinate)].link);
+  if (finds_speed(s.system.links[link])) return s.q[s.system.links[link].q];
   return s.system.links[link].drive >= 0 ? s.parameters.links[link].speed * s.parameters.speed_scale : 0;
 }
 

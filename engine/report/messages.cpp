@@ -39,6 +39,8 @@ std::string floquet_message(FloquetFailure failure) {
   case FloquetFailure::unresolved:
     return begin + "and is too large, too stiff or too slow in its period beside its own oscillations to "
                    "follow, or its loops turn too far.";
+  case FloquetFailure::speed_is_free:
+    return begin + "whose speed is free where a torque drives; solved at that speed, prescribed, it is told.";
   case FloquetFailure::cancelled: return begin + "and looking for its multipliers was cancelled.";
   }
   return "";

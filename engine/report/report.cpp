@@ -18,7 +18,7 @@ namespace {
 double error_of(const System& system, const Parameters& p, const CoordinateInfo& c, const Eigen::VectorXd& q,
                 const Eigen::VectorXd& error) {
   const Link& link = system.links[static_cast<std::size_t>(c.link)];
-  if (link.v < 0) return 0;
+  if (link.v < 0 || link.drive >= 0) return 0;
   if (link.type != LinkType::spherical) return error[link.v];
   const Mat3 rate = rotation_vector_rate(link, p.links[static_cast<std::size_t>(c.link)], q);
   return rate.row(c.index - link.coordinate).cwiseAbs().dot(error.segment<3>(link.v));
@@ -117,6 +117,10 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
     x.value = coordinate_value(system, p, q, c);
     if (turns_freely(system, p, c.link)) x.value = wrapped_angle(x.value);
     x.error = error_of(system, p, c, q, error);
+    if (const Link& link = system.links[static_cast<std::size_t>(c.link)]; finds_speed(link)) {
+      x.speed = q[link.q];
+      x.speed_error = error[link.v];
+    }
     out.push_back(std::move(x));
   }
   return out;
@@ -125,7 +129,10 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
 std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates) {
   std::vector<std::pair<std::string, double>> values;
   for (const CoordinateSolution& c : coordinates)
-    if (!c.driven && !c.dependent) values.emplace_back(coordinate_label(c), c.value);
+    if (c.speed)
+      values.emplace_back(coordinate_label(c) + ".speed", *c.speed);
+    else if (!c.driven && !c.dependent)
+      values.emplace_back(coordinate_label(c), c.value);
   return values;
 }
 
@@ -135,7 +142,10 @@ bool is_finite(const Solution& s) {
   };
   return std::isfinite(s.residual) && std::isfinite(s.potential.value_or(0)) &&
          std::isfinite(s.condition.value_or(0)) &&
-         numbers(s.coordinates, [](const CoordinateSolution& c) { return c.value + c.error; }) &&
+         numbers(s.coordinates,
+                 [](const CoordinateSolution& c) {
+                   return c.value + c.error + c.speed.value_or(0) + c.speed_error;
+                 }) &&
          numbers(s.multipliers,
                  [](const JointMultipliers& m) {
                    return std::accumulate(m.values.begin(), m.values.end(), 0.);
@@ -203,15 +213,38 @@ Sensitivity name_rates(const System& system, const std::string& address, const E
     const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
     const Link& link = system.links[static_cast<std::size_t>(c.link)];
     if (link.v < 0 || link.type == LinkType::spherical) continue;
-    out.rates.push_back({joint.name, c.index, coordinate_count(joint.type), rate[link.v]});
+    out.rates.push_back({joint.name, c.index, coordinate_count(joint.type), rate[link.v], finds_speed(link)});
   }
   return out;
 }
+
+namespace {
+
+// "joint.speed" or "joint.index.speed" of a drive by torque; null where the name is another's.
+const Link* link_of_speed(const System& system, std::string_view name) {
+  constexpr std::string_view ending = ".speed";
+  if (!name.ends_with(ending)) return nullptr;
+  name.remove_suffix(ending.size());
+  for (const CoordinateInfo& c : system.coordinates) {
+    const Link& link = system.links[static_cast<std::size_t>(c.link)];
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+    const bool single = coordinate_count(joint.type) == 1;
+    if (finds_speed(link) && name == (single ? joint.name : joint.name + "." + std::to_string(c.index)))
+      return &link;
+  }
+  return nullptr;
+}
+
+} // namespace
 
 void set_start(const System& system, const Parameters& parameters,
                const std::vector<std::pair<std::string, double>>& start, Eigen::VectorXd& q) {
   std::vector<std::optional<double>> values(system.coordinates.size());
   for (const auto& [name, value] : start) {
+    if (const Link* turning = link_of_speed(system, name)) {
+      q[turning->q] = value;
+      continue;
+    }
     const auto named = [&system, &name = name](const CoordinateInfo& c) { // clang captures no binding
       const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
       return name == joint.name + "." + std::to_string(c.index) ||

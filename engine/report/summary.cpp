@@ -9,7 +9,7 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   SystemSummary out;
   out.notes = notes(system, mechanism);
   out.bodies = static_cast<int>(mechanism.bodies.size());
-  out.free_coordinates = system.nv;
+  out.free_coordinates = system.nv - static_cast<int>(system.torques.size());
   out.driven_coordinates = static_cast<int>(system.drives.size());
   out.constraint_equations = system.rows;
   Eigen::VectorXd drawn;
@@ -27,6 +27,8 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
       const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(r.coordinate)];
       x.driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
       x.value = coordinate_value(system, p, drawn, c);
+      if (const Link& link = system.links[static_cast<std::size_t>(c.link)]; finds_speed(link))
+        x.speed = drawn[link.q];
     }
     out.coordinates.push_back(std::move(x));
   }
@@ -37,6 +39,7 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   const auto say = [&](bool in, std::string_view pass) { (in ? out.in : out.left_out).emplace_back(pass); };
   say(system.rows > 0, "loops: multipliers and constraint rows");
   say(p.moving, "motion of the drives: centrifugal and gyroscopic forces");
+  if (!system.torques.empty()) out.in.emplace_back("torques of drives: their speeds are among the unknowns");
   say(!p.gravity.isZero(0), "gravity");
   say(std::ranges::any_of(p.links, &LinkParameters::elastic), "springs and stops in joints");
   say(!system.springs.empty(), "springs between points");

@@ -50,7 +50,10 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
     const Link& link = link_of(problem, c);
     const LinkParameters& lp = parameters_of(problem, c);
     const double value = coordinate_value(problem.system, problem.parameters, drawn, c);
-    if (link.drive >= 0) {
+    if (finds_speed(link)) {
+      const double most = 3 * lp.speed;
+      ranges.push_back({std::min(0., most), std::max(0., most)});
+    } else if (link.drive >= 0) {
       ranges.push_back({value, value});
     } else if (c.angle) {
       const double half = link.type == LinkType::revolute ? pi * turns_of(problem, link) : pi;
@@ -79,8 +82,11 @@ void include(const Problem& problem, const Eigen::VectorXd& q, std::vector<Searc
     const Link& link = link_of(problem, c);
     if (link.v < 0 || link.type == LinkType::spherical) continue;
     if (c.angle && turns_freely(problem.system, problem.parameters, c.link)) continue;
-    const double value = coordinate_value(problem.system, problem.parameters, q, c);
-    const double margin = c.angle ? 0.5 : 0.1 * problem.parameters.length;
+    const double value =
+        finds_speed(link) ? q[link.q] : coordinate_value(problem.system, problem.parameters, q, c);
+    const double margin = finds_speed(link) ? 0.1 * problem.scaling.column[link.v]
+                          : c.angle         ? 0.5
+                                            : 0.1 * problem.parameters.length;
     if (value < ranges[i].lower) ranges[i].lower = value - margin;
     if (value > ranges[i].upper) ranges[i].upper = value + margin;
   }
@@ -101,7 +107,7 @@ Placement bring_within(const Problem& problem, const std::vector<SearchRange>& r
     const double room = slack * problem.scaling.column[link.v];
     const auto inside = [&] { return value >= ranges[i].lower - room && value <= ranges[i].upper + room; };
     if (inside()) continue;
-    if (!c.angle || !std::isfinite(value)) return Placement::outside;
+    if (!c.angle || finds_speed(link) || !std::isfinite(value)) return Placement::outside;
     const double middle = (ranges[i].lower + ranges[i].upper) / 2;
     value = middle + std::remainder(value - middle, 2 * pi);
     if (!inside()) return Placement::outside;

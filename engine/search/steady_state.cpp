@@ -106,8 +106,10 @@ void SteadyState::complete(const Problem& problem) {
 FactoredState SteadyState::factored(const Problem& problem) {
   if (factored_ == problem.form) return {problem, found.z, balance_};
   factored_ = problem.form;
-  // Inertia and steps of many bodies do not depend on the last correction: their factors serve on.
-  if (problem.form != KktForm::dense && problem.form == refined_with_) {
+  // Inertia and steps of many bodies do not depend on the last correction, and where torques drive
+  // eigenvalues do not: their factors serve on.
+  const bool serves = problem.form != KktForm::dense || !problem.system.torques.empty();
+  if (serves && problem.form == refined_with_) {
     evaluate(problem, found.z, 0, balance_);
     return {problem, found.z, balance_};
   }

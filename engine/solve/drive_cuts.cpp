@@ -94,4 +94,13 @@ System compile_for_drives(const Mechanism& mechanism) {
   return best;
 }
 
+System compile_for_motion(const Mechanism& mechanism) {
+  System steady = compile_for_drives(mechanism);
+  if (steady.torques.empty()) return steady;
+  CutChoice same;
+  for (const CutJoint& cut : steady.cuts)
+    same.cut.push_back(cut.joint);
+  return compile(mechanism, same, TorqueDriven::moves_freely);
+}
+
 } // namespace flyball

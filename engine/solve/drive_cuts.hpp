@@ -9,5 +9,7 @@ namespace flyball {
 // must turn or slide at a constant rate in the steady state has to be cut. Such cuts say so
 // (CutJoint::turns).
 System compile_for_drives(const Mechanism& mechanism);
+// With the same cuts, what torques drive being coordinates like others.
+System compile_for_motion(const Mechanism& mechanism);
 
 } // namespace flyball

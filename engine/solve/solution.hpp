@@ -65,12 +65,14 @@ std::string_view word(SearchEnd end);
 
 struct CoordinateSolution {
   std::string joint;
-  int index = 0, count = 1; // which of the joint's coordinates
-  bool angle = false;       // rad rather than m
-  bool driven = false;      // then `value` is at the drawn drive phase and `error` is zero
-  double value = 0;         // rad or m
-  double error = 0;         // estimated absolute error, rad or m
-  bool dependent = false;   // of a joint that closes a loop: follows from the others, and starts nothing
+  int index = 0, count = 1;      // which of the joint's coordinates
+  bool angle = false;            // rad rather than m
+  bool driven = false;           // then `value` is at the drawn drive phase and `error` is zero
+  double value = 0;              // rad or m
+  double error = 0;              // estimated absolute error, rad or m
+  std::optional<double> speed{}; // rad/s or m/s: of a drive by torque, as found
+  double speed_error = 0;        // estimated, absolute
+  bool dependent = false;        // of a joint that closes a loop: follows from the others, and starts nothing
 };
 
 struct JointMultipliers {
@@ -137,6 +139,7 @@ struct Sensitivity {
     std::string joint;
     int index = 0, count = 1;
     double value = 0;
+    bool speed = false; // of the speed that a torque gives: rad/s or m/s per its unit
   };
   std::vector<Rate> rates;
   std::vector<double> measures{}; // of the scene's measures, in its order; not a number where one has no rate
@@ -150,7 +153,15 @@ struct UnheldCoordinate {
   double force = 0;         // generalised, positive along the coordinate: what would have to hold it
 };
 
-// The free ones by name, as SolveOptions::start wants them: not driven, not dependent.
+// Where drives give a torque: the same state with their speeds prescribed, at what was found.
+struct AtConstantSpeed {
+  std::optional<bool> stable;
+  std::optional<StabilityReason> stability_reason;
+  std::optional<std::vector<std::complex<double>>> eigenvalues; // 1/s
+};
+
+// The free ones by name, as SolveOptions::start wants them: not driven, not dependent; and speeds that were
+// found as "joint.speed".
 std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates);
 
 struct Solution {
@@ -167,7 +178,9 @@ struct Solution {
   std::optional<StabilityReason> stability_reason;
   // 1/s, of the linearised motion; with `floquet` its exponents ln(multiplier) / period.
   std::optional<std::vector<std::complex<double>>> eigenvalues;
-  std::optional<Floquet> floquet;   // where the linearised motion turns with the drives
+  std::optional<Floquet> floquet; // where the linearised motion turns with the drives
+  // `stable` and what is beside it answer with drives that give their torques; this without them.
+  std::optional<AtConstantSpeed> at_constant_speed;
   std::vector<std::string> neutral; // joints that take part in a direction nothing resists
   // Without an answer: what runs away, and whether it would not without gravity; whether what turns with the
   // drives is the weight alone.

@@ -85,7 +85,7 @@ class Search {
     for (const Link& link : system.links) {
       if (p_.cancelled()) return;
       const bool scalar = link.type == LinkType::revolute || link.type == LinkType::prismatic;
-      if (link.v < 0 || !scalar) continue;
+      if (link.v < 0 || link.drive >= 0 || !scalar) continue;
       const double first = slopes[link.v];
       if (!(std::abs(first) > tolerance::push_rounding * sizes[link.v])) continue;
       if (loops.size() > 0 && loops.col(link.v).cwiseAbs().maxCoeff() > 0) continue; // part of a loop

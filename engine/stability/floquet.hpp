@@ -17,7 +17,8 @@ std::optional<double> common_period(const std::vector<double>& speeds, int most)
 enum class FloquetFailure {
   no_period, // the drives that matter have no common period
   singular,  // without mass in directions that turn, or without damping and stiffness in one that has no mass
-  unresolved, // a period takes more steps than are reasonable
+  unresolved,    // a period takes more steps than are reasonable
+  speed_is_free, // a drive gives a torque: its speed takes part, and the period with it
   cancelled,
 };
 

@@ -29,7 +29,8 @@ ReducedMotion reduced_motion(const FactoredState& at) {
   ReducedMotion out;
   out.mass = large::projected(s.asDiagonal() * w.dense.linearization.mass * s.asDiagonal(), basis);
   out.velocity = large::projected(s.asDiagonal() * w.dense.linearization.velocity * s.asDiagonal(), basis);
-  out.stiffness = large::projected(w.dense.stiffness(), basis);
+  out.stiffness = problem.system.torques.empty() ? large::projected(w.dense.stiffness(), basis)
+                                                 : stiffness_of_motion(problem, w.dense.stiffness(), basis);
   const double m = out.mass.norm(), k = out.stiffness.norm();
   if (m > 0 && k > 0) out.rate = std::sqrt(k / m);
   out.velocity *= out.rate;
@@ -120,17 +121,27 @@ VibrationMode describe_mode(const Problem& problem, const Eigen::VectorXd& q, co
   mode.natural_frequency = natural_frequency(s);
   mode.damping_ratio = damping_ratio(s);
   mode.residual = residual;
+  // What a torque drives takes part with its angle or slide, though it is scaled as a speed.
+  Eigen::VectorXcd measured = scaled;
+  for (const DriveTorqueElement& torque : problem.system.torques) {
+    const Link& link = problem.system.links[static_cast<std::size_t>(torque.link)];
+    measured[link.v] *=
+        problem.scaling.column[link.v] / (link.type == LinkType::revolute ? 1 : problem.parameters.length);
+  }
   Eigen::Index largest = 0;
-  scaled.cwiseAbs().maxCoeff(&largest);
-  Eigen::VectorXcd shape = scaled / scaled[largest];
-  shape[largest] = 1;
+  measured.cwiseAbs().maxCoeff(&largest);
+  Eigen::VectorXcd shape = scaled / measured[largest];
+  if (problem.system.torques.empty()) shape[largest] = 1;
   shape = shape.cwiseProduct(problem.scaling.column.cast<Complex>());
   mode.shape.assign(shape.begin(), shape.end());
   for (const CoordinateInfo& c : problem.system.coordinates) {
-    if (problem.system.links[static_cast<std::size_t>(c.link)].v < 0) continue;
+    const Link& link = problem.system.links[static_cast<std::size_t>(c.link)];
+    if (link.v < 0) continue;
     const TreeJoint& joint = problem.system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-    mode.amplitudes.push_back({joint.name, c.index, coordinate_count(joint.type), c.angle,
-                               coordinate_change(problem.system, problem.parameters, q, c, shape)});
+    const Complex part = finds_speed(link)
+                             ? shape[link.v]
+                             : coordinate_change(problem.system, problem.parameters, q, c, shape);
+    mode.amplitudes.push_back({joint.name, c.index, coordinate_count(joint.type), c.angle, part});
   }
   return mode;
 }
@@ -187,6 +198,8 @@ Eigen::VectorXd along_mode(const Problem& problem, const Eigen::VectorXd& q, con
     w.step.resize(problem.system.nv);
     for (Eigen::Index i = 0; i < w.step.size(); ++i)
       w.step[i] = amplitude * (mode.shape[static_cast<std::size_t>(i)] * turn).real();
+    for (const DriveTorqueElement& torque : problem.system.torques) // there the configuration has a speed
+      w.step[problem.system.links[static_cast<std::size_t>(torque.link)].v] = 0;
     moved = q;
     retract<double>(problem.system, w.step, moved);
     if (assemble(problem, moved, t, w)) return moved;

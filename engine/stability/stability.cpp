@@ -51,7 +51,9 @@ bool stays_balanced(const FactoredState& at, const Eigen::MatrixXd& null_space,
 void classify_by_multipliers(const Problem& problem, const Unknowns& z, int neutral, Workspace& w,
                              Stability& out) {
   FloquetOutcome outcome;
-  if (problem.system.nv <= largest_for_eigenvalues)
+  if (!problem.system.torques.empty())
+    outcome.failure = FloquetFailure::speed_is_free;
+  else if (problem.system.nv <= largest_for_eigenvalues)
     outcome = find_floquet(problem, z.q, w);
   else
     outcome.failure = FloquetFailure::unresolved;
@@ -130,6 +132,23 @@ std::optional<bool> massless_directions_tip(const Eigen::MatrixXd& mass, const E
 }
 
 } // namespace
+
+Eigen::MatrixXd cyclic_directions(const Problem& problem, const Eigen::MatrixXd& basis) {
+  const std::vector<DriveTorqueElement>& torques = problem.system.torques;
+  Eigen::MatrixXd out(basis.cols(), static_cast<Eigen::Index>(torques.size()));
+  for (std::size_t i = 0; i < torques.size(); ++i)
+    out.col(static_cast<Eigen::Index>(i)) =
+        basis.row(problem.system.links[static_cast<std::size_t>(torques[i].link)].v).transpose();
+  return out;
+}
+
+Eigen::MatrixXd stiffness_of_motion(const Problem& problem, const Eigen::MatrixXd& jacobian,
+                                    const Eigen::MatrixXd& basis) {
+  Eigen::MatrixXd stiffness = jacobian;
+  for (const DriveTorqueElement& torque : problem.system.torques)
+    stiffness.col(problem.system.links[static_cast<std::size_t>(torque.link)].v).setZero();
+  return large::projected(stiffness, basis);
+}
 
 double real_part_rounding(Complex s, double largest) {
   return tolerance::on_axis * std::abs(s) + tolerance::on_axis_of_largest * largest;
@@ -226,7 +245,20 @@ Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
       large::projected(s.asDiagonal() * w.dense.linearization.velocity * s.asDiagonal(), basis);
   Eigen::MatrixXd stiffness = reduced;
   if (potential) stiffness = (reduced + reduced.transpose()) / 2;
-  out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);
+  if (problem.system.torques.empty()) {
+    out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);
+  } else {
+    stiffness = stiffness_of_motion(problem, w.dense.stiffness(), basis);
+    out.eigenvalues = eigenvalues_without_cyclic(mass, velocity, stiffness, cyclic_directions(problem, basis),
+                                                 problem.cancel);
+    if (!out.eigenvalues) { // something has no mass: all of them, and those nearest to zero left out
+      out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);
+      for (std::size_t i = 0; out.eigenvalues && i < problem.system.torques.size(); ++i)
+        if (!out.eigenvalues->empty())
+          out.eigenvalues->erase(
+              std::ranges::min_element(*out.eigenvalues, {}, [](Complex x) { return std::abs(x); }));
+    }
+  }
   if (minimum || !out.eigenvalues) return out;
 
   // Eigenvalues that belong to null directions are zero but for rounding: leave the smallest out.

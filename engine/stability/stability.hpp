@@ -36,6 +36,13 @@ bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::Matri
 // would take too long in very large mechanisms.
 bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w);
 
+// Where torques drive, the coordinates that they turn are cyclic in the linearised motion (drive_torque.hpp):
+// their directions on the null space `basis` of the constraints, and the stiffness K there from the scaled
+// Jacobian of the balance, whose columns are for their speeds.
+Eigen::MatrixXd cyclic_directions(const Problem& problem, const Eigen::MatrixXd& basis);
+Eigen::MatrixXd stiffness_of_motion(const Problem& problem, const Eigen::MatrixXd& jacobian,
+                                    const Eigen::MatrixXd& basis);
+
 // Of a steady state. Of a dense problem `with_eigenvalues` asks for the full picture, else only the sign of a
 // minimum is found; of others the signs of the pivots decide (pivot_stability.hpp).
 Stability find_stability(const FactoredState& at, bool with_eigenvalues);

@@ -216,7 +216,11 @@ double end_error(const Run& run, const Direct& direct, const std::vector<std::st
   const auto nq = static_cast<std::ptrdiff_t>(direct.system().nq);
   const auto sample =
       static_cast<std::ptrdiff_t>(run.states.size()) - (nq + static_cast<std::ptrdiff_t>(direct.system().nv));
-  return direct.error_of(Eigen::Map<const Eigen::VectorXd>(run.states.data() + sample, nq), neutral);
+  Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(run.states.data() + sample, nq);
+  // What torques drive is compared by its speed; the motion's coordinates are in the same order.
+  for (const Link& link : direct.system().links)
+    if (finds_speed(link)) q[link.q] = run.states[static_cast<std::size_t>(sample + nq + link.v)];
+  return direct.error_of(q, neutral);
 }
 
 // One run and its repeats. Nothing where nobody waits for it any more.

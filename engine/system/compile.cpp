@@ -1,4 +1,5 @@
 #include "engine/mechanism/body_groups.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/system/joint_parts.hpp"
 
@@ -37,14 +38,15 @@ class UnionFind {
 // How a coordinate is driven: from which motor, through which gears.
 struct DriveOrigin {
   bool driven = false;
+  bool by_torque = false;
   int motor_joint = -1, motor_coordinate = 0;
   std::vector<int> gears;
 };
 
 class Compiler {
  public:
-  Compiler(const Mechanism& mechanism, const CutChoice& choice)
-      : m_(mechanism), choice_(choice), numbers_(mechanism) {}
+  Compiler(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven)
+      : m_(mechanism), choice_(choice), torque_driven_(torque_driven), numbers_(mechanism) {}
 
   System run() {
     find_ends();
@@ -55,6 +57,7 @@ class Compiler {
     expect_few_repetitions();
     add_forces();
     list_coordinates();
+    add_drive_torques();
     classify();
     choose_kkt_form();
     s_.division = divide(s_);
@@ -101,7 +104,8 @@ class Compiler {
       auto& o = origins_[static_cast<std::size_t>(j)];
       o.resize(joint(j).coordinates.size());
       for (std::size_t k = 0; k < o.size(); ++k)
-        if (joint(j).coordinates[k].drive) o[k] = {true, j, static_cast<int>(k), {}};
+        if (const auto& drive = joint(j).coordinates[k].drive)
+          o[k] = {true, drive->torque.has_value(), j, static_cast<int>(k), {}};
     }
     for (bool changed = true; changed;) {
       changed = false;
@@ -190,14 +194,19 @@ class Compiler {
       const DriveOrigin* o = nullptr;
       if (j >= 0 && part.type != LinkType::fixed)
         o = &origins_[static_cast<std::size_t>(j)][static_cast<std::size_t>(part.coordinate)];
-      if (o && o->driven) {
-        if (part.type == LinkType::spherical)
-          throw SceneError(joint_path(j) + ".drive",
-                           "a rotation vector cannot be driven; use revolute joints");
+      if (o && o->driven && part.type == LinkType::spherical)
+        throw SceneError(joint_path(j) + ".drive", "a rotation vector cannot be driven; use revolute joints");
+      const bool torque = o && o->driven && o->by_torque;
+      if (torque && !o->gears.empty())
+        throw SceneError(joint_path(j), "is geared to a drive by torque, which is not solved for yet");
+      if (torque) torque_links_.push_back(last);
+      const bool turns = o && o->driven && !(torque && torque_driven_ == TorqueDriven::moves_freely);
+      if (turns) {
         l.drive = static_cast<int>(s_.drives.size());
         s_.drives.push_back({last, l.drive, o->gears});
         motors_.push_back({o->motor_joint, o->motor_coordinate});
-      } else if (part.type != LinkType::fixed) {
+      }
+      if ((!turns || torque) && part.type != LinkType::fixed) {
         l.q = s_.nq;
         l.v = s_.nv;
         s_.nq += part.type == LinkType::spherical ? 4 : 1;
@@ -484,6 +493,47 @@ class Compiler {
       s_.reported.push_back(std::move(coordinate));
   }
 
+  void add_drive_torques() {
+    for (const int l : torque_links_) {
+      const Joint& x = joint(s_.tree_joints[static_cast<std::size_t>(link(l).tree_joint)].joint);
+      s_.torques.push_back(
+          {l, law_of(x, link(l).coordinate, "torque"), law_of(x, link(l).coordinate, "load")});
+    }
+  }
+
+  DriveLaw::Input input_of(const ResultCall& call) const {
+    const CoordinateReference at = find_coordinate(m_, call);
+    const bool rate = call.result == Result::rate;
+    const std::string name = coordinate_name(joint(at.joint), at.coordinate);
+    const auto found = std::ranges::find_if(s_.coordinates, [&](const CoordinateInfo& c) {
+      return s_.tree_joints[static_cast<std::size_t>(c.tree_joint)].joint == at.joint &&
+             c.index == at.coordinate;
+    });
+    if (found == s_.coordinates.end())
+      throw ExpressionError("expected a coordinate that closes no loop, found " + name);
+    if (link_at(found->link).drive >= 0 && !rate)
+      throw ExpressionError("expected a rate: the coordinate " + name + " goes on and on as its drive turns");
+    if (rate && link_at(found->link).type == LinkType::spherical)
+      throw ExpressionError("expected no rate of " + name + ", a component of a rotation vector");
+    return {rate, static_cast<int>(found - s_.coordinates.begin())};
+  }
+
+  DriveLaw law_of(const Joint& of, int i, std::string_view which) const {
+    DriveLaw out;
+    const Formula* law = drive_law(of, i, which);
+    if (!law) return out;
+    const std::string where = "joints." + of.name + ".drive." + std::string(which);
+    try {
+      out.expression = read_drive_law(law->text);
+      for (const ResultCall& call : out.expression->results())
+        out.inputs.push_back(input_of(call));
+    } catch (const ExpressionError& error) {
+      throw SceneError("joints." + of.name + ".drive." + std::string(which),
+                       "\"=" + law->text + "\": " + error.what());
+    }
+    return out;
+  }
+
   // The drives a link turns with, innermost last; two links with the same ones never move against each other
   // in the steady state.
   int moving_frame(int l) const { return l < 0 ? -1 : link_at(l).frame; }
@@ -492,6 +542,7 @@ class Compiler {
     for (const DrivenCoordinate& d : s_.drives)
       if (const int l = link(d.link).parent; l >= 0 && (link(l).frame >= 0 || link(l).mobile))
         s_.single_drives = false;
+    if (!s_.torques.empty()) s_.conservative = false;
     for (const BodyForceElement& e : s_.body_forces) {
       const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
       if (f.type != ForceType::force || f.frame != ForceFrame::world) s_.conservative = false;
@@ -509,7 +560,8 @@ class Compiler {
     // Without a potential stability asks for eigenvalues, and so for the matrices, as far as those are found.
     constexpr int few = 8, few_for_bodies = 60, few_without_potential = 200;
     const bool potential = s_.conservative && s_.single_drives;
-    if (!no_drive_rides(s_) || s_.nv <= (potential ? few : few_without_potential)) return;
+    if (!s_.torques.empty() || !no_drive_rides(s_) || s_.nv <= (potential ? few : few_without_potential))
+      return;
     if (is_plain_tree(s_))
       s_.kkt_form = KktForm::tree;
     else if (s_.nv > few_for_bodies)
@@ -518,11 +570,13 @@ class Compiler {
 
   const Mechanism& m_;
   const CutChoice& choice_;
+  const TorqueDriven torque_driven_;
   const BodyNumbers numbers_;
   System s_;
   std::vector<std::array<int, 2>> ends_; // bodies, by joint
   std::vector<std::vector<DriveOrigin>> origins_;
   std::vector<CoordinateReference> motors_; // by entry of s_.drives
+  std::vector<int> torque_links_;
   std::vector<bool> needs_coordinate_, in_tree_;
   std::vector<std::vector<int>> joints_at_;
 
@@ -552,8 +606,8 @@ bool is_plain_tree(const System& system) {
   return system.rows == 0 && system.springs.empty() && system.cut_dampers.empty() && no_drive_rides(system);
 }
 
-System compile(const Mechanism& mechanism, const CutChoice& choice) {
-  return Compiler(mechanism, choice).run();
+System compile(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven) {
+  return Compiler(mechanism, choice, torque_driven).run();
 }
 
 } // namespace flyball

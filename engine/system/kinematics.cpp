@@ -75,7 +75,7 @@ void place_links(const System& system, const Parameters& p, const Configuration<
     x.v = parent.v + swing;
     x.dv = parent.dv + parent.dw.cross(arm) + parent.w.cross(swing);
     if (link.drive >= 0) {
-      const S speed = S(lp.speed) * S(p.speed_scale);
+      const S speed = finds_speed(link) ? q[link.q] : S(lp.speed) * S(p.speed_scale);
       if (link.type == LinkType::revolute) {
         x.w += x.axis * speed;
         x.dw += parent.w.cross(x.axis) * speed;

@@ -2,6 +2,7 @@
 
 #include "engine/linear/interruption.hpp"
 #include "engine/system/constraint_row.hpp"
+#include "engine/system/drive_torque.hpp"
 #include "engine/system/pair_stiffness.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -223,6 +224,76 @@ Mat3 rotation_damping(const Link& link, const LinkParameters& p, const Eigen::Ve
   return rate.transpose() * c.asDiagonal() * rate;
 }
 
+namespace {
+
+LinearizedRow inertia_row(const CompositeBody& b, const ScrewRates& s) {
+  return {times_inertia(b, s.sw, s.sv), b.b.transpose() * s.sw - 2 * s.sv.cross(b.momentum)};
+}
+
+LinearizedWrench velocity_wrench(const CompositeBody& b, const ScrewRates& s) {
+  LinearizedWrench u = times_inertia(b, 2 * s.dw, 2 * s.dv);
+  u.moment += b.b * s.sw;
+  u.force -= 2 * b.momentum.cross(s.sw);
+  return u;
+}
+
+double apply_velocity(const LinearizedRow& row, const ScrewRates& s, const Vec3& arm) {
+  return 2 * apply_inertia(row, s.dw, s.dv, arm) + s.sw.dot(row.b);
+}
+
+bool hangs_from(const System& system, int link, int from) {
+  while (link > from)
+    link = system.links[static_cast<std::size_t>(link)].parent;
+  return link == from;
+}
+
+// The entries of `velocity` in the column of a speed that is among the unknowns, without dampers.
+void fill_speed_column(const System& system, const Kinematics<double>& k, int turning, Linearization& out) {
+  const int v = system.links[static_cast<std::size_t>(turning)].v;
+  const ScrewRates& own = out.screws[static_cast<std::size_t>(v)];
+  const LinearizedWrench u = velocity_wrench(out.composites[static_cast<std::size_t>(turning)], own);
+  const Vec3& origin = k.at(turning).o;
+  for (int a = turning; a >= 0; a = nearest_free(system, system.links[static_cast<std::size_t>(a)].parent)) {
+    const Link& other = system.links[static_cast<std::size_t>(a)];
+    const Vec3 moment = u.moment + (origin - k.at(a).o).cross(u.force);
+    for (int i = other.v; i < other.v + column_count(other); ++i) {
+      const ScrewRates& s = out.screws[static_cast<std::size_t>(i)];
+      out.velocity(i, v) += s.sw.dot(moment) + s.sv.dot(u.force);
+    }
+  }
+  for (std::size_t l = static_cast<std::size_t>(turning) + 1; l < system.links.size(); ++l) {
+    const Link& link = system.links[l];
+    if (link.v < 0 || !hangs_from(system, static_cast<int>(l), turning)) continue;
+    for (int i = link.v; i < link.v + column_count(link); ++i)
+      out.velocity(i, v) +=
+          apply_velocity(inertia_row(out.composites[l], out.screws[static_cast<std::size_t>(i)]), own,
+                         k.links[l].o - origin);
+  }
+}
+
+// Of a system whose linearize() has filled screws and composites.
+void fill_velocity(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                   const Kinematics<double>& k, Linearization& out) {
+  out.velocity.setZero(system.nv, system.nv);
+  if (p.moving)
+    fill_tree(
+        system, k, out.screws, out.velocity,
+        [&](std::size_t l, const ScrewRates& s) { return velocity_wrench(out.composites[l], s); },
+        [&](std::size_t l, const ScrewRates& s) { return inertia_row(out.composites[l], s); },
+        apply_velocity);
+  add_damping(system, p, q, k, out.velocity);
+  add_drive_torque_damping(system, p, q, k, out.velocity);
+}
+
+// Calls act(v) for every speed that is among the unknowns.
+template <class Act>
+void for_speeds(const System& system, const Act& act) {
+  for (const DriveTorqueElement& drive : system.torques)
+    if (const Link& link = system.links[static_cast<std::size_t>(drive.link)]; finds_speed(link)) act(link.v);
+}
+
+} // namespace
+
 void linearize_constraints(const System& system, const Parameters& p, const Kinematics<double>& k,
                            Linearization& out) {
   out.constraint.setZero(system.rows, system.nv);
@@ -231,6 +302,7 @@ void linearize_constraints(const System& system, const Parameters& p, const Kine
       row_gradient(system.cuts[c], p.cuts[c], system.cuts[c].rows[r], k, [&](int v, double g) {
         out.constraint(system.cuts[c].first_row + static_cast<int>(r), v) += g;
       });
+  for_speeds(system, [&](int v) { out.constraint.col(v).setZero(); }); // loops are closed at any speed
 }
 
 void linearize(const System& system, const Parameters& p, const Eigen::VectorXd& q,
@@ -268,38 +340,29 @@ void linearize(const System& system, const Parameters& p, const Eigen::VectorXd&
   add_body_forces(system, p, k, out.screws, out.stiffness);
   add_pair_stiffness(system, p, lambda, k, out.screws, out.stiffness);
   linearize_constraints(system, p, k, out);
+  if (system.torques.empty()) return;
+  add_drive_torque_stiffness(system, p, q, k, out.stiffness);
+  if (system.drives.empty()) return; // of the motion
+  out.velocity.setZero(system.nv, system.nv);
+  add_damping(system, p, q, k, out.velocity);
+  add_drive_torque_damping(system, p, q, k, out.velocity);
+  for (const DriveTorqueElement& drive : system.torques)
+    if (finds_speed(system.links[static_cast<std::size_t>(drive.link)]))
+      fill_speed_column(system, k, drive.link, out);
+  for_speeds(system, [&](int v) { out.stiffness.col(v) = out.velocity.col(v); });
 }
 
 void linearize_motion(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                       const Kinematics<double>& k, Linearization& out) {
   out.mass.setZero(system.nv, system.nv);
-  out.velocity.setZero(system.nv, system.nv);
-  const auto inertia_row = [&](std::size_t l, const ScrewRates& s) {
-    const CompositeBody& b = out.composites[l];
-    return LinearizedRow{times_inertia(b, s.sw, s.sv), b.b.transpose() * s.sw - 2 * s.sv.cross(b.momentum)};
-  };
   fill_tree(
       system, k, out.screws, out.mass,
       [&](std::size_t l, const ScrewRates& s) { return times_inertia(out.composites[l], s.sw, s.sv); },
-      inertia_row,
+      [&](std::size_t l, const ScrewRates& s) { return inertia_row(out.composites[l], s); },
       [](const LinearizedRow& row, const ScrewRates& s, const Vec3& arm) {
         return apply_inertia(row, s.sw, s.sv, arm);
       });
-  if (p.moving)
-    fill_tree(
-        system, k, out.screws, out.velocity,
-        [&](std::size_t l, const ScrewRates& s) {
-          const CompositeBody& b = out.composites[l];
-          LinearizedWrench u = times_inertia(b, 2 * s.dw, 2 * s.dv);
-          u.moment += b.b * s.sw;
-          u.force -= 2 * b.momentum.cross(s.sw);
-          return u;
-        },
-        inertia_row,
-        [](const LinearizedRow& row, const ScrewRates& s, const Vec3& arm) {
-          return 2 * apply_inertia(row, s.dw, s.dv, arm) + s.sw.dot(row.b);
-        });
-  add_damping(system, p, q, k, out.velocity);
+  fill_velocity(system, p, q, k, out);
 }
 
 void add_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,

@@ -45,14 +45,16 @@ Mat3 rotation_damping(const Link& link, const LinkParameters& parameters, const 
 void linearize_constraints(const System& system, const Parameters& parameters,
                            const Kinematics<double>& kinematics, Linearization& out);
 
-// Fills `stiffness` and `constraint`. `residual` must be evaluated at the same state. For a spherical
+// Fills `stiffness` and `constraint`; with the columns of drive_torque.hpp where speeds are among the
+// unknowns, for which it uses `velocity`. `residual` must be evaluated at the same state. For a spherical
 // link the stiffness is the derivative of the moment in fixed axes along exp(step) D; it is symmetric for
 // conservative systems up to terms that vanish with the moment.
 void linearize(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                const Eigen::VectorXd& lambda, const Kinematics<double>& kinematics,
                const Residual<double>& residual, Linearization& out);
 
-// Fills `mass` and `velocity`; call after linearize at the same state.
+// Fills `mass` and `velocity`; call after linearize at the same state. What torques drive is a coordinate
+// like others here.
 void linearize_motion(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                       const Kinematics<double>& kinematics, Linearization& out);
 

@@ -1,3 +1,4 @@
+#include "engine/system/drive_torque.hpp"
 #include "engine/system/motion.hpp"
 #include "engine/system/pair_stiffness.hpp"
 #include "engine/system/rotation_vector.hpp"
@@ -94,6 +95,9 @@ ForcePowers force_powers(const System& system, const Parameters& p, const Eigen:
     else
       out.applied += power;
   }
+  for (std::size_t i = 0; i < system.torques.size(); ++i)
+    out.applied += drive_torque(system, p, i, q, k) *
+                   u[system.links[static_cast<std::size_t>(system.torques[i].link)].v];
   return out;
 }
 

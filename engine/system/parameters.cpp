@@ -1,5 +1,6 @@
 #include "engine/system/parameters.hpp"
 
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -147,7 +148,7 @@ class Binder {
       l.gear_ratio = ratio;
       l.speed = ratio * c.drive->speed;
       l.start = value - l.drawn;
-      p_.moving = p_.moving || l.speed != 0;
+      p_.moving = p_.moving || l.speed != 0 || finds_speed(s_.links[static_cast<std::size_t>(d.link)]);
     }
   }
 
@@ -184,9 +185,27 @@ class Binder {
       p_.cut_dampers[i] = {in_link(j.at, e.ends.a), in_link(j.at, e.ends.b), j.axis.normalized(),
                            j.coordinates[static_cast<std::size_t>(e.coordinate)].damping};
     }
+    p_.torques.resize(s_.torques.size());
+    for (std::size_t i = 0; i < s_.torques.size(); ++i) {
+      const Link& l = s_.links[static_cast<std::size_t>(s_.torques[i].link)];
+      const Drive& drive = *joint(s_.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint)
+                                .coordinates[static_cast<std::size_t>(l.coordinate)]
+                                .drive;
+      p_.links[static_cast<std::size_t>(s_.torques[i].link)].speed = drive.speed;
+      bind_law(s_.torques[i].torque, drive.torque.value_or(0), p_.torques[i].torque);
+      bind_law(s_.torques[i].load, drive.load.value_or(0), p_.torques[i].load);
+    }
     p_.cuts.resize(s_.cuts.size());
     for (std::size_t i = 0; i < s_.cuts.size(); ++i)
       bind_cut(s_.cuts[i], p_.cuts[i]);
+  }
+
+  void bind_law(const DriveLaw& law, double value, DriveLawParameters& out) const {
+    out.value = value;
+    out.numbers.clear();
+    if (!law.expression) return;
+    for (const std::string& name : law.expression->names())
+      out.numbers.push_back({named_value(m_, name), 0});
   }
 
   void bind_cut(const CutJoint& cut, CutParameters& out) const {
@@ -278,7 +297,7 @@ void drawn_configuration(const System& system, const Parameters& parameters, Eig
     if (link.type == LinkType::spherical)
       q.segment<4>(link.q) << 1, 0, 0, 0;
     else
-      q[link.q] = parameters.links[l].drawn;
+      q[link.q] = finds_speed(link) ? parameters.links[l].speed : parameters.links[l].drawn;
   }
 }
 

@@ -62,7 +62,7 @@ struct LinkParameters {
   bool elastic = false;        // any of `force` is a spring or stop
   Vec3 com = Vec3::Zero();     // m, mass centre from the link's origin, drawn pose
   Mat3 inertia = Mat3::Zero(); // kg m^2, about the mass centre, drawn-pose world axes
-  double speed = 0;            // driven: rad/s or m/s, before Parameters::speed_scale
+  double speed = 0;            // driven: rad/s or m/s, before Parameters::speed_scale; by a torque: at first
   double start = 0;      // driven: displacement from the drawn pose at phase zero (a gear may ask for one)
   double gear_ratio = 1; // driven: speed per speed of its motor
   Vec3 origin = Vec3::Zero();             // m, this link's origin in the drawn pose, from Parameters::origin
@@ -92,6 +92,15 @@ struct CutDamperParameters {
   double damping = 0;
 };
 
+struct DriveLawParameters {
+  double value = 0;          // N m or N, where no expression gives it
+  std::vector<Dual> numbers; // by name of the expression
+};
+
+struct DriveTorqueParameters {
+  DriveLawParameters torque, load;
+};
+
 struct CutParameters {
   Offset a, b;                   // the joint's point on either end; a distance joint's points
   std::array<Vec3, 4> frame;     // x, y, z (axis), second axis; drawn pose
@@ -112,6 +121,7 @@ struct Parameters {
   std::vector<PointSpringParameters> springs;
   std::vector<BodyForceParameters> body_forces;
   std::vector<CutDamperParameters> cut_dampers;
+  std::vector<DriveTorqueParameters> torques;
   std::vector<CutParameters> cuts;
   // The whole balance is the same at every phase of the drives, by the shape of the mechanism alone: one
   // frame turns about an axis along gravity and nothing acts between it and the ground.

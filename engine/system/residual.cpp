@@ -1,6 +1,7 @@
 #include "engine/system/residual.hpp"
 
 #include "engine/system/constraint_row.hpp"
+#include "engine/system/drive_torque.hpp"
 #include "engine/system/extended.hpp"
 #include "engine/system/link_forces.hpp"
 
@@ -191,6 +192,7 @@ struct ResidualPass {
     add_in_parts(system, *this);
     for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
       add_cut_damper(system, p, k, i, out.f);
+    add_drive_torques(system, p, q, k, out.f);
     evaluate_constraints(system, p, q, k, out.phi);
   }
 };
@@ -395,6 +397,7 @@ struct MagnitudesPass {
 void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& lambda, const Kinematics<double>& k, Magnitudes& out) {
   MagnitudesPass{system, p, q, lambda, k, out}.run();
+  add_drive_torque_sizes(system, p, q, k, out.force);
 }
 
 template AppliedForce<double> applied_force(const BodyForceElement&, const BodyForceParameters&,

@@ -8,10 +8,12 @@
 // chain is reversed with its axes turned round, so that coordinates keep their sign.
 #pragma once
 
+#include "engine/mechanism/expression.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/system/division.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,12 +28,13 @@ struct Link {
   int tree_joint = -1; // in System::tree_joints
   int coordinate = 0;  // of the joint; the first of three for spherical
   bool reversed = false;
-  int axis = 0;        // 0: the joint's axis, 1: its second axis, 2: normal x x_axis; 3, 4, 5: world x, y, z
-  int q = -1;          // first entry in the configuration (spherical: a quaternion w x y z, four entries)
-  int v = -1;          // first entry in q_R as a tangent vector (spherical: three); -1 where driven or fixed
-  int drive = -1;      // in System::drives
-  int frame = -1;      // link: the nearest driven one from here to the root, itself included; -1: none
-  int depth = 0;       // links from here to the root, itself included
+  int axis = 0;   // 0: the joint's axis, 1: its second axis, 2: normal x x_axis; 3, 4, 5: world x, y, z
+  int q = -1;     // first entry in the configuration (spherical: a quaternion w x y z, four entries)
+  int v = -1;     // first entry in q_R as a tangent vector (spherical: three); -1 where driven or fixed
+  int drive = -1; // in System::drives; with entries in q and v it is driven by a torque, and they are its
+                  // speed (rad/s or m/s), see drive_torque.hpp
+  int frame = -1; // link: the nearest driven one from here to the root, itself included; -1: none
+  int depth = 0;  // links from here to the root, itself included
   bool mobile = false; // some coordinate of q_R moves it
 };
 
@@ -51,6 +54,22 @@ struct DrivenCoordinate {
   int link = 0;
   int motor = 0;          // index in System::drives of the coordinate that has the motor; its own for a motor
   std::vector<int> gears; // gear joints from the motor to here, in order
+};
+
+// The torque (or force) or load of a drive: a number, or an expression of the state.
+struct DriveLaw {
+  struct Input {
+    bool rate = false;  // of the coordinate; else its value
+    int coordinate = 0; // in System::coordinates
+  };
+  std::optional<Expression> expression;
+  std::vector<Input> inputs; // by Expression::results()
+};
+
+// A drive that gives a torque rather than a speed.
+struct DriveTorqueElement {
+  int link = 0; // whose coordinate it drives
+  DriveLaw torque, load;
 };
 
 // One coordinate of q_R that takes part in an element, with the end of the element that it moves.
@@ -150,6 +169,7 @@ struct System {
   std::vector<PointSpringElement> springs;
   std::vector<BodyForceElement> body_forces;
   std::vector<CutDamperElement> cut_dampers;
+  std::vector<DriveTorqueElement> torques;
   std::vector<CutJoint> cuts;
   std::vector<int> dropped_gears; // gears between driven coordinates: no equation left
   int nq = 0;                     // entries of a configuration
@@ -165,8 +185,20 @@ struct System {
   Division division;
 };
 
+// What is driven by a torque.
+enum class TorqueDriven {
+  turns_steadily, // at a constant speed, which is among the unknowns
+  moves_freely,   // a coordinate like others, which the torque acts on: for the motion
+};
+
 // Compiles. Throws SceneError where a mechanism has no meaning (validate() finds the same and more).
-System compile(const Mechanism& mechanism, const CutChoice& choice = {});
+System compile(const Mechanism& mechanism, const CutChoice& choice = {},
+               TorqueDriven torque_driven = TorqueDriven::turns_steadily);
+
+// Whether the link's coordinate turns at a constant speed that is among the unknowns.
+inline bool finds_speed(const Link& link) {
+  return link.drive >= 0 && link.v >= 0;
+}
 
 // No drive rides on a free coordinate: what eliminations take for granted. And there are neither loops nor
 // anything between two bodies but tree joints: what that along the tree does.

@@ -246,6 +246,7 @@ int main(int argc, char** argv) {
   add_points("pendulum", "joints.spin.drive.speed", 2, 20);
   add_points("governor", "joints.spin.drive.speed", 9, 20);
   add_points("governor_parametric", "parameters.L", 0.1, 0.2);
+  add_points("governor_engine", "joints.spin.drive.load", -10, 10);
   Fastest reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();
@@ -259,6 +260,8 @@ int main(int argc, char** argv) {
   }
   for (const std::string name : {"pendulum", "governor", "governor_parametric"})
     print_ratio(reporter, name + "/point by itself", name + "/point of a sweep");
+  print_ratio(reporter, "governor_engine/point of a sweep",
+              "governor/point of a sweep"); // its speed is found
   for (const char* curve : {"governor/curve", "governor/curve with eigenvalues"})
     print_ratio(reporter, curve, "governor/cold");
   for (const char* part : {"residual", "iteration", "warm"})

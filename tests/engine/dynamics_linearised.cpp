@@ -86,8 +86,15 @@ TEST_CASE("eigenvalues of the shipped scenes, by differences of their motion") {
     const Mechanism m = shipped(name);
     const Solution steady = solve(m);
     REQUIRE(steady.eigenvalues);
-    const std::vector<Complex> found = eigenvalues_by_differences(m);
+    std::vector<Complex> found = eigenvalues_by_differences(m);
     REQUIRE_FALSE(found.empty());
+    for (const CoordinateSolution& c : steady.coordinates) {
+      if (!c.speed)
+        continue; // the angle of a shaft that a torque drives has the eigenvalue zero, and says nothing
+      const auto zero = std::ranges::min_element(found, {}, [](Complex x) { return std::abs(x); });
+      CHECK(std::abs(*zero) < 1e-5);
+      found.erase(zero);
+    }
     check_same(found, *steady.eigenvalues);
   }
 }

@@ -88,7 +88,13 @@ struct CoordinateRows {
     const CoordinateSolution* found = solution();
     // Words and digits are of different heights.
     const float next = ImGui::GetCursorPosY() + ImGui::GetTextLineHeightWithSpacing() + std::round(app.scale);
-    if (coordinate().drive || (found && found->driven)) {
+    if (found && found->speed && coordinate().drive) {
+      const NumberStyle& numbers = app.options.numbers;
+      const ShownUnit unit = rate_unit(angle(), app.units);
+      row(app, angle() ? "Turns at" : "Moves at",
+          value_text(unit.shown(*found->speed), found->speed_error * unit.factor, numbers), unit.text.c_str(),
+          "The steady speed: there the torque, less the load, is what turning takes.");
+    } else if (coordinate().drive || (found && found->driven)) {
       no_value("driven", "It moves at a constant speed, so there is no place where it settles.");
     } else if (!found) {
       no_value("not known", "There is no steady state of which this could be told.");
@@ -134,9 +140,33 @@ struct CoordinateRows {
   }
 
   void drive_numbers() const {
-    if (coordinate().drive)
-      number("Speed", key("drive") + ".speed", coordinate().drive->speed, value_unit() + "/s",
-             "The constant speed of the coordinate; right-handed about or along the axis.");
+    if (!coordinate().drive) return;
+    const Drive& drive = *coordinate().drive;
+    by_torque(drive.torque.has_value());
+    const std::string unit = angle() ? "N m" : "N";
+    if (drive.torque) {
+      number(angle() ? "Torque" : "Force", key("drive") + ".torque", *drive.torque, unit,
+             "What the drive gives along the coordinate: a number, or an expression of the state such as "
+             "=7500 N*(coordinate(slide) - 0.15 m) or =20 N m - 2 N m s*rate(spin).");
+      number("Load", key("drive") + ".load", drive.load.value_or(0), unit, "What acts against it; likewise.");
+    }
+    number(drive.torque ? "Search from" : "Speed", key("drive") + ".speed", drive.speed, value_unit() + "/s",
+           drive.torque ? "Where the search for the steady speed begins."
+                        : "The constant speed of the coordinate; right-handed about or along the axis.");
+  }
+
+  // Whether the drive gives a torque rather than a speed.
+  void by_torque(bool on) const {
+    if (!check_row(app, widget(key("drive") + ".by_torque"), angle() ? "By torque" : "By force", on,
+                   angle() ? "The drive gives a torque, and the speed is found."
+                           : "The drive gives a force, and the speed is found.",
+                   nullptr))
+      return;
+    change((on ? "Prescribe the speed of " : "Find the speed of ") + joint.name, [on](Coordinate& c) {
+      if (!c.drive) return;
+      c.drive->torque = on ? std::nullopt : std::optional(0.);
+      c.drive->load = c.drive->torque;
+    });
   }
 
   // Why nothing that has to settle may act on it; null where it may.

@@ -14,23 +14,31 @@ namespace {
 // With more coordinates than this each takes one line, and the rest appears over it.
 constexpr int spacious = 8;
 
+// Free coordinates, and speeds of drives by torque.
+bool is_found(const CoordinateSolution& c) {
+  return c.speed || !c.driven;
+}
+
 void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
   const NumberStyle& numbers = app.options.numbers;
   const UiColors& colors = colors_of(app);
-  const ShownUnit unit = coordinate_unit(c.angle, app.units);
-  const char* si = c.angle ? "rad" : "m";
-  row(app, coordinate_label(c), value_text(unit.shown(c.value), c.error * unit.factor, numbers),
+  const ShownUnit unit = c.speed ? rate_unit(c.angle, app.units) : coordinate_unit(c.angle, app.units);
+  const std::string si = std::string(c.angle ? "rad" : "m") + (c.speed ? "/s" : "");
+  const double value = c.speed.value_or(c.value), error = c.speed ? c.speed_error : c.error;
+  row(app, coordinate_label(c), value_text(unit.shown(value), error * unit.factor, numbers),
       unit.text.c_str(),
-      c.dependent ? "The joint closes a loop: this follows from the other coordinates." : nullptr);
-  if (c.dependent)
+      c.speed       ? "The steady speed: there the drive's torque, less its load, is what turning takes."
+      : c.dependent ? "The joint closes a loop: this follows from the other coordinates."
+                    : nullptr);
+  if (c.dependent || c.speed)
     note_widget(app.widgets, "results/" + coordinate_label(c));
   else
     goal_handle(app, {.name = "results/" + coordinate_label(c),
                       .wanted = coordinate_label(c),
                       .value = c.value,
                       .unit = si});
-  std::string second = value_text(c.value, c.error, numbers) + " " + si;
-  if (c.error > 0) second += "  ± " + magnitude_text(std::max(c.error, numbers.noise), numbers) + " " + si;
+  std::string second = value_text(value, error, numbers) + " " + si;
+  if (error > 0) second += "  ± " + magnitude_text(std::max(error, numbers.noise), numbers) + " " + si;
   if (compact)
     help_on_hover(second.c_str());
   else {
@@ -43,12 +51,12 @@ void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
 
 void coordinate_results(App& app) {
   const auto& all = app.answer.solution.coordinates;
-  const auto free = std::ranges::count(all, false, &CoordinateSolution::driven);
+  const auto free = std::ranges::count_if(all, is_found);
   if (free == 0) return;
   heading(app, "Where it settles");
   if (free <= spacious) {
     for (const CoordinateSolution& c : all)
-      if (!c.driven) free_coordinate(app, c, false);
+      if (is_found(c)) free_coordinate(app, c, false);
     return;
   }
   // Of thousands only those that are in sight; the driven ones among them, which are few, take no line.
@@ -58,7 +66,7 @@ void coordinate_results(App& app) {
   clipper.Begin(static_cast<int>(free));
   while (clipper.Step())
     for (; next != all.end() && passed < clipper.DisplayEnd; ++next) {
-      if (next->driven) continue;
+      if (!is_found(*next)) continue;
       if (passed++ >= clipper.DisplayStart) free_coordinate(app, *next, true);
     }
 }

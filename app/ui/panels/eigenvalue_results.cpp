@@ -32,6 +32,20 @@ void multiplier_results(App& app, const Floquet& floquet) {
   }
 }
 
+void lines_of(App& app, const std::vector<std::complex<double>>& eigenvalues) {
+  double largest = 0;
+  for (const std::complex<double>& z : eigenvalues)
+    largest = std::max(largest, std::abs(z));
+  for (const std::complex<double>& z : eigenvalues) {
+    if (z.imag() < 0) continue; // its conjugate stands for both
+    const bool pair = z.imag() > 1e-5 * largest;
+    const double frequency = z.imag() / 6.283185307179586;
+    const std::string label = pair ? value_text(frequency, largest * 1e-4, {4, 1e-16, false}) + " Hz" : "";
+    const std::string imaginary = pair ? " ± " + part_text(z.imag(), largest) + " i" : "";
+    row(app, label, part_text(z.real(), largest) + imaginary, "1/s");
+  }
+}
+
 } // namespace
 
 void eigenvalue_results(App& app) {
@@ -41,17 +55,12 @@ void eigenvalue_results(App& app) {
   if (!section(app, "results/eigenvalues", "Eigenvalues", app.panels.eigenvalues)) return;
   paragraph("Disturbances grow or die out with the real part and swing with the imaginary part.",
             colors_of(app).dim);
-  double largest = 0;
-  for (const std::complex<double>& z : *eigenvalues)
-    largest = std::max(largest, std::abs(z));
-  for (const std::complex<double>& z : *eigenvalues) {
-    if (z.imag() < 0) continue; // its conjugate stands for both
-    const bool pair = z.imag() > 1e-5 * largest;
-    const double frequency = z.imag() / 6.283185307179586;
-    const std::string label = pair ? value_text(frequency, largest * 1e-4, {4, 1e-16, false}) + " Hz" : "";
-    const std::string imaginary = pair ? " ± " + part_text(z.imag(), largest) + " i" : "";
-    row(app, label, part_text(z.real(), largest) + imaginary, "1/s");
-  }
+  lines_of(app, *eigenvalues);
+  const auto& at = app.answer.solution.at_constant_speed;
+  if (!at || !at->eigenvalues || at->eigenvalues->empty()) return;
+  paragraph("With drives that give their torques. The same state with its speeds prescribed:",
+            colors_of(app).dim);
+  lines_of(app, *at->eigenvalues);
 }
 
 } // namespace flyball

@@ -1,0 +1,106 @@
+#include "engine/mechanism/drive_law.hpp"
+
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/fields.hpp"
+#include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+// Throws ExpressionError.
+ValueDimension dimension_of(const Mechanism& mechanism, const std::string& name) {
+  if (const int i = parameter_index(mechanism, name); i >= 0)
+    return {parse_unit(mechanism.parameters[static_cast<std::size_t>(i)].unit)
+                .value_or(Unit{})
+                .dimension.without_angle(),
+            false};
+  named_value(mechanism, name);
+  return {{.length = 1}, false}; // of a point's coordinate
+}
+
+ValueDimension dimension_of(const Mechanism& mechanism, const ResultCall& call) {
+  const CoordinateReference at = find_coordinate(mechanism, call);
+  const bool angle = is_angle(mechanism.joints[static_cast<std::size_t>(at.joint)].type, at.coordinate);
+  return {{.length = angle ? 0. : 1., .time = call.result == Result::rate ? -1. : 0.}, false};
+}
+
+} // namespace
+
+bool is_of_state(std::string_view expression) {
+  try {
+    return !Expression(expression, Expression::Results::allowed).results().empty();
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+bool is_drive_law(const Formula& formula) {
+  return formula.key.starts_with("drive.") &&
+         (formula.key.ends_with(".torque") || formula.key.ends_with(".load")) && is_of_state(formula.text);
+}
+
+const Formula* drive_law(const Joint& joint, int i, std::string_view which) {
+  if (joint.formulas.empty()) return nullptr;
+  const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
+  const auto law =
+      std::ranges::find(joint.formulas, "drive" + index + "." + std::string(which), &Formula::key);
+  return law != joint.formulas.end() && is_drive_law(*law) ? &*law : nullptr;
+}
+
+Expression read_drive_law(std::string_view text) {
+  constexpr std::size_t most = 32;
+  Expression expression(text, Expression::Results::allowed);
+  if (expression.names().size() > most || expression.results().size() > most)
+    throw ExpressionError("expected a simpler expression");
+  return expression;
+}
+
+CoordinateReference find_coordinate(const Mechanism& mechanism, const ResultCall& call) {
+  if (call.result != Result::coordinate && call.result != Result::rate)
+    throw ExpressionError("column " + std::to_string(call.begin + 1) +
+                          ": expected coordinate() or rate(), found " +
+                          std::string(result_function(call.result).name) + "()");
+  const ResultCall::Argument& of = call.arguments.front();
+  const CoordinateReference at =
+      find_coordinate(mechanism, of.index < 0 ? of.name : of.name + "." + std::to_string(of.index));
+  if (at.joint >= 0) return at;
+  std::vector<std::string> known;
+  for (const Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
+      known.push_back(coordinate_name(joint, static_cast<int>(i)));
+  const std::vector<std::string_view> views(known.begin(), known.end());
+  throw ExpressionError("column " + std::to_string(of.begin + 1) + ": there is no coordinate \"" + of.name +
+                        "\"" + did_you_mean(of.name, views) +
+                        (views.empty() ? "" : "; expected one of " + word_list(views)));
+}
+
+void check_drive_law(const Mechanism& mechanism, const Formula& law, bool angle, const std::string& where) {
+  try {
+    const Expression expression = read_drive_law(law.text);
+    std::vector<ValueDimension> names, results;
+    for (const std::string& name : expression.names())
+      names.push_back(dimension_of(mechanism, name));
+    for (const ResultCall& call : expression.results())
+      results.push_back(dimension_of(mechanism, call));
+    const std::string_view unit = fields::force_unit(angle);
+    const ValueDimension found = expression.dimension(names, results);
+    if (!found.plain && !(found.dimension == parse_unit(unit)->dimension.without_angle()))
+      throw ExpressionError("expected " + std::string(unit) + ", found " + dimension_text(found.dimension));
+  } catch (const ExpressionError& error) {
+    throw SceneError(where, "\"=" + law.text + "\": " + error.what());
+  }
+}
+
+double named_value(const Mechanism& mechanism, std::string_view name) {
+  if (const int i = parameter_index(mechanism, name); i >= 0)
+    return mechanism.parameters[static_cast<std::size_t>(i)].value;
+  for (const NamedPoint& point : mechanism.points)
+    for (const int i : {0, 1, 2})
+      if (point_coordinate(point.name, i) == name) return point.at[i];
+  throw ExpressionError("there is no parameter \"" + std::string(name) + "\"");
+}
+
+} // namespace flyball

@@ -1,0 +1,37 @@
+// Torques and loads of drives as expressions of the state: "7500 N * (0.15 m - coordinate(slide))". Of what
+// measures may ask they know coordinate(joint), in rad or m as the joint labels it, and rate(joint). They
+// have no value by themselves, but one at every state.
+#pragma once
+
+#include "engine/mechanism/expression.hpp"
+#include "engine/mechanism/mechanism.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace flyball {
+
+// Whether an expression is one of the state; and of a drive.
+bool is_of_state(std::string_view expression);
+bool is_drive_law(const Formula& formula);
+
+// The expression of the state for "torque" or "load" of a joint's coordinate `i`; null where a number does.
+const Formula* drive_law(const Joint& joint, int i, std::string_view which);
+
+// A law as it is read. Throws ExpressionError.
+Expression read_drive_law(std::string_view text);
+
+// The coordinate that a law asks for. Throws ExpressionError where there is none, and where it asks for
+// something else.
+CoordinateReference find_coordinate(const Mechanism& mechanism, const ResultCall& call);
+
+// Throws SceneError at `where`, naming what is wrong: a name that is unknown or a dimension that does not
+// fit.
+void check_drive_law(const Mechanism& mechanism, const Formula& law, bool angle, const std::string& where);
+
+// The value of a parameter or of a point's coordinate: "L", "A.x". Throws ExpressionError where there is
+// none.
+double named_value(const Mechanism& mechanism, std::string_view name);
+
+} // namespace flyball

@@ -1,0 +1,107 @@
+#include "engine/report/found_speeds.hpp"
+
+#include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/report/report.hpp"
+#include "engine/system/drive_torque.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+Coordinate& driven_coordinate(Mechanism& mechanism, const System& system, const Link& link) {
+  const TreeJoint& tree = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+  return mechanism.joints[static_cast<std::size_t>(tree.joint)]
+      .coordinates[static_cast<std::size_t>(link.coordinate)];
+}
+
+std::string name_of_drive(const System& system, const Link& link) {
+  const TreeJoint& tree = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+  return coordinate_count(tree.type) == 1 ? tree.name : tree.name + "." + std::to_string(link.coordinate);
+}
+
+std::string names_of_drives(std::span<const std::string> drives) {
+  return word_list(std::vector<std::string_view>(drives.begin(), drives.end()), "and");
+}
+
+} // namespace
+
+Mechanism at_constant_speeds(const Mechanism& mechanism, const System& system, const Eigen::VectorXd& q) {
+  Mechanism out = mechanism;
+  out.sliders.clear();
+  for (const DriveTorqueElement& torque : system.torques) {
+    const Link& link = system.links[static_cast<std::size_t>(torque.link)];
+    Drive& drive = *driven_coordinate(out, system, link).drive;
+    drive.torque.reset();
+    drive.load.reset();
+    drive.speed = q[link.q];
+  }
+  return out;
+}
+
+AtConstantSpeed stability_at_constant_speed(const Mechanism& mechanism, const System& system,
+                                            const Eigen::VectorXd& q,
+                                            const std::vector<CoordinateSolution>& coordinates) {
+  SolveOptions options;
+  options.nearest = true;
+  for (const CoordinateSolution& c : coordinates)
+    if (!c.driven && !c.dependent) options.start.emplace_back(coordinate_label(c), c.value);
+  const Solution solution = Analysis(at_constant_speeds(mechanism, system, q)).solve(options);
+  return {solution.stable, solution.stability_reason, solution.eigenvalues};
+}
+
+std::string missing_speed_message(const Mechanism& mechanism, const Problem& problem, Workspace& w) {
+  const System& system = problem.system;
+  Eigen::VectorXd q;
+  drawn_configuration(system, problem.parameters, q);
+  const Solution there = Analysis(at_constant_speeds(mechanism, system, q)).solve();
+  if (there.status != Status::converged)
+    return there.status == Status::not_converged ? "" : "At the speed it begins with: " + there.message;
+  std::vector<std::pair<std::string, double>> start;
+  for (const CoordinateSolution& c : there.coordinates)
+    if (!c.driven && !c.dependent) start.emplace_back(coordinate_label(c), c.value);
+  set_start(system, problem.parameters, start, q);
+  forward<double>(system, problem.parameters, q, 0, w.kinematics);
+  std::string text;
+  for (std::size_t i = 0; i < system.torques.size(); ++i) {
+    const Link& link = system.links[static_cast<std::size_t>(system.torques[i].link)];
+    const std::string name = name_of_drive(system, link);
+    const auto taken = std::ranges::find_if(there.drive_torques, [&](const DriveTorque& d) {
+      return (d.count == 1 ? d.joint : d.joint + "." + std::to_string(d.index)) == name;
+    });
+    if (taken == there.drive_torques.end()) continue;
+    const bool turns = link.type == LinkType::revolute;
+    const std::string unit = turns ? " N m" : " N";
+    const double given = drive_torque(system, problem.parameters, i, q, w.kinematics);
+    const double surplus = (given - taken->value) * (q[link.q] < 0 ? -1 : 1);
+    text += (text.empty() ? "At " : " At ") + rounded_text(q[link.q], 6) + (turns ? " rad/s " : " m/s ") +
+            name + " gives " + rounded_text(given, 6) + unit + " where turning takes " +
+            rounded_text(std::abs(taken->value) < 1e-9 * std::abs(given) ? 0 : taken->value, 6) + unit +
+            ": it " +
+            (surplus > 0 ? "runs away, unless something resists it more as it goes faster."
+                         : "slows down, unless something drives it more as it goes slower.");
+  }
+  return text;
+}
+
+std::vector<std::string> undetermined_speeds(const System& system, std::span<const int> neutral) {
+  std::vector<std::string> names;
+  for (const DriveTorqueElement& torque : system.torques) {
+    const Link& link = system.links[static_cast<std::size_t>(torque.link)];
+    if (std::ranges::find(neutral, link.v) != neutral.end()) names.push_back(name_of_drive(system, link));
+  }
+  return names;
+}
+
+std::string undetermined_speed_message(std::span<const std::string> drives) {
+  if (drives.size() == 1)
+    return "Nothing determines the speed of " + drives[0] +
+           ": what it gives and what turning takes are the same at every speed. Its torque or load has to "
+           "change with the speed or a coordinate, or something has to resist it.";
+  return "Nothing determines the speeds of " + names_of_drives(drives) +
+         " together: what they give and what turning takes are the same whichever they are. A torque or "
+         "load has to change with a speed or a coordinate, or something has to resist them.";
+}
+
+} // namespace flyball

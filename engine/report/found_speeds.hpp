@@ -1,0 +1,30 @@
+// Drives by torque in what is reported: the state with its speeds prescribed, and why there is none.
+#pragma once
+
+#include "engine/kkt/workspace.hpp"
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/solve/solution.hpp"
+
+#include <span>
+
+namespace flyball {
+
+// The mechanism with every drive by torque turning at a prescribed speed: that of the configuration q.
+Mechanism at_constant_speeds(const Mechanism& mechanism, const System& system, const Eigen::VectorXd& q);
+
+// The stability of a state found, its speeds prescribed.
+AtConstantSpeed stability_at_constant_speed(const Mechanism& mechanism, const System& system,
+                                            const Eigen::VectorXd& q,
+                                            const std::vector<CoordinateSolution>& coordinates);
+
+// Why no steady speed was found: what the drives give, and what turning takes, where the search for it
+// began. Empty where that tells nothing.
+std::string missing_speed_message(const Mechanism& mechanism, const Problem& problem, Workspace& w);
+
+// Of the coordinates of q_R that take part in directions that nothing resists: names of the drives whose
+// speed nothing determines; empty where there are none.
+std::vector<std::string> undetermined_speeds(const System& system, std::span<const int> neutral);
+// That nothing determines them.
+std::string undetermined_speed_message(std::span<const std::string> drives);
+
+} // namespace flyball

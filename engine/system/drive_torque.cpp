@@ -1,0 +1,141 @@
+#include "engine/system/drive_torque.hpp"
+
+#include "engine/system/extended.hpp"
+
+#include <array>
+#include <numeric>
+#include <type_traits>
+
+namespace flyball {
+namespace {
+
+constexpr std::size_t most_inputs = 32; // see read_drive_law
+constexpr auto as_they_come = [] {
+  std::array<std::size_t, most_inputs> places{};
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  return places;
+}();
+
+// The numbers that a law is evaluated with, at one state.
+struct LawState {
+  const System& system;
+  const Parameters& p;
+  const Eigen::VectorXd& q;
+  const Kinematics<double>& k;
+
+  double input(const DriveLaw::Input& input) const {
+    const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+    if (!input.rate) return coordinate_value(system, p, q, c);
+    const Link& link = system.links[static_cast<std::size_t>(c.link)];
+    if (finds_speed(link)) return q[link.q];
+    if (link.drive >= 0) return p.links[static_cast<std::size_t>(c.link)].speed * p.speed_scale;
+    return system.drives.empty() ? turning_rate(system, c.link, k) : 0; // at rest in a steady state
+  }
+
+  // With the rate 1 at one input.
+  Dual value(const DriveLaw& law, const DriveLawParameters& numbers, std::size_t moved = most_inputs) const {
+    if (!law.expression) return {numbers.value, 0};
+    std::array<Dual, most_inputs> inputs;
+    for (std::size_t i = 0; i < law.inputs.size(); ++i)
+      inputs[i] = {input(law.inputs[i]), i == moved ? 1. : 0.};
+    return law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come);
+  }
+
+  double value(std::size_t drive) const {
+    return value(system.torques[drive].torque, p.torques[drive].torque).value -
+           value(system.torques[drive].load, p.torques[drive].load).value;
+  }
+
+  // Adds the derivatives with all inputs of a kind to a row.
+  void add_derivatives(const DriveLaw& law, const DriveLawParameters& numbers, bool rates, double factor,
+                       int row, Eigen::MatrixXd& out) const {
+    for (std::size_t i = 0; i < law.inputs.size(); ++i) {
+      if (law.inputs[i].rate != rates) continue;
+      const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(law.inputs[i].coordinate)];
+      const Link& link = system.links[static_cast<std::size_t>(c.link)];
+      if (link.v < 0) continue;
+      const double slope = factor * value(law, numbers, i).rate;
+      if (link.type == LinkType::spherical)
+        out.block<1, 3>(row, link.v) +=
+            slope * rotation_vector_rate(link, p.links[static_cast<std::size_t>(c.link)], q)
+                        .row(c.index - link.coordinate);
+      else
+        out(row, link.v) += slope;
+    }
+  }
+
+  void add_derivatives(bool rates, Eigen::MatrixXd& out) const {
+    for (std::size_t i = 0; i < system.torques.size(); ++i) {
+      const int row = system.links[static_cast<std::size_t>(system.torques[i].link)].v;
+      add_derivatives(system.torques[i].torque, p.torques[i].torque, rates, -1, row, out);
+      add_derivatives(system.torques[i].load, p.torques[i].load, rates, 1, row, out);
+    }
+  }
+};
+
+// Laws are evaluated in double precision: what they round is no more than the numbers they are given by.
+template <class S>
+double law_value(const System& system, const Parameters& p, std::size_t drive, const Configuration<S>& q,
+                 const Kinematics<S>& k) {
+  if constexpr (std::is_same_v<S, double>) {
+    return LawState{system, p, q, k}.value(drive);
+  } else { // only of a steady state, whose kinematics no law asks for
+    static const Kinematics<double> none;
+    const Eigen::VectorXd rounded = q.template cast<double>();
+    return LawState{system, p, rounded, none}.value(drive);
+  }
+}
+
+} // namespace
+
+template <class S>
+void add_drive_torques(const System& system, const Parameters& p, const Configuration<S>& q,
+                       const Kinematics<S>& k, Configuration<S>& f) {
+  for (std::size_t i = 0; i < system.torques.size(); ++i) {
+    const auto l = static_cast<std::size_t>(system.torques[i].link);
+    const Link& link = system.links[l];
+    if (finds_speed(link)) f[link.v] += S(p.links[l].force[0].damping) * q[link.q];
+    f[link.v] -= S(law_value(system, p, i, q, k));
+  }
+}
+
+void add_drive_torque_sizes(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                            const Kinematics<double>& k, Eigen::VectorXd& force) {
+  for (std::size_t i = 0; i < system.torques.size(); ++i) {
+    const auto l = static_cast<std::size_t>(system.torques[i].link);
+    const Link& link = system.links[l];
+    const LawState state{system, p, q, k};
+    force[link.v] += std::abs(state.value(system.torques[i].torque, p.torques[i].torque).value) +
+                     std::abs(state.value(system.torques[i].load, p.torques[i].load).value);
+    if (finds_speed(link)) force[link.v] += std::abs(p.links[l].force[0].damping * q[link.q]);
+  }
+}
+
+double drive_torque(const System& system, const Parameters& p, std::size_t drive, const Eigen::VectorXd& q,
+                    const Kinematics<double>& k) {
+  return LawState{system, p, q, k}.value(drive);
+}
+
+void add_drive_torque_stiffness(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                                const Kinematics<double>& k, Eigen::MatrixXd& stiffness) {
+  LawState{system, p, q, k}.add_derivatives(false, stiffness);
+}
+
+void add_drive_torque_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                              const Kinematics<double>& k, Eigen::MatrixXd& velocity) {
+  LawState{system, p, q, k}.add_derivatives(true, velocity);
+}
+
+double turning_rate(const System& system, int l, const Kinematics<double>& k) {
+  const Link& link = system.links[static_cast<std::size_t>(l)];
+  const LinkState<double>&x = k.at(l), &parent = k.at(link.parent);
+  if (link.type == LinkType::revolute) return x.axis.dot(x.w - parent.w);
+  return x.axis.dot(x.v - parent.v - parent.w.cross(x.o - parent.o));
+}
+
+template void add_drive_torques<double>(const System&, const Parameters&, const Configuration<double>&,
+                                        const Kinematics<double>&, Configuration<double>&);
+template void add_drive_torques<Extended>(const System&, const Parameters&, const Configuration<Extended>&,
+                                          const Kinematics<Extended>&, Configuration<Extended>&);
+
+} // namespace flyball

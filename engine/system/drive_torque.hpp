@@ -1,0 +1,39 @@
+// Drives by torque. What they turn does so at a constant speed w, which is not given: it stands in q_R in the
+// place of the coordinate, and the balance has a row for it, what turning takes less what the drive gives,
+//
+//     f_w = f_d(q_R, w) + c w - T(w, q_R) + L(w, q_R) = 0       c: the damper on the coordinate
+//
+// f_d as of any coordinate. Its column is the derivative with the speed: that of the velocity matrix D =
+// df/dq' of the coordinates all set free. In the linearised motion the coordinate itself, the phase, is
+// cyclic: no force depends on it, its column of K = df/dq is zero, and so is one eigenvalue, which says
+// nothing.
+#pragma once
+
+#include "engine/system/kinematics.hpp"
+
+namespace flyball {
+
+// Adds the dampers of what turns so, less torques, plus loads, to f. In a system for the motion, where it is
+// a coordinate like others, torques and loads alone.
+template <class S>
+void add_drive_torques(const System& system, const Parameters& parameters, const Configuration<S>& q,
+                       const Kinematics<S>& kinematics, Configuration<S>& f);
+
+// Adds the sizes of these terms.
+void add_drive_torque_sizes(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                            const Kinematics<double>& kinematics, Eigen::VectorXd& force);
+
+// What a drive gives, by System::torques: torque less load (N m or N).
+double drive_torque(const System& system, const Parameters& parameters, std::size_t drive,
+                    const Eigen::VectorXd& q, const Kinematics<double>& kinematics);
+
+// Adds the derivatives of torques and loads to df/dq and df/dq', the dampers left out.
+void add_drive_torque_stiffness(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                                const Kinematics<double>& kinematics, Eigen::MatrixXd& stiffness);
+void add_drive_torque_damping(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                              const Kinematics<double>& kinematics, Eigen::MatrixXd& velocity);
+
+// The rate of a coordinate of one axis, from the motion of its link.
+double turning_rate(const System& system, int link, const Kinematics<double>& kinematics);
+
+} // namespace flyball

@@ -1,0 +1,401 @@
+// Drives that give a torque: their steady speeds against closed forms, against the same state at prescribed
+// speed and against motions that settle; their stability against characteristic polynomials.
+#include "engine/continuation/branches.hpp"
+#include "engine/dynamics/settled.hpp"
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/study/compare.hpp"
+#include "engine/study/design.hpp"
+#include "tests/catch.hpp"
+#include "tests/engine/reference/random_mechanism.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinRel;
+using Complex = std::complex<double>;
+
+namespace {
+
+double speed(const Solution& s, std::string_view joint) {
+  INFO(s.message);
+  return coordinate(s, joint).speed.value();
+}
+
+// A joint whose drive gives a torque by a law, or as a number.
+Joint torque_driven(Joint j, double guess, const std::string& law, const std::string& load = "") {
+  Drive& drive = j.coordinates[0].drive.emplace();
+  drive.speed = guess;
+  const auto give = [&](const std::string& key, const std::string& text, std::optional<double>& number) {
+    number = text.find('(') == std::string::npos ? std::stod(text) : 0;
+    if (*number == 0 && text != "0") j.formulas.push_back({"drive." + key, text});
+  };
+  give("torque", law, drive.torque);
+  if (!load.empty()) give("load", load, drive.load);
+  return j;
+}
+
+// Haug's governor as two coordinates, its arms' angle a and the spindle's: m(a), J(a), V(a) and the collar's
+// s(a), with derivatives.
+struct Governor {
+  static constexpr double arm = 0.16, link_at = 0.08, link = 0.10922, g = standard_gravity;
+  double a, s, s1, s2, j, j1, j2, v1, v2, m;
+
+  explicit Governor(double angle) : a(angle) {
+    const double sine = std::sin(a), cosine = std::cos(a), b = link_at;
+    const double r = std::sqrt(link * link - b * b * cosine * cosine), r1 = b * b * sine * cosine / r;
+    s = b * sine + r;
+    s1 = b * cosine + r1;
+    s2 = -b * sine + (b * b * (cosine * cosine - sine * sine) - r1 * r1) / r;
+    j = 50.125 + 2 * (0.1 + arm * arm * cosine * cosine);
+    j1 = -4 * arm * arm * sine * cosine;
+    j2 = -4 * arm * arm * (cosine * cosine - sine * sine);
+    const double spring = 1000 * (s - 0.15);
+    v1 = -2 * g * arm * cosine - g * s1 + spring * s1;
+    v2 = 2 * g * arm * sine - g * s2 + spring * s2 + 1000 * s1 * s1;
+    m = 2 * (0.1 + arm * arm) + s1 * s1;
+  }
+  // Where the collar stands at s.
+  static Governor at_collar(double wanted) {
+    double angle = 0.78;
+    for (int i = 0; i < 50; ++i)
+      angle -= (Governor(angle).s - wanted) / Governor(angle).s1;
+    return Governor(angle);
+  }
+  double speed() const { return std::sqrt(2 * v1 / j1); }
+  // (m x^2 + c s1^2 x + K)(J x) + w J1 (J1 w x - gain s1), x^3 first.
+  std::array<double, 4> characteristic(double damper, double gain) const {
+    const double w = speed(), k = v2 - w * w * j2 / 2;
+    return {m * j, damper * s1 * s1 * j, k * j + w * j1 * w * j1, -w * j1 * gain * s1};
+  }
+};
+
+Complex value_of(const std::array<double, 4>& p, Complex x) {
+  return ((p[0] * x + p[1]) * x + p[2]) * x + p[3];
+}
+
+} // namespace
+
+TEST_CASE("Haug's governor with engine: speed, collar and eigenvalues", "[torque]") {
+  struct Row {
+    double load, speed, collar, real, growth, frequency;
+  };
+  // Eigenvalues by the characteristic polynomial in 40 digits.
+  for (const Row& row :
+       {Row{0, 11.02119658437714, 0.15, -0.68749951539699, -0.13309704133331, 6.5405003602109},
+        Row{25, 10.29396051997144, 0.15 + 25. / 7500, -0.68186258229831, -0.10884435470196, 6.2497177042158},
+        Row{-25, 11.74559862254488, 0.15 - 25. / 7500, -0.68779359051423, -0.1574671584956,
+            6.8233597440978}}) {
+    CAPTURE(row.load);
+    const Mechanism m = shipped("governor_engine", {{"joints.spin.drive.load", row.load}});
+    const Solution s = Analysis(m).solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed(s, "spin"), WithinRel(row.speed, 1e-13));
+    CHECK(std::abs(value(s, "slide") - row.collar) < 1e-14);
+    CHECK(std::abs(speed(s, "spin") - row.speed) <= coordinate(s, "spin").speed_error + 1e-14 * row.speed);
+    CHECK(s.stable == true);
+    CHECK(s.stability_reason == StabilityReason::asymptotic);
+    REQUIRE(s.eigenvalues->size() == 3); // that of the phase is not among them
+    CHECK(std::abs((*s.eigenvalues)[0] - row.real) < 1e-9);
+    CHECK(std::abs((*s.eigenvalues)[1] - Complex(row.growth, row.frequency)) < 1e-9);
+    const Governor closed = Governor::at_collar(row.collar);
+    CHECK_THAT(closed.speed(), WithinRel(row.speed, 1e-13));
+    for (const Complex x : *s.eigenvalues) {
+      const auto p = closed.characteristic(30, 7500);
+      CHECK(std::abs(value_of(p, x)) < 1e-9 * std::abs(p[1]) * std::norm(x));
+    }
+    // The other question: the same state where nothing gives way to the governor.
+    REQUIRE(s.at_constant_speed);
+    CHECK(s.at_constant_speed->stability_reason == StabilityReason::minimum);
+    const Solution prescribed =
+        Analysis(shipped("governor", {{"joints.spin.drive.speed", row.speed}})).solve();
+    for (std::size_t i = 0; i < 2; ++i)
+      CHECK(std::abs((*s.at_constant_speed->eigenvalues)[i] - (*prescribed.eigenvalues)[i]) < 1e-9);
+    CHECK(std::abs(s.drive_torques[0].value - 0) < 1e-10);
+  }
+}
+
+TEST_CASE("hunting of Haug's governor begins where Routh's criterion says", "[torque][branches]") {
+  const auto hopf = [](const std::string& address, double from, double to) {
+    const ResponseDiagram d = follow_branches(shipped("governor_engine"), address, from, to);
+    std::vector<double> found;
+    for (const SpecialPoint& s : d.special)
+      if (s.type == SpecialPointType::hopf) found.push_back(s.at.parameter);
+    INFO(d.message);
+    REQUIRE(found.size() == 1);
+    return found[0];
+  };
+  // a1 a2 = a0 a3 of x^3 ... x^0, linear in the damper and in the gain.
+  const auto p = Governor::at_collar(0.15).characteristic(1, 1);
+  CHECK_THAT(hopf("joints.slide.damping", 60, 5), WithinRel(7500 * p[3] * p[0] / (p[1] * p[2]), 1e-9));
+  CHECK_THAT(hopf("parameters.gain", 5000, 15000), WithinRel(30 * p[1] * p[2] / (p[3] * p[0]), 1e-9));
+
+  const Solution hunting = Analysis(shipped("governor_engine", {{"joints.slide.damping", 20.}})).solve();
+  CHECK(hunting.stable == false);
+  CHECK(hunting.at_constant_speed->stable == true);
+}
+
+TEST_CASE("the motion of Haug's governor with engine settles at the direct answer", "[torque]") {
+  const Mechanism m = shipped("governor_engine", {{"joints.spin.drive.load", 10.}});
+  const Solution s = Analysis(m).solve();
+  SimulationOptions options;
+  options.duration = 160;
+  options.rate = 1;
+  options.at = {{"slide", 0.14}};
+  const Run run = simulate(m, options);
+  REQUIRE(run.status == RunStatus::completed);
+  const Settled settled = find_settled(run, s, 1e-7);
+  INFO(settled.message);
+  CHECK(settled.time);
+  CHECK(std::abs(run.energy.balance.back()) < 1e-6 * run.energy.kinetic.back());
+  // From the steady state nothing moves.
+  options.start = Start::equilibrium;
+  options.at.clear();
+  options.duration = 5;
+  CHECK(distance_from(simulate(m, options), 5, s) < 1e-9);
+}
+
+TEST_CASE("rates of speeds found and of coordinates with a number", "[torque]") {
+  const Solution s = Analysis(shipped("governor_engine")).solve();
+  const auto solved = [](double load) {
+    return Analysis(shipped("governor_engine", {{"joints.spin.drive.load", load}})).solve();
+  };
+  const Solution above = solved(1e-3), below = solved(-1e-3);
+  for (const Sensitivity& x : s.sensitivities) {
+    if (x.address != "joints.spin.drive.load") continue;
+    REQUIRE(x.rates.size() == 4);
+    for (const Sensitivity::Rate& rate : x.rates) {
+      const double difference = rate.speed ? speed(above, rate.joint) - speed(below, rate.joint)
+                                           : value(above, rate.joint) - value(below, rate.joint);
+      CHECK(rate.speed == (rate.joint == "spin"));
+      CHECK_THAT(rate.value, WithinRel(difference / 2e-3, 1e-7));
+    }
+  }
+  // The load at which the collar stands where it is wanted.
+  const DesignAnswer answer =
+      design(shipped("governor_engine"), "joints.spin.drive.load", -25, 25, "slide", 0.1521);
+  REQUIRE(answer.status == Status::converged);
+  CHECK_THAT(answer.solutions[0].parameter, WithinRel(7500 * 0.0021, 1e-9));
+}
+
+TEST_CASE("error against run time of Haug's governor with engine", "[torque]") {
+  CompareOptions options;
+  options.tolerances = {1e-9};
+  options.integrators = {Integrator::bdf};
+  options.durations = {100, 200};
+  options.repeats = 1;
+  const Comparison c = compare(shipped("governor_engine"), options);
+  REQUIRE(c.status == Status::converged);
+  CHECK(c.answer.error < 1e-14);
+  CHECK(c.motion[1].points[0].error < 1e-9);
+  CHECK(c.motion[0].points[0].error > 10 * c.motion[1].points[0].error);
+}
+
+TEST_CASE("a shaft with several steady speeds: all are found, with their eigenvalues", "[torque]") {
+  Mechanism m;
+  m.bodies = {body("rotor", 1, {0, 0, 0}, {0.1, 2, 0.1})};
+  // T - c w = 0.3 (w - 1)(w - 3)(w - 5)
+  m.joints = {dampened(
+      torque_driven(
+          revolute("shaft", "ground", "rotor", {0, 0, 0}, {0, 1, 0}), 2,
+          "0.5 N m s * rate(shaft) + 0.3 N m s^3 * (rate(shaft) - 1)*(rate(shaft) - 3)*(rate(shaft) - 5)"),
+      0.5)};
+  validate(m);
+  const AllSolutions all = Analysis(m).solve_all();
+  REQUIRE(all.equilibria.size() == 3);
+  std::vector<std::pair<double, double>> found;
+  for (const Solution& s : all.equilibria) {
+    REQUIRE(s.eigenvalues->size() == 1);
+    found.emplace_back(speed(s, "shaft"), s.eigenvalues->front().real());
+    CHECK(s.stable == (std::abs(speed(s, "shaft") - 3) < 0.5));
+  }
+  std::ranges::sort(found);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK_THAT(found[i].first, WithinRel(std::array{1., 3., 5.}[i], 1e-12));
+    CHECK_THAT(found[i].second, WithinRel(0.3 * std::array{8., -4., 8.}[i] / 2, 1e-9));
+  }
+  REQUIRE(all.bounds.size() == 1);
+  CHECK(all.bounds[0].speed);
+  CHECK(all.bounds[0].upper >= 6);
+}
+
+TEST_CASE("Watt's height of the cone with the speed unknown", "[torque]") {
+  Mechanism m = conical(0.5, 0, 5, 0.4);
+  m.joints[0] = torque_driven(m.joints[0], 6, "20 N m * (0.9 - coordinate(swing))");
+  m.joints[1] = dampened(m.joints[1], 0.1);
+  m.bodies[0].inertia = {0.1, 0.1, 0.1};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(value(s, "swing"), WithinRel(0.9, 1e-12));
+  CHECK_THAT(0.5 * std::cos(0.9), WithinRel(standard_gravity / std::pow(speed(s, "spin"), 2), 1e-12));
+}
+
+TEST_CASE("a heavy top's slow and fast steady precession with the speed unknown", "[torque]") {
+  const double inertia = 0.02, across = 0.015 + 2 * 0.15 * 0.15, rate = 200, angle = 0.7;
+  const double weight = 2 * standard_gravity * 0.15;
+  Mechanism m;
+  m.gravity = {0, 0, -standard_gravity};
+  m.bodies = {body("yoke", 0), body("ring", 0), body("top", 2, {0, 0, 0.15}, {0.015, 0.015, 0.02})};
+  m.joints = {torque_driven(revolute("precession", "ground", "yoke", {0, 0, 0}, {0, 0, 1}), 1,
+                            "1 N m * (coordinate(nutation) - 0.7)"),
+              revolute("nutation", "yoke", "ring", {0, 0, 0}, {1, 0, 0}),
+              driven(revolute("spin", "ring", "top", {0, 0, 0}, {0, 0, 1}), rate)};
+  m.joints[1].coordinates[0].drawn = 0;
+  validate(m);
+  // m g l = I3 p (r + p cos a) - I1 p^2 cos a
+  const double a = (inertia - across) * std::cos(angle), b = inertia * rate;
+  const double root = std::sqrt(b * b + 4 * a * weight);
+  for (const double wanted : {(-b + root) / (2 * a), (-b - root) / (2 * a)}) {
+    CAPTURE(wanted);
+    m.joints[0].coordinates[0].drive->speed = 0.9 * wanted;
+    SolveOptions options;
+    options.start = {{"nutation", 0.65}};
+    options.nearest = true;
+    const Solution s = Analysis(m).solve(options);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed(s, "precession"), WithinRel(wanted, 1e-11));
+    CHECK_THAT(value(s, "nutation"), WithinRel(angle, 1e-11));
+  }
+}
+
+TEST_CASE("random mechanisms: the speed is found at which the drive gives what turning takes",
+          "[torque][random]") {
+  int found = 0, moved = 0;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    CAPTURE(seed);
+    reference::RandomOptions options;
+    options.loops = static_cast<int>(seed % 3);
+    options.massless = false;
+    options.spring_share = 1;
+    options.rotated_bodies = seed % 2 == 0;
+    const Mechanism prescribed = reference::random_mechanism(seed, options);
+    const Solution there = Analysis(prescribed).solve();
+    if (there.status != Status::converged || there.drive_torques.size() != 1 ||
+        there.drive_torques[0].varying || there.neutral.size() > 0)
+      continue;
+    const DriveTorque& torque = there.drive_torques[0];
+    Mechanism m = prescribed;
+    Joint& driver = m.joints[static_cast<std::size_t>(joint_index(m, torque.joint))];
+    Coordinate& c = driver.coordinates[static_cast<std::size_t>(torque.index)];
+    const double wanted = c.drive->speed;
+    if (wanted == 0) continue;
+    const std::string name = coordinate_name(driver, torque.index);
+    const double slope = 1 + std::abs(torque.value / wanted);
+    c.drive->torque = 0;
+    const std::string index = torque.count > 1 ? "." + std::to_string(torque.index) : "";
+    const auto number = [](double x) { return "(" + number_text(x) + ")"; };
+    driver.formulas.push_back({"drive" + index + ".torque", number(torque.value) + " - " + number(slope) +
+                                                                " * 1 N m s" + "*(rate(" + name + ") - " +
+                                                                number(wanted) + ")"});
+    c.drive->speed = 0.97 * wanted;
+    validate(m);
+    SolveOptions nearest;
+    nearest.nearest = true;
+    for (const CoordinateSolution& x : there.coordinates)
+      if (!x.driven && !x.dependent) nearest.start.emplace_back(coordinate_label(x), x.value);
+    const Solution s = Analysis(m).solve(nearest);
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    const double speed_found = coordinate(s, torque.joint, torque.index).speed.value();
+    if (std::abs(speed_found / wanted - 1) > 1e-3) continue; // another steady speed lies close
+    ++found;
+    CHECK_THAT(speed_found, WithinRel(wanted, 1e-9));
+    CHECK(s.at_constant_speed->stable == there.stable);
+    if (s.stable != true || !s.eigenvalues || moved >= 4) continue;
+    double slowest = 1e9;
+    for (const Complex x : *s.eigenvalues)
+      slowest = std::min(slowest, -x.real());
+    if (!(slowest > 0.2)) continue;
+    ++moved;
+    SimulationOptions run;
+    run.duration = std::log(1e7) / slowest;
+    run.rate = 2 / run.duration;
+    for (const CoordinateSolution& x : there.coordinates)
+      if (!x.driven && !x.dependent) run.at.emplace_back(coordinate_label(x), x.value);
+    const Run motion = simulate(m, run);
+    REQUIRE(motion.status == RunStatus::completed);
+    CHECK(distance_from(motion, motion.time.size() - 1, s) < 1e-5);
+  }
+  CAPTURE(found, moved);
+  CHECK(found > 20);
+  CHECK(moved > 2);
+}
+
+TEST_CASE("torques that no speed balances are refused with the reason", "[torque]") {
+  Mechanism m;
+  m.bodies = {body("rotor", 1, {0, 0, 0}, {0.1, 2, 0.1})};
+  const Joint shaft = revolute("shaft", "ground", "rotor", {0, 0, 0}, {0, 1, 0});
+  SECTION("without resistance") {
+    m.joints = {torque_driven(shaft, 3, "25")};
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::not_converged);
+    CHECK_THAT(s.message, ContainsSubstring("shaft gives 25 N m where turning takes 0 N m: it runs away"));
+  }
+  SECTION("none, and nothing resists: every speed is one") {
+    m.joints = {torque_driven(shaft, 3, "0")};
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::not_converged);
+    CHECK_THAT(s.message, ContainsSubstring("Nothing determines the speed of shaft"));
+  }
+  SECTION("what turns with the drive") {
+    const Mechanism governor = shipped("governor_engine", {{"gravity.0", 1.}, {"bodies.ball1.mass", 1.2}});
+    const Solution s = Analysis(governor).solve();
+    CHECK(s.status == Status::no_steady_state);
+    CHECK_THAT(s.message, ContainsSubstring("turns with the drives"));
+    CHECK_THROWS_WITH(follow_branches(governor, "joints.spin.drive.speed", 5, 20),
+                      ContainsSubstring("is found by the drive's torque"));
+  }
+  SECTION("two shafts that drag each other along") {
+    m.bodies.push_back(body("other", 1, {0, 0.1, 0}, {0.1, 3, 0.1}));
+    m.joints = {torque_driven(shaft, 3, "2"),
+                torque_driven(revolute("second", "ground", "other", {0, 0, 0}, {0, 1, 0}), 2, "-2")};
+    Joint clutch = joint(JointType::revolute, "clutch", "rotor", "other", {0, 0.05, 0}, {0, 1, 0});
+    clutch.cut = true;
+    m.joints.push_back(dampened(clutch, 4));
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::not_converged);
+    CHECK_THAT(s.message, ContainsSubstring("Nothing determines the speeds of shaft and second together"));
+    // One that resists them both settles it.
+    m.joints[0] = dampened(m.joints[0], 0.25);
+    const Solution settled = Analysis(m).solve();
+    REQUIRE(settled.status == Status::converged);
+    CHECK(std::abs(speed(settled, "shaft")) < 1e-12);
+    CHECK_THAT(speed(settled, "second"), WithinRel(-0.5, 1e-12));
+  }
+}
+
+TEST_CASE("laws of torque that mean nothing are mistakes with their place", "[torque]") {
+  Mechanism m = shipped("governor_engine");
+  Joint& spin = m.joints[0];
+  const auto mistake = [&](const std::string& law) {
+    spin.formulas[0].text = law;
+    const auto found = find_mistakes(m);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].where().starts_with("joints.spin.drive"));
+    return found[0].expected();
+  };
+  CHECK_THAT(mistake("gain * coordinate(slides)"), ContainsSubstring("did you mean \"slide\""));
+  CHECK_THAT(mistake("gain * rate(slide)"), ContainsSubstring("expected N m, found"));
+  CHECK_THAT(mistake("gains * coordinate(slide)"), ContainsSubstring("gains"));
+  CHECK_THAT(mistake("gain * coordinate(slide"), ContainsSubstring("column"));
+  spin.formulas[0].text = "gain * 1 m * coordinate(spin)";
+  CHECK_THROWS_WITH(Analysis(m), ContainsSubstring("expected a rate"));
+  spin.formulas[0].text = "gain * coordinate(slide)";
+  spin.coordinates[0].drive->speed = 0;
+  CHECK_THAT(find_mistakes(m).at(0).expected(), ContainsSubstring("other than zero"));
+  CHECK(write_scene(shipped("governor_engine")) ==
+        write_scene(read_scene(write_scene(shipped("governor_engine")))));
+}
