@@ -11,10 +11,17 @@ const SharedMechanism& VariedMechanism::of(const std::shared_ptr<const Mechanism
                                            const Explored& numbers) {
   if (from_ == mechanism && numbers_ == numbers) return varied_;
   Mechanism varied = *mechanism;
-  for (const ExploredValue& number : numbers) {
-    try {
-      set_parameter(varied, number.address, number.value);
-    } catch (const SceneError&) { // what cannot be varied counts as it is
+  std::vector<ParameterValue> values;
+  for (const ExploredValue& number : numbers)
+    values.push_back({number.address, number.value});
+  try {
+    set_parameters(varied, values);
+  } catch (const SceneError&) { // what cannot be varied counts as it is
+    for (const ParameterValue& each : values) {
+      try {
+        set_parameter(varied, each.address, each.value);
+      } catch (const SceneError&) {
+      }
     }
   }
   varied.sliders.clear();

@@ -37,12 +37,12 @@ IndexBlock block_of(const std::string& message) {
   return block;
 }
 
-std::string bytes_of(const std::string& message) {
-  return message.substr(1 + sizeof(IndexBlock));
+std::string bytes_of(std::string message) {
+  return std::move(message.erase(0, 1 + sizeof(IndexBlock)));
 }
 
-std::exception_ptr failure_of(const std::string& message) {
-  const std::string bytes = bytes_of(message);
+std::exception_ptr failure_of(std::string message) {
+  const std::string bytes = bytes_of(std::move(message));
   const std::size_t zero = bytes.find('\0');
   return std::make_exception_ptr(SceneError(bytes.substr(0, zero), bytes.substr(zero + 1)));
 }
@@ -74,12 +74,13 @@ void MessageSharing::serve(const SharedWork& work) {
   BlockQueue queue(work.count, static_cast<std::size_t>(passing_.size()));
   std::deque<int> ready; // processes that wait for an answer, once for each
   int answers = in_hand * others;
-  const auto handle = [&](const MessagePassing::Message& m) {
-    if (kind_of(m.bytes) == Kind::failure)
-      queue.stop(failure_of(m.bytes));
-    else if (kind_of(m.bytes) == Kind::block)
-      queue.put(block_of(m.bytes), bytes_of(m.bytes));
-    if (kind_of(m.bytes) != Kind::failure) ready.push_back(m.from);
+  const auto handle = [&](MessagePassing::Message m) {
+    const Kind kind = kind_of(m.bytes);
+    if (kind == Kind::failure) return queue.stop(failure_of(std::move(m.bytes)));
+    ready.push_back(m.from);
+    if (kind != Kind::block) return;
+    const IndexBlock block = block_of(m.bytes);
+    queue.put(block, bytes_of(std::move(m.bytes)));
   };
   const auto answer = [&] {
     IndexBlock block;
@@ -93,8 +94,8 @@ void MessageSharing::serve(const SharedWork& work) {
     const std::jthread own([&] { queue.make(work); });
     constexpr double moment = 0.001; // s, from one look for messages to the next
     do {
-      while (const auto m = passing_.receive(false))
-        handle(*m);
+      while (auto m = passing_.receive(false))
+        handle(std::move(*m));
       answer();
     } while (queue.deliver(work, moment));
     queue.stop();
