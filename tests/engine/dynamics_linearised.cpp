@@ -39,7 +39,7 @@ std::vector<Complex> eigenvalues_by_differences(const Mechanism& m) {
   const Eigen::Index f = basis.cols();
   if (f == 0) return {};
   const auto acceleration = [&](const Eigen::VectorXd& place, const Eigen::VectorXd& rate) {
-    Eigen::VectorXd at = q, s = column.cwiseProduct(basis * rate);
+    Eigen::VectorXd at = q, s = u + column.cwiseProduct(basis * rate);
     const Eigen::VectorXd step = column.cwiseProduct(basis * place);
     retract<double>(model.system, step, at);
     REQUIRE(equations.project(0, at, s));

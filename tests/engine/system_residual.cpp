@@ -180,7 +180,9 @@ TEST_CASE("the balance of the shipped scenes is that of eq. 20") {
   int scenes = 0;
   for (const std::string& file : test::shipped_files()) {
     INFO(file);
-    compare(load_scene(file), {}, 1, tally);
+    const Mechanism m = load_scene(file);
+    if (!compile(m).torques.empty()) continue; // there eq. 20 has a row more: see study_torque_drives
+    compare(m, {}, 1, tally);
     ++scenes;
   }
   CHECK(scenes >= 2);
