@@ -260,7 +260,9 @@ void set_start(const System& system, const Parameters& parameters,
       throw SceneError(name,
                        "is not a free coordinate; use the joint's name, or name.index where it has several");
     if (system.links[static_cast<std::size_t>(c->link)].drive >= 0)
-      throw SceneError(name, "is driven; a start is for free coordinates");
+      throw SceneError(name, finds_speed(system.links[static_cast<std::size_t>(c->link)])
+                                 ? "is driven by a torque; its speed begins at " + name + ".speed"
+                                 : "is driven; a start is for free coordinates");
     values[static_cast<std::size_t>(c - system.coordinates.begin())] = value;
   }
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -250,8 +250,9 @@ StabilityEvidence stability_evidence(const FactoredState& at) {
     return count == 1 ? std::string("one direction") : std::to_string(count) + " directions";
   };
   if (!out.potential) {
-    out.reason = "There is no potential here (drag, a damper between parts that turn against each other, or "
-                 "drives that ride on moving parts): the eigenvalues alone judge.";
+    out.reason =
+        "There is no potential here (drag, a damper between parts that turn against each other, a drive "
+        "that gives a torque, or drives that ride on moving parts): the eigenvalues alone judge.";
   } else if (out.downhill > 0 && out.growing > 0) {
     out.reason = "Both say unstable: the amended potential falls in " + directions(out.downhill) + ", and " +
                  (out.growing == 1 ? std::string("one eigenvalue grows.")

@@ -107,7 +107,7 @@ void check_same_mechanism(const Mechanism& m, const MechanismPose& pose) {
       const auto& drive =
           m.joints[static_cast<std::size_t>(j)].coordinates[static_cast<std::size_t>(c.index)].drive;
       drives += drive.has_value();
-      if (drive) phase = (is - was) / drive->speed;
+      if (drive) phase = (is - was) / c.speed.value_or(drive->speed);
       continue;
     }
     INFO(c.joint << "." << c.index << ", error " << c.error);

@@ -650,6 +650,28 @@ TEST_CASE("while exploring, the inspector's numbers are solved from the last ans
   CHECK(value(hand.app.answer.solution, "slide") != before);
 }
 
+TEST_CASE("a drive gives a torque where that is ticked, and its speed is found") {
+  Hand hand;
+  hand.choose(PartKind::joint, "spin");
+  const auto drive = [&] { return *hand.joint("spin").coordinates[0].drive; };
+  hand.one_step([&] { hand.press_widget("inspector/drive/by_torque"); });
+  REQUIRE(drive().torque);
+  CHECK(drive().load == 0.);
+  CHECK(drive().speed == 11.0174); // where the search begins
+  hand.one_step([&] { hand.fill("inspector/drive/torque", "=7500 N*(coordinate(slide) - 0.15 m)"); });
+  REQUIRE(hand.joint("spin").formulas.size() == 1);
+  CHECK(find_mistakes(hand.mechanism()).empty());
+  hand.one_step([&] { hand.fill("inspector/drive/load", "25"); });
+  set_mode(hand.app, Mode::explore);
+  hand.frames(3);
+  CHECK(coordinate(hand.app.answer.solution, "spin").speed.value() == Approx(10.29396051997144));
+  set_mode(hand.app, Mode::build);
+  hand.frames(2);
+  hand.one_step([&] { hand.press_widget("inspector/drive/by_torque"); });
+  CHECK_FALSE(drive().torque);
+  CHECK(hand.joint("spin").formulas.empty());
+}
+
 TEST_CASE("the history goes to any step") {
   Hand hand;
   hand.choose(PartKind::body, "ball1");
