@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   add_merge(app, ending);
   add_branch(app, ending);
   add_design(app, ending);
+  add_spread(app, ending);
   add_simulate(app, ending);
   add_compare(app, ending);
   add_render(app, ending);

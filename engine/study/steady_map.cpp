@@ -112,7 +112,7 @@ bool SteadyMap::correct(Unknowns& z) {
   return outcome.converged && outcome.largest_step < longest_correction;
 }
 
-bool SteadyMap::find_rates(const State& state) {
+bool SteadyMap::find_rates(const State& state) try {
   set(state.p);
   const Problem p = problem();
   const FactoredState factored = factor_at(p, state.z, w_);
@@ -144,6 +144,8 @@ bool SteadyMap::find_rates(const State& state) {
       rates_.row(row) = gradient.row(m) * state_rates_ + beside.row(m);
   }
   return state_rates_.allFinite() && rates_.allFinite();
+} catch (const SceneError&) { // beside it no mechanism can be made
+  return false;
 }
 
 double SteadyMap::way(const Eigen::VectorXd& step) const {
@@ -177,7 +179,11 @@ Solution SteadyMap::solution(const State& state, bool details) {
   solve.nearest = true;
   solve.details = details;
   solve.cancel = cancel_;
-  return Analysis(varied_).solve(solve);
+  if (analysis_)
+    analysis_->update(varied_);
+  else
+    analysis_.emplace(varied_);
+  return analysis_->solve(solve);
 }
 
 Eigen::VectorXd SteadyMap::inside(Eigen::VectorXd p) const {

@@ -46,7 +46,7 @@ class SteadyMap {
 
   // At a state that was found: state_rates() of the coordinates (rad or m, as a step; (nv, numbers)) and
   // rates() of what is asked for ((wanted, numbers)), per unit of the numbers. False where the state is
-  // singular.
+  // singular, or at an end of what mechanisms can be made of.
   bool find_rates(const State& state);
   const Eigen::MatrixXd& state_rates() const { return state_rates_; }
   const Eigen::MatrixXd& rates() const { return rates_; }
@@ -96,7 +96,8 @@ class SteadyMap {
   Eigen::VectorXd lower_, upper_, range_, p_;
   MeasureSet measures_;
   Eigen::MatrixXd state_rates_, rates_;
-  int negative_ = 0; // eigenvalues of the balance, at the state with these rates
+  std::optional<Analysis> analysis_; // of states that are told
+  int negative_ = 0;                 // eigenvalues of the balance, at the state with these rates
   Workspace w_;
 };
 

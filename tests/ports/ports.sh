@@ -34,7 +34,7 @@ END
   exit 77
 fi
 
-for package in nlohmann fmt sundials cvode arkode nvector sunmatrix sunlinsol sunnonlinsol Spectra nlopt.h; do
+for package in nlohmann fmt sundials cvode arkode nvector sunmatrix sunlinsol sunnonlinsol Spectra nlopt.h Random123; do
   ln -sfn "/usr/include/$package" "headers/$package"
 done
 for part in Eigen unsupported; do

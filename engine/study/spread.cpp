@@ -1,0 +1,386 @@
+#include "engine/study/spread.hpp"
+
+#include "engine/linear/interruption.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/measure_plan.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/study/steady_map.hpp"
+
+#include <Random123/philox.h>
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+using State = SteadyMap::State;
+
+constexpr int most_halvings = 6;             // of the way from the nominal state to a sample's
+constexpr std::size_t most_coordinates = 64; // that are told; of more the measures alone
+constexpr double other_states = 0.05;        // s, as of a sweep's points
+
+std::vector<double> nominal_numbers(const Mechanism& mechanism, std::span<const Tolerance> tolerances) {
+  std::vector<double> numbers;
+  for (const Tolerance& tolerance : tolerances)
+    numbers.push_back(get_parameter(mechanism, tolerance.address));
+  return numbers;
+}
+
+std::vector<FreeNumber> free_numbers(const Mechanism& mechanism, std::span<const Tolerance> tolerances) {
+  std::vector<FreeNumber> free;
+  for (const Tolerance& tolerance : tolerances) {
+    if (!(tolerance.width > 0) || !std::isfinite(tolerance.width))
+      throw SceneError(tolerance.address, "expected a tolerance above zero");
+    const double value = get_parameter(mechanism, tolerance.address);
+    free.push_back({tolerance.address, value - tolerance.width, value + tolerance.width});
+  }
+  return free;
+}
+
+struct OutputName {
+  std::string name, unit;
+};
+
+// Free coordinates, then measures.
+std::vector<OutputName> outputs_of(const Mechanism& mechanism) {
+  std::vector<OutputName> out;
+  for (const CoordinateSolution& c : Analysis(mechanism).summary().coordinates)
+    if (!c.driven && !c.dependent) out.push_back({coordinate_label(c), c.angle ? "rad" : "m"});
+  if (out.size() > most_coordinates) out.clear();
+  for (const NamedMeasure& measure : mechanism.measures)
+    out.push_back({measure.name, measure.unit});
+  if (out.empty())
+    throw SceneError("measures", "expected one or more: of so many coordinates none is told by itself");
+  return out;
+}
+
+std::vector<std::string> names_of(const std::vector<OutputName>& outputs) {
+  std::vector<std::string> names;
+  for (const OutputName& output : outputs)
+    names.push_back(output.name);
+  return names;
+}
+
+// One sample after the other, each from the nominal state.
+class Sampler {
+ public:
+  Sampler(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
+          const std::vector<OutputName>& outputs, const SpreadOptions& options)
+      : mechanism_(mechanism), tolerances_(tolerances), outputs_(outputs), options_(options),
+        nominal_numbers_(nominal_numbers(mechanism, tolerances)),
+        map_(mechanism, free_numbers(mechanism, tolerances), names_of(outputs), options.cancel),
+        nominal_(map_.begin(options.start, first_)) {
+    if (nominal_) regular_ = map_.find_rates(*nominal_);
+  }
+
+  const Solution& first() const { return first_; }
+  const std::optional<State>& nominal() const { return nominal_; }
+  // Of the outputs with the numbers, (outputs, numbers); empty at a singular state.
+  Eigen::MatrixXd rates() const { return regular_ ? map_.rates() : Eigen::MatrixXd(); }
+
+  // Leaves the values of the outputs, not a number where there is none.
+  SampleFate make(std::size_t i, std::span<double> values) {
+    std::ranges::fill(values, std::numeric_limits<double>::quiet_NaN());
+    const std::vector<double> numbers = sampled_numbers(nominal_numbers_, tolerances_, options_.seed, i);
+    const Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(numbers.data(), map_.count());
+    if (const std::optional<State> state = follow(p)) {
+      const Solution solution = map_.solution(*state, false);
+      if (solution.status == Status::converged) {
+        std::ranges::copy(state->values, values.begin());
+        return solution.stable == false ? SampleFate::unstable : SampleFate::followed;
+      }
+    }
+    return solve(numbers, values);
+  }
+
+ private:
+  // Along the branch of the nominal state.
+  std::optional<State> follow(const Eigen::VectorXd& p) {
+    if (!regular_) return std::nullopt;
+    if (std::optional<State> there = map_.step_to(*nominal_, p)) return there;
+    std::optional<State> now = nominal_;
+    double part = 0.5;
+    for (int halvings = 1; halvings <= most_halvings;) {
+      interruption_point();
+      std::optional<State> next = map_.step_to(*now, part == 1 ? p : (now->p + part * (p - now->p)).eval());
+      if (next) {
+        now = std::move(next);
+        if (part == 1 || !map_.find_rates(*now)) break;
+        part = std::min(1., 2 * part);
+      } else {
+        ++halvings;
+        part /= 2;
+      }
+    }
+    map_.find_rates(*nominal_);
+    return now->p == p ? now : std::nullopt;
+  }
+
+  // As a scene by itself.
+  SampleFate solve(const std::vector<double>& numbers, std::span<double> values) {
+    Mechanism there = mechanism_;
+    std::vector<ParameterValue> set;
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      set.push_back({tolerances_[k].address, numbers[k]});
+    try {
+      set_parameters(there, set);
+      validate(there);
+    } catch (const SceneError&) {
+      return SampleFate::no_mechanism;
+    }
+    SolveOptions solve;
+    solve.details = false;
+    solve.search = other_states;
+    solve.cancel = options_.cancel;
+    const Solution solution = Analysis(there).solve(solve);
+    if (solution.status == Status::infeasible) return SampleFate::no_mechanism;
+    if (solution.status != Status::converged) return SampleFate::none;
+    for (std::size_t k = 0; k < outputs_.size(); ++k) {
+      for (const CoordinateSolution& c : solution.coordinates)
+        if (!c.driven && coordinate_label(c) == outputs_[k].name) values[k] = c.value;
+      for (const MeasureSolution& measure : solution.measures)
+        if (measure.name == outputs_[k].name && measure.value) values[k] = *measure.value;
+    }
+    return SampleFate::elsewhere;
+  }
+
+  const Mechanism& mechanism_;
+  std::span<const Tolerance> tolerances_;
+  const std::vector<OutputName>& outputs_;
+  const SpreadOptions& options_;
+  std::vector<double> nominal_numbers_;
+  SteadyMap map_;
+  Solution first_;
+  std::optional<State> nominal_;
+  bool regular_ = false;
+};
+
+double quantile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const double part = at - static_cast<double>(below);
+  return below + 1 < sorted.size() ? sorted[below] + part * (sorted[below + 1] - sorted[below])
+                                   : sorted[below];
+}
+
+SpreadStatistics statistics(std::vector<double> values) {
+  SpreadStatistics out;
+  out.count = values.size();
+  if (values.empty()) return out;
+  std::ranges::sort(values);
+  const auto n = static_cast<double>(values.size());
+  // By differences from the middle one, so that a small scatter about a large number keeps its digits.
+  const double middle = values[values.size() / 2];
+  double sum = 0, squares = 0;
+  for (const double value : values) {
+    sum += value - middle;
+    squares += (value - middle) * (value - middle);
+  }
+  out.mean = middle + sum / n;
+  if (values.size() > 1) out.deviation = std::sqrt(std::max(0., (squares - sum * sum / n) / (n - 1)));
+  out.least = values.front();
+  out.most = values.back();
+  out.low = quantile(values, 0.05);
+  out.median = quantile(values, 0.5);
+  out.high = quantile(values, 0.95);
+  return out;
+}
+
+// Squares of the standardised coefficients of a linear regression over the samples that followed.
+std::vector<double> regression_shares(const std::vector<double>& nominal,
+                                      std::span<const Tolerance> tolerances, std::uint64_t seed,
+                                      const std::vector<SampleFate>& fate, const std::vector<double>& values,
+                                      double middle) {
+  const auto n = static_cast<Eigen::Index>(tolerances.size());
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(n + 1), x(n + 1);
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  double count = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (fate[i] != SampleFate::followed && fate[i] != SampleFate::unstable) continue;
+    if (!std::isfinite(values[i])) continue;
+    const std::vector<double> numbers = sampled_numbers(nominal, tolerances, seed, i);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      x[k] = (numbers[at] - nominal[at]) / tolerances[at].deviation();
+    }
+    x[n] = values[i] - middle;
+    mean += x;
+    products += x * x.transpose();
+    ++count;
+  }
+  if (count < static_cast<double>(n) + 2) return {};
+  mean /= count;
+  const Eigen::MatrixXd covariance = products / count - mean * mean.transpose();
+  if (!(covariance(n, n) > 0)) return std::vector<double>(tolerances.size(), 0.);
+  const Eigen::VectorXd slopes =
+      covariance.topLeftCorner(n, n).colPivHouseholderQr().solve(covariance.col(n).head(n));
+  std::vector<double> shares;
+  for (Eigen::Index k = 0; k < n; ++k)
+    shares.push_back(slopes[k] * slopes[k] * covariance(k, k) / covariance(n, n));
+  return shares;
+}
+
+} // namespace
+
+std::string_view word(Distribution distribution) {
+  switch (distribution) {
+  case Distribution::normal: return "normal";
+  case Distribution::uniform: return "uniform";
+  case Distribution::triangular: return "triangular";
+  }
+  return "";
+}
+
+std::string_view word(SampleFate fate) {
+  switch (fate) {
+  case SampleFate::followed: return "followed";
+  case SampleFate::elsewhere: return "elsewhere";
+  case SampleFate::unstable: return "unstable";
+  case SampleFate::none: return "none";
+  case SampleFate::no_mechanism: return "no_mechanism";
+  }
+  return "";
+}
+
+double Tolerance::deviation() const {
+  switch (distribution) {
+  case Distribution::normal: return width;
+  case Distribution::uniform: return width / std::sqrt(3.);
+  case Distribution::triangular: return width / std::sqrt(6.);
+  }
+  return width;
+}
+
+std::vector<double> sampled_numbers(std::span<const double> nominal, std::span<const Tolerance> tolerances,
+                                    std::uint64_t seed, std::size_t i) {
+  // In (0, 1), by the upper 53 bits.
+  const auto share = [](std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53; };
+  std::vector<double> numbers;
+  numbers.reserve(tolerances.size());
+  for (std::size_t k = 0; k < tolerances.size(); ++k) {
+    const r123::Philox2x64 generator;
+    const auto bits = generator(r123::Philox2x64::ctr_type{{i, k}}, r123::Philox2x64::key_type{{seed}});
+    const double a = share(bits[0]), b = share(bits[1]);
+    double at = 0;
+    switch (tolerances[k].distribution) {
+    case Distribution::normal: // Box, Muller 1958
+      at = std::sqrt(-2 * std::log(a)) * std::cos(2 * std::numbers::pi * b);
+      break;
+    case Distribution::uniform: at = 2 * a - 1; break;
+    case Distribution::triangular: at = a + b - 1; break;
+    }
+    numbers.push_back(nominal[k] + at * tolerances[k].width);
+  }
+  return numbers;
+}
+
+SpreadAnswer spread(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
+                    const SpreadOptions& options, WorkSharing& sharing) {
+  const auto begin = std::chrono::steady_clock::now();
+  SpreadAnswer out;
+  const std::vector<OutputName> outputs = outputs_of(mechanism);
+  const std::vector<double> nominal = nominal_numbers(mechanism, tolerances);
+  Sampler first(mechanism, tolerances, outputs, options);
+  out.status = first.first().status;
+  if (!first.nominal()) {
+    out.message = first.first().message;
+    return out;
+  }
+  out.samples = options.samples;
+  out.values.assign(outputs.size(), std::vector<double>(options.samples));
+  out.fate.resize(options.samples);
+
+  // A block has of each sample its fate and the values, as bytes of doubles.
+  const std::size_t width = outputs.size() + 1;
+  SharedWork work;
+  work.count = options.samples;
+  work.cancel = options.cancel;
+  if (options.progress) work.progress = options.progress;
+  work.maker = [&] {
+    auto sampler = std::make_shared<Sampler>(mechanism, tolerances, outputs, options);
+    return [sampler, width, &options](std::size_t from, std::size_t to) {
+      const Interruptible scope(options.cancel);
+      std::vector<double> row(width);
+      std::string block;
+      try {
+        for (std::size_t i = from; i < to; ++i) {
+          row[0] = static_cast<double>(sampler->make(i, std::span(row).subspan(1)));
+          block.append(reinterpret_cast<const char*>(row.data()), width * sizeof(double));
+        }
+      } catch (const Interrupted&) { // nothing more is taken
+      }
+      return block;
+    };
+  };
+  work.take = [&](std::size_t from, std::size_t, std::string_view block) {
+    std::vector<double> row(width);
+    for (std::size_t i = from; block.size() >= width * sizeof(double); ++i) {
+      std::memcpy(row.data(), block.data(), width * sizeof(double));
+      block.remove_prefix(width * sizeof(double));
+      out.fate[i] = static_cast<SampleFate>(static_cast<int>(row[0]));
+      for (std::size_t k = 0; k < outputs.size(); ++k)
+        out.values[k][i] = row[k + 1];
+    }
+  };
+  sharing.run(work);
+  if (options.cancel && *options.cancel) {
+    out.status = Status::not_converged;
+    out.message = "Cancelled.";
+    return out;
+  }
+  if (!sharing.takes()) return out;
+
+  for (const SampleFate fate : out.fate)
+    ++out.counts[static_cast<std::size_t>(fate)];
+  const Eigen::MatrixXd rates = first.rates();
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    SpreadOutput output;
+    output.name = outputs[k].name;
+    output.unit = outputs[k].unit;
+    output.nominal = first.nominal()->values[static_cast<Eigen::Index>(k)];
+    std::vector<double> followed, elsewhere;
+    for (std::size_t i = 0; i < options.samples; ++i) {
+      if (!std::isfinite(out.values[k][i])) continue;
+      (out.fate[i] == SampleFate::elsewhere ? elsewhere : followed).push_back(out.values[k][i]);
+    }
+    output.followed = statistics(std::move(followed));
+    output.elsewhere = statistics(std::move(elsewhere));
+    double variance = 0;
+    for (std::size_t t = 0; t < tolerances.size() && rates.size() > 0; ++t) {
+      const double by =
+          rates(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(t)) * tolerances[t].deviation();
+      output.linear_shares.push_back(by * by);
+      variance += by * by;
+    }
+    for (double& share : output.linear_shares)
+      share = variance > 0 ? share / variance : 0;
+    output.linear_deviation = std::sqrt(variance);
+    output.sampled_shares =
+        regression_shares(nominal, tolerances, options.seed, out.fate, out.values[k], output.nominal);
+    out.outputs.push_back(std::move(output));
+  }
+  const std::size_t well = out.counts[0];
+  out.message =
+      std::to_string(options.samples) + " samples: " + std::to_string(well) + " followed the nominal state";
+  const auto also = [&](SampleFate fate, const char* words) {
+    if (const std::size_t count = out.counts[static_cast<std::size_t>(fate)])
+      out.message += ", " + std::to_string(count) + " " + words;
+  };
+  also(SampleFate::elsewhere, "are in another, which its branch does not lead to");
+  also(SampleFate::unstable, "followed to an unstable one");
+  also(SampleFate::none, "have no steady state");
+  also(SampleFate::no_mechanism, "make no mechanism");
+  out.message += ".";
+  out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+} // namespace flyball

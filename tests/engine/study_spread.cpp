@@ -1,0 +1,186 @@
+// How steady states scatter with tolerances, against closed forms and against solves one by one.
+#include "tests/engine/equilibrium_mechanisms.hpp"
+
+#include "engine/mechanism/error.hpp"
+#include "engine/study/spread.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+const std::string speed = "joints.spin.drive.speed";
+
+SpreadAnswer spread_by(const Mechanism& m, const std::vector<Tolerance>& tolerances, std::size_t samples,
+                       int threads = 1, std::uint64_t seed = 1) {
+  SpreadOptions options;
+  options.samples = samples;
+  options.seed = seed;
+  ThreadSharing sharing(threads);
+  return spread(m, tolerances, options, sharing);
+}
+
+std::size_t count(const SpreadAnswer& answer, SampleFate fate) {
+  return answer.counts[static_cast<std::size_t>(fate)];
+}
+
+} // namespace
+
+TEST_CASE("samples have the moments of their distributions, and are independent") {
+  const std::vector<double> nominal{5, -2, 0, 1};
+  const std::vector<Tolerance> tolerances{{"a", Distribution::normal, 0.3},
+                                          {"b", Distribution::uniform, 0.2},
+                                          {"c", Distribution::triangular, 4},
+                                          {"d", Distribution::normal, 1}};
+  constexpr std::size_t n = 200'000;
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero(), fourth = Eigen::Vector4d::Zero();
+  Eigen::Matrix4d products = Eigen::Matrix4d::Zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::vector<double> numbers = sampled_numbers(nominal, tolerances, 7, i);
+    Eigen::Vector4d x;
+    for (std::size_t k = 0; k < 4; ++k) {
+      x[static_cast<Eigen::Index>(k)] = (numbers[k] - nominal[k]) / tolerances[k].deviation();
+      if (tolerances[k].distribution != Distribution::normal)
+        CHECK(std::abs(numbers[k] - nominal[k]) <= tolerances[k].width);
+    }
+    sum += x;
+    products += x * x.transpose();
+    fourth += x.cwiseAbs2().cwiseAbs2();
+  }
+  // Of five standard errors.
+  const double chance = 5 / std::sqrt(static_cast<double>(n));
+  CHECK((sum / n).cwiseAbs().maxCoeff() < chance);
+  CHECK((products / n - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff() < 2 * chance);
+  // Kurtosis: 3, 9/5, 12/5.
+  CHECK(fourth[0] / n == Approx(3).margin(12 * chance));
+  CHECK(fourth[1] / n == Approx(1.8).margin(4 * chance));
+  CHECK(fourth[2] / n == Approx(2.4).margin(6 * chance));
+  CHECK(sampled_numbers(nominal, tolerances, 7, 3) == sampled_numbers(nominal, tolerances, 7, 3));
+  CHECK(sampled_numbers(nominal, tolerances, 8, 3) != sampled_numbers(nominal, tolerances, 7, 3));
+}
+
+TEST_CASE("the lean of a conical pendulum scatters with its speed as its rate says") {
+  // cos a = g / (w^2 L): da/dw = 2 / (w tan a).
+  Mechanism m = conical(0.7, 0, 1);
+  set_parameter(m, speed, 5);
+  const double a = std::acos(standard_gravity / (25 * 0.7)), rate = 2 / (5 * std::tan(a));
+  const std::vector<Tolerance> tolerances{{speed, Distribution::normal, 0.01}};
+  const SpreadAnswer answer = spread_by(m, tolerances, 4000);
+  INFO(answer.message);
+  REQUIRE(answer.status == Status::converged);
+  CHECK(count(answer, SampleFate::followed) == 4000);
+  REQUIRE(answer.outputs.size() == 1);
+  const SpreadOutput& swing = answer.outputs[0];
+  CHECK(swing.nominal == Approx(a).epsilon(1e-12));
+  CHECK(swing.linear_deviation == Approx(0.01 * rate).epsilon(1e-6));
+  CHECK(swing.followed.deviation == Approx(0.01 * rate).epsilon(0.06));
+  CHECK(swing.followed.mean == Approx(a).margin(5 * 0.01 * rate / std::sqrt(4000.)));
+  CHECK(swing.linear_shares == std::vector<double>{1});
+  CHECK(swing.sampled_shares[0] == Approx(1).margin(0.01));
+  // Each by a solve of its own.
+  for (std::size_t i = 0; i < 50; ++i) {
+    Mechanism there = m;
+    const double nominal[]{5.};
+    set_parameter(there, speed, sampled_numbers(nominal, tolerances, 1, i)[0]);
+    CHECK(answer.values[0][i] == Approx(value(solve(there), "swing")).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("shares of several tolerances agree by rates and by samples; threads change no bit") {
+  const Mechanism m = shipped("governor_parametric");
+  const std::vector<Tolerance> tolerances{{"parameters.w", Distribution::uniform, 0.05},
+                                          {"parameters.L", Distribution::normal, 2e-4},
+                                          {"parameters.k", Distribution::triangular, 20}};
+  const SpreadAnswer one = spread_by(m, tolerances, 3000, 1), two = spread_by(m, tolerances, 3000, 2);
+  REQUIRE(one.status == Status::converged);
+  CHECK(one.values == two.values);
+  CHECK(one.fate == two.fate);
+  CHECK(one.outputs.size() == 3 + m.measures.size());
+  for (const SpreadOutput& output : one.outputs) {
+    CAPTURE(output.name);
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum += output.linear_shares[k];
+      CHECK(output.sampled_shares[k] == Approx(output.linear_shares[k]).margin(0.06));
+    }
+    CHECK(sum == Approx(1).epsilon(1e-9));
+    CHECK(output.followed.deviation == Approx(output.linear_deviation).epsilon(0.08));
+    CHECK(output.followed.least <= output.followed.low);
+    CHECK(output.followed.low < output.followed.median);
+    CHECK(output.followed.median < output.followed.high);
+    CHECK(output.followed.high <= output.followed.most);
+  }
+}
+
+TEST_CASE("samples that do not follow are results, each with its fate") {
+  SECTION("no mechanism can be made of a link that is too short") {
+    Mechanism m = shipped("governor_parametric");
+    set_parameter(m, "parameters.L", 0.21);
+    const std::vector<Tolerance> tolerances{{"parameters.L", Distribution::uniform, 0.02}};
+    const SpreadAnswer answer = spread_by(m, tolerances, 400);
+    REQUIRE(answer.status == Status::converged);
+    for (std::size_t i = 0; i < 400; ++i) {
+      const double nominal[]{0.21};
+      const double L = sampled_numbers(nominal, tolerances, 1, i)[0];
+      // Twice the link.
+      CHECK((answer.fate[i] == SampleFate::no_mechanism) == (L > 0.21844));
+    }
+    CHECK(count(answer, SampleFate::no_mechanism) > 50);
+    CHECK(count(answer, SampleFate::followed) > 50);
+  }
+  SECTION("beyond a fold another state is found, and told apart") {
+    // A pendulum hinged off the axis leans in where w^2 (o + L sin a) = g tan a, on a branch that folds where
+    // that speed is least.
+    const auto square = [](long double a) {
+      return standard_gravity * std::tan(a) / (0.1L + 0.7L * std::sin(a));
+    };
+    long double from_a = -1.4L, to_a = -0.3L;
+    for (int i = 0; i < 200; ++i) {
+      const long double third = (to_a - from_a) / 3;
+      if (square(from_a + third) < square(to_a - third))
+        to_a -= third;
+      else
+        from_a += third;
+    }
+    const auto fold = static_cast<double>(std::sqrt(square(from_a)));
+    const double nominal_speed = fold + 0.05;
+    const long double lean = root(
+        [&](long double a) { return square(a) - static_cast<long double>(nominal_speed) * nominal_speed; },
+        -1.4L, from_a);
+    Mechanism m = conical(0.7, 0.1, 1);
+    set_parameter(m, speed, nominal_speed);
+    const std::vector<Tolerance> tolerances{{speed, Distribution::uniform, 0.2}};
+    SpreadOptions options;
+    options.samples = 400;
+    options.start = {{"swing", static_cast<double>(lean)}};
+    ThreadSharing sharing(2);
+    const SpreadAnswer answer = spread(m, tolerances, options, sharing);
+    INFO(answer.message);
+    REQUIRE(answer.status == Status::converged);
+    for (std::size_t i = 0; i < 400; ++i) {
+      const double nominal[]{nominal_speed};
+      const double w = sampled_numbers(nominal, tolerances, 1, i)[0];
+      CAPTURE(w, fold);
+      CHECK((answer.fate[i] == SampleFate::elsewhere) == (w < fold));
+      CHECK((answer.values[0][i] < -0.3) == (w > fold));
+    }
+    CHECK(answer.outputs[0].followed.most < -0.3);
+    CHECK(answer.outputs[0].elsewhere.least > -0.3);
+    CHECK_THAT(answer.message, ContainsSubstring("are in another"));
+  }
+  SECTION("without a nominal state there is nothing to scatter") {
+    Mechanism m = conical(0.7, 0.1, 1);
+    m.gravity = Vec3(3, -9, 0); // turns with the drive
+    const SpreadAnswer answer = spread_by(m, {{speed, Distribution::normal, 0.1}}, 10);
+    CHECK(answer.status == Status::no_steady_state);
+    CHECK_FALSE(answer.message.empty());
+  }
+}
+
+TEST_CASE("tolerances that make no sense are refused") {
+  const Mechanism m = shipped("governor_parametric");
+  CHECK_THROWS_AS(spread_by(m, {{"parameters.w", Distribution::normal, 0}}, 5), SceneError);
+  CHECK_THROWS_AS(spread_by(m, {{"parameters.none", Distribution::normal, 1}}, 5), SceneError);
+  CHECK_THROWS_AS(spread_by(m, {{"parameters.c", Distribution::normal, 1}}, 5), SceneError);
+  CHECK_THROWS_AS(spread_by(m, {}, 5), SceneError);
+}
