@@ -63,6 +63,8 @@ int receive(double seconds) {
   return found > 0 && ::read(ends_of_pipe[0], &byte, 1) == 1 ? byte : -1;
 }
 
+// Not that of a library, which may have a handler of its own: UCX, that MPI brings, goes on with traces after
+// SIGHUP.
 void take_usual_course(int signal) {
   std::signal(signal, SIG_DFL);
   ::kill(::getpid(), signal);
@@ -84,7 +86,7 @@ EndSignals::~EndSignals() {
   thread_.join();
   for (int& end : ends_of_pipe)
     ::close(std::exchange(end, -1));
-  if (came_ != 0) std::raise(came_);
+  if (came_ != 0) take_usual_course(came_);
 }
 
 void EndSignals::listen() {
@@ -108,7 +110,7 @@ EndSignalsPutOff::EndSignalsPutOff() {
 
 EndSignalsPutOff::~EndSignalsPutOff() {
   handle_as_before();
-  if (put_off != 0) std::raise(put_off);
+  if (put_off != 0) take_usual_course(put_off);
 }
 
 bool EndSignalsPutOff::came_one() {
