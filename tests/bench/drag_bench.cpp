@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <functional>
 #include <thread>
+#include <tuple>
 
 using namespace flyball;
 
@@ -75,7 +76,7 @@ using Frame = std::function<void(double)>;
 
 // The body's mass centre is pulled round a circle on the screen, a mouse event a frame.
 void pull_by_hand(App& app, const Frame& frame, const char* title, const Mechanism& m,
-                  const std::string& body, ::flyball::Mode mode) {
+                  const std::string& body, ::flyball::Mode mode, bool by_sliders = false) {
   constexpr int events = 60;
   constexpr float radius = 40; // pixels
   const auto b = static_cast<std::size_t>(body_index(m, body));
@@ -100,7 +101,7 @@ void pull_by_hand(App& app, const Frame& frame, const char* title, const Mechani
   const ImVec2 from(view.from.x + static_cast<float>(pixel->x()),
                     view.from.y + static_cast<float>(pixel->y()));
   io.MousePos = from;
-  imgui_compat::set_modifiers(false, false, true);
+  imgui_compat::set_modifiers(false, by_sliders, true);
   settle();
   io.MouseDown[0] = true;
   settle();
@@ -111,13 +112,13 @@ void pull_by_hand(App& app, const Frame& frame, const char* title, const Mechani
     const auto begin = Clock::now();
     frame(1 / wanted);
     event.push_back(1e3 * seconds_since(begin));
-    while (solving(app)) {
+    while (solving(app) || app.goals.seeking.running()) {
       std::this_thread::sleep_for(std::chrono::microseconds(50));
       update(app, 0, {600, 400});
     }
     shown.push_back(1e3 * seconds_since(begin));
   }
-  const bool held = app.tool.assembly || app.tool.pull;
+  const bool held = app.tool.assembly || app.tool.pull || app.tool.reach;
   io.MouseDown[0] = false;
   imgui_compat::set_modifiers(false, false);
   settle();
@@ -155,6 +156,14 @@ void pull_all(App& app, const Frame& frame) {
   pull_by_hand(app, frame, "chain of 100 while building", chain, tip, ::flyball::Mode::build);
   pull_by_hand(app, frame, "governor while exploring", governor, "ball1", ::flyball::Mode::explore);
   pull_by_hand(app, frame, "chain of 100 while exploring", chain, tip, ::flyball::Mode::explore);
+  Mechanism pinned = governor; // speed, spring and a ball, which move so that the collar follows the hand
+  pinned.sliders.clear();
+  for (const auto& [address, from, to] :
+       {std::tuple{"joints.spin.drive.speed", 0., 30.},
+        std::tuple{"joints.slide.spring.stiffness", 100., 5000.}, std::tuple{"bodies.ball1.mass", 0.2, 5.}})
+    pinned.sliders.push_back({.parameter = address, .from = from, .to = to, .description = {}});
+  pull_by_hand(app, frame, "governor's sliders by the collar", pinned, "collar", ::flyball::Mode::explore,
+               true);
 }
 
 // In ms: from a slider's event to the answer, with a session alone: no window, no pixels.
