@@ -104,6 +104,26 @@ TEST_CASE("each kind of part has its inspector") {
   }
 }
 
+TEST_CASE("a collar is dragged to where it should settle, and the sliders follow") {
+  Hand hand("governor_parametric.json");
+  set_mode(hand.app, Mode::explore);
+  hand.frames(4);
+  const auto collar = static_cast<std::size_t>(body_index(hand.app.mechanism(), "collar"));
+  const Vec3 from = hand.app.poses.at(collar).position;
+  hand.hold(false, true, true);
+  hand.point(hand.pixel(from));
+  hand.press();
+  hand.frames(2);
+  hand.point(hand.pixel(from + Vec3(0, 0.01, 0)));
+  hand.point(hand.pixel(from + Vec3(0, 0.05, 0))); // farther than the arms let it
+  hand.frames(14);
+  REQUIRE(hand.app.tool.reach);
+  const ImageComparison comparison = compare_with_stored("hand-with-sliders", hand.picture());
+  INFO(comparison.message);
+  CHECK(comparison.same);
+  hand.release();
+}
+
 TEST_CASE("an unfinished mechanism says what is missing") {
   Hand hand("governor.json");
   hand.choose(PartKind::joint, "spin");

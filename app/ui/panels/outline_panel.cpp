@@ -211,6 +211,12 @@ void draw_row(const Outline& outline, PartId id, const Part& part, ImVec2 from, 
     if (hovered) ImGui::SetTooltip("%s", words_for(app.mistakes[mistake->second]).c_str());
     right -= 6 * s;
   }
+  if (std::ranges::find(app.view.hidden, part) != app.view.hidden.end()) {
+    right -= ImGui::CalcTextSize(icon::eye_off).x;
+    list.AddText({right, y}, packed(colors.dim), icon::eye_off);
+    if (hovered) ImGui::SetTooltip("Hidden in the view. Ctrl+Shift+H shows all.");
+    right -= 6 * s;
+  }
   const std::string words = kind_words(outline.mechanism(), id);
   const float name_width = ImGui::CalcTextSize(part.name.c_str()).x, left = from.x + 28 * s;
   const float words_width = ImGui::CalcTextSize(words.c_str()).x;
