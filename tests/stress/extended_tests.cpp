@@ -123,6 +123,8 @@ TEST_CASE("the coefficient of rotation vectors is the same by its series and by 
 
 namespace {
 
+using stress::Dual; // of 113 bits, not that of expressions
+
 template <class S>
 struct Evaluated {
   Configuration<S> q, moved;
@@ -199,7 +201,7 @@ TEST_CASE("the balance loses no digits in either kind of extended numbers") {
     forward<double>(system, parameters, q, t, kinematics);
     Magnitudes size;
     evaluate_magnitudes(system, parameters, q, lambda, kinematics, size);
-    const auto wanted = evaluate<Dual>(system, parameters, q, lambda, step, t);
+    const auto wanted = evaluate<stress::Dual>(system, parameters, q, lambda, step, t);
     of_long.see(evaluate<long double>(system, parameters, q, lambda, step, t), wanted, size);
     of_pairs.see(evaluate<DoubleDouble>(system, parameters, q, lambda, step, t), wanted, size);
     springs += !system.springs.empty();

@@ -76,6 +76,7 @@ struct Dual {
   requires std::is_arithmetic_v<T> Dual(T x) : v(x), d(0) {}
   Dual(Wide value, Wide rate = 0) : v(value), d(rate) {}
   explicit operator int() const { return static_cast<int>(v); }
+  explicit operator double() const { return static_cast<double>(v); }
 
   friend Dual operator+(Dual a, Dual b) { return {a.v + b.v, a.d + b.d}; }
   friend Dual operator-(Dual a, Dual b) { return {a.v - b.v, a.d - b.d}; }
