@@ -1,6 +1,9 @@
 #include "app/session/goals.hpp"
 
 #include "app/session/session.hpp"
+#include "app/session/units.hpp"
+#include "engine/mechanism/measure_plan.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 
@@ -67,11 +70,12 @@ void seek(Session& session, const std::string& step, std::vector<Goal> goals, co
 }
 
 void seek(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but,
-         SharedMechanism mechanism) {
+          SharedMechanism mechanism) {
   begin_gesture(session);
+  session.goals.revision = session.document.revision();
   std::string refusal = goal_refusal(session);
   GoalRequest request{std::move(mechanism), free_numbers(session, but), std::move(goals),
-                     start_values(session.answer.solution.coordinates), step};
+                      start_values(session.answer.solution.coordinates), step};
   if (refusal.empty() && request.free.empty())
     refusal = "No other number may move: pin one as a slider first.";
   if (!refusal.empty()) return show_error(session, refusal);
@@ -81,24 +85,64 @@ void seek(Session& session, const std::string& step, std::vector<Goal> goals, co
     seeking.ask(session.options, std::move(request), find_numbers, BackgroundWorker::Running::finished);
 }
 
+void stop_seeking(Session& session) {
+  session.goals.revision = 0;
+  session.goals.seeking.stop();
+}
+
 const GoalAnswer* sought(const Session& session) {
   const GoalState& state = session.goals;
   return state.gesture == session.gesture && state.seeking.found ? &state.seeking.found->result : nullptr;
 }
 
+namespace {
+
+// What a person is to know of it, in the units that are shown; empty where all is well. Of measures that only
+// the hand has nothing is listed.
+std::string words_of(const Session& session, const GoalAnswer& answer) {
+  std::string words;
+  if (!answer.reached) {
+    words = "The nearest that can be reached";
+    std::string list;
+    for (const GoalAnswer::Reached& goal : answer.goals) {
+      const ShownUnit unit = shown_unit(goal.unit, session.units);
+      const bool known = measure_index(session.mechanism(), goal.wanted) >= 0 ||
+                         find_coordinate(session.mechanism(), goal.wanted).joint >= 0;
+      if (known)
+        list += (list.empty() ? ": " : ", ") + goal.wanted + " = " + rounded_text(unit.shown(goal.value), 6) +
+                (unit.text.empty() ? "" : " " + unit.text);
+    }
+    words += list + ".";
+    std::vector<std::string> phrases;
+    for (const GoalAnswer::Number& number : answer.numbers)
+      if (number.at_limit) phrases.push_back(parameter_phrase(number.address));
+    const std::vector<std::string_view> limits(phrases.begin(), phrases.end());
+    if (!limits.empty()) words += " At the end of its slider: " + word_list(limits, "and") + ".";
+  }
+  if (answer.solution.stable == false)
+    words += std::string(words.empty() ? "" : " ") + "The state is unstable.";
+  return words;
+}
+
+} // namespace
+
 void update_goals(Session& session) {
-  Study<GoalRequest, GoalAnswer>& seeking = session.goals.seeking;
-  if (!seeking.take()) return;
-  if (!seeking.problem.empty()) return show_error(session, seeking.problem);
-  if (!seeking.found) return;
-  const GoalRequest& of = seeking.found->of;
-  const GoalAnswer& answer = seeking.found->result;
+  GoalState& state = session.goals;
+  if (!state.seeking.take()) return;
+  if (session.mode != Mode::explore || state.revision != session.document.revision()) return;
+  if (!state.seeking.problem.empty()) return show_error(session, state.seeking.problem);
+  if (!state.seeking.found) return;
+  const GoalRequest& of = state.seeking.found->of;
+  const GoalAnswer& answer = state.seeking.found->result;
   if (answer.status != Status::converged) return show_error(session, answer.message);
   Explored values;
   for (const GoalAnswer::Number& number : answer.numbers)
     values.push_back({number.address, number.value});
   go_to_numbers(session, of.step, values, start_values(answer.solution.coordinates));
-  session.notice = answer.reached ? "" : answer.message;
+  state.revision = session.document.revision();
+  if (session.notice == state.told) session.notice.clear();
+  state.told = words_of(session, answer);
+  if (!state.told.empty()) session.notice = state.told;
 }
 
 } // namespace flyball

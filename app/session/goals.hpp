@@ -26,7 +26,10 @@ struct GoalRequest {
 
 struct GoalState {
   std::vector<std::string> held; // addresses of pinned numbers that stay where they are
-  std::uint64_t gesture = 0;     // of the hand that seeks, and
+  // Of the document that what is sought is for: what comes for another, as after an undo, is not taken.
+  std::uint64_t revision = 0;
+  std::string told;                                      // the notice of what came last
+  std::uint64_t gesture = 0;                             // of the hand that seeks, and
   std::vector<std::pair<std::string, double>> reference; // where the numbers were when it began
   Study<GoalRequest, GoalAnswer> seeking;
 };
@@ -44,7 +47,9 @@ std::string goal_refusal(const Session& session);
 void seek(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but = {});
 // The same for goals of measures that another mechanism has, like the document's else.
 void seek(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but,
-         SharedMechanism mechanism);
+          SharedMechanism mechanism);
+// What is sought is not taken any more.
+void stop_seeking(Session& session);
 // What came last for the present gesture; null where there is nothing.
 const GoalAnswer* sought(const Session& session);
 

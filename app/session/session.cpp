@@ -109,6 +109,7 @@ void open_document(Session& session, Document document) {
   const bool same_file = !document.file().empty() && document.file() == session.document.file();
   session.problem.clear();
   session.notice.clear();
+  session.goals = {};
   session.document = std::move(document);
   session.answer = {};
   session.poses.clear();

@@ -21,7 +21,8 @@ namespace {
 
 constexpr double off_crossing = 0.01; // scaled: how far from a crossing a branch off it is looked for
 
-// The speed of a drive by torque is found: nothing follows from where its search begins.
+} // namespace
+
 void expect_no_found_speed(const Mechanism& mechanism, const std::string& address) {
   for (const Joint& joint : mechanism.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
@@ -33,6 +34,8 @@ void expect_no_found_speed(const Mechanism& mechanism, const std::string& addres
                          "expected another number, such as its load");
     }
 }
+
+namespace {
 
 // Gathers the branches of one diagram.
 class Diagram {

@@ -96,4 +96,8 @@ std::optional<ResponseDiagram> follow_branches_through(const Mechanism& mechanis
 // the point with the most eigenvalues has; where a point lacks one the entry is not a number.
 std::vector<std::vector<std::complex<double>>> track_eigenvalues(const std::vector<ResponsePoint>& points);
 
+// The speed of a drive by torque is found: nothing follows from where its search begins. Throws SceneError
+// where the address is that.
+void expect_no_found_speed(const Mechanism& mechanism, const std::string& address);
+
 } // namespace flyball

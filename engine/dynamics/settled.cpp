@@ -9,6 +9,18 @@
 #include <numbers>
 
 namespace flyball {
+namespace {
+
+// Of the run, rad/s or m/s: what a speed of zero is small beside.
+double largest_rate(const CoordinateTrack& track) {
+  double largest = 0;
+  for (const double rate : track.rate)
+    largest = std::max(largest, std::abs(rate));
+  return largest;
+}
+
+} // namespace
+
 double distance_from(const Run& run, std::size_t sample, const Solution& steady) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (run.segments.empty() || steady.coordinates.size() != run.coordinates.size()) return infinity;
@@ -18,8 +30,10 @@ double distance_from(const Run& run, std::size_t sample, const Solution& steady)
     const CoordinateTrack& track = run.coordinates[i];
     const CoordinateSolution& there = steady.coordinates[i];
     if (track.joint != there.joint || track.index != there.index) return infinity;
-    if (there.speed && !track.driven)
-      worst = std::max(worst, std::abs(track.rate[sample] / *there.speed - 1));
+    if (there.speed && !track.driven) {
+      const double away = std::abs(track.rate[sample] - *there.speed);
+      if (away > 0) worst = std::max(worst, away / std::max(std::abs(*there.speed), largest_rate(track)));
+    }
     if (track.driven || there.driven ||
         std::ranges::find(steady.neutral, track.joint) != steady.neutral.end())
       continue;

@@ -17,6 +17,7 @@ using State = SteadyMap::State;
 constexpr int most_iterations = 200;
 constexpr double goal_tolerance = 1e-12;  // a goal is reached
 constexpr double number_tolerance = 1e-9; // a shorter step of the numbers is the last
+constexpr int most_tries = 60;            // of a step, each shorter than the one before
 constexpr double longest_step = 0.2;      // of a number in one step
 constexpr double longest_way = 0.3;       // of the state in one step
 
@@ -90,7 +91,7 @@ class GoalSeeker {
     bool singular = false, stuck = false;
     for (; out_.iterations < most_iterations; ++out_.iterations) {
       interruption_point();
-      if (!map_.find_rates(now)) {
+      if (!map_.find_rates(now) || !map_.rates().allFinite()) {
         singular = true;
         break;
       }
@@ -101,7 +102,7 @@ class GoalSeeker {
       std::optional<State> next;
       Eigen::VectorXd next_left;
       double taken = 0;
-      while (true) {
+      for (int tries = 0; tries < most_tries; ++tries) {
         Eigen::VectorXd step = least_change(slopes, slopes * at - left, lower, upper, damping, at) - at;
         const double way = map_.way(step.cwiseProduct(map_.range()));
         step *= std::min({1., longest_step / std::max(longest_step, step.lpNorm<Eigen::Infinity>()),
@@ -113,8 +114,8 @@ class GoalSeeker {
             (left.norm() <= goal_tolerance || (left + promised).norm() > (1 - 1e-6) * left.norm()))
           break;
         next = map_.step_to(now, map_.inside(now.p + step.cwiseProduct(map_.range())));
-        if (next) {
-          next_left = away(*next);
+        if (next) next_left = away(*next);
+        if (next && next_left.allFinite()) {
           // Where the goals do not go as their rates promise, the state has left its branch or is about to.
           const bool follows =
               (next_left - left - promised).norm() <= 0.5 * promised.norm() + 10 * goal_tolerance;
@@ -123,9 +124,9 @@ class GoalSeeker {
               (next_left.norm() <= (1 - 1e-3) * left.norm() || next_left.norm() <= goal_tolerance ||
                (next_left.norm() < 0.1 * taken && (at + step).norm() < at.norm())))
             break;
-          next.reset();
         }
-        damping = std::max(10 * damping, 1e-3 * steepness);
+        next.reset();
+        damping = std::max({10 * damping, 1e-3 * steepness, 1e-12});
         if (damping > 1e9 * std::max(steepness, 1e-300)) break;
       }
       if (!next) {
@@ -163,7 +164,10 @@ class GoalSeeker {
         out +=
             std::string(names.size() == 1 ? " At the end of its range: " : " At the ends of their ranges: ") +
             word_list(names, "and") + ".";
-      if (singular) out += " The steady states end there: at a fold, or where branches cross.";
+      if (singular)
+        out += " Nothing leads on from there: the steady state is singular, as at a fold or where branches "
+               "cross, or "
+               "what is wanted has no rate.";
       if (stuck && !singular && names.empty())
         out += " Beyond it no steady state was found that follows from this one.";
     }

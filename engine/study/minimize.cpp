@@ -38,6 +38,13 @@ class Minimizer {
       throw SceneError("minimize", "expected a value to start from; there is none at the steady state");
     now_ = std::move(*first);
     set_scales();
+    if (!known_ || !map_.rates().allFinite()) {
+      tell_state(map_, now_, free_, goals_, options_.details, out);
+      out.reached = false;
+      out.message =
+          "At the steady state to begin with nothing has a rate: it is singular, or what is wanted has none.";
+      return;
+    }
     const double before = now_.values[objective_row()];
     const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> search(
         nlopt_create(NLOPT_LD_SLSQP, static_cast<unsigned>(free_.size())), nlopt_destroy);
@@ -56,8 +63,12 @@ class Minimizer {
     double least = 0;
     nlopt_optimize(search.get(), x.data(), &least); // what it says, its state and the goals tell better
     if (interrupted_) std::rethrow_exception(interrupted_);
-    go_to(x);
+    const bool lost = lost_ && nlopt_get_force_stop(search.get()) != 0;
+    if (!lost) go_to(x);
+    lost_ = lost_ || lost;
     out.iterations = nlopt_get_numevals(search.get());
+    if (!now_.values.allFinite())
+      throw SceneError(objective_, "expected a value all along the way; it has none there");
     const bool exhausted = out.iterations >= most_evaluations;
     tell_state(map_, now_, free_, goals_, options_.details, out);
     out.least =
@@ -132,6 +143,12 @@ class Minimizer {
     try {
       const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(shares, n);
       const bool arrived = go_to(x), goal = row < objective_row();
+      if (!known_ || !map_.rates().allFinite() || !now_.values.allFinite()) { // nothing leads on from there
+        lost_ = true;
+        nlopt_force_stop(search_);
+        if (slope) std::fill_n(slope, n, 0.);
+        return 0;
+      }
       double value = goal ? residual(row) : now_.values[row] / scales_[row];
       Eigen::VectorXd gradient = map_.rates().row(row).transpose().cwiseProduct(map_.range()) / scales_[row];
       if (!arrived && !goal) {

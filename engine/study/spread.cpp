@@ -83,8 +83,9 @@ class Sampler {
 
   const Solution& first() const { return first_; }
   const std::optional<State>& nominal() const { return nominal_; }
-  // Of the outputs with the numbers, (outputs, numbers); empty at a singular state.
-  Eigen::MatrixXd rates() const { return regular_ ? map_.rates() : Eigen::MatrixXd(); }
+  bool regular() const { return regular_; }
+  // Of the outputs with the numbers, (outputs, numbers).
+  const Eigen::MatrixXd& rates() const { return map_.rates(); }
 
   // Leaves the values of the outputs, not a number where there is none.
   SampleFate make(std::size_t i, std::span<double> values) {
@@ -104,7 +105,6 @@ class Sampler {
  private:
   // Along the branch of the nominal state.
   std::optional<State> follow(const Eigen::VectorXd& p) {
-    if (!regular_) return std::nullopt;
     if (std::optional<State> there = map_.step_to(*nominal_, p)) return there;
     std::optional<State> now = nominal_;
     double part = 0.5;
@@ -294,6 +294,13 @@ SpreadAnswer spread(const Mechanism& mechanism, std::span<const Tolerance> toler
     out.message = first.first().message;
     return out;
   }
+  if (!first.regular()) {
+    out.status = Status::not_converged;
+    out.message =
+        "The nominal steady state is singular, as at a fold or where nothing resists: its branch cannot be "
+        "followed to samples.";
+    return out;
+  }
   out.samples = options.samples;
   out.values.assign(outputs.size(), std::vector<double>(options.samples));
   out.fate.resize(options.samples);
@@ -354,7 +361,8 @@ SpreadAnswer spread(const Mechanism& mechanism, std::span<const Tolerance> toler
     output.followed = statistics(std::move(followed));
     output.elsewhere = statistics(std::move(elsewhere));
     double variance = 0;
-    for (std::size_t t = 0; t < tolerances.size() && rates.size() > 0; ++t) {
+    const bool rated = rates.row(static_cast<Eigen::Index>(k)).allFinite();
+    for (std::size_t t = 0; t < tolerances.size() && rated; ++t) {
       const double by =
           rates(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(t)) * tolerances[t].deviation();
       output.linear_shares.push_back(by * by);

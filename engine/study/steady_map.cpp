@@ -1,6 +1,7 @@
 #include "engine/study/steady_map.hpp"
 
 #include "engine/continuation/branch_follower.hpp"
+#include "engine/continuation/branches.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
@@ -31,6 +32,7 @@ SteadyMap::SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> fre
     if (!(number.from < number.to)) throw SceneError(number.address, "expected a range from < to");
     if (std::ranges::find(addresses_, number.address) != addresses_.end())
       throw SceneError(number.address, "expected each number once");
+    expect_no_found_speed(mechanism, number.address);
     set_parameter(varied_, number.address, value); // that it may be set at all
     addresses_.push_back(number.address);
     lower_[i] = number.from;
@@ -143,7 +145,7 @@ bool SteadyMap::find_rates(const State& state) try {
     else
       rates_.row(row) = gradient.row(m) * state_rates_ + beside.row(m);
   }
-  return state_rates_.allFinite() && rates_.allFinite();
+  return state_rates_.allFinite();
 } catch (const SceneError&) { // beside it no mechanism can be made
   return false;
 }
@@ -166,7 +168,6 @@ std::optional<SteadyMap::State> SteadyMap::step_to(const State& from, const Eige
   if (problem().symmetric() && factor_at(problem(), to.z, w_).kkt().negative_count() != negative_)
     return std::nullopt;
   find_values(to);
-  if (!to.values.allFinite()) return std::nullopt;
   return to;
 }
 

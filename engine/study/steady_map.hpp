@@ -45,15 +45,17 @@ class SteadyMap {
   std::optional<State> begin(const std::vector<std::pair<std::string, double>>& start, Solution& first);
 
   // At a state that was found: state_rates() of the coordinates (rad or m, as a step; (nv, numbers)) and
-  // rates() of what is asked for ((wanted, numbers)), per unit of the numbers. False where the state is
-  // singular, or at an end of what mechanisms can be made of.
+  // rates() of what is asked for ((wanted, numbers)), per unit of the numbers; not numbers in the rows of
+  // measures that have none. False where the state is singular, or at an end of what mechanisms can be made
+  // of. By differences of the balance in the numbers (sensitivity.hpp).
   bool find_rates(const State& state);
   const Eigen::MatrixXd& state_rates() const { return state_rates_; }
   const Eigen::MatrixXd& rates() const { return rates_; }
   // How far the state would go with a step of the numbers: the largest coordinate, in rad or reaches.
   double way(const Eigen::VectorXd& step) const;
 
-  // From the state whose rates were found last. Nothing where no steady state follows from it there.
+  // From the state whose rates were found last. Nothing where no steady state follows from it there. Values
+  // of measures that have none are not numbers.
   std::optional<State> step_to(const State& from, const Eigen::VectorXd& p);
 
   // All that a solve tells of a state.

@@ -27,7 +27,7 @@ void place_links(const System& system, const Parameters& p, const Configuration<
     LinkState<S>& x = out.links[i];
     S displacement = 0;
     if (link.drive >= 0)
-      displacement = S(lp.start) + S(lp.speed) * S(t);
+      displacement = S(lp.start) + (finds_speed(link) ? q[link.q] : S(lp.speed)) * S(t);
     else if (link.type == LinkType::revolute || link.type == LinkType::prismatic)
       displacement = q[link.q] - S(lp.drawn);
     x.o = parent.o + parent.R * lp.offset.cast<S>();

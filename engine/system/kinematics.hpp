@@ -51,8 +51,8 @@ struct Kinematics {
   }
 };
 
-// Phase `t`: seconds of driving since the drawn pose (at the full drive speeds of `parameters`; neither
-// Parameters::speed_scale nor a speed that is found changes the phase). Instantiated for double and Extended.
+// Phase `t`: seconds of driving since the drawn pose, at the full drive speeds of `parameters`, whatever
+// Parameters::speed_scale, and at those speeds that q has. Instantiated for double and Extended.
 template <class S>
 void forward(const System& system, const Parameters& parameters, const Configuration<S>& q, double t,
              Kinematics<S>& out);

@@ -78,6 +78,7 @@ TEST_CASE("Session: a goal moves the pinned sliders, as one step of the history"
     REQUIRE(sought(session));
     CHECK_FALSE(sought(session)->reached);
     CHECK_THAT(session.notice, ContainsSubstring("The nearest that can be reached: slide = "));
+    CHECK_THAT(session.notice, ContainsSubstring(" m. At the end of its slider: "));
     CHECK(converged(session));
     CHECK(value(session.answer.solution, "slide") == Approx(sought(session)->goals[0].value).epsilon(1e-9));
   }
@@ -116,4 +117,28 @@ TEST_CASE("Session: goals of a hand that moves on are sought one after the other
   update(session, 0.01);
   REQUIRE(wait([&] { return !solving(session); }));
   CHECK(value(session.answer.solution, "slide") == Approx(collar - 0.01).epsilon(1e-10));
+}
+
+TEST_CASE("Session: what was sought for another document, or before an undo, is not taken") {
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_scene(session, shipped_file("governor_parametric"));
+  update(session, 0);
+  const double w = number(session, speed), collar = value(session.answer.solution, "slide");
+  ++session.gesture;
+  seek(session, "Bring slide to a goal", {{"slide", collar - 0.01}}); // found, and not taken yet
+  SECTION("another document") {
+    open_scene(session, shipped_file("governor_parametric"));
+  }
+  SECTION("a number set meanwhile") {
+    change_parameter(session, "parameters.k", 1100);
+  }
+  SECTION("the hand has let go of it") {
+    stop_seeking(session);
+  }
+  SECTION("building") {
+    set_mode(session, Mode::build);
+  }
+  update(session, 0);
+  update(session, 0);
+  CHECK(number(session, speed) == w);
 }

@@ -377,6 +377,30 @@ TEST_CASE("torques that no speed balances are refused with the reason", "[torque
   }
 }
 
+TEST_CASE("shafts found at different speeds turn against each other, wherever their search began",
+          "[torque]") {
+  // A spring between their rims pulls along the line of the axes as drawn: there the balance holds.
+  Mechanism m;
+  m.bodies = {body("a", 1, Vec3::Zero()), body("b", 1, Vec3::UnitX())};
+  m.bodies[0].inertia = m.bodies[1].inertia = {0.1, 0.1, 0.1};
+  m.joints = {torque_driven(revolute("one", "ground", "a", Vec3::Zero(), Vec3::UnitZ()), 10,
+                            "5 N m - 0.5 N m s * rate(one)"),
+              torque_driven(revolute("two", "ground", "b", Vec3::UnitX(), Vec3::UnitZ()), 10,
+                            "3.5 N m - 0.5 N m s * rate(two)")};
+  const Solution apart = Analysis(m).solve({});
+  REQUIRE(apart.status == Status::converged);
+  CHECK(speed(apart, "one") == Approx(10));
+  CHECK(speed(apart, "two") == Approx(7));
+  Force spring;
+  spring.name = "spring";
+  spring.bodies = {"a", "b"};
+  spring.points = {Vec3(0.2, 0, 0), Vec3(0.8, 0, 0)};
+  spring.stiffness = 100;
+  spring.free_length = 0.3;
+  m.forces = {spring};
+  CHECK(Analysis(m).solve({}).status == Status::no_steady_state);
+}
+
 TEST_CASE("laws of torque that mean nothing are mistakes with their place", "[torque]") {
   Mechanism m = shipped("governor_engine");
   Joint& spin = m.joints[0];

@@ -65,6 +65,7 @@ struct ReachGrab {
   std::optional<std::string>
       holder;               // the body that the hand turns along with, once it is known; empty: ground
   std::uint64_t opened = 0; // of the session, see Session::opened
+  std::size_t position = 0; // of the history, as it was
   bool playing = false;     // as it was
   bool moved = false;
 };

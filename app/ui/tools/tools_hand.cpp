@@ -97,7 +97,7 @@ bool let_go_hand(App& app, bool keep) {
 
 std::string hand_hint(const App& app) {
   if (app.tool.assembly) return "Its joints lead the way. Esc takes it back.";
-  if (app.tool.reach) return "The sliders that are not held follow. Esc takes it back.";
+  if (app.tool.reach) return "Sliders follow. Esc takes it back.";
   if (holds(app)) return "The wheel makes the spring stiffer or softer. Esc takes it back.";
   return "";
 }

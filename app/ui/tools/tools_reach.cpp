@@ -31,8 +31,11 @@ Vec3 reached_point(const App& app, const ReachGrab& grab) {
 
 std::string free_point_name(const Mechanism& mechanism) {
   std::string name = "hand";
-  while (parameter_index(mechanism, name) >= 0 || point_index(mechanism, name) >= 0 ||
-         measure_index(mechanism, name) >= 0)
+  const auto taken = [&](const std::string& each) {
+    return parameter_index(mechanism, each) >= 0 || point_index(mechanism, each) >= 0 ||
+           measure_index(mechanism, each) >= 0 || joint_index(mechanism, each) >= 0;
+  };
+  while (taken(name) || taken(name + "_right") || taken(name + "_up"))
     name += "_";
   return name;
 }
@@ -117,6 +120,7 @@ void take_reach(App& app, const ViewInput& input, const HandHit& hit) {
   grab.plane = {.through = hit.point, .normal = input.camera.backward()};
   grab.hand = hit.point;
   grab.opened = app.opened;
+  grab.position = app.document.position();
   grab.playing = app.playback.playing;
   app.playback.playing = false;
   app.notice.clear();
@@ -148,7 +152,9 @@ void let_go_reach(App& app, bool keep) {
   const ReachGrab grab = *app.tool.reach;
   app.tool.reach.reset();
   app.playback.playing = grab.playing;
-  if (!keep && grab.moved && app.document.can_undo()) undo(app);
+  if (keep) return;
+  stop_seeking(app);
+  if (app.document.position() > grab.position) go_to_step(app, grab.position);
 }
 
 void follow_reach(App& app) {
