@@ -68,14 +68,14 @@ std::string diagram_csv(const Mechanism& m, const std::string& address, const Re
   std::string out = "branch," + csv_field(address);
   if (!d.branches.empty() && !d.branches.front().points.empty())
     for (const CoordinateSolution& c : d.branches.front().points.front().coordinates)
-      if (c.speed || !c.driven) out += "," + csv_field(coordinate_label(c) + (c.speed ? ".speed" : ""));
+      if (const auto found = found_number(c)) out += "," + csv_field(found->name);
   for (const NamedMeasure& measure : m.measures)
     out += "," + csv_field(measure.name);
   out += ",stable,special\n";
   const auto row = [&](int branch, const ResponsePoint& p, std::string_view special) {
     out += fmt::format("{},{}", branch, csv_number(p.parameter));
     for (const CoordinateSolution& c : p.coordinates)
-      if (c.speed || !c.driven) out += "," + csv_number(c.speed.value_or(c.value));
+      if (const auto found = found_number(c)) out += "," + csv_number(found->value);
     for (const MeasureSolution& measure : p.measures)
       out += "," + (measure.value ? csv_number(*measure.value) : "");
     out += fmt::format(",{},{}\n", p.stable ? (*p.stable ? "true" : "false") : "", special);
@@ -91,7 +91,7 @@ std::string diagram_csv(const Mechanism& m, const std::string& address, const Re
 // What to draw: what is named, else the first free coordinate. Throws SceneError naming those there are.
 PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, const std::string& name) {
   const std::vector<CoordinateSolution>& all = d.branches.front().points.front().coordinates;
-  const auto free = std::ranges::find(all, false, &CoordinateSolution::driven);
+  const auto free = std::ranges::find_if(all, is_found);
   if (name.empty() && free != all.end()) return {static_cast<std::size_t>(free - all.begin()), false};
   if (const auto found = find_plotted(m, all, name)) return *found;
   const std::string known = plotted_names(m, all);
@@ -110,12 +110,9 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
   }
   for (const SpecialPoint& s : d.special) {
     out += fmt::format("  {} on branch {} at {:.12g} {}:", word(s.type), s.branch, s.at.parameter, unit);
-    for (const CoordinateSolution& c : s.at.coordinates) {
-      if (c.speed)
-        out += fmt::format("  speed of {} = {:.9g} {}", shown_label(c), *c.speed, c.angle ? "rad/s" : "m/s");
-      else if (!c.driven)
-        out += fmt::format("  {} = {:.9g} {}", shown_label(c), c.value, c.angle ? "rad" : "m");
-    }
+    for (const CoordinateSolution& c : s.at.coordinates)
+      if (const auto found = found_number(c))
+        out += fmt::format("  {} = {:.9g} {}", printable(found->name), found->value, found->unit);
     out += "\n";
   }
   return out + fmt::format("  {:.1f} ms\n", d.run_time_s * 1e3);

@@ -30,6 +30,7 @@ Json answer_json(const std::string& address, const std::string& coordinate, cons
         {"parameter", s.parameter},
         {"error_estimate", s.parameter_error},
         {"coordinates", coordinates_json(s.at.coordinates)},
+        {"speeds", speeds_json(s.at.coordinates)},
         {"measures", measures_json(s.at.measures)},
         {"residual", s.residual},
         {"iterations", s.iterations},
@@ -58,7 +59,8 @@ std::string answer_text(const Mechanism& m, const std::string& address, const De
                        s.connected ? "" : ", on a branch that nothing connects with the drawn pose's");
     out += "   ";
     for (const CoordinateSolution& c : s.at.coordinates)
-      if (!c.driven) out += fmt::format(" {} = {:.12g} {} ", shown_label(c), c.value, c.angle ? "rad" : "m");
+      if (const auto found = found_number(c))
+        out += fmt::format(" {} = {:.12g} {} ", printable(found->name), found->value, found->unit);
     for (const MeasureSolution& measure : s.at.measures)
       if (measure.value) out += fmt::format(" {} = {:.12g} {} ", measure.name, *measure.value, measure.unit);
     out += fmt::format("\n    {} iterations, scaled residual {:.1e}\n", s.iterations, s.residual);
@@ -102,9 +104,9 @@ std::string answer_text(const Mechanism& m, const GoalAnswer& a) {
                        with_unit(a.least->unit));
   out += "   ";
   for (const CoordinateSolution& c : a.solution.coordinates)
-    if (!c.driven)
-      out += fmt::format(" {} = {:.12g} {} (± {:.0e}) ", shown_label(c), c.value, c.angle ? "rad" : "m",
-                         c.error);
+    if (const auto found = found_number(c))
+      out += fmt::format(" {} = {:.12g} {} (± {:.0e}) ", printable(found->name), found->value, found->unit,
+                         found->error);
   for (const MeasureSolution& measure : a.solution.measures)
     if (measure.value)
       out += fmt::format(" {} = {:.12g}{} ", measure.name, *measure.value, with_unit(measure.unit));

@@ -11,6 +11,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace flyball::cli {
 
@@ -24,6 +25,10 @@ template <class Coordinate>
 std::string shown_label(const Coordinate& c) {
   return printable(coordinate_label(c));
 }
+
+// Columns two blanks apart, numbers to the right; with `names` the first column has names, to the left and
+// indented.
+std::string aligned(const std::vector<std::vector<std::string>>& rows, bool names = false);
 
 struct OutputFile {
   const char* option;         // "--csv"

@@ -215,19 +215,7 @@ class TableOutput final : public RowOutput {
       at = end + 1;
     }
   }
-  void finish() override {
-    std::vector<std::size_t> widths(rows_[0].size());
-    for (const auto& row : rows_)
-      for (std::size_t i = 0; i < row.size(); ++i)
-        widths[i] = std::max(widths[i], row[i].size());
-    std::string out;
-    for (const auto& row : rows_) {
-      for (std::size_t i = 0; i < row.size(); ++i)
-        out += fmt::format("{}{:>{}}", i ? "  " : "", row[i], widths[i]);
-      out += "\n";
-    }
-    print_text(out);
-  }
+  void finish() override { print_text(aligned(rows_)); }
 
  private:
   void add(std::string cell) { row_.push_back(std::move(cell)); }

@@ -113,27 +113,6 @@ Json answer_json(const std::vector<Tolerance>& tolerances, std::uint64_t seed, c
   return out;
 }
 
-// In characters of UTF-8.
-std::size_t display_width(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-std::string aligned(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths(rows[0].size());
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], display_width(row[i]));
-  std::string out;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string room(widths[i] - display_width(row[i]), ' ');
-      out += i == 0 ? "  " + row[i] + room : "  " + room + row[i];
-    }
-    out += "\n";
-  }
-  return out;
-}
-
 std::string answer_text(const Mechanism& m, const std::vector<Tolerance>& tolerances, const SpreadAnswer& a) {
   std::string out = fmt::format("{}: {}\n\n", printable(m.name), printable(a.message));
   const auto named = [](const SpreadOutput& o) {
@@ -148,7 +127,7 @@ std::string answer_text(const Mechanism& m, const std::vector<Tolerance>& tolera
                     o.linear_shares.empty() ? "-" : fmt::format("{:.6g}", o.linear_deviation), text(s.low),
                     text(s.median), text(s.high)});
   }
-  out += aligned(rows) + "\nshares of the variance, by rates and by samples\n";
+  out += aligned(rows, true) + "\nshares of the variance, by rates and by samples\n";
   rows = {{""}};
   for (const Tolerance& t : tolerances) {
     rows[0].push_back(printable(t.address));
@@ -165,7 +144,7 @@ std::string answer_text(const Mechanism& m, const std::vector<Tolerance>& tolera
     }
     rows.push_back(std::move(row));
   }
-  out += aligned(rows);
+  out += aligned(rows, true);
   const auto elsewhere = a.counts[static_cast<std::size_t>(SampleFate::elsewhere)];
   if (elsewhere > 0) {
     out += "\nof the samples in another steady state\n";
@@ -174,7 +153,7 @@ std::string answer_text(const Mechanism& m, const std::vector<Tolerance>& tolera
       if (const SpreadStatistics& s = o.elsewhere; s.count)
         rows.push_back({named(o), fmt::format("{:.6g}", s.mean), fmt::format("{:.6g}", s.deviation),
                         fmt::format("{:.6g}", s.least), fmt::format("{:.6g}", s.most)});
-    out += aligned(rows);
+    out += aligned(rows, true);
   }
   return out + fmt::format("\n{:.0f} ms\n", a.run_time_s * 1e3);
 }

@@ -10,12 +10,9 @@ namespace flyball::cli {
 SweepColumns::SweepColumns(const Mechanism& mechanism, std::vector<Variation> varied, bool with_times)
     : variations(std::move(varied)), times(with_times) {
   const std::vector<CoordinateSolution> all = Analysis(mechanism).summary().coordinates;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].speed)
-      values.push_back({coordinate_label(all[i]) + ".speed", all[i].angle ? "rad/s" : "m/s", false, i});
-    else if (!all[i].driven)
-      values.push_back({coordinate_label(all[i]), all[i].angle ? "rad" : "m", false, i});
-  }
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (const auto found = found_number(all[i]))
+      values.push_back({found->name, std::string(found->unit), false, i});
   for (std::size_t i = 0; i < mechanism.measures.size(); ++i)
     values.push_back({mechanism.measures[i].name, mechanism.measures[i].unit, true, i});
 }

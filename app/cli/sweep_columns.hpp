@@ -16,7 +16,8 @@ struct SweepColumns {
     std::size_t place = 0;  // there
   };
   std::vector<Variation> variations;
-  // Free coordinates and speeds that torques give, then measures: the same at every point, whether it has an answer or not.
+  // Free coordinates and speeds that torques give, then measures: the same at every point, whether it has an
+  // answer or not.
   std::vector<Value> values;
   bool times = true;
 

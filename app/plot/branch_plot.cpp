@@ -60,7 +60,8 @@ std::optional<PlottedQuantity> find_plotted(const Mechanism& m,
                                             const std::vector<CoordinateSolution>& coordinates,
                                             const std::string& name) {
   for (std::size_t i = 0; i < coordinates.size(); ++i)
-    if (!coordinates[i].driven && coordinate_label(coordinates[i]) == name) return PlottedQuantity{i, false};
+    if (const auto found = found_number(coordinates[i]); found && found->name == name)
+      return PlottedQuantity{i, false};
   const int measure = measure_index(m, name);
   if (measure < 0) return std::nullopt;
   return PlottedQuantity{static_cast<std::size_t>(measure), true};
@@ -70,14 +71,17 @@ std::string plotted_names(const Mechanism& m, const std::vector<CoordinateSoluti
   std::string known;
   const auto add = [&](const std::string& name) { known += (known.empty() ? "" : ", ") + name; };
   for (const CoordinateSolution& c : coordinates)
-    if (!c.driven) add(coordinate_label(c));
+    if (const auto found = found_number(c)) add(found->name);
   for (const NamedMeasure& measure : m.measures)
     add(measure.name);
   return known;
 }
 
 double plotted_value(const ResponsePoint& point, const PlottedQuantity& quantity) {
-  if (!quantity.measure) return point.coordinates[quantity.index].value;
+  if (!quantity.measure) {
+    const CoordinateSolution& c = point.coordinates[quantity.index];
+    return c.speed.value_or(c.value);
+  }
   return point.measures[quantity.index].value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 

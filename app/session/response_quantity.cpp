@@ -46,9 +46,8 @@ ResponsePoint response_point(const Solution& solution, double parameter) {
 std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point) {
   std::vector<ResponseQuantity> out;
   for (const CoordinateSolution& c : point.coordinates)
-    if (!c.driven)
-      out.push_back(
-          {"value " + coordinate_label(c), coordinate_label(c), "Coordinates", c.angle ? "rad" : "m", 1});
+    if (const auto found = found_number(c))
+      out.push_back({"value " + found->name, found->name, "Coordinates", std::string(found->unit), 1});
   for (const MeasureSolution& m : point.measures)
     out.push_back({"measure " + m.name, m.name, "Measures", m.unit, 1});
   for (const DriveTorque& d : point.drive_torques)
@@ -75,7 +74,7 @@ bool needs_reactions(const std::string& key) {
 std::vector<double> quantity_values(const ResponsePoint& point, const std::string& key) {
   if (const auto name = after(key, "value ")) {
     for (const CoordinateSolution& c : point.coordinates)
-      if (coordinate_label(c) == *name) return {c.value};
+      if (const auto found = found_number(c); found && found->name == *name) return {found->value};
   } else if (const auto measure = after(key, "measure ")) {
     for (const MeasureSolution& m : point.measures)
       if (m.name == *measure && m.value) return {*m.value};

@@ -4,8 +4,8 @@
 
 #include "app/document/document.hpp"
 #include "app/live/live_solver.hpp"
-#include "app/session/goals.hpp"
 #include "app/session/files.hpp"
+#include "app/session/goals.hpp"
 #include "app/session/motion.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/session/session_options.hpp"

@@ -15,19 +15,21 @@
 namespace flyball {
 
 Condition coordinate_is(const CoordinateInfo& coordinate, double value) {
-  const auto unit = [coordinate](const Problem& p) { return coordinate.angle ? 1 : p.parameters.length; };
+  const auto unit = [coordinate](const Problem& p) {
+    return found_scale(p.system, p.parameters, coordinate);
+  };
   return {[=](const ExtendedBalance& balance, const ExtendedState& state, Workspace&) {
             const Problem p = balance.problem();
-            const double now = coordinate_value(p.system, p.parameters, state.z.q, coordinate);
+            const double now = found_value(p.system, p.parameters, state.z.q, coordinate);
             return away_from(p.system, p.parameters, coordinate, now, value) / unit(p);
           },
           [=](const ExtendedBalance& balance, const ExtendedState& state,
               Workspace&) -> SingularityTest::Gradient {
             const Problem p = balance.problem();
-            return {coordinate_gradient(p.system, p.parameters, state.z.q, coordinate)
-                            .cwiseProduct(p.scaling.column) /
-                        unit(p),
-                    Eigen::VectorXd::Zero(p.system.rows)};
+            return {
+                found_gradient(p.system, p.parameters, state.z.q, coordinate).cwiseProduct(p.scaling.column) /
+                    unit(p),
+                Eigen::VectorXd::Zero(p.system.rows)};
           }};
 }
 

@@ -37,7 +37,7 @@ struct Condition {
   bool of_matrix = false; // it looks at the KKT matrix, so that states beside one have to be factored, too
 };
 
-// A coordinate has a value (rad or m).
+// A coordinate has a value (rad or m), or a speed that is found (rad/s or m/s).
 Condition coordinate_is(const CoordinateInfo& coordinate, double value);
 // A measure of the mechanism has a value, in its unit; `scale` is how large it is.
 Condition measure_is(std::size_t measure, double value, double scale);

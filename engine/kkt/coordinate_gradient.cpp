@@ -1,11 +1,20 @@
 #include "engine/kkt/coordinate_gradient.hpp"
 
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <numbers>
 
 namespace flyball {
+namespace {
+
+std::string label_of(const System& system, const CoordinateInfo& c) {
+  const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+  return coordinate_label(joint.name, c.index, coordinate_count(joint.type));
+}
+
+} // namespace
 
 Eigen::VectorXd coordinate_gradient(const System& system, const Parameters& parameters,
                                     const Eigen::VectorXd& q, const CoordinateInfo& coordinate) {
@@ -36,22 +45,51 @@ std::complex<double> coordinate_change(const System& system, const Parameters& p
 double away_from(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate,
                  double value, double wanted) {
   const auto link = static_cast<std::size_t>(coordinate.link);
-  const bool turns = system.links[link].type == LinkType::revolute && !parameters.links[link].elastic;
+  const bool turns = system.links[link].type == LinkType::revolute && !parameters.links[link].elastic &&
+                     !finds_speed(system.links[link]);
   return turns ? std::remainder(value - wanted, 2 * std::numbers::pi) : value - wanted;
+}
+
+double found_value(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                   const CoordinateInfo& coordinate) {
+  const Link& link = system.links[static_cast<std::size_t>(coordinate.link)];
+  return finds_speed(link) ? q[link.q] : coordinate_value(system, parameters, q, coordinate);
+}
+
+Eigen::VectorXd found_gradient(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                               const CoordinateInfo& coordinate) {
+  const Link& link = system.links[static_cast<std::size_t>(coordinate.link)];
+  if (finds_speed(link)) return Eigen::VectorXd::Unit(system.nv, link.v);
+  return coordinate_gradient(system, parameters, q, coordinate);
+}
+
+double found_scale(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate) {
+  const auto l = static_cast<std::size_t>(coordinate.link);
+  if (finds_speed(system.links[l])) return std::abs(parameters.links[l].speed); // not zero: validate_joints
+  return coordinate.angle ? 1 : parameters.length;
+}
+
+const CoordinateInfo* coordinate_of_speed(const System& system, std::string_view name) {
+  constexpr std::string_view ending = ".speed";
+  if (!name.ends_with(ending)) return nullptr;
+  name.remove_suffix(ending.size());
+  for (const CoordinateInfo& c : system.coordinates)
+    if (finds_speed(system.links[static_cast<std::size_t>(c.link)]) && name == label_of(system, c)) return &c;
+  return nullptr;
 }
 
 const CoordinateInfo& free_coordinate(const System& system, std::string_view name) {
   std::string known;
   for (const CoordinateInfo& c : system.coordinates) {
-    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-    const std::string label =
-        coordinate_count(joint.type) == 1 ? joint.name : joint.name + "." + std::to_string(c.index);
-    const bool driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
+    const std::string label = label_of(system, c);
+    const Link& link = system.links[static_cast<std::size_t>(c.link)];
     if (label == name) {
-      if (driven) throw SceneError(std::string(name), "is driven; expected a free coordinate");
+      if (finds_speed(link))
+        throw SceneError(std::string(name), "is driven by a torque; its speed is " + label + ".speed");
+      if (link.drive >= 0) throw SceneError(std::string(name), "is driven; expected a free coordinate");
       return c;
     }
-    if (!driven) known += (known.empty() ? "" : ", ") + label;
+    if (link.drive < 0) known += (known.empty() ? "" : ", ") + label;
   }
   throw SceneError(std::string(name),
                    known.empty() ? "there is no free coordinate" : "expected one of " + known);

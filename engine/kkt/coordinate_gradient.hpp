@@ -25,5 +25,17 @@ double away_from(const System& system, const Parameters& parameters, const Coord
 // The free coordinate named "joint" or "joint.index". Throws SceneError where there is none, or where it is
 // driven.
 const CoordinateInfo& free_coordinate(const System& system, std::string_view name);
+// That of which "joint.speed" or "joint.index.speed" is the speed, which a drive by torque has; null where
+// the name is another's.
+const CoordinateInfo* coordinate_of_speed(const System& system, std::string_view name);
+
+// Of a free coordinate its value and its gradient; of one that a drive by torque turns its speed (rad/s or
+// m/s) and that of it. What differences are measured by: a radian, the reach, a speed as large as that where
+// the search begins.
+double found_value(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                   const CoordinateInfo& coordinate);
+Eigen::VectorXd found_gradient(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                               const CoordinateInfo& coordinate);
+double found_scale(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate);
 
 } // namespace flyball

@@ -3,6 +3,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/given_names.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -11,16 +12,6 @@ namespace flyball {
 namespace {
 
 // Throws ExpressionError.
-ValueDimension dimension_of(const Mechanism& mechanism, const std::string& name) {
-  if (const int i = parameter_index(mechanism, name); i >= 0)
-    return {parse_unit(mechanism.parameters[static_cast<std::size_t>(i)].unit)
-                .value_or(Unit{})
-                .dimension.without_angle(),
-            false};
-  named_value(mechanism, name);
-  return {{.length = 1}, false}; // of a point's coordinate
-}
-
 ValueDimension dimension_of(const Mechanism& mechanism, const ResultCall& call) {
   const CoordinateReference at = find_coordinate(mechanism, call);
   const bool angle = is_angle(mechanism.joints[static_cast<std::size_t>(at.joint)].type, at.coordinate);
@@ -81,14 +72,12 @@ void check_drive_law(const Mechanism& mechanism, const Formula& law, bool angle,
   try {
     const Expression expression = read_drive_law(law.text);
     std::vector<ValueDimension> names, results;
+    const GivenNames known(mechanism);
     for (const std::string& name : expression.names())
-      names.push_back(dimension_of(mechanism, name));
+      names.push_back(known.dimension(known.find(name)));
     for (const ResultCall& call : expression.results())
       results.push_back(dimension_of(mechanism, call));
-    const std::string_view unit = fields::force_unit(angle);
-    const ValueDimension found = expression.dimension(names, results);
-    if (!found.plain && !(found.dimension == parse_unit(unit)->dimension.without_angle()))
-      throw ExpressionError("expected " + std::string(unit) + ", found " + dimension_text(found.dimension));
+    expect_dimension(expression.dimension(names, results), fields::force_unit(angle));
   } catch (const ExpressionError& error) {
     throw SceneError(where, "\"=" + law.text + "\": " + error.what());
   }

@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/formula_plan.hpp"
+#include "engine/mechanism/given_names.hpp"
 #include "engine/mechanism/mass_properties.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
@@ -23,90 +24,20 @@ int index_of_named(const std::vector<Part>& parts, std::string_view name) {
   return found == parts.end() ? -1 : static_cast<int>(found - parts.begin());
 }
 
-// The names that expressions know, each with a number: parameters, then the coordinates of points.
-class Names {
- public:
-  explicit Names(const Mechanism& mechanism) : mechanism_(mechanism) {
-    for (const NamedParameter& parameter : mechanism.parameters) {
-      numbers_.emplace(parameter.name, numbers_.size());
-      const std::optional<Unit> unit = parse_unit(parameter.unit);
-      if (!unit || unit->factor != 1)
-        throw SceneError("parameters." + parameter.name + ".unit",
-                         "expected an SI unit, such as m, N/m or rad, found \"" + parameter.unit + "\"");
-      dimensions_.push_back({unit->dimension.without_angle(), false});
-    }
-    for (const NamedPoint& point : mechanism.points)
-      for (const int i : {0, 1, 2}) {
-        numbers_.emplace(point_coordinate(point.name, i), numbers_.size());
-        dimensions_.push_back({{.length = 1}, false});
-      }
-    if (numbers_.size() != dimensions_.size())
-      throw SceneError("parameters", "expected names that no other parameter or point has");
-  }
-
-  std::size_t size() const { return dimensions_.size(); }
-  std::size_t point(std::size_t point, int i) const {
-    return mechanism_.parameters.size() + 3 * point + static_cast<std::size_t>(i);
-  }
-  // Their values by themselves.
-  std::vector<Dual> values() const {
-    std::vector<Dual> all(size());
-    take_values(mechanism_, all);
-    return all;
-  }
-  static void take_values(const Mechanism& mechanism, std::vector<Dual>& all) {
-    std::size_t at = 0;
-    for (const NamedParameter& parameter : mechanism.parameters)
-      all[at++] = {parameter.value, 0};
-    for (const NamedPoint& point : mechanism.points)
-      for (const int i : {0, 1, 2})
-        all[at++] = {point.at[i], 0};
-  }
-  std::string address(std::size_t number) const {
-    const std::size_t parameters = mechanism_.parameters.size();
-    if (number < parameters) return "parameters." + mechanism_.parameters[number].name;
-    const std::size_t coordinate = number - parameters;
-    return "points." + mechanism_.points[coordinate / 3].name + "." + std::to_string(coordinate % 3);
-  }
-  ValueDimension dimension(std::size_t number) const { return dimensions_[number]; }
-  std::size_t find(const std::string& name) const {
-    const auto found = numbers_.find(name);
-    if (found != numbers_.end()) return found->second;
-    if (point_index(mechanism_, name) >= 0)
-      throw ExpressionError("expected a coordinate of the point: " + name + ".x, " + name + ".y or " + name +
-                            ".z");
-    std::vector<std::string_view> known;
-    for (const auto& [each, number] : numbers_)
-      known.push_back(each);
-    std::ranges::sort(known);
-    throw ExpressionError("there is no parameter \"" + name + "\"" + did_you_mean(name, known) +
-                          (known.empty() ? "" : "; expected one of " + word_list(known)));
-  }
-
- private:
-  const Mechanism& mechanism_;
-  std::unordered_map<std::string, std::size_t> numbers_;
-  std::vector<ValueDimension> dimensions_;
-};
-
 // An expression with its names found.
 struct Compiled {
   Expression expression;
   std::vector<std::size_t> names; // by name of the expression
 
-  Compiled(std::string_view text, const Names& known) : expression(text) {
+  Compiled(std::string_view text, const GivenNames& known) : expression(text) {
     for (const std::string& name : expression.names())
       names.push_back(known.find(name));
   }
-  void expect_unit(std::string_view unit, const Names& known) const {
+  void expect_unit(std::string_view unit, const GivenNames& known) const {
     std::vector<ValueDimension> dimensions;
     for (const std::size_t name : names)
       dimensions.push_back(known.dimension(name));
-    const ValueDimension found = expression.dimension(dimensions);
-    const Dimension wanted = parse_unit(unit).value_or(Unit{}).dimension.without_angle();
-    if (!found.plain && !(found.dimension == wanted))
-      throw ExpressionError("expected " + (unit.empty() ? "a number" : std::string(unit)) + ", found " +
-                            dimension_text(found.dimension));
+    expect_dimension(expression.dimension(dimensions), unit);
   }
   Dual evaluate(const std::vector<Dual>& values) const {
     const Dual value = expression.evaluate(values, names);
@@ -174,7 +105,7 @@ struct Definition {
   Compiled compiled;
 };
 
-std::vector<Definition> definitions_of(Mechanism& m, const Names& names) {
+std::vector<Definition> definitions_of(Mechanism& m, const GivenNames& names) {
   std::vector<Definition> all;
   const auto define = [&](std::size_t name, const std::string& where, const std::string& text,
                           std::string unit, double& place) {
@@ -269,7 +200,7 @@ struct FormulaPlan::State {
   std::vector<Dual> values; // of the names
 
   explicit State(Mechanism& m) : mechanism(m) {
-    const Names names(m);
+    const GivenNames names(m);
     values.resize(names.size());
     const std::vector<Definition> definitions = definitions_of(m, names);
     for (const Definition* each : in_order(definitions, names.size()))
@@ -293,7 +224,7 @@ struct FormulaPlan::State {
   }
 
   void evaluate() {
-    Names::take_values(mechanism, values);
+    GivenNames::take_values(mechanism, values);
     for (Assignment& each : assignments) {
       const Dual value = at_place(each.where, each.text, [&] { return each.compiled.evaluate(values); });
       if (each.name) values[*each.name] = value;
@@ -398,7 +329,7 @@ std::vector<std::string> sources_of(const Mechanism& mechanism, std::string_view
   std::vector<std::string> sources;
   try {
     Mechanism copy = mechanism;
-    const Names names(copy);
+    const GivenNames names(copy);
     const std::vector<Definition> definitions = definitions_of(copy, names);
     in_order(definitions, names.size()); // no circles
     const auto add = [&](const auto& self, const Compiled& compiled) -> void {
@@ -422,7 +353,7 @@ std::vector<std::string> sources_of(const Mechanism& mechanism, std::string_view
 std::vector<double> expression_gradient(const Mechanism& mechanism, std::string_view expression,
                                         const std::vector<std::string>& sources) {
   Mechanism copy = mechanism;
-  const Names names(copy);
+  const GivenNames names(copy);
   const std::vector<Definition> definitions = definitions_of(copy, names);
   const std::vector<const Definition*> order = in_order(definitions, names.size());
   return at_place("", expression, [&] {
@@ -442,7 +373,7 @@ std::vector<double> expression_gradient(const Mechanism& mechanism, std::string_
 
 double evaluate_expression(const Mechanism& mechanism, std::string_view expression, std::string_view unit,
                            const std::string& where) {
-  const Names names(mechanism);
+  const GivenNames names(mechanism);
   return at_place(where, expression, [&] {
     const Compiled compiled(expression, names);
     compiled.expect_unit(unit, names);

@@ -1,6 +1,7 @@
 #include "engine/mechanism/measure_plan.hpp"
 
 #include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/given_names.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -203,6 +204,9 @@ class MeasureCompiler {
   static std::string place_of(const NamedMeasure& measure) { return "measures." + measure.name; }
 
   void compile(const NamedMeasure& measure, MeasurePlan& plan) {
+    // What is wanted or plotted is called by its name alone.
+    if (joint_index(m_, measure.name) >= 0)
+      mistakes_.add(place_of(measure), "expected another name: a joint's coordinate is called so");
     const std::optional<Unit> unit = parse_unit(measure.unit);
     if (!unit || unit->factor != 1)
       mistakes_.add(place_of(measure) + ".unit",
@@ -223,9 +227,7 @@ class MeasureCompiler {
         if (found == plan.quantities_.end()) plan.quantities_.push_back(quantity);
       }
       const ValueDimension found = compiled.expression.dimension(names, results);
-      if (unit && !found.plain && !(found.dimension == unit->dimension.without_angle()))
-        throw ExpressionError("expected " + (measure.unit.empty() ? "a number" : measure.unit) + ", found " +
-                              dimension_text(found.dimension));
+      if (unit) expect_dimension(found, measure.unit);
     } catch (const ExpressionError& error) {
       mistakes_.add(place_of(measure), "\"=" + shortened(measure.text) + "\": " + error.what());
     }
@@ -302,12 +304,7 @@ bool MeasurePlan::fits(const Mechanism& mechanism) const {
 
 void MeasurePlan::set_numbers(const Mechanism& mechanism) {
   if (empty()) return;
-  std::size_t at = 0;
-  for (const NamedParameter& parameter : mechanism.parameters)
-    values_[at++] = {parameter.value, 0};
-  for (const NamedPoint& point : mechanism.points)
-    for (const int i : {0, 1, 2})
-      values_[at++] = {point.at[i], 0};
+  GivenNames::take_values(mechanism, values_);
 }
 
 void MeasurePlan::evaluate(std::span<const Dual> quantities, std::span<Dual> measures) {

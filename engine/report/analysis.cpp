@@ -163,14 +163,11 @@ struct Analysis::State {
     for (std::size_t i = 0; i < rates.size(); ++i)
       out.sensitivities.push_back(name_rates(system, addresses[i], rates[i]));
     if (measures.empty() || rates.empty()) return;
-    Workspace& w = steady.elsewhere();
-    const Eigen::VectorXd& q = steady.found.z.q;
-    measures.evaluate_at(problem, q, w);
-    const Eigen::MatrixXd along = measures.gradient(problem, q, w, w.elsewhere());
+    const Eigen::MatrixXd along =
+        measures.rates_along(problem, *mechanism, addresses, steady.found.z.q, rates, steady.elsewhere());
     for (std::size_t i = 0; i < rates.size(); ++i) {
-      const Eigen::VectorXd rate =
-          along * rates[i] + measures.parameter_rates(problem, *mechanism, addresses[i], q, w);
-      out.sensitivities[i].measures.assign(rate.data(), rate.data() + rate.size());
+      const auto rate = along.col(static_cast<Eigen::Index>(i));
+      out.sensitivities[i].measures.assign(rate.begin(), rate.end());
     }
   }
 

@@ -4,8 +4,8 @@
 
 #include "engine/kkt/workspace.hpp"
 #include "engine/mechanism/measure_plan.hpp"
+#include "engine/report/clearance.hpp"
 #include "engine/solve/solution.hpp"
-#include "engine/system/point_motion.hpp"
 #include "engine/system/reactions.hpp"
 
 namespace flyball {
@@ -20,6 +20,10 @@ struct MeasuredState {
   const TransmittedForces* forces = nullptr; // needed where MeasureSet::needs_forces()
   bool accelerated = true;                   // the kinematics' accelerations are known
   std::span<const double> coordinates{}, rates{};
+
+  // Of a coordinate of a joint, as listed: rad or m, as the joint labels it, and rad/s or m/s.
+  double coordinate(int listed) const;
+  double rate(int listed) const;
 };
 
 // Read once a topology; a change of numbers reads nothing again.
@@ -51,6 +55,13 @@ class MeasureSet {
   const Eigen::MatrixXd& gradient(const Problem& problem, const Eigen::VectorXd& q, const Workspace& w,
                                   Workspace& elsewhere, bool all_differences = false);
 
+  // (measures, addresses): their rates along the steady states of the mechanism, per unit of the number at an
+  // address, where the coordinates' are `rates` (by address, see sensitivities()). Evaluates at q. Not a
+  // number where a measure has none, or where the number cannot be moved.
+  Eigen::MatrixXd rates_along(const Problem& problem, const Mechanism& mechanism,
+                              std::span<const std::string> addresses, const Eigen::VectorXd& q,
+                              std::span<const Eigen::VectorXd> rates, Workspace& w);
+
   // Their rates by the number at an address, per its unit, while the coordinates stand: by central
   // differences (relative error about 1e-9). Not a number where the number cannot be moved.
   Eigen::VectorXd parameter_rates(const Problem& problem, const Mechanism& mechanism,
@@ -75,18 +86,15 @@ class MeasureSet {
     std::optional<double> lower, upper; // stops
     double mass = 0;
     std::size_t first_solid = 0, second_solid = 0, last_solid = 0; // in solids_: of one body, of the other
-    bool differenced = false;                                      // its rates are found by differences
+    bool between_bodies = false; // a clearance; else of a coordinate to its stops
+    double below(double q) const;
+    double above(double q) const;
+    bool differenced = false; // its rates are found by differences
   };
-  // A sphere, or what is within a radius of a line.
-  struct Solid {
-    TrackedPoint from, to;
-    double radius = 0;
-  };
-
   void find_places(const Mechanism& mechanism, const System& system);
   double value(const MeasuredState& state, std::size_t quantity) const;
   void evaluate_quantities(const MeasuredState& state);
-  double clearance(const MeasuredState& state, const Place& place, Eigen::VectorXd* rates) const;
+  Clearance solid_clearance(const MeasuredState& state, const Place& place) const;
   // Adds the rates of a quantity to a row of quantity_rates_.
   void rates(const MeasuredState& state, std::size_t quantity, Eigen::VectorXd& out) const;
   // By how much of it a quantity may be wrong by rounding alone, in parts of 1e-16.

@@ -1,5 +1,6 @@
 #include "engine/report/report.hpp"
 
+#include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/messages.hpp"
@@ -129,10 +130,8 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
 std::vector<std::pair<std::string, double>> start_values(const std::vector<CoordinateSolution>& coordinates) {
   std::vector<std::pair<std::string, double>> values;
   for (const CoordinateSolution& c : coordinates)
-    if (c.speed)
-      values.emplace_back(coordinate_label(c) + ".speed", *c.speed);
-    else if (!c.driven && !c.dependent)
-      values.emplace_back(coordinate_label(c), c.value);
+    if (const auto found = found_number(c); found && !c.dependent)
+      values.emplace_back(found->name, found->value);
   return values;
 }
 
@@ -218,31 +217,12 @@ Sensitivity name_rates(const System& system, const std::string& address, const E
   return out;
 }
 
-namespace {
-
-// "joint.speed" or "joint.index.speed" of a drive by torque; null where the name is another's.
-const Link* link_of_speed(const System& system, std::string_view name) {
-  constexpr std::string_view ending = ".speed";
-  if (!name.ends_with(ending)) return nullptr;
-  name.remove_suffix(ending.size());
-  for (const CoordinateInfo& c : system.coordinates) {
-    const Link& link = system.links[static_cast<std::size_t>(c.link)];
-    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-    const bool single = coordinate_count(joint.type) == 1;
-    if (finds_speed(link) && name == (single ? joint.name : joint.name + "." + std::to_string(c.index)))
-      return &link;
-  }
-  return nullptr;
-}
-
-} // namespace
-
 void set_start(const System& system, const Parameters& parameters,
                const std::vector<std::pair<std::string, double>>& start, Eigen::VectorXd& q) {
   std::vector<std::optional<double>> values(system.coordinates.size());
   for (const auto& [name, value] : start) {
-    if (const Link* turning = link_of_speed(system, name)) {
-      q[turning->q] = value;
+    if (const CoordinateInfo* turning = coordinate_of_speed(system, name)) {
+      q[system.links[static_cast<std::size_t>(turning->link)].q] = value;
       continue;
     }
     const auto named = [&system, &name = name](const CoordinateInfo& c) { // clang captures no binding

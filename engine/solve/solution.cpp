@@ -1,5 +1,7 @@
 #include "engine/solve/solution.hpp"
 
+#include "engine/mechanism/text.hpp"
+
 namespace flyball {
 
 std::string_view word(Status status) {
@@ -45,6 +47,12 @@ std::string_view word(StabilityReason reason) {
   case StabilityReason::varying: return "varying";
   }
   return "";
+}
+
+std::optional<FoundNumber> found_number(const CoordinateSolution& c) {
+  if (!is_found(c)) return std::nullopt;
+  if (!c.speed) return FoundNumber{coordinate_label(c), c.value, c.error, c.angle ? "rad" : "m"};
+  return FoundNumber{coordinate_label(c) + ".speed", *c.speed, c.speed_error, c.angle ? "rad/s" : "m/s"};
 }
 
 } // namespace flyball

@@ -75,6 +75,20 @@ struct CoordinateSolution {
   bool dependent = false;        // of a joint that closes a loop: follows from the others, and starts nothing
 };
 
+// Whether a steady state finds something of a coordinate, which no drive prescribes: where it stands, or how
+// fast a drive by torque turns it.
+inline bool is_found(const CoordinateSolution& coordinate) {
+  return coordinate.speed || !coordinate.driven;
+}
+
+struct FoundNumber {
+  std::string name; // "slide", "spin.speed"; with the index where the joint has several
+  double value = 0, error = 0;
+  std::string_view unit; // "rad", "m", "rad/s", "m/s"
+};
+// Nothing where it finds none.
+std::optional<FoundNumber> found_number(const CoordinateSolution& coordinate);
+
 struct JointMultipliers {
   std::string joint;          // a cut joint
   std::vector<double> values; // N or N m, one per constraint equation

@@ -5,14 +5,13 @@
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/error.hpp"
-#include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/report.hpp"
 #include "engine/search/all_equilibria.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/sensitivity.hpp"
+#include "engine/study/wanted.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -35,10 +34,8 @@ class Designer {
     if (const CoordinateInfo* c = wanted_.coordinate) {
       const TreeJoint& joint = system_.tree_joints[static_cast<std::size_t>(c->tree_joint)];
       out_.coordinate = {joint.name, c->index, coordinate_count(joint.type), c->angle, false, value_, 0};
-      out_.unit = c->angle ? "rad" : "m";
-    } else {
-      out_.unit = mechanism_.measures[wanted_.measure].unit;
     }
+    out_.unit = unit_of(mechanism_, system_, wanted_);
     BranchOptions follow;
     follow.largest_step = options_.largest_step;
     follow.eigenvalues = false;
@@ -60,25 +57,6 @@ class Designer {
   }
 
  private:
-  // A coordinate, or where that is null a measure.
-  struct Wanted {
-    const CoordinateInfo* coordinate = nullptr;
-    std::size_t measure = 0;
-  };
-  static Wanted find_wanted(const Mechanism& mechanism, const System& system, const std::string& name) {
-    const int measure = measure_index(mechanism, name);
-    try {
-      return {&free_coordinate(system, name)};
-    } catch (const SceneError& error) {
-      if (measure >= 0) return {nullptr, static_cast<std::size_t>(measure)};
-      if (mechanism.measures.empty()) throw;
-      std::vector<std::string_view> names;
-      for (const NamedMeasure& each : mechanism.measures)
-        names.push_back(each.name);
-      throw SceneError(error.where(), error.expected() + "; or one of the measures " + word_list(names));
-    }
-  }
-
   void prepare() {
     const double largest = std::max({std::abs(value_), std::abs(out_.lowest), std::abs(out_.highest)});
     if (!wanted_.coordinate && std::isfinite(largest) && largest > 0) scale_ = largest;
@@ -102,24 +80,19 @@ class Designer {
 
   bool cancelled() const { return options_.cancel && options_.cancel->load(std::memory_order_relaxed); }
   // What differences of values are measured by.
-  double unit() const {
-    if (!wanted_.coordinate) return scale_;
-    return wanted_.coordinate->angle ? 1 : balance_->problem().parameters.length;
-  }
+  double unit() const { return scale_of(system_, balance_->problem().parameters, wanted_).value_or(scale_); }
   double away(double value) const {
-    if (!wanted_.coordinate) return value - value_;
-    return away_from(system_, balance_->problem().parameters, *wanted_.coordinate, value, value_);
+    return away_from(system_, balance_->problem().parameters, wanted_, value, value_);
   }
   // Not a number where the measure is undefined.
   double value_of(const ResponsePoint& p) const {
     if (!wanted_.coordinate)
       return p.measures[wanted_.measure].value.value_or(std::numeric_limits<double>::quiet_NaN());
     const auto& joint = out_.coordinate.joint;
-    return std::ranges::find_if(p.coordinates,
-                                [&](const CoordinateSolution& c) {
-                                  return c.joint == joint && c.index == wanted_.coordinate->index;
-                                })
-        ->value;
+    const auto found = std::ranges::find_if(p.coordinates, [&](const CoordinateSolution& c) {
+      return c.joint == joint && c.index == wanted_.coordinate->index;
+    });
+    return found->speed.value_or(found->value);
   }
 
   void find_range() {
@@ -213,23 +186,14 @@ class Designer {
     const auto rates = sensitivities(factor_at(problem, state.z, w), balance_->mechanism(), {&address_, 1});
     if (!rates.empty()) {
       if (wanted_.coordinate)
-        s.rate =
-            coordinate_gradient(system_, problem.parameters, state.z.q, *wanted_.coordinate).dot(rates[0]);
-      else
-        s.rate = measure_rate(problem, state.z.q, rates[0], w);
+        s.rate = found_gradient(system_, problem.parameters, state.z.q, *wanted_.coordinate).dot(rates[0]);
+      else if (const double rate =
+                   measures_.rates_along(problem, balance_->mechanism(), {&address_, 1}, state.z.q, rates,
+                                         w)(static_cast<Eigen::Index>(wanted_.measure), 0);
+               std::isfinite(rate))
+        s.rate = rate;
     }
     out_.solutions.push_back(std::move(s));
-  }
-
-  // Along the equilibria, per unit of the parameter.
-  std::optional<double> measure_rate(const Problem& problem, const Eigen::VectorXd& q,
-                                     const Eigen::VectorXd& rate, Workspace& w) {
-    measures_.bind(balance_->mechanism(), system_, problem.parameters);
-    measures_.evaluate_at(problem, q, w);
-    const auto i = static_cast<Eigen::Index>(wanted_.measure);
-    const double along = measures_.gradient(problem, q, w, w.elsewhere()).row(i).dot(rate);
-    const double all = along + measures_.parameter_rates(problem, balance_->mechanism(), address_, q, w)[i];
-    return std::isfinite(all) ? std::optional(all) : std::nullopt;
   }
 
   void conclude() {

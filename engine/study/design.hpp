@@ -39,9 +39,8 @@ struct DesignAnswer {
   double run_time_s = 0;
 };
 
-// `wanted` is a free coordinate, "joint" or "joint.index", else a measure; `value` in rad or m (angles
-// without spring or stop modulo turns) or the measure's unit. Throws SceneError for an address or a
-// coordinate that does not exist or is driven.
+// `wanted` as of find_wanted(); `value` in its unit (angles without spring or stop modulo turns). Throws
+// SceneError for an address or a coordinate that does not exist or is driven.
 DesignAnswer design(const Mechanism& mechanism, const std::string& address, double from, double to,
                     const std::string& wanted, double value, const DesignOptions& options = {});
 

@@ -157,22 +157,15 @@ class GoalSeeker {
         first = false;
       }
       out += ".";
-      std::vector<std::string_view> names;
-      for (const GoalAnswer::Number& number : out_.numbers)
-        if (number.at_limit) names.push_back(number.address);
-      if (!names.empty())
-        out +=
-            std::string(names.size() == 1 ? " At the end of its range: " : " At the ends of their ranges: ") +
-            word_list(names, "and") + ".";
+      const bool limited =
+          std::ranges::any_of(out_.numbers, [](const GoalAnswer::Number& number) { return number.at_limit; });
       if (singular)
         out += " Nothing leads on from there: the steady state is singular, as at a fold or where branches "
-               "cross, or "
-               "what is wanted has no rate.";
-      if (stuck && !singular && names.empty())
+               "cross, or what is wanted has no rate.";
+      if (stuck && !singular && !limited)
         out += " Beyond it no steady state was found that follows from this one.";
     }
-    if (out_.solution.stable == false) out += " The state is unstable.";
-    return out;
+    return out + closing_words(out_);
   }
 
   const GoalOptions& options_;
@@ -184,6 +177,17 @@ class GoalSeeker {
 };
 
 } // namespace
+
+std::string closing_words(const GoalAnswer& answer) {
+  std::vector<std::string_view> names;
+  for (const GoalAnswer::Number& number : answer.numbers)
+    if (number.at_limit && (!answer.reached || answer.least)) names.push_back(number.address);
+  std::string words;
+  if (!names.empty())
+    words = std::string(names.size() == 1 ? " At the end of its range: " : " At the ends of their ranges: ") +
+            word_list(names, "and") + ".";
+  return words + (answer.solution.stable == false ? " The state is unstable." : "");
+}
 
 void tell_state(SteadyMap& map, const SteadyMap::State& state, std::span<const FreeNumber> free,
                 std::span<const Goal> goals, bool details, GoalAnswer& out) {

@@ -16,7 +16,7 @@
 namespace flyball {
 
 struct Goal {
-  std::string wanted; // a free coordinate, "joint" or "joint.index", else a measure
+  std::string wanted; // as of find_wanted()
   double value = 0; // rad or m, else in the measure's unit; of an angle without spring and stop modulo turns
   double scale = 0; // in the same: what counts as much as one of the others; 0: as above
   bool operator==(const Goal&) const = default;
@@ -55,12 +55,16 @@ struct GoalAnswer {
 GoalAnswer seek_goals(const Mechanism& mechanism, std::span<const FreeNumber> free,
                       std::span<const Goal> goals, const GoalOptions& options = {});
 
-// Those numbers at which a free coordinate or measure `objective` is least within the ranges, with the goals
+// Those numbers at which `objective`, as of find_wanted(), is least within the ranges, with the goals
 // kept where there are any: a local minimum, by sequential quadratic programming (SLSQP: D. Kraft, ACM TOMS
 // 20, 1994; as NLopt has it) from the mechanism's own numbers, or from where the goals are reached first.
 GoalAnswer minimize(const Mechanism& mechanism, std::span<const FreeNumber> free,
                     const std::string& objective, std::span<const Goal> goals,
                     const GoalOptions& options = {});
+
+// What ends a message: which numbers stand at an end of their range, where goals are not reached or something
+// was minimised, and that the state is unstable.
+std::string closing_words(const GoalAnswer& answer);
 
 // Of a state: numbers, goals, which the map knows in this order, and solution.
 void tell_state(SteadyMap& map, const SteadyMap::State& state, std::span<const FreeNumber> free,

@@ -17,7 +17,6 @@ using State = SteadyMap::State;
 
 constexpr int most_evaluations = 1000;
 constexpr double kept_within = 1e-11; // scaled: the goals
-constexpr int most_halvings = 12;     // of a way along which the state does not follow
 
 class Minimizer {
  public:
@@ -118,22 +117,8 @@ class Minimizer {
 
   // Moves now_ along its branch towards x, as far as there are steady states; whether it arrived.
   bool go_to(const Eigen::VectorXd& x) {
-    const Eigen::VectorXd end = unscaled(x);
-    double part = 1;
-    for (int halvings = 0; now_.p != end && known_;) {
-      interruption_point();
-      std::optional<State> next =
-          map_.step_to(now_, part == 1 ? end : (now_.p + part * (end - now_.p)).eval());
-      if (!next) {
-        if (++halvings > most_halvings) break;
-        part /= 2;
-        continue;
-      }
-      now_ = std::move(*next);
-      known_ = map_.find_rates(now_);
-      part = std::min(1., 2 * part);
-    }
-    lost_ = now_.p != end;
+    lost_ = !map_.walk_to(now_, unscaled(x));
+    known_ = map_.find_rates(now_);
     return !lost_;
   }
 
@@ -188,14 +173,7 @@ class Minimizer {
       text += "; beyond it no steady state follows";
     else
       text += ": a minimum nearby, which need not be the least of all";
-    std::vector<std::string_view> names;
-    for (const GoalAnswer::Number& number : out.numbers)
-      if (number.at_limit) names.push_back(number.address);
-    if (!names.empty())
-      text +=
-          std::string(names.size() == 1 ? ". At the end of its range: " : ". At the ends of their ranges: ") +
-          word_list(names, "and");
-    return text + "." + (out.solution.stable == false ? " The state is unstable." : "");
+    return text + "." + closing_words(out);
   }
 
   const GoalOptions& options_;

@@ -23,7 +23,6 @@ namespace {
 
 using State = SteadyMap::State;
 
-constexpr int most_halvings = 6;             // of the way from the nominal state to a sample's
 constexpr std::size_t most_coordinates = 64; // that are told; of more the measures alone
 constexpr double other_states = 0.05;        // s, as of a sweep's points
 
@@ -49,11 +48,12 @@ struct OutputName {
   std::string name, unit;
 };
 
-// Free coordinates, then measures.
+// Free coordinates and speeds that are found, then measures.
 std::vector<OutputName> outputs_of(const Mechanism& mechanism) {
   std::vector<OutputName> out;
   for (const CoordinateSolution& c : Analysis(mechanism).summary().coordinates)
-    if (!c.driven && !c.dependent) out.push_back({coordinate_label(c), c.angle ? "rad" : "m"});
+    if (const auto found = found_number(c); found && !c.dependent)
+      out.push_back({found->name, std::string(found->unit)});
   if (out.size() > most_coordinates) out.clear();
   for (const NamedMeasure& measure : mechanism.measures)
     out.push_back({measure.name, measure.unit});
@@ -78,24 +78,26 @@ class Sampler {
         nominal_numbers_(nominal_numbers(mechanism, tolerances)),
         map_(mechanism, free_numbers(mechanism, tolerances), names_of(outputs), options.cancel),
         nominal_(map_.begin(options.start, first_)) {
-    if (nominal_) regular_ = map_.find_rates(*nominal_);
+    if (!nominal_ || !map_.find_rates(*nominal_)) return;
+    regular_ = true;
+    rates_ = map_.rates();
   }
 
   const Solution& first() const { return first_; }
   const std::optional<State>& nominal() const { return nominal_; }
   bool regular() const { return regular_; }
   // Of the outputs with the numbers, (outputs, numbers).
-  const Eigen::MatrixXd& rates() const { return map_.rates(); }
+  const Eigen::MatrixXd& rates() const { return rates_; }
 
   // Leaves the values of the outputs, not a number where there is none.
   SampleFate make(std::size_t i, std::span<double> values) {
     std::ranges::fill(values, std::numeric_limits<double>::quiet_NaN());
     const std::vector<double> numbers = sampled_numbers(nominal_numbers_, tolerances_, options_.seed, i);
     const Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(numbers.data(), map_.count());
-    if (const std::optional<State> state = follow(p)) {
-      const Solution solution = map_.solution(*state, false);
+    if (State state = *nominal_; map_.walk_to(state, p)) {
+      const Solution solution = map_.solution(state, false);
       if (solution.status == Status::converged) {
-        std::ranges::copy(state->values, values.begin());
+        std::ranges::copy(state.values, values.begin());
         return solution.stable == false ? SampleFate::unstable : SampleFate::followed;
       }
     }
@@ -103,27 +105,6 @@ class Sampler {
   }
 
  private:
-  // Along the branch of the nominal state.
-  std::optional<State> follow(const Eigen::VectorXd& p) {
-    if (std::optional<State> there = map_.step_to(*nominal_, p)) return there;
-    std::optional<State> now = nominal_;
-    double part = 0.5;
-    for (int halvings = 1; halvings <= most_halvings;) {
-      interruption_point();
-      std::optional<State> next = map_.step_to(*now, part == 1 ? p : (now->p + part * (p - now->p)).eval());
-      if (next) {
-        now = std::move(next);
-        if (part == 1 || !map_.find_rates(*now)) break;
-        part = std::min(1., 2 * part);
-      } else {
-        ++halvings;
-        part /= 2;
-      }
-    }
-    map_.find_rates(*nominal_);
-    return now->p == p ? now : std::nullopt;
-  }
-
   // As a scene by itself.
   SampleFate solve(const std::vector<double>& numbers, std::span<double> values) {
     Mechanism there = mechanism_;
@@ -145,7 +126,8 @@ class Sampler {
     if (solution.status != Status::converged) return SampleFate::none;
     for (std::size_t k = 0; k < outputs_.size(); ++k) {
       for (const CoordinateSolution& c : solution.coordinates)
-        if (!c.driven && coordinate_label(c) == outputs_[k].name) values[k] = c.value;
+        if (const auto found = found_number(c); found && found->name == outputs_[k].name)
+          values[k] = found->value;
       for (const MeasureSolution& measure : solution.measures)
         if (measure.name == outputs_[k].name && measure.value) values[k] = *measure.value;
     }
@@ -161,6 +143,7 @@ class Sampler {
   Solution first_;
   std::optional<State> nominal_;
   bool regular_ = false;
+  Eigen::MatrixXd rates_;
 };
 
 double quantile(const std::vector<double>& sorted, double share) {

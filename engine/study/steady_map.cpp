@@ -3,10 +3,9 @@
 #include "engine/continuation/branch_follower.hpp"
 #include "engine/continuation/branches.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/measure_plan.hpp"
-#include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/report.hpp"
 #include "engine/solve/drive_cuts.hpp"
@@ -16,11 +15,14 @@
 
 namespace flyball {
 
-constexpr double longest_correction = 0.25; // scaled, of the predicted state: more has left the branch
+// Scaled, of the state.
+constexpr double longest_correction = 0.25; // where it was predicted: more has left the branch
+constexpr double longest_way = 0.3;         // in one step
+constexpr int most_halvings = 12;           // of steps that the state does not follow
 
 SteadyMap::SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> free,
                      std::vector<std::string> wanted, const std::atomic<bool>* cancel)
-    : varied_(mechanism), system_(compile_for_drives(mechanism)), cancel_(cancel) {
+    : varied_(mechanism), cancel_(cancel) {
   if (free.empty()) throw SceneError("free numbers", "expected one or more");
   const auto n = static_cast<Eigen::Index>(free.size());
   lower_.resize(n);
@@ -33,29 +35,31 @@ SteadyMap::SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> fre
     if (std::ranges::find(addresses_, number.address) != addresses_.end())
       throw SceneError(number.address, "expected each number once");
     expect_no_found_speed(mechanism, number.address);
-    set_parameter(varied_, number.address, value); // that it may be set at all
     addresses_.push_back(number.address);
     lower_[i] = number.from;
     upper_[i] = number.to;
     p_[i] = std::clamp(value, number.from, number.to);
   }
   range_ = upper_ - lower_;
+  numbers_.emplace(varied_, addresses_);
+  system_ = compile_for_drives(inside_ranges(mechanism));
   for (const std::string& name : wanted)
-    wanted_.push_back(find_wanted(name));
+    wanted_.push_back(find_wanted(mechanism, system_, name));
 }
 
-SteadyMap::Wanted SteadyMap::find_wanted(const std::string& name) const {
-  const int measure = measure_index(varied_, name);
+// Off the ends of the ranges, so that a damper that is none there is among the system's elements.
+Mechanism SteadyMap::inside_ranges(const Mechanism& mechanism) const {
+  Mechanism inside = mechanism;
+  std::vector<ParameterValue> values;
+  for (Eigen::Index i = 0; i < count(); ++i)
+    values.push_back({addresses_[static_cast<std::size_t>(i)],
+                      p_[i] == lower_[i] || p_[i] == upper_[i] ? lower_[i] + 0.37 * range_[i] : p_[i]});
   try {
-    return {&free_coordinate(system_, name)};
-  } catch (const SceneError& error) {
-    if (measure >= 0) return {nullptr, static_cast<std::size_t>(measure)};
-    if (varied_.measures.empty()) throw;
-    std::vector<std::string_view> names;
-    for (const NamedMeasure& each : varied_.measures)
-      names.push_back(each.name);
-    throw SceneError(error.where(), error.expected() + "; or one of the measures " + word_list(names));
+    set_parameters(inside, values);
+  } catch (const SceneError&) { // of which no mechanism can be made
+    return mechanism;
   }
+  return inside;
 }
 
 bool SteadyMap::measures_wanted() const {
@@ -63,14 +67,15 @@ bool SteadyMap::measures_wanted() const {
 }
 
 // Throws SceneError where no mechanism can be made of them.
-void SteadyMap::set(const Eigen::VectorXd& p) {
-  std::vector<ParameterValue> values;
-  for (Eigen::Index i = 0; i < p.size(); ++i)
-    values.push_back({addresses_[static_cast<std::size_t>(i)], p[i]});
-  set_parameters(varied_, values);
-  validate(varied_);
+void SteadyMap::set(const Eigen::VectorXd& p, const Eigen::VectorXd& q) {
+  numbers_->set({p.data(), static_cast<std::size_t>(p.size())});
+  validate_numbers(varied_);
   bind(system_, varied_, parameters_);
   set_scaling(system_, parameters_, scaling_);
+  for (const DriveTorqueElement& torque : system_.torques) {
+    const Link& link = system_.links[static_cast<std::size_t>(torque.link)];
+    if (q.size() > 0) scaling_.column[link.v] = std::max(scaling_.column[link.v], std::abs(q[link.q]));
+  }
 }
 
 void SteadyMap::find_values(State& state) {
@@ -82,13 +87,13 @@ void SteadyMap::find_values(State& state) {
   state.values.resize(static_cast<Eigen::Index>(wanted_.size()));
   for (std::size_t i = 0; i < wanted_.size(); ++i)
     state.values[static_cast<Eigen::Index>(i)] =
-        wanted_[i].coordinate ? coordinate_value(system_, parameters_, state.z.q, *wanted_[i].coordinate)
+        wanted_[i].coordinate ? found_value(system_, parameters_, state.z.q, *wanted_[i].coordinate)
                               : (*measured)[static_cast<Eigen::Index>(wanted_[i].measure)];
 }
 
 std::optional<SteadyMap::State> SteadyMap::begin(const std::vector<std::pair<std::string, double>>& start,
                                                  Solution& first) {
-  set(p_);
+  set(p_, {});
   SolveOptions solve;
   solve.start = start;
   solve.nearest = !start.empty();
@@ -115,7 +120,10 @@ bool SteadyMap::correct(Unknowns& z) {
 }
 
 bool SteadyMap::find_rates(const State& state) try {
-  set(state.p);
+  if (state_rates_.cols() > 0 && state.p == rated_p_ && state.z.q == rated_q_)
+    return state_rates_.allFinite();
+  state_rates_.resize(0, 0);
+  set(state.p, state.z.q);
   const Problem p = problem();
   const FactoredState factored = factor_at(p, state.z, w_);
   negative_ = factored.kkt().negative_count();
@@ -125,26 +133,18 @@ bool SteadyMap::find_rates(const State& state) try {
   for (Eigen::Index k = 0; k < count(); ++k)
     state_rates_.col(k) = found[static_cast<std::size_t>(k)];
   rates_.resize(static_cast<Eigen::Index>(wanted_.size()), count());
-  Eigen::MatrixXd gradient,
-      beside; // of the measures: by the coordinates, and by the numbers while those stand
-  if (measures_wanted()) {
-    measures_.bind(varied_, system_, parameters_);
-    measures_.evaluate_at(p, state.z.q, w_);
-    gradient = measures_.gradient(p, state.z.q, w_, w_.elsewhere());
-    beside.resize(gradient.rows(), count());
-    for (Eigen::Index k = 0; k < count(); ++k)
-      beside.col(k) =
-          measures_.parameter_rates(p, varied_, addresses_[static_cast<std::size_t>(k)], state.z.q, w_);
-  }
+  Eigen::MatrixXd measured;
+  if (measures_wanted()) measured = measures_.rates_along(p, varied_, addresses_, state.z.q, found, w_);
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i), m = static_cast<Eigen::Index>(wanted_[i].measure);
+    const auto row = static_cast<Eigen::Index>(i);
     if (wanted_[i].coordinate)
       rates_.row(row) =
-          coordinate_gradient(system_, parameters_, state.z.q, *wanted_[i].coordinate).transpose() *
-          state_rates_;
+          found_gradient(system_, parameters_, state.z.q, *wanted_[i].coordinate).transpose() * state_rates_;
     else
-      rates_.row(row) = gradient.row(m) * state_rates_ + beside.row(m);
+      rates_.row(row) = measured.row(static_cast<Eigen::Index>(wanted_[i].measure));
   }
+  rated_p_ = state.p;
+  rated_q_ = state.z.q;
   return state_rates_.allFinite();
 } catch (const SceneError&) { // beside it no mechanism can be made
   return false;
@@ -157,7 +157,7 @@ double SteadyMap::way(const Eigen::VectorXd& step) const {
 
 std::optional<SteadyMap::State> SteadyMap::step_to(const State& from, const Eigen::VectorXd& p) {
   try {
-    set(p);
+    set(p, from.z.q);
   } catch (const SceneError&) {
     return std::nullopt;
   }
@@ -171,8 +171,26 @@ std::optional<SteadyMap::State> SteadyMap::step_to(const State& from, const Eige
   return to;
 }
 
+bool SteadyMap::walk_to(State& state, const Eigen::VectorXd& p) {
+  double part = 1;
+  for (int halvings = 0; state.p != p && halvings <= most_halvings;) {
+    interruption_point();
+    if (!find_rates(state)) return false;
+    const double there = way(p - state.p);
+    const double step = std::min(part, there > longest_way ? longest_way / there : 1);
+    if (std::optional<State> next = step_to(state, step == 1 ? p : (state.p + step * (p - state.p)).eval())) {
+      state = std::move(*next);
+      part = std::min(1., 2 * part);
+    } else {
+      part = step / 2;
+      ++halvings;
+    }
+  }
+  return state.p == p;
+}
+
 Solution SteadyMap::solution(const State& state, bool details) {
-  set(state.p);
+  set(state.p, state.z.q);
   forward<double>(system_, parameters_, state.z.q, 0, w_.kinematics);
   SolveOptions solve;
   solve.start = start_values(coordinate_solutions(system_, parameters_, state.z.q,
@@ -195,19 +213,15 @@ Eigen::VectorXd SteadyMap::inside(Eigen::VectorXd p) const {
 }
 
 double SteadyMap::away(std::size_t wanted, double value, double goal) const {
-  const CoordinateInfo* coordinate = wanted_[wanted].coordinate;
-  return coordinate ? away_from(system_, parameters_, *coordinate, value, goal) : value - goal;
+  return away_from(system_, parameters_, wanted_[wanted], value, goal);
 }
 
 std::string SteadyMap::unit(std::size_t wanted) const {
-  if (const CoordinateInfo* coordinate = wanted_[wanted].coordinate) return coordinate->angle ? "rad" : "m";
-  return varied_.measures[wanted_[wanted].measure].unit;
+  return unit_of(varied_, system_, wanted_[wanted]);
 }
 
 std::optional<double> SteadyMap::scale(std::size_t wanted) const {
-  if (const CoordinateInfo* coordinate = wanted_[wanted].coordinate)
-    return coordinate->angle ? 1 : parameters_.length;
-  return std::nullopt;
+  return scale_of(system_, parameters_, wanted_[wanted]);
 }
 
 } // namespace flyball

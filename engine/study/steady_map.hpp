@@ -7,8 +7,10 @@
 #pragma once
 
 #include "engine/kkt/workspace.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/measures.hpp"
+#include "engine/study/wanted.hpp"
 
 #include <optional>
 #include <span>
@@ -32,9 +34,8 @@ class SteadyMap {
     Eigen::VectorXd values; // of what is asked for: rad, m or the measure's unit
   };
 
-  // `wanted`: free coordinates, "joint" or "joint.index", else measures. Throws SceneError for addresses,
-  // coordinates and measures that do not exist, for ranges without an extent and for a number that is free
-  // twice.
+  // `wanted` as of find_wanted(). Throws SceneError as that does, for addresses that do not exist, for ranges
+  // without an extent and for a number that is free twice.
   SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> free, std::vector<std::string> wanted,
             const std::atomic<bool>* cancel);
   SteadyMap(const SteadyMap&) = delete;
@@ -57,11 +58,13 @@ class SteadyMap {
   // From the state whose rates were found last. Nothing where no steady state follows from it there. Values
   // of measures that have none are not numbers.
   std::optional<State> step_to(const State& from, const Eigen::VectorXd& p);
+  // The same by as many steps as it takes, in place: as far as steady states follow. Whether that is all the
+  // way.
+  bool walk_to(State& state, const Eigen::VectorXd& p);
 
   // All that a solve tells of a state.
   Solution solution(const State& state, bool details);
 
-  // What of `value` is left to `goal`, of angles that turn freely the short way round.
   double away(std::size_t wanted, double value, double goal) const;
   std::string unit(std::size_t wanted) const;
   // What differences are measured by: 1 rad, the mechanism's reach, of a measure nothing by itself.
@@ -75,20 +78,16 @@ class SteadyMap {
   const Eigen::VectorXd& upper() const { return upper_; }
 
  private:
-  // A coordinate, or where that is null a measure.
-  struct Wanted {
-    const CoordinateInfo* coordinate = nullptr;
-    std::size_t measure = 0;
-  };
-
   Problem problem() const { return {system_, parameters_, scaling_, cancel_, system_.kkt_form}; }
-  Wanted find_wanted(const std::string& name) const;
+  Mechanism inside_ranges(const Mechanism& mechanism) const;
   bool measures_wanted() const;
-  void set(const Eigen::VectorXd& p);
+  // The numbers, and what a speed that is found is measured by, which is that in q.
+  void set(const Eigen::VectorXd& p, const Eigen::VectorXd& q);
   void find_values(State& state);
   bool correct(Unknowns& z);
 
   Mechanism varied_;
+  std::optional<VariedNumbers> numbers_; // of it
   System system_;
   Parameters parameters_;
   Scaling scaling_;
@@ -98,8 +97,9 @@ class SteadyMap {
   Eigen::VectorXd lower_, upper_, range_, p_;
   MeasureSet measures_;
   Eigen::MatrixXd state_rates_, rates_;
-  std::optional<Analysis> analysis_; // of states that are told
-  int negative_ = 0;                 // eigenvalues of the balance, at the state with these rates
+  std::optional<Analysis> analysis_;  // of states that are told
+  int negative_ = 0;                  // eigenvalues of the balance, at the state with these rates,
+  Eigen::VectorXd rated_p_, rated_q_; // which is this one
   Workspace w_;
 };
 

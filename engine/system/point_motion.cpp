@@ -30,4 +30,38 @@ PointMotion point_motion(const Parameters& p, const Kinematics<double>& k, const
           x.dv - k.ground.dv + x.dw.cross(arm) + x.w.cross(x.w.cross(arm))};
 }
 
+namespace {
+
+PointRates point_rates(const Column<double>& column, const LinkState<double>& carrier,
+                       const LinkState<double>& link, const Vec3& x) {
+  const Vec3 arm = x - link.o, from = x - carrier.o;
+  const Vec3& w = carrier.w;
+  const Vec3 velocity = link.v + link.w.cross(arm);
+  const Vec3 relative = velocity - carrier.v - w.cross(from);
+  const Vec3 dx = column.at(x);
+  PointRates out{dx, w.cross(dx), carrier.dw.cross(dx) + w.cross(w.cross(dx))};
+  if (!column.angular) return out;
+  const Vec3 acceleration = link.dv + link.dw.cross(arm) + link.w.cross(link.w.cross(arm));
+  const Vec3 carried = carrier.dv + carrier.dw.cross(from) + w.cross(w.cross(from));
+  const Vec3 relative_acceleration = acceleration - carried - 2 * w.cross(relative);
+  const Vec3 turned = column.axis.cross(relative);
+  out.velocity += turned;
+  out.acceleration += 2 * w.cross(turned) + column.axis.cross(relative_acceleration);
+  return out;
+}
+
+} // namespace
+
+void visit_point_rates(const System& system, const Kinematics<double>& k, const TrackedPoint& point,
+                       const std::function<void(int v, const PointRates& rates)>& act) {
+  const Vec3 x = k.point(point.link, point.at);
+  for (int l = point.link; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
+    const Link& link = system.links[static_cast<std::size_t>(l)];
+    if (link.v < 0) continue;
+    const int count = link.type == LinkType::spherical ? 3 : 1;
+    for (int v = link.v; v < link.v + count; ++v)
+      act(v, point_rates(k.columns[static_cast<std::size_t>(v)], k.at(link.parent), k.at(point.link), x));
+  }
+}
+
 } // namespace flyball

@@ -4,6 +4,8 @@
 #include "engine/mechanism/body_point.hpp"
 #include "engine/system/kinematics.hpp"
 
+#include <functional>
+
 namespace flyball {
 
 // A point of a body as the passes see it.
@@ -20,5 +22,17 @@ TrackedPoint find_point(const System& system, const Mechanism& mechanism, const 
 // does.
 PointMotion point_motion(const Parameters& parameters, const Kinematics<double>& kinematics,
                          const TrackedPoint& point);
+
+// How a point changes as one coordinate of q_R moves at unit rate, in the field of motion that the drives
+// make (q_R' = 0). What lies beyond the coordinate is displaced as a rigid body in the carrier's frame P, and
+// with it its motion relative to P, while P's own motion is felt at the new place:
+//   v = v_P(x) + v_rel,  a = a_P(x) + 2 w_P x v_rel + a_rel.
+struct PointRates {
+  Vec3 position, velocity, acceleration; // a rad or m
+};
+
+// Calls act(v, rates of the point) for every coordinate of q_R that moves it.
+void visit_point_rates(const System& system, const Kinematics<double>& kinematics, const TrackedPoint& point,
+                       const std::function<void(int v, const PointRates& rates)>& act);
 
 } // namespace flyball

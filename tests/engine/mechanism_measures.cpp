@@ -128,34 +128,34 @@ TEST_CASE("A circle through several measures names them", "[measures]") {
 
 TEST_CASE("Only measures ask for results", "[measures]") {
   for (const auto& [find, replace] : std::vector<std::pair<std::string, std::string>>{
-    {R"("value": "=L/2")", R"-("value": "=x(arm)")-"}, {R"("=W.y")", R"-("=speed(arm)*1 s")-"}}) {
+           {R"("value": "=L/2")", R"-("value": "=x(arm)")-"}, {R"("=W.y")", R"-("=speed(arm)*1 s")-"}}) {
     try {
-        read_scene(edited(find, replace));
-        FAIL("no mistake");
-      } catch (const SceneError& error) {
-        CHECK(std::string(error.what()).find("only measures can use results") != std::string::npos);
-      }
+      read_scene(edited(find, replace));
+      FAIL("no mistake");
+    } catch (const SceneError& error) {
+      CHECK(std::string(error.what()).find("only measures can use results") != std::string::npos);
     }
+  }
 }
 
 TEST_CASE("Measures are written as they are read", "[measures]") {
-    const Mechanism m =
-        with_measures({{"far", "how far", "distance(arm@W, ball)", "m"}, {"n", "", "x(arm) / L", ""}});
-    const std::string text = write_scene(m);
-    CHECK(text.find("\"flyball\": 2") != std::string::npos);
-    CHECK(text.find("\"value\": \"=distance(arm@W, ball)\"") != std::string::npos);
-    CHECK(read_scene(text) == m);
+  const Mechanism m =
+      with_measures({{"far", "how far", "distance(arm@W, ball)", "m"}, {"n", "", "x(arm) / L", ""}});
+  const std::string text = write_scene(m);
+  CHECK(text.find("\"flyball\": 2") != std::string::npos);
+  CHECK(text.find("\"value\": \"=distance(arm@W, ball)\"") != std::string::npos);
+  CHECK(read_scene(text) == m);
 }
 
 TEST_CASE("Names inside measures change with what they name", "[measures]") {
-    const std::string text = "L + x(L@L) + L.x - reaction(L) + distance( \"L\" , other@W)";
-    CHECK(renamed_in(text, "L", "length") ==
-          "length + x(L@length) + length.x - reaction(L) + distance( \"L\" , other@W)");
-    CHECK(part_renamed_in(text, ResultPart::body, "L", "left ball") ==
-          "L + x(\"left ball\"@L) + L.x - reaction(L) + distance( \"left ball\" , other@W)");
-    CHECK(part_renamed_in(text, ResultPart::joint, "L", "a\"b") ==
-          "L + x(L@L) + L.x - reaction('a\"b') + distance( \"L\" , other@W)");
-    CHECK(part_renamed_in("x(", ResultPart::body, "x", "y") == "x("); // no expression
-    CHECK(part_renamed_in("clearance(a) + clearance(a, b)", ResultPart::joint, "a", "c") ==
-          "clearance(c) + clearance(a, b)");
+  const std::string text = "L + x(L@L) + L.x - reaction(L) + distance( \"L\" , other@W)";
+  CHECK(renamed_in(text, "L", "length") ==
+        "length + x(L@length) + length.x - reaction(L) + distance( \"L\" , other@W)");
+  CHECK(part_renamed_in(text, ResultPart::body, "L", "left ball") ==
+        "L + x(\"left ball\"@L) + L.x - reaction(L) + distance( \"left ball\" , other@W)");
+  CHECK(part_renamed_in(text, ResultPart::joint, "L", "a\"b") ==
+        "L + x(L@L) + L.x - reaction('a\"b') + distance( \"L\" , other@W)");
+  CHECK(part_renamed_in("x(", ResultPart::body, "x", "y") == "x("); // no expression
+  CHECK(part_renamed_in("clearance(a) + clearance(a, b)", ResultPart::joint, "a", "c") ==
+        "clearance(c) + clearance(a, b)");
 }

@@ -14,37 +14,33 @@ namespace {
 // With more coordinates than this each takes one line, and the rest appears over it.
 constexpr int spacious = 8;
 
-// Free coordinates, and speeds of drives by torque.
-bool is_found(const CoordinateSolution& c) {
-  return c.speed || !c.driven;
-}
-
 void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
+  const auto [name, value, error, si] = *found_number(c);
   const NumberStyle& numbers = app.options.numbers;
   const UiColors& colors = colors_of(app);
-  const ShownUnit unit = c.speed ? rate_unit(c.angle, app.units) : coordinate_unit(c.angle, app.units);
-  const std::string si = std::string(c.angle ? "rad" : "m") + (c.speed ? "/s" : "");
-  const double value = c.speed.value_or(c.value), error = c.speed ? c.speed_error : c.error;
+  const ShownUnit unit = shown_unit(si, app.units);
   row(app, coordinate_label(c), value_text(unit.shown(value), error * unit.factor, numbers),
       unit.text.c_str(),
-      c.speed       ? "The steady speed: there the drive's torque, less its load, is what turning takes."
-      : c.dependent ? "The joint closes a loop: this follows from the other coordinates."
-                    : nullptr);
-  if (c.dependent || c.speed)
-    note_widget(app.widgets, "results/" + coordinate_label(c));
-  else
-    goal_handle(app, {.name = "results/" + coordinate_label(c),
-                      .wanted = coordinate_label(c),
-                      .value = c.value,
-                      .unit = si});
-  std::string second = value_text(value, error, numbers) + " " + si;
-  if (error > 0) second += "  ± " + magnitude_text(std::max(error, numbers.noise), numbers) + " " + si;
-  if (compact)
-    help_on_hover(second.c_str());
-  else {
-    right_digits(app, second, colors.dim);
-    ImGui::Dummy({0, 0});
+      c.dependent ? "The joint closes a loop: this follows from the other coordinates." : nullptr);
+  const std::string in_si = " " + std::string(si), widget = "results/" + coordinate_label(c);
+  std::string second = value_text(value, error, numbers) + in_si;
+  if (error > 0) second += "  ± " + magnitude_text(std::max(error, numbers.noise), numbers) + in_si;
+  if (c.dependent) {
+    note_widget(app.widgets, widget);
+    if (compact) help_on_hover(second.c_str());
+  } else {
+    goal_handle(app, {.name = widget,
+                      .wanted = name,
+                      .value = value,
+                      .unit = std::string(si),
+                      .help = c.speed ? "The steady speed: there the drive's torque, less its load, is what "
+                                        "turning takes."
+                              : compact ? second
+                                        : ""});
   }
+  if (compact) return;
+  right_digits(app, second, colors.dim);
+  ImGui::Dummy({0, 0});
 }
 
 } // namespace

@@ -1,0 +1,211 @@
+// How measures change along steps of the coordinates and with numbers of the mechanism.
+#include "engine/report/measures.hpp"
+
+#include "engine/kkt/coordinate_gradient.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
+#include "engine/system/joint_coordinates.hpp"
+#include "engine/system/residual.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace flyball {
+namespace {
+
+constexpr int largest_for_differences = 64; // coordinates: the balance is evaluated twice for each
+
+Vec3 place_of(const MeasuredState& s, const TrackedPoint& point) {
+  return s.kinematics.point(point.link, point.at);
+}
+
+// v / |v|; of no length none, so that what has no rate has the rate zero.
+Vec3 direction(const Vec3& v) {
+  const double length = v.norm();
+  return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
+}
+
+// Adds `factor` times a coordinate's rates.
+void add_coordinate_rates(const MeasuredState& s, int reported, double factor, Eigen::VectorXd& out) {
+  const ReportedCoordinate& r = s.system.reported[static_cast<std::size_t>(reported)];
+  if (r.cut < 0) {
+    out += factor * coordinate_gradient(s.system, s.parameters, s.q,
+                                        s.system.coordinates[static_cast<std::size_t>(r.coordinate)]);
+    return;
+  }
+  const CutJoint& cut = s.system.cuts[static_cast<std::size_t>(r.cut)];
+  const CutParameters& numbers = s.parameters.cuts[static_cast<std::size_t>(r.cut)];
+  const JointCoordinates joint = joint_coordinates(cut, numbers, s.kinematics);
+  for (const SupportColumn& column : cut.ends.support)
+    out[column.v] +=
+        factor * joint.rate.row(r.index).dot(relative_velocity(cut, numbers, s.kinematics, column));
+}
+
+} // namespace
+
+void MeasureSet::rates(const MeasuredState& s, std::size_t i, Eigen::VectorXd& out) const {
+  const ResultQuantity& quantity = plan_.quantities()[i];
+  const Place& place = places_[i];
+  const auto along = [&](const TrackedPoint& point, const Vec3& n, Vec3 PointRates::*of) {
+    visit_point_rates(s.system, s.kinematics, point,
+                      [&](int v, const PointRates& rate) { out[v] += n.dot(rate.*of); });
+  };
+  const auto axis = [&](Result first) {
+    return Vec3(Vec3::Unit(static_cast<int>(quantity.result) - static_cast<int>(first)));
+  };
+  const auto apart = [&](const TrackedPoint& a, const TrackedPoint& b, double factor) {
+    const Vec3 n = factor * direction(place_of(s, b) - place_of(s, a));
+    along(b, n, &PointRates::position);
+    along(a, -n, &PointRates::position);
+  };
+  const TrackedPoint& point = place.points[0];
+  switch (quantity.result) {
+  case Result::coordinate: return add_coordinate_rates(s, place.reported, 1, out);
+  case Result::x:
+  case Result::y:
+  case Result::z: return along(point, axis(Result::x), &PointRates::position);
+  case Result::vx:
+  case Result::vy:
+  case Result::vz: return along(point, axis(Result::vx), &PointRates::velocity);
+  case Result::ax:
+  case Result::ay:
+  case Result::az: return along(point, axis(Result::ax), &PointRates::acceleration);
+  case Result::speed:
+    return along(point, direction(point_motion(s.parameters, s.kinematics, point).velocity),
+                 &PointRates::velocity);
+  case Result::acceleration:
+    return along(point, direction(point_motion(s.parameters, s.kinematics, point).acceleration),
+                 &PointRates::acceleration);
+  case Result::distance: return apart(point, place.points[1], 1);
+  case Result::angle: {
+    const Vec3 corner = place_of(s, place.points[1]);
+    const Vec3 u = place_of(s, point) - corner, w = place_of(s, place.points[2]) - corner;
+    const Vec3 a = u.normalized(), b = w.normalized();
+    const double sine = a.cross(b).norm(), cosine = a.dot(b); // zero: no rate, which is not a number
+    const Vec3 by_u = -(b - cosine * a) / (u.norm() * sine), by_w = -(a - cosine * b) / (w.norm() * sine);
+    along(point, by_u, &PointRates::position);
+    along(place.points[2], by_w, &PointRates::position);
+    return along(place.points[1], -by_u - by_w, &PointRates::position);
+  }
+  case Result::length:
+  case Result::tension: {
+    const PairEnds& ends = s.system.springs[static_cast<std::size_t>(place.spring)].ends;
+    const PointSpringParameters& p = s.parameters.springs[static_cast<std::size_t>(place.spring)];
+    return apart({ends.a, p.a}, {ends.b, p.b}, quantity.result == Result::length ? 1 : p.stiffness);
+  }
+  case Result::spring: return add_coordinate_rates(s, place.reported, -place.stiffness, out);
+  case Result::clearance: {
+    if (!place.between_bodies) {
+      const double q = s.coordinate(place.reported);
+      return add_coordinate_rates(s, place.reported, place.below(q) < place.above(q) ? 1 : -1, out);
+    }
+    // What the nearest points do along the lines changes their distance in second order only.
+    const Clearance least = solid_clearance(s, place);
+    if (std::isfinite(least.gap)) apart(least.a, least.b, 1);
+    return;
+  }
+  default: return; // constant, or by differences
+  }
+}
+
+// Of the quantities that have no other rates.
+void MeasureSet::difference(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
+  constexpr double h = 1e-5; // of a radian, or of the reach
+  const std::vector<double> here = found_;
+  std::vector<double> forth;
+  Eigen::VectorXd moved, step = Eigen::VectorXd::Zero(problem.system.nv);
+  for (Eigen::Index v = 0; v < problem.system.nv; ++v) {
+    const double length = h * problem.scaling.column[v];
+    for (const double sign : {1., -1.}) {
+      step[v] = sign * length;
+      moved = q;
+      retract<double>(problem.system, step, moved);
+      evaluate_at(problem, moved, w);
+      if (sign > 0) forth = found_;
+    }
+    step[v] = 0;
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      if (places_[i].differenced)
+        quantity_rates_(static_cast<Eigen::Index>(i), v) = (forth[i] - found_[i]) / (2 * length);
+  }
+  found_ = here;
+}
+
+const Eigen::MatrixXd& MeasureSet::gradient(const Problem& problem, const Eigen::VectorXd& q,
+                                            const Workspace& w, Workspace& elsewhere, bool all_differences) {
+  const auto count = static_cast<Eigen::Index>(places_.size());
+  const auto measures = static_cast<Eigen::Index>(size());
+  quantity_rates_.setZero(count, problem.system.nv);
+  if (all_differences || problem.system.nv <= largest_for_differences) {
+    if (differenced_) difference(problem, q, elsewhere);
+  } else {
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (places_[static_cast<std::size_t>(i)].differenced)
+        quantity_rates_.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  const MeasuredState state{problem.system, problem.parameters, q, w.kinematics};
+  Eigen::VectorXd row;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (places_[static_cast<std::size_t>(i)].differenced) continue;
+    row.setZero(problem.system.nv);
+    rates(state, static_cast<std::size_t>(i), row);
+    quantity_rates_.row(i) = row;
+  }
+  partials_.resize(measures, count);
+  combine();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Dual& seed = duals_[static_cast<std::size_t>(i)];
+    seed.rate = 1;
+    plan_.evaluate(duals_, combined_);
+    seed.rate = 0;
+    for (Eigen::Index j = 0; j < measures; ++j)
+      partials_(j, i) = combined_[static_cast<std::size_t>(j)].rate;
+  }
+  rates_.setZero(measures, problem.system.nv);
+  for (Eigen::Index j = 0; j < measures; ++j)
+    for (Eigen::Index i = 0; i < count; ++i) // what does not enter may be without a rate
+      if (partials_(j, i) != 0) rates_.row(j) += partials_(j, i) * quantity_rates_.row(i);
+  return rates_;
+}
+
+Eigen::MatrixXd MeasureSet::rates_along(const Problem& problem, const Mechanism& mechanism,
+                                        std::span<const std::string> addresses, const Eigen::VectorXd& q,
+                                        std::span<const Eigen::VectorXd> rates, Workspace& w) {
+  bind(mechanism, problem.system, problem.parameters);
+  evaluate_at(problem, q, w);
+  const Eigen::MatrixXd along = gradient(problem, q, w, w.elsewhere());
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(size()), static_cast<Eigen::Index>(addresses.size()));
+  for (std::size_t k = 0; k < addresses.size(); ++k)
+    out.col(static_cast<Eigen::Index>(k)) =
+        along * rates[k] + parameter_rates(problem, mechanism, addresses[k], q, w);
+  return out;
+}
+
+Eigen::VectorXd MeasureSet::parameter_rates(const Problem& problem, const Mechanism& mechanism,
+                                            const std::string& address, const Eigen::VectorXd& q,
+                                            Workspace& w) {
+  const double value = get_parameter(mechanism, address);
+  const double h = 1e-6 * (std::abs(value) > 1e-100 ? std::abs(value) : 1.);
+  Eigen::VectorXd sides[2];
+  Mechanism varied = mechanism;
+  Parameters numbers;
+  try {
+    VariedNumbers number(varied, {&address, 1});
+    for (const int side : {0, 1}) {
+      number.set(std::array{side == 0 ? value + h : value - h});
+      flyball::bind(problem.system, varied, numbers);
+      bind(varied, problem.system, numbers);
+      sides[side] = evaluate_at({problem.system, numbers, problem.scaling}, q, w);
+    }
+    bind(mechanism, problem.system, problem.parameters);
+    return (sides[0] - sides[1]) / (2 * h);
+  } catch (const SceneError&) { // expressions make no mechanism of it
+    bind(mechanism, problem.system, problem.parameters);
+    return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(size()),
+                                     std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+} // namespace flyball
