@@ -169,8 +169,9 @@ std::string tool_hint(const App& app) {
   case Tool::rotate:
     return app.selection().empty() ? "Select what is to be turned." : "Drag a ring. Esc ends.";
   case Tool::pull:
-    return app.mode == Mode::build ? "Drag a body: it moves along its joints. Esc ends."
-                                   : "Drag a body: a spring pulls it; with Shift sliders bring it there. Esc ends.";
+    return app.mode == Mode::build
+               ? "Drag a body: it moves along its joints. Esc ends."
+               : "Drag a body: a spring pulls it; with Shift sliders bring it there. Esc ends.";
   case Tool::box: return "Drag a frame round the parts; Shift adds. Esc ends.";
   case Tool::ball:
     return "Click where the centre is, or drag from there to the radius; it can be typed. Esc ends.";

@@ -22,6 +22,19 @@ bool holds(const App& app) {
 
 } // namespace
 
+void ask_held(Session& session, std::shared_ptr<const Mechanism> mechanism,
+              std::vector<std::pair<std::string, double>> start, std::optional<BodyPoint> grip,
+              bool nearest) {
+  session.awaited = session.asked = session.live.ask({.mechanism = std::move(mechanism),
+                                                      .time = session.playback.time,
+                                                      .another = false,
+                                                      .warm = true,
+                                                      .nearest = nearest,
+                                                      .start = std::move(start),
+                                                      .points = told_points(session),
+                                                      .grip = std::move(grip)});
+}
+
 std::optional<HandHit> body_under_cursor(App& app, const ViewInput& input) {
   const SceneList& scene = shown_scene(app)->solid;
   // Bodies come first in the list. A joint's sign in front of one does not hide it.

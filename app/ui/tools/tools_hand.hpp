@@ -23,6 +23,11 @@ std::optional<HandHit> body_under_cursor(App& app, const ViewInput& input);
 // Where the cursor is on the plane; nothing where one looks along it.
 std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray);
 
+// Asks for the steady state of this mechanism from these coordinates, and, for a point that the hand is at,
+// how to take hold of it (LiveAnswer::grip).
+void ask_held(Session& session, std::shared_ptr<const Mechanism> mechanism,
+              std::vector<std::pair<std::string, double>> start, std::optional<BodyPoint> grip, bool nearest);
+
 // Of each.
 void take_assembly(App& app, const ViewInput& input, const HandHit& hit);
 void hold_assembly(App& app, const ViewInput& input);

@@ -34,15 +34,9 @@ std::optional<Vec3> pulled_point(const App& app, const PullGrab& grab) {
 void ask_pulled(Session& session, const PullGrab& grab, std::shared_ptr<const Mechanism> mechanism,
                 std::optional<BodyPoint> grip, bool nearest = false) {
   const bool found = converged(session) && session.answer.ticket >= session.opened;
-  session.awaited = session.asked = session.live.ask(
-      {.mechanism = std::move(mechanism),
-       .time = session.playback.time,
-       .another = false,
-       .warm = true,
-       .nearest = nearest,
-       .start = found && !nearest ? start_values(session.answer.solution.coordinates) : grab.start,
-       .points = told_points(session),
-       .grip = std::move(grip)});
+  ask_held(session, std::move(mechanism),
+           found && !nearest ? start_values(session.answer.solution.coordinates) : grab.start,
+           std::move(grip), nearest);
 }
 
 // The spring as the hand stands now; nothing before it is known how to take hold.

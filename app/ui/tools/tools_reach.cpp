@@ -126,14 +126,7 @@ void take_reach(App& app, const ViewInput& input, const HandHit& hit) {
   app.notice.clear();
   const BodyPoint grip{hit.body, drawn_point(m, app.poses, body, hit.point)};
   app.tool.reach = std::move(grab);
-  app.awaited = app.asked = app.live.ask({.mechanism = app.document.shared(),
-                                          .time = app.playback.time,
-                                          .another = false,
-                                          .warm = true,
-                                          .nearest = app.on_branch,
-                                          .start = start_values(app.answer.solution.coordinates),
-                                          .points = told_points(app),
-                                          .grip = grip});
+  ask_held(app, app.document.shared(), start_values(app.answer.solution.coordinates), grip, app.on_branch);
 }
 
 void hold_reach(App& app, const ViewInput& input) {

@@ -13,10 +13,8 @@ namespace flyball {
 
 namespace {
 
-void seek_value(App& app, const GoalHandle& handle, double value) {
-  later(app, [wanted = handle.wanted, value](App& changed) {
-    seek(changed, "Bring " + wanted + " to a goal", {{wanted, value}});
-  });
+void seek_value(App& app, const std::string& wanted, double value) {
+  seek(app, "Bring " + wanted + " to a goal", {{wanted, value}});
 }
 
 // Instead of the read-out while a number is typed.
@@ -81,13 +79,10 @@ void goal_handle(App& app, const GoalHandle& handle) {
                 : "Could be dragged to where it should be. " + refusal;
     help_on_hover(help.c_str());
   }
-  Scrub& scrub = app.inspector.scrub;
-  if (ImGui::IsItemActivated()) scrub = {handle.name, shown, hand_step(shown, unit.text), 0};
-  if (!ImGui::IsItemActive() || scrub.name != handle.name || ImGui::GetIO().MouseDelta.x == 0) return;
-  scrub.travelled += ImGui::GetIO().MouseDelta.x;
-  const double steps = static_cast<double>(scrub.travelled / (pixels_a_step * app.scale));
-  seek_value(app, handle,
-             unit.si(scrub.start + steps * (ImGui::GetIO().KeyShift ? scrub.step / 10 : scrub.step)));
+  if (const auto dragged = dragged_number(app, handle.name, shown, unit.text))
+    later(app, [wanted = handle.wanted, value = unit.si(*dragged)](App& changed) {
+      seek_value(changed, wanted, value);
+    });
 }
 
 } // namespace flyball

@@ -309,13 +309,8 @@ void scrub_label(App& app, const std::string& label, const QuantityField& field,
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   const ShownNumber shown(app, field);
   if (!active) help_on_hover(tooltip(field, shown, formula_of(app, field)).c_str());
-  Scrub& scrub = app.inspector.scrub;
-  if (ImGui::IsItemActivated()) scrub = {name, shown.value, hand_step(shown.value, shown.unit.text), 0};
-  if (active && draggable && scrub.name == name && ImGui::GetIO().MouseDelta.x != 0) {
-    scrub.travelled += ImGui::GetIO().MouseDelta.x;
-    const double steps = std::round(static_cast<double>(scrub.travelled / (pixels_a_step * app.scale)));
-    const double next = shown.unit.si(
-        rounded(scrub.start + steps * (ImGui::GetIO().KeyShift ? scrub.step / 10 : scrub.step)));
+  if (const auto dragged = dragged_number(app, name, shown.value, shown.unit.text); dragged && draggable) {
+    const double next = shown.unit.si(*dragged);
     if (next != field.value && too_small(next, field.least).empty()) set(app, field, next);
   }
   const UiColors& colors = colors_of(app);
@@ -336,6 +331,18 @@ void draw_letter(const App& app, int axis, const ImVec2& at) {
 }
 
 } // namespace
+
+std::optional<double> dragged_number(App& app, const std::string& name, double shown,
+                                     const std::string& unit) {
+  constexpr float pixels_a_step = 4; // points the hand travels
+  Scrub& scrub = app.inspector.scrub;
+  if (ImGui::IsItemActivated()) scrub = {name, shown, hand_step(shown, unit), 0};
+  const ImGuiIO& io = ImGui::GetIO();
+  if (!ImGui::IsItemActive() || scrub.name != name || io.MouseDelta.x == 0) return {};
+  scrub.travelled += io.MouseDelta.x;
+  const double steps = std::round(static_cast<double>(scrub.travelled / (pixels_a_step * app.scale)));
+  return rounded(scrub.start + steps * (io.KeyShift ? scrub.step / 10 : scrub.step));
+}
 
 double hand_step(double value, const std::string& unit) {
   if (value != 0) return std::pow(10, std::floor(std::log10(std::abs(value)) + 1e-9) - 2);

@@ -5,6 +5,7 @@
 #include "app/ui/app.hpp"
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace flyball {
@@ -43,7 +44,10 @@ bool is_pinned(const Mechanism& mechanism, const std::string& address);
 
 // What one step of the hand changes a number by: about a hundredth of it, a power of ten.
 double hand_step(double value, const std::string& unit);
-inline constexpr float pixels_a_step = 4; // points that a hand travels for one
+// What a hand that drags the last item sideways makes of the number it shows, in the shown unit: by such
+// steps, with Shift by tenths. Nothing where it does not drag.
+std::optional<double> dragged_number(App& app, const std::string& name, double shown,
+                                     const std::string& unit);
 
 // Pixels that labels take in rows of the present width.
 float label_width(const App& app);
