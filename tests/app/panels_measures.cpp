@@ -1,11 +1,10 @@
 // Measures by mouse and keys: added, changed, renamed, shown, plotted, wanted, removed.
-#include "robot.hpp"
+#include "desk.hpp"
 
 #include "app/document/measure_edits.hpp"
 #include "app/document/rename.hpp"
 #include "app/session/response_quantity.hpp"
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>
@@ -16,23 +15,11 @@ using namespace flyball::test;
 
 namespace {
 
-struct MeasureDesk : Robot {
-  explicit MeasureDesk(const char* scene = "governor") : Robot({1200, 1000}) {
-    const std::string file = FLYBALL_ASSETS "/scenes/" + std::string(scene) + ".json";
-    open_document(app, Document(load_scene(file), file));
-    frames(3);
-  }
-  void build() {
-    key(258); // Tab
-    frames(3);
+struct MeasureDesk : Desk {
+  explicit MeasureDesk(const char* scene = "governor") : Desk(scene, {1200, 1000}) {}
+  void build() { // and nothing selected
+    Desk::build();
     select(app, {});
-    frames(2);
-  }
-  void enter(const std::string& field, const std::string& text) {
-    frames(60); // no double click
-    click(field);
-    type(text);
-    key(key_enter);
     frames(2);
   }
   void solved() {
@@ -48,7 +35,6 @@ struct MeasureDesk : Robot {
     REQUIRE(found->value.has_value());
     return *found->value;
   }
-  const Mechanism& m() const { return app.mechanism(); }
 };
 
 double slide_of(const Session& session) {

@@ -1,43 +1,14 @@
 // Parameters and expressions by mouse and keys.
-#include "robot.hpp"
+#include "desk.hpp"
 
 #include "app/document/formula_edits.hpp"
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
 
 using namespace flyball;
 using namespace flyball::test;
-
-namespace {
-
-struct Desk : Robot {
-  explicit Desk(const char* scene = "governor") : Robot({1200, 900}) {
-    const std::string file = FLYBALL_ASSETS "/scenes/" + std::string(scene) + ".json";
-    open_document(app, Document(load_scene(file), file));
-    frames(3);
-  }
-  void pick(PartKind kind, const std::string& name) {
-    select(app, {{{kind, name}}});
-    frames(2);
-  }
-  void build() {
-    key(258); // Tab
-    frames(3);
-  }
-  void enter(const std::string& field, const std::string& text) {
-    frames(60); // no double click
-    click(field);
-    type(text);
-    key(key_enter);
-    frames(2);
-  }
-  const Mechanism& m() const { return app.mechanism(); }
-};
-
-} // namespace
 
 TEST_CASE("an expression is typed where a number is, and a number over it") {
   Desk d("governor_parametric");
