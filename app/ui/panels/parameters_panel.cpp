@@ -132,22 +132,30 @@ void parameter(App& app, const ParameterControl& control) {
   const bool pointed =
       ImGui::IsWindowHovered() &&
       ImGui::IsMouseHoveringRect(from, {from.x + room, from.y + row_height(app, control.group)});
-  const float icons = 2 * icon_width; // held, range
-  const float value_width = std::min((room - icons) * 0.5f, 150 * s);
-  const float value_at = room - value_width - icons;
+  const float value_width = std::min((room - icon_width) * 0.5f, 150 * s);
+  const float value_at = room - value_width - icon_width;
   const bool changed = control.value != control.file_value;
   const ShownUnit unit = shown_unit(control.unit, app.units);
   const auto set = [address = control.address](App& app_then, double value) {
     change_parameter(app_then, address, value);
   };
 
-  control_label(app, control, value_at - (changed ? icon_width : 0) - 4 * s);
+  // Before the value: back to what is stored, and for a pinned number whether it is held.
+  const bool pinned = control.group == ParameterGroup::pinned;
+  const float hold_at = value_at - (pinned ? icon_width : 0), reset_at = hold_at - icon_width;
+  const bool holds = pinned && (pointed || is_held(app, control.address));
+  control_label(app, control, (changed ? reset_at : holds ? hold_at : value_at) - 4 * s);
   if (changed) {
-    ImGui::SetCursorPosX(start + value_at - icon_width);
+    ImGui::SetCursorPosX(start + reset_at);
     const std::string help =
         "Back to the stored " + short_text(unit.shown(control.file_value)) + " " + unit.text;
     if (small_icon(app, name + "/reset", icon::undo, help.c_str(), true, icon_width))
       later(app, [set, value = control.file_value](App& app_then) { set(app_then, value); });
+    ImGui::SameLine();
+  }
+  if (pinned) {
+    ImGui::SetCursorPosX(start + hold_at);
+    hold_button(app, control, pointed, icon_width);
     ImGui::SameLine();
   }
   ImGui::SetCursorPosX(start + value_at);
@@ -160,11 +168,6 @@ void parameter(App& app, const ParameterControl& control) {
                   .set = set,
                   .framed = false},
                  value_width);
-  ImGui::SameLine(0, 0);
-  if (control.group == ParameterGroup::pinned)
-    hold_button(app, control, pointed, icon_width);
-  else
-    ImGui::Dummy({icon_width, 0});
   ImGui::SameLine(0, 0);
   if (small_icon(app, name + "/gear", icon::gear, "Range of the slider, pin and unpin.", pointed, icon_width))
     ImGui::OpenPopup("range");

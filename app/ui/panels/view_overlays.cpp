@@ -25,6 +25,9 @@ WidgetRect draw_line(const App& app, const PanelRect& rect, const std::string& t
   const float room = std::max(rect.width - 2 * margin - 2 * pad, 40 * s);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, room);
   const float x = std::round(rect.x + (rect.width - size.x) / 2);
+  const auto chip = app.widgets.find("explored"); // what is explored, at the right
+  if (chip != app.widgets.end() && x + size.x + 2 * pad > chip->second.from.x)
+    y = std::min(y, chip->second.from.y - 10 * s);
   y -= size.y + 8 * s;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImVec4 plate = colors.panel;
@@ -79,7 +82,8 @@ void caption(App& app, const PanelRect& rect) {
   const bool solved = converged(app);
   std::string state; // which pose it is, the legend says
   if (app.playback.time != 0 && solved)
-    state = "t = " + short_text(std::floor(app.playback.time * 100) / 100, 6) + " s after the drawn phase";
+    state = "t = " + short_text(std::floor(app.playback.time * 100) / 100, 6) + " s";
+  if (rect.width > 460 * s && !state.empty()) state += " after the drawn phase"; // beside the legend
   if (!state.empty()) {
     const ImVec2 size = ImGui::CalcTextSize(state.c_str());
     const ImVec2 from(x - 5 * s, y - 2 * s), to(x + size.x + 5 * s, y + size.y + 2 * s);
@@ -99,7 +103,8 @@ void motion_caption(App& app, const PanelRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddText(app.fonts.strong, big, at, packed(colors.text), "Motion");
   const MotionRun* shown = shown_motion(app);
-  const std::string words = motion_words(app, shown), what = shown ? words.substr(6) : "Computing…";
+  const std::string words = motion_words(app, shown); // "Motion, damped"
+  const std::string what = !shown ? "Computing…" : words.size() > 8 ? words.substr(8) : "";
   list.AddText({at.x, at.y + big + 4 * s}, packed(colors.dim), what.c_str());
 }
 

@@ -64,13 +64,13 @@ void viewport_panel(App& app, const PanelRect& rect) {
   draw_view_cube(app, rect);
   context_menu(app, input);
   caption(app, rect);
-  view_lines(app, rect);
   status_chip(app, rect);
+  explored_chip(app, rect);
+  view_lines(app, rect); // clear of both
   ImGui::End();
   if (!load_tooltip(app, input)) part_label(app);
   tool_strip(app, rect);
   legend(app, rect);
-  explored_chip(app, rect);
   error_line(app, rect);
   joint_card(app, input);
   problem_banner(app, rect);
