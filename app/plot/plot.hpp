@@ -78,6 +78,7 @@ struct PlotHeat {
 struct PlotMarker {
   double x = 0, y = 0;
   std::string label;
+  std::string pull{}; // what a grip beside it does, which can be pulled anywhere; empty: it has none
 };
 
 struct Plot {

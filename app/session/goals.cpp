@@ -2,6 +2,7 @@
 
 #include "app/session/session.hpp"
 #include "app/session/units.hpp"
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -45,6 +46,27 @@ std::vector<FreeNumber> free_numbers(const Session& session, const std::string& 
   return free;
 }
 
+void ask(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but,
+         SharedMechanism mechanism, Explored set) {
+  begin_gesture(session);
+  session.goals.revision = session.document.revision();
+  std::string refusal = goal_refusal(session);
+  GoalRequest request{.mechanism = std::move(mechanism),
+                      .free = free_numbers(session, but),
+                      .goals = std::move(goals),
+                      .start = start_values(session.answer.solution.coordinates),
+                      .set = std::move(set),
+                      .step = step};
+  if (refusal.empty() && request.free.empty())
+    refusal = "No other number may move: pin one as a slider first.";
+  if (!refusal.empty()) return show_error(session, refusal);
+  Study<GoalRequest, GoalAnswer>& seeking = session.goals.seeking;
+  const auto& asked = seeking.asked;
+  // What the hand asks for last is sought when the one before is found: something new is seen all the time.
+  if (!asked || asked->goals != request.goals || asked->set != request.set || !seeking.running())
+    seeking.ask(session.options, std::move(request), find_numbers, BackgroundWorker::Running::finished);
+}
+
 } // namespace
 
 bool is_held(const Session& session, const std::string& address) {
@@ -54,6 +76,10 @@ bool is_held(const Session& session, const std::string& address) {
 void hold_number(Session& session, const std::string& address, bool held) {
   std::erase(session.goals.held, address);
   if (held) session.goals.held.push_back(address);
+}
+
+bool another_may_move(const Session& session, const std::string& but) {
+  return !free_numbers(session, but).empty();
 }
 
 std::string goal_refusal(const Session& session) {
@@ -71,18 +97,18 @@ void seek(Session& session, const std::string& step, std::vector<Goal> goals, co
 
 void seek(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but,
           SharedMechanism mechanism) {
-  begin_gesture(session);
-  session.goals.revision = session.document.revision();
-  std::string refusal = goal_refusal(session);
-  GoalRequest request{std::move(mechanism), free_numbers(session, but), std::move(goals),
-                      start_values(session.answer.solution.coordinates), step};
-  if (refusal.empty() && request.free.empty())
-    refusal = "No other number may move: pin one as a slider first.";
-  if (!refusal.empty()) return show_error(session, refusal);
-  Study<GoalRequest, GoalAnswer>& seeking = session.goals.seeking;
-  // What the hand asks for last is sought when the one before is found: something new is seen all the time.
-  if (!seeking.asked || seeking.asked->goals != request.goals || !seeking.running())
-    seeking.ask(session.options, std::move(request), find_numbers, BackgroundWorker::Running::finished);
+  ask(session, step, std::move(goals), but, std::move(mechanism), {});
+}
+
+void seek_beside(Session& session, const std::string& step, std::vector<Goal> goals,
+                 const ExploredValue& number) {
+  auto there = std::make_shared<Mechanism>(session.mechanism());
+  try {
+    set_parameter(*there, number.address, number.value);
+  } catch (const SceneError& error) {
+    return show_error(session, error.what());
+  }
+  ask(session, step, std::move(goals), number.address, {std::move(there)}, {number});
 }
 
 void stop_seeking(Session& session) {
@@ -135,7 +161,7 @@ void update_goals(Session& session) {
   const GoalRequest& of = state.seeking.found->of;
   const GoalAnswer& answer = state.seeking.found->result;
   if (answer.status != Status::converged) return show_error(session, answer.message);
-  Explored values;
+  Explored values = of.set;
   for (const GoalAnswer::Number& number : answer.numbers)
     values.push_back({number.address, number.value});
   go_to_numbers(session, of.step, values, start_values(answer.solution.coordinates));

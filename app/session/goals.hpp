@@ -2,6 +2,7 @@
 // that a person holds stay.
 #pragma once
 
+#include "app/document/explored.hpp"
 #include "app/session/shared_mechanism.hpp"
 #include "app/session/study.hpp"
 #include "engine/study/goals.hpp"
@@ -20,7 +21,8 @@ struct GoalRequest {
   std::vector<FreeNumber> free;
   std::vector<Goal> goals;
   std::vector<std::pair<std::string, double>> start; // the state it sets out from
-  std::string step;                                  // of the history
+  Explored set;     // what the hand itself has set in the mechanism, which goes along
+  std::string step; // of the history
   bool operator==(const GoalRequest&) const = default;
 };
 
@@ -38,6 +40,9 @@ struct GoalState {
 bool is_held(const Session& session, const std::string& address);
 void hold_number(Session& session, const std::string& address, bool held);
 
+// Whether a pinned number beside this address may move.
+bool another_may_move(const Session& session, const std::string& but);
+
 // Why no goal can be sought, a sentence; empty where one can.
 std::string goal_refusal(const Session& session);
 
@@ -48,6 +53,9 @@ void seek(Session& session, const std::string& step, std::vector<Goal> goals, co
 // The same for goals of measures that another mechanism has, like the document's else.
 void seek(Session& session, const std::string& step, std::vector<Goal> goals, const std::string& but,
           SharedMechanism mechanism);
+// The same with one number where the hand has it, which stays there.
+void seek_beside(Session& session, const std::string& step, std::vector<Goal> goals,
+                 const ExploredValue& number);
 // What is sought is not taken any more.
 void stop_seeking(Session& session);
 // What came last for the present gesture; null where there is nothing.

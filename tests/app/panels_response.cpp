@@ -3,6 +3,7 @@
 #include "robot.hpp"
 
 #include "app/session/response.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/sensitivity_line.hpp"
 #include "engine/mechanism/address.hpp"
@@ -56,6 +57,21 @@ struct ResponseRobot : Robot {
     REQUIRE(drawn().plot.marker);
     return place(drawn().plot.marker->x, drawn().plot.marker->y);
   }
+  // The marker's grip by so many pixels, in steps as of a hand.
+  void pull(float across, float down, bool let_go = true) {
+    const ImVec2 at = widget("plot/response/pull").center();
+    point(at);
+    press();
+    for (int i = 1; i <= 10; ++i) {
+      const float part = static_cast<float>(i) / 10;
+      point({at.x + part * across, at.y + part * down});
+    }
+    frames(2);
+    if (!let_go) return;
+    release();
+    frames(2);
+  }
+  double number(const std::string& address) { return get_parameter(app.mechanism(), address); }
 };
 
 // Where the curves of this name go through `x`.
@@ -188,6 +204,125 @@ TEST_CASE("the marker dragged along the curve moves parameter and mechanism as o
   robot.frames(2);
   CHECK(get_parameter(app.mechanism(), speed) == 11.0174);
   CHECK(present(app, "slide") == Approx(before));
+}
+
+TEST_CASE("the point of the curve is pulled up, and the other pinned sliders bring it there") {
+  ResponseRobot robot("governor_parametric");
+  App& app = robot.app;
+  choose_response(app, "parameters.w");
+  robot.frames(3);
+  const std::size_t steps = app.document.position();
+  const double w = robot.number("parameters.w"), before = present(app, "slide");
+  const std::string quantity = robot.state().choice.quantity;
+  REQUIRE(quantity == "value slide");
+  const auto curve = robot.state().curve.found;
+  const ImVec2 from = robot.marker();
+  robot.pull(3, -8); // a hand that trembles
+  CHECK(robot.number("parameters.w") == w);
+  CHECK(present(app, "slide") > before + 1e-3);
+  // Where the hand was, seen on the axis as it stood, and exactly as much as a pixel tells.
+  REQUIRE(sought(app));
+  CHECK(sought(app)->reached);
+  CHECK(present(app, "slide") == Approx(sought(app)->goals[0].goal).epsilon(1e-9));
+  CHECK(robot.number("parameters.L") != 0.16);
+  // The curve goes through it.
+  CHECK(robot.state().curve.found != curve);
+  CHECK(crossings(robot.drawn().plot, "stable", w).at(0) == Approx(present(app, "slide")).margin(5e-4));
+  CHECK(robot.marker().x == Approx(from.x).margin(0.5));
+  CHECK(app.document.position() == steps + 1);
+  undo(app);
+  robot.frames(3);
+  CHECK(present(app, "slide") == Approx(before).epsilon(1e-9));
+  CHECK(app.document.position() == steps);
+}
+
+TEST_CASE("pulled sideways the varied number goes along, and the place under the hand is the state's") {
+  ResponseRobot robot("governor_parametric");
+  App& app = robot.app;
+  choose_response(app, "parameters.w");
+  robot.frames(3);
+  const ImVec2 from = robot.marker();
+  const double w = robot.number("parameters.w");
+  // A little above where the curve goes now.
+  const auto area = robot.layout().x;
+  const double there = area.value(area.pixel(w) + 40);
+  const float down = robot.place(there, crossings(robot.drawn().plot, "stable", there).at(0)).y - from.y - 4;
+  robot.pull(40, down, false);
+  CHECK(std::hypot(robot.marker().x - from.x - 40, robot.marker().y - from.y - down) < 1.5f);
+  CHECK(robot.number("parameters.w") > w);
+  const double pulled = robot.number("parameters.w");
+  robot.release();
+  robot.frames(2);
+  CHECK(robot.number("parameters.w") == pulled);
+
+  SECTION("unless it is held") {
+    undo(app);
+    hold_number(app, "parameters.w", true);
+    robot.frames(2);
+    robot.pull(40, 4);
+    CHECK(robot.number("parameters.w") == w);
+    CHECK(present(app, "slide") == Approx(sought(app)->goals[0].goal).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("what a pull cannot reach is shown with the nearest that can be") {
+  ResponseRobot robot("governor_parametric");
+  App& app = robot.app;
+  choose_response(app, "parameters.w");
+  for (const ParameterControl& control : app.parameters)
+    if (control.group == ParameterGroup::pinned && control.address != "parameters.w" &&
+        control.address != "parameters.L")
+      hold_number(app, control.address, true);
+  robot.frames(3);
+  const auto range = robot.drawn().plot.y.range;
+  robot.pull(0, 400, false);
+  REQUIRE(sought(app));
+  CHECK_FALSE(sought(app)->reached);
+  REQUIRE(robot.drawn().plot.marker);
+  CHECK(robot.drawn().plot.marker->label == "the nearest");
+  CHECK_THAT(app.notice, ContainsSubstring("The nearest that can be reached: slide = "));
+  CHECK(robot.drawn().plot.y.range == range); // or the place under the hand would run away
+  robot.release();
+  robot.frames(2);
+  CHECK(robot.drawn().plot.marker->label.empty());
+}
+
+TEST_CASE("where only the varied number may move a pull goes along the curve; keys pull, too") {
+  ResponseRobot robot("governor_parametric");
+  App& app = robot.app;
+  choose_response(app, "parameters.w");
+  for (const ParameterControl& control : app.parameters)
+    if (control.group == ParameterGroup::pinned && control.address != "parameters.w")
+      hold_number(app, control.address, true);
+  robot.frames(3);
+  const auto curve = robot.state().curve.found;
+  const double w = robot.number("parameters.w"), before = present(app, "slide");
+  focus_widget(app, "plot/response/pull");
+  robot.frames(2);
+  const std::size_t steps = app.document.position();
+  for (int i = 0; i < 3; ++i)
+    robot.key(265); // up
+  robot.frames(2);
+  CHECK(present(app, "slide") > before);
+  CHECK(robot.number("parameters.w") < w);
+  CHECK(robot.state().curve.found == curve);
+  CHECK(app.document.position() == steps + 1);
+  hold_number(app, "parameters.w", true);
+  robot.key(264);
+  robot.frames(2);
+  CHECK(is_error(app));
+  CHECK_THAT(app.notice, ContainsSubstring("all pinned sliders are held"));
+}
+
+TEST_CASE("what is no goal has no grip") {
+  ResponseRobot robot("governor_parametric");
+  CHECK(robot.app.widgets.count("plot/response/pull") == 1);
+  for (const ResponseQuantity& quantity : offered_quantities(robot.app)) {
+    choose_quantity(robot.app, quantity);
+    robot.frames(2);
+    const bool goal = quantity.group == "Coordinates" || quantity.group == "Measures";
+    CHECK(robot.app.widgets.count("plot/response/pull") == (goal ? 1 : 0));
+  }
 }
 
 TEST_CASE("the conical pendulum: drawn as a fork, and dragged onto the unstable branch") {

@@ -25,17 +25,6 @@ void zoom_with_wheel(const PlotFrame& frame, bool along_x, bool along_y) {
   if (along_y) zoom_plot(frame.view, frame.layout, 1, at[1], factor);
 }
 
-// An invisible button over a box of the plot.
-bool button_over(const PlotFrame& frame, const char* id, const PlotBox& box, const std::string& name,
-                 ImGuiButtonFlags buttons, KeyUse use) {
-  if (box.width() < 1 || box.height() < 1) return false;
-  ImGui::SetCursorScreenPos(frame.pen.at(box.left, box.top));
-  const bool pressed = ImGui::InvisibleButton(
-      id, {static_cast<float>(box.width()), static_cast<float>(box.height())}, buttons);
-  note_widget(frame.app.widgets, name, use);
-  return pressed;
-}
-
 bool on_marker(const PlotFrame& frame, const PixelPoint& at) {
   if (!frame.plot.marker) return false;
   const double x = frame.layout.x.pixel(frame.plot.marker->x), y = frame.layout.y.pixel(frame.plot.marker->y);
@@ -187,6 +176,16 @@ void take_legend(const PlotFrame& frame) {
 
 } // namespace
 
+bool button_over(const PlotFrame& frame, const char* id, const PlotBox& box, const std::string& name,
+                 ImGuiButtonFlags buttons, KeyUse use) {
+  if (box.width() < 1 || box.height() < 1) return false;
+  ImGui::SetCursorScreenPos(frame.pen.at(box.left, box.top));
+  const bool pressed = ImGui::InvisibleButton(
+      id, {static_cast<float>(box.width()), static_cast<float>(box.height())}, buttons);
+  note_widget(frame.app.widgets, name, use);
+  return pressed;
+}
+
 PixelPoint pointer_in(const PlotPen& pen) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   return {static_cast<double>(mouse.x - pen.origin.x), static_cast<double>(mouse.y - pen.origin.y)};
@@ -203,6 +202,7 @@ std::array<double, 2> place_in_plot(const PlotFrame& frame, const PixelPoint& at
 }
 
 std::optional<PixelPoint> take_plot_input(const PlotFrame& frame) {
+  take_plot_grip(frame);
   button_over(frame, "area", frame.layout.area, frame.name + "/area",
               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight, KeyUse::plot);
   const std::optional<PixelPoint> keyed = take_plot_keys(frame);

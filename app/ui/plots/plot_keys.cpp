@@ -12,8 +12,7 @@ namespace flyball {
 
 namespace {
 
-constexpr double share_of_key = 0.01; // of the area, that a key moves
-constexpr double zoom_of_key = 1.18;  // as a notch of the wheel
+constexpr double zoom_of_key = 1.18; // as a notch of the wheel
 
 PixelPoint pixel_of(const PlotFrame& frame, double x, double y) {
   return {frame.layout.x.pixel(x), frame.layout.y.pixel(y)};
@@ -51,7 +50,7 @@ std::optional<PixelPoint> take_plot_keys(const PlotFrame& frame) {
   if (frame.view.keyed) at = pixel_of(frame, (*frame.view.keyed)[0], (*frame.view.keyed)[1]);
   if (marker) at = pixel_of(frame, marker->x, marker->y);
   if (const KeyNudge* nudge = nudge_of(frame.app, area_name)) {
-    const double step = nudge->size * share_of_key;
+    const double step = nudge->size * plot_key_share;
     const PixelPoint moved{at[0] + nudge->x * std::max(1.0, step * area.width()),
                            at[1] - nudge->y * std::max(1.0, step * area.height())};
     const PixelPoint to = held_in(area, moved);

@@ -17,16 +17,25 @@ struct PlotFrame {
   PlotEvents& events;
 };
 
+inline constexpr double plot_key_share = 0.01; // of the area, that a key moves
+
 // The pointer, in pixels from the plot's corner.
 PixelPoint pointer_in(const PlotPen& pen);
 // Zooms by the factor (above one: out) about a pixel.
 void zoom_plot(PlotView& view, const PlotLayout& layout, int axis, double pixel, double factor);
 
-// Area, axes and legend as widgets. Returns the pixel to read at: that of the pointer while it is in the area
-// with nothing else in hand, or that of the keyboard's cursor.
+// An invisible button over a box of the plot, as the widget of that name.
+bool button_over(const PlotFrame& frame, const char* id, const PlotBox& box, const std::string& name,
+                 ImGuiButtonFlags buttons, KeyUse use);
+
+// Area, axes, legend and the marker's grip as widgets. Returns the pixel to read at: that of the pointer
+// while it is in the area with nothing else in hand, or that of the keyboard's cursor.
 std::optional<PixelPoint> take_plot_input(const PlotFrame& frame);
 // What the keyboard does in the plot; where it reads, if it does.
 std::optional<PixelPoint> take_plot_keys(const PlotFrame& frame);
+// The marker's grip, "plot/NAME/pull", where the marker has one: before the area, which lies under it.
+void take_plot_grip(const PlotFrame& frame);
+void draw_plot_grip(const PlotFrame& frame);
 // What a pixel of the area stands for, in round numbers.
 std::array<double, 2> place_in_plot(const PlotFrame& frame, const PixelPoint& at);
 // Cross-hair and a card with x, the curves' values there and the point under the pointer.

@@ -68,8 +68,9 @@ PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Pl
     draw_plot(pen, plot, view.look, *layout);
     draw_box(frame);
   }
-  const bool held = view.drag == PlotView::Drag::marker;
+  const bool held = view.drag == PlotView::Drag::marker || view.drag == PlotView::Drag::pull;
   draw_marker(pen, plot, *layout, held);
+  draw_plot_grip(frame);
   if (reading) show_plot_reading(frame, *reading); // its card lies over everything
   pen.list.PopClipRect();
   plot_menu(frame);

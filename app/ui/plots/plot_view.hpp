@@ -1,7 +1,8 @@
 // A plot on the screen that can be looked around in: the wheel zooms about the pointer (over an axis: that
 // axis alone), a drag pans, right-drag or Shift-drag zooms to a box, a double click fits; entries of the
-// legend switch curves on and off, and a right click offers scales and files. With the keyboard arrows move
-// the marker, or else a cursor to read by; plus and minus zoom about it, Home fits, Enter is a click there.
+// legend switch curves on and off, and a right click offers scales and files. A marker is dragged along the
+// curves, and by its grip anywhere. With the keyboard arrows move the marker, or else a cursor to read by;
+// plus and minus zoom about it, Home fits, Enter is a click there.
 #pragma once
 
 #include "app/plot/layout.hpp"
@@ -23,6 +24,13 @@ struct PlotHit {
   double x = 0, y = 0;
 };
 
+// Where the marker is wanted, off the curves; without x where it was pulled up or down alone.
+struct PlotPull {
+  std::optional<double> x;
+  double y = 0;
+  bool operator==(const PlotPull&) const = default;
+};
+
 // What the person did to the plot in this frame.
 struct PlotEvents {
   std::optional<PlotHit> hovered;    // the point of the data under the pointer
@@ -31,6 +39,7 @@ struct PlotEvents {
   bool drag_ended = false;           // the marker was let go
   // The same places whatever lies there, without digits that a pixel cannot tell.
   std::optional<std::array<double, 2>> clicked_at{}, dragged_at{};
+  std::optional<PlotPull> pulled_to{}; // by the marker's grip; another place than before
 };
 
 // What was laid out, while it can be used again.
@@ -47,12 +56,16 @@ struct PlotView {
   std::optional<double> cursor;               // x under the pointer
   std::optional<std::array<double, 2>> keyed; // where the keyboard reads the plot
   // What the hand does.
-  enum class Drag { none, pan, box, marker } drag = Drag::none;
+  enum class Drag { none, pan, box, marker, pull } drag = Drag::none;
   std::array<bool, 2> drag_axis{true, true};
   std::array<double, 2> drag_from{}; // pixels, from the plot's corner
   std::array<PlotRange, 2> drag_range{};
   bool dragged = false; // further than a click trembles
   int button = 0;       // of the mouse
+  // Of a pull: where the marker stood (pixels), whether the hand has gone sideways, where it is wanted.
+  PixelPoint pull_from{};
+  bool pull_sideways = false;
+  std::optional<PlotPull> pull_to;
   PlotKept kept;
 };
 

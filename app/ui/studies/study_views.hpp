@@ -35,6 +35,7 @@ struct ResponseView {
     std::shared_ptr<const void> curve, design; // what was found
     std::string quantity;
     DisplayUnits units;
+    bool pulled = false; // the marker, in this moment
     bool operator==(const Of&) const = default;
   } of;
   ResponseChoice fitted;     // what was chosen when all of the plot was last in view

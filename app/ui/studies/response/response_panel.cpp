@@ -1,4 +1,5 @@
 // The response curve's choices, design mode, and the plot.
+#include "app/session/response_pull.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/response/response_plot.hpp"
@@ -328,6 +329,9 @@ void response_panel(App& app) {
     const bool dragged = events.dragged_to.has_value();
     if (const auto hit = dragged ? events.dragged_to : events.clicked)
       later(app, [hit = *hit, dragged](App& then) { go_to_hit(then, hit, dragged); });
+    if (const auto& to = events.pulled_to)
+      later(app, [x = to->x ? std::optional(*to->x / drawn.plot.x.factor) : std::nullopt,
+                  y = to->y / drawn.plot.y.factor](App& then) { pull_response(then, x, y); });
   } else if (!app.mistakes.empty()) {
     paragraph("The mechanism is not finished; see the line below the view.", colors_of(app).dim);
   }

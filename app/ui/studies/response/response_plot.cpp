@@ -2,6 +2,7 @@
 
 #include "app/plot/axis.hpp"
 #include "app/session/number_text.hpp"
+#include "app/session/response_pull.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "engine/mechanism/address.hpp"
 
@@ -168,7 +169,8 @@ void draw_response(App& app) {
   const auto& design = state.design.answer.found;
   // Until a curve with reactions is there the one before stays.
   const bool told = curve && (curve->of.reactions || !needs_reactions(state.choice.quantity));
-  const ResponseView::Of of{curve, design, state.choice.quantity, app.units};
+  const bool pulled = drawn.view.drag == PlotView::Drag::pull;
+  const ResponseView::Of of{curve, design, state.choice.quantity, app.units, pulled};
   if (drawn.of != of && told) {
     const std::optional<PlotRange> before = drawn.plot.y.range;
     const bool same = drawn.plot.y.label == quantity.title;
@@ -187,7 +189,10 @@ void draw_response(App& app) {
     show_axis(plot, 1, quantity.unit, app.units);
     // While one slider is dragged the axis only grows: a curve that moves is seen against it.
     PlotRange range = axis_range(plot, {}, 1);
-    if (before && same && drawn.gesture == app.gesture)
+    // While its point is pulled the axis stays, or the place under the hand would run away.
+    if (before && same && pulled)
+      range = *before;
+    else if (before && same && drawn.gesture == app.gesture)
       range = {std::min(range[0], (*before)[0]), std::max(range[1], (*before)[1])};
     plot.y.range = range;
     replace_plot(drawn.plot, std::move(plot));
@@ -198,9 +203,14 @@ void draw_response(App& app) {
   if (!curve || !converged(app)) return;
   const std::optional<ResponsePoint> now = present_point(app, curve->of.address);
   if (!now) return;
-  if (const auto y = quantity_mark(*now, state.choice.quantity))
-    drawn.plot.marker =
-        PlotMarker{now->parameter * drawn.plot.x.factor, *y * quantity.factor * drawn.plot.y.factor, ""};
+  const auto y = quantity_mark(*now, state.choice.quantity);
+  if (!y) return;
+  drawn.plot.marker =
+      PlotMarker{now->parameter * drawn.plot.x.factor, *y * quantity.factor * drawn.plot.y.factor, ""};
+  if (pulled_goal(app).empty()) return;
+  drawn.plot.marker->pull = pull_words(app);
+  if (const GoalAnswer* answer = sought(app); pulled && answer && !answer->reached)
+    drawn.plot.marker->label = "the nearest";
 }
 
 void go_to_hit(App& app, const PlotHit& hit, bool dragged) {
