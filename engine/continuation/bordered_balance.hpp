@@ -13,6 +13,7 @@
 
 #include "engine/continuation/family.hpp"
 #include "engine/kkt/workspace.hpp"
+#include "engine/system/balance_rate.hpp"
 
 #include <memory>
 #include <optional>
@@ -47,13 +48,15 @@ class BorderedBalance {
  protected:
   BorderedBalance(Family& family, Workspace& w) : family_(family), w_(w) {}
 
-  // f_p and phi_p, scaled, by central differences; leaves the family at the parameter and the balance
-  // evaluated at z. They steer the steps, the balance itself stays exact.
+  // f_p and phi_p, scaled; leaves the family at the parameter and the balance evaluated at z.
   void find_rates(const Unknowns& z, double parameter);
 
   Family& family_;
   Workspace& w_;
   Eigen::VectorXd force_rate_, loop_rate_;
+
+ private:
+  BalanceRate rate_;
 };
 
 } // namespace flyball

@@ -140,8 +140,15 @@ std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, d
   for (int i = 0; i < 80 && high - low > tolerance::special_point; ++i) {
     double middle = low - at_low * (high - low) / (at_high - at_low);
     if (!(middle > low && middle < high)) middle = (low + high) / 2;
-    int iterations = 0;
-    if (!continuation_.step(from, middle, probe, iterations)) break;
+    // Right beside a crossing the corrector may fail; closer in from either end it need not.
+    bool stepped = false;
+    for (const double there : {middle, (low + middle) / 2, (middle + high) / 2}) {
+      int iterations = 0;
+      middle = there;
+      stepped = continuation_.step(from, middle, probe, iterations);
+      if (stepped) break;
+    }
+    if (!stepped) break;
     const double now = value(probe, middle);
     at = probe;
     found = middle;

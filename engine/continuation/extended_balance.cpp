@@ -7,6 +7,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/report/measures.hpp"
 #include "engine/stability/stability.hpp"
+#include "engine/system/balance_rate.hpp"
 
 #include <algorithm>
 #include <array>
@@ -106,26 +107,15 @@ void ExtendedBalance::move(ExtendedState& state, const Eigen::VectorXd& step) co
   state.parameters += step.tail(scales_.size()).cwiseProduct(scales_);
 }
 
-// Of the balance and the loops in one parameter over its scale, by central differences in numbers of their
-// own; scaled.
 void ExtendedBalance::rates(const ExtendedState& state, std::size_t index, Eigen::VectorXd& force,
                             Eigen::VectorXd& phi) const {
-  const double h = 1e-6, value = state.parameters[static_cast<Eigen::Index>(index)];
   const double scale = scales_[static_cast<Eigen::Index>(index)];
-  Mechanism varied = mechanism_;
-  Parameters numbers;
-  Workspace w;
-  Eigen::VectorXd f[2], p[2];
-  VariedNumbers number(varied, {&addresses_[index], 1});
-  for (int i : {0, 1}) {
-    number.set(std::array{value + (i == 0 ? h : -h) * scale});
-    bind(system_, varied, numbers);
-    evaluate({system_, numbers, scaling_}, state.z, 0, w);
-    f[i] = w.residual.f;
-    p[i] = w.residual.phi;
-  }
-  force = ((f[0] - f[1]) / (2 * h)).cwiseProduct(scaling_.column);
-  phi = ((p[0] - p[1]) / (2 * h)).cwiseProduct(scaling_.row);
+  NumberRates numbers;
+  numbers_.rates(index, numbers);
+  BalanceRate balance;
+  balance.evaluate(system_, mechanism_, numbers, parameters_, state.z.q, state.z.lambda);
+  force = scale * balance.force().cwiseProduct(scaling_.column);
+  phi = scale * balance.phi().cwiseProduct(scaling_.row);
 }
 
 void ExtendedBalance::evaluate_extended(const Unknowns& z, Eigen::VectorXd& force, Eigen::VectorXd& phi) {

@@ -126,6 +126,7 @@ class ExtendedBalance {
   // Forces with these multipliers (N m, N) and loops in extended precision, scaled: the last digits of the
   // answer come from here.
   void evaluate_extended(const Unknowns& z, Eigen::VectorXd& force, Eigen::VectorXd& phi);
+  // Of the balance and the loops in one parameter over its scale, scaled; at the parameters that are set.
   void rates(const ExtendedState& state, std::size_t index, Eigen::VectorXd& force,
              Eigen::VectorXd& phi) const;
 

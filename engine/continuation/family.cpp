@@ -19,4 +19,9 @@ void Family::set(double value) {
   value_ = value;
 }
 
+const NumberRates& Family::rates() {
+  number_.rates(0, rates_);
+  return rates_;
+}
+
 } // namespace flyball

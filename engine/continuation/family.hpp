@@ -17,6 +17,8 @@ class Family {
   Family& operator=(const Family&) = delete;
 
   void set(double value);
+  // How fast the mechanism's numbers change with it, here.
+  const NumberRates& rates();
   double value() const { return value_; }
   double scale() const { return scale_; }
   const Mechanism& mechanism() const { return mechanism_; }
@@ -30,6 +32,7 @@ class Family {
   KktForm form_;
   Parameters parameters_;
   Scaling scaling_;
+  NumberRates rates_;
 };
 
 } // namespace flyball

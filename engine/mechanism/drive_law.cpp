@@ -83,7 +83,7 @@ void check_drive_law(const Mechanism& mechanism, const Formula& law, bool angle,
   }
 }
 
-double named_value(const Mechanism& mechanism, std::string_view name) {
+const double& named_number(const Mechanism& mechanism, std::string_view name) {
   if (const int i = parameter_index(mechanism, name); i >= 0)
     return mechanism.parameters[static_cast<std::size_t>(i)].value;
   for (const NamedPoint& point : mechanism.points)

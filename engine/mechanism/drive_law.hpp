@@ -30,8 +30,8 @@ CoordinateReference find_coordinate(const Mechanism& mechanism, const ResultCall
 // fit.
 void check_drive_law(const Mechanism& mechanism, const Formula& law, bool angle, const std::string& where);
 
-// The value of a parameter or of a point's coordinate: "L", "A.x". Throws ExpressionError where there is
-// none.
-double named_value(const Mechanism& mechanism, std::string_view name);
+// The number that is a parameter's value or a point's coordinate: "L", "A.x". Throws ExpressionError where
+// there is none.
+const double& named_number(const Mechanism& mechanism, std::string_view name);
 
 } // namespace flyball

@@ -9,6 +9,11 @@ namespace flyball {
 struct Dual {
   double value = 0, rate = 0;
 
+  constexpr Dual() = default;
+  constexpr Dual(double constant) : value(constant) {}
+  constexpr Dual(double number, double its_rate) : value(number), rate(its_rate) {}
+  explicit operator double() const { return value; }
+
   friend Dual operator-(Dual a) { return {-a.value, -a.rate}; }
   friend Dual operator+(Dual a, Dual b) { return {a.value + b.value, a.rate + b.rate}; }
   friend Dual operator-(Dual a, Dual b) { return {a.value - b.value, a.rate - b.rate}; }
@@ -17,6 +22,17 @@ struct Dual {
     const double quotient = a.value / b.value;
     return {quotient, (a.rate - quotient * b.rate) / b.value};
   }
+  Dual& operator+=(Dual b) { return *this = *this + b; }
+  Dual& operator-=(Dual b) { return *this = *this - b; }
+  Dual& operator*=(Dual b) { return *this = *this * b; }
+  Dual& operator/=(Dual b) { return *this = *this / b; }
+
+  // A number that is zero and moves is not zero: what it multiplies may not be left out.
+  friend bool operator==(Dual a, Dual b) { return a.value == b.value && a.rate == b.rate; }
+  friend bool operator<(Dual a, Dual b) { return a.value < b.value; }
+  friend bool operator>(Dual a, Dual b) { return a.value > b.value; }
+  friend bool operator<=(Dual a, Dual b) { return a.value <= b.value; }
+  friend bool operator>=(Dual a, Dual b) { return a.value >= b.value; }
 };
 
 // f(a), where `slope` is f'(a); what does not move has no rate, even where the slope is infinite.

@@ -2,7 +2,7 @@
 // numbers change.
 #pragma once
 
-#include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/number_rates.hpp"
 
 #include <memory>
 
@@ -22,6 +22,11 @@ class FormulaPlan {
   // densities. Throws SceneError for a value that is not finite and for a density without a volume; what was
   // set before stays set then. Allocates nothing but for bodies with a density and what it throws.
   void evaluate();
+
+  // With the rates of numbers that no expression gives also those of all that expressions and densities make
+  // of them, by forward-mode differentiation, at the numbers as they stand after `evaluate`. Throws
+  // SceneError for a rate that is not finite.
+  void differentiate(NumberRates& rates) const;
 
  private:
   struct State;

@@ -177,7 +177,7 @@ std::vector<const Definition*> in_order(const std::vector<Definition>& all, std:
 bool weigh(Body& body) {
   std::optional<Vec3> reference;
   for (Shape& shape : body.shapes) {
-    const bool rod = shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule;
+    const bool rod = is_rod(shape.type);
     if (!rod && !shape.at) shape.at = body.position;
     if (!reference) reference = rod ? shape.from : *shape.at;
   }
@@ -192,6 +192,7 @@ struct FormulaPlan::State {
   struct Assignment {
     std::string where, text;
     Compiled compiled;
+    const void* place; // see NumberRates
     std::function<void(double)> set;
     std::optional<std::size_t> name; // that it defines
   };
@@ -204,7 +205,7 @@ struct FormulaPlan::State {
     values.resize(names.size());
     const std::vector<Definition> definitions = definitions_of(m, names);
     for (const Definition* each : in_order(definitions, names.size()))
-      assignments.push_back({each->where, each->text, each->compiled,
+      assignments.push_back({each->where, each->text, each->compiled, place_of(*each->place),
                              [place = each->place](double value) { *place = value; }, each->name});
     visit_parts(m, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
       const std::vector<Number> numbers = numbers_of_part();
@@ -217,15 +218,36 @@ struct FormulaPlan::State {
         at_place(where, formula.text, [&] {
           Compiled compiled(formula.text, names);
           compiled.expect_unit(number->unit, names);
-          assignments.push_back({where, formula.text, std::move(compiled), number->set, {}});
+          assignments.push_back({where, formula.text, std::move(compiled), number->place, number->set, {}});
         });
       }
     });
   }
 
+  void differentiate(NumberRates& rates) {
+    GivenNames::take_values(mechanism, values);
+    std::size_t name = 0;
+    for (const NamedParameter& parameter : mechanism.parameters)
+      values[name++].rate = rates.find(place_of(parameter.value)).value_or(0);
+    for (const NamedPoint& point : mechanism.points)
+      for (const double& at : point.at)
+        values[name++].rate = rates.find(place_of(at)).value_or(0);
+    for (const Assignment& each : assignments) {
+      const Dual value = at_place(each.where, each.text, [&] {
+        const Dual found = each.compiled.evaluate(values);
+        if (!std::isfinite(found.rate)) throw ExpressionError("the rate of change is not finite");
+        return found;
+      });
+      if (each.name) values[*each.name] = value;
+      if (value.rate != 0) rates.set(each.place, value.rate);
+    }
+    for (const Body& body : mechanism.bodies)
+      if (body.density) take_mass_rates(body, rates);
+  }
+
   void evaluate() {
     GivenNames::take_values(mechanism, values);
-    for (Assignment& each : assignments) {
+    for (const Assignment& each : assignments) {
       const Dual value = at_place(each.where, each.text, [&] { return each.compiled.evaluate(values); });
       if (each.name) values[*each.name] = value;
       each.set(value.value);
@@ -246,6 +268,10 @@ FormulaPlan& FormulaPlan::operator=(FormulaPlan&&) noexcept = default;
 
 void FormulaPlan::evaluate() {
   if (state_) state_->evaluate();
+}
+
+void FormulaPlan::differentiate(NumberRates& rates) const {
+  if (state_) state_->differentiate(rates);
 }
 
 void evaluate_formulas(Mechanism& mechanism) {

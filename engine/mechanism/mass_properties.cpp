@@ -3,70 +3,138 @@
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <type_traits>
+#include <vector>
 
 namespace flyball {
 namespace {
 
 using std::numbers::pi;
 
-double cube(double x) {
+template <class N>
+using Vector = Eigen::Matrix<N, 3, 1>;
+template <class N>
+using Tensor = Eigen::Matrix<N, 3, 3>;
+
+template <class N>
+N cube(N x) {
   return x * x * x;
 }
 
-Vec3 centre_of(const Shape& shape, const Vec3& mass_centre) {
-  if (shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule)
-    return 0.5 * (shape.from + shape.to);
-  return shape.at.value_or(mass_centre);
+template <class N>
+N positive(N x) {
+  return x > N(0) ? x : N(0);
 }
 
+// A shape's numbers, read as N.
+template <class N>
+struct Solid {
+  ShapeType type;
+  N radius;
+  Vector<N> size, line, centre; // `line` from one end of a rod to the other
+
+  Solid(const Shape& shape, const Vec3& mass_centre, const NumberReader<N>& read)
+      : type(shape.type), radius(read(shape.radius)), size(read(shape.size)) {
+    if (is_rod(type)) {
+      const Vector<N> from = read(shape.from), to = read(shape.to);
+      line = to - from;
+      centre = N(0.5) * (from + to);
+    } else {
+      line.setZero();
+      centre = shape.at ? read(*shape.at) : read(mass_centre);
+    }
+  }
+
+  N volume() const {
+    const N r = positive(radius);
+    switch (type) {
+    case ShapeType::sphere: return 4 * pi / 3 * cube(r);
+    case ShapeType::box: return positive(size.x()) * (positive(size.y()) * positive(size.z()));
+    case ShapeType::cylinder: return pi * r * r * line.norm();
+    case ShapeType::capsule: return pi * r * r * line.norm() + 4 * pi / 3 * cube(r);
+    }
+    return 0;
+  }
+};
+
 // Of a body of revolution, from its moments along the axis and across it.
-Mat3 tensor(const Vec3& axis, double along, double across) {
-  return across * Mat3::Identity() + (along - across) * axis * axis.transpose();
+template <class N>
+Tensor<N> tensor(const Vector<N>& axis, N along, N across) {
+  return across * Tensor<N>::Identity() + (along - across) * axis * axis.transpose();
+}
+
+template <class N>
+Vector<N> direction(const Vector<N>& line) {
+  if constexpr (std::is_same_v<N, double>)
+    return line.stableNormalized();
+  else
+    return line.normalized();
 }
 
 // About the shape's centre and by its mass (m^2), in body axes.
-Mat3 inertia_by_mass(const Shape& shape, const Quat& rotation) {
-  const double r = shape.radius, r2 = r * r;
-  if (shape.type == ShapeType::sphere) return 0.4 * r2 * Mat3::Identity();
-  if (shape.type == ShapeType::box) {
-    const Vec3 squares = shape.size.cwiseAbs2();
-    return ((squares.sum() - squares.array()) / 12).matrix().asDiagonal();
+template <class N>
+Tensor<N> inertia_by_mass(const Solid<N>& solid, const Eigen::Quaternion<N>& rotation) {
+  const N r = solid.radius, r2 = r * r;
+  if (solid.type == ShapeType::sphere) return N(0.4) * r2 * Tensor<N>::Identity();
+  if (solid.type == ShapeType::box) {
+    const Vector<N> squares = solid.size.cwiseAbs2();
+    return ((squares.sum() - squares.array()) / N(12)).matrix().asDiagonal();
   }
-  const Vec3 line = shape.to - shape.from;
-  const double l = line.norm();
-  const Vec3 axis = rotation.conjugate() * line.stableNormalized();
-  const double cylinder_across = l * l / 12 + r2 / 4;
-  if (shape.type == ShapeType::cylinder) return tensor(axis, r2 / 2, cylinder_across);
+  const N l = solid.line.norm();
+  const Vector<N> axis = rotation.conjugate() * direction<N>(solid.line);
+  const N cylinder_across = l * l / 12 + r2 / 4;
+  if (solid.type == ShapeType::cylinder) return tensor<N>(axis, r2 / 2, cylinder_across);
   // The two halves of a ball at the ends of a capsule: their mass centres are 3/8 r outside the cylinder.
-  const double balls = 4 * r / (3 * l + 4 * r);
-  const double ball_across = 0.4 * r2 + l * l / 4 + 0.375 * l * r;
-  return tensor(axis, (1 - balls) * r2 / 2 + balls * 0.4 * r2,
-                (1 - balls) * cylinder_across + balls * ball_across);
+  const N balls = 4 * r / (3 * l + 4 * r);
+  const N ball_across = 0.4 * r2 + l * l / 4 + 0.375 * l * r;
+  return tensor<N>(axis, (1 - balls) * r2 / 2 + balls * 0.4 * r2,
+                   (1 - balls) * cylinder_across + balls * ball_across);
 }
 
+template <class N>
+struct Properties {
+  N mass = 0;
+  Vector<N> centre = Vector<N>::Zero();
+  Tensor<N> inertia = Tensor<N>::Zero();
+};
+
 // Of the shapes together; `inertia` in body axes. Nothing without any volume.
-std::optional<MassProperties> in_body_axes(const Body& body, double density) {
-  MassProperties all;
+template <class N>
+std::optional<Properties<N>> in_body_axes(const Body& body, N density, const NumberReader<N>& read) {
+  std::vector<Solid<N>> solids;
+  std::vector<N> masses;
+  solids.reserve(body.shapes.size());
+  masses.reserve(body.shapes.size());
+  const Vector<N> drawn = read(body.position);
+  Properties<N> all;
   for (const Shape& shape : body.shapes) {
-    const double mass = density * volume(shape);
-    all.mass += mass;
-    all.centre += mass * (centre_of(shape, body.position) - body.position);
+    solids.emplace_back(shape, body.position, read);
+    masses.push_back(density * solids.back().volume());
+    all.mass += masses.back();
+    all.centre += masses.back() * (solids.back().centre - drawn);
   }
-  if (!(all.mass > 0)) return {};
-  all.centre = body.position + all.centre / all.mass;
-  const Quat rotation = body.rotation.normalized();
-  for (const Shape& shape : body.shapes) {
-    const double mass = density * volume(shape);
-    if (!(mass > 0)) continue;
-    const Vec3 away = rotation.conjugate() * (centre_of(shape, body.position) - all.centre);
-    all.inertia += mass * (inertia_by_mass(shape, rotation) + away.squaredNorm() * Mat3::Identity() -
-                           away * away.transpose());
+  if (!(all.mass > N(0))) return {};
+  all.centre = drawn + all.centre / all.mass;
+  const Eigen::Quaternion<N> rotation = read(body.rotation).normalized();
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    if (!(masses[i] > N(0))) continue;
+    const Vector<N> away = rotation.conjugate() * (solids[i].centre - all.centre);
+    all.inertia += masses[i] * (inertia_by_mass(solids[i], rotation) +
+                                away.squaredNorm() * Tensor<N>::Identity() - away * away.transpose());
   }
-  if (!std::isfinite(all.mass) || !all.centre.allFinite() || !all.inertia.allFinite()) return {};
+  const auto finite = [](const N& x) { return std::isfinite(static_cast<double>(x)); };
+  if (!finite(all.mass) || !std::ranges::all_of(all.centre, finite) ||
+      !std::ranges::all_of(all.inertia.reshaped(), finite))
+    return {};
   return all;
+}
+
+std::optional<Properties<double>> in_body_axes(const Body& body, double density) {
+  return in_body_axes<double>(body, density, {});
 }
 
 // Products of inertia that are round-off beside the moments are none.
@@ -78,29 +146,19 @@ double product(const Mat3& inertia, int i, int j) {
 } // namespace
 
 double volume(const Shape& shape) {
-  const double r = std::max(shape.radius, 0.0);
-  const double length = (shape.to - shape.from).norm();
-  switch (shape.type) {
-  case ShapeType::sphere: return 4 * pi / 3 * cube(r);
-  case ShapeType::box: return shape.size.cwiseMax(0).prod();
-  case ShapeType::cylinder: return pi * r * r * length;
-  case ShapeType::capsule: return pi * r * r * length + 4 * pi / 3 * cube(r);
-  }
-  return 0;
+  return Solid<double>(shape, Vec3::Zero(), {}).volume();
 }
 
 std::optional<MassProperties> mass_properties(const Body& body, double density) {
-  std::optional<MassProperties> all = in_body_axes(body, density);
-  if (all) {
-    const Mat3 axes = body.rotation.normalized().toRotationMatrix();
-    all->inertia = axes * all->inertia * axes.transpose();
-  }
-  return all;
+  const std::optional<Properties<double>> all = in_body_axes(body, density);
+  if (!all) return {};
+  const Mat3 axes = body.rotation.normalized().toRotationMatrix();
+  return MassProperties{all->mass, all->centre, axes * all->inertia * axes.transpose()};
 }
 
 namespace {
 
-void take(Body& body, const MassProperties& all, double mass) {
+void take(Body& body, const Properties<double>& all, double mass) {
   // A shape that stands at the mass centre stays where it is when that moves.
   if (all.centre != body.position)
     for (Shape& shape : body.shapes)
@@ -115,16 +173,28 @@ void take(Body& body, const MassProperties& all, double mass) {
 } // namespace
 
 bool take_mass_properties(Body& body, double density) {
-  const std::optional<MassProperties> all = in_body_axes(body, density);
+  const std::optional<Properties<double>> all = in_body_axes(body, density);
   // Without the last digit's dust: a block of 0.2 m by 7850 kg/m^3 has 62.8 kg.
   if (all) take(body, *all, std::strtod(rounded_text(all->mass, 15).c_str(), nullptr));
   return all.has_value();
 }
 
 bool take_uniform_mass(Body& body, double mass) {
-  const std::optional<MassProperties> all = in_body_axes(body, 1);
+  const std::optional<Properties<double>> all = in_body_axes(body, 1);
   if (all) take(body, *all, mass);
   return all.has_value();
+}
+
+void take_mass_rates(const Body& body, NumberRates& rates) {
+  const NumberReader<Dual> read(rates);
+  const auto all = in_body_axes<Dual>(body, read(*body.density), read);
+  if (!all) return;
+  rates.set(place_of(body.mass), all->mass.rate);
+  for (int i = 0; i < 3; ++i)
+    rates.set(place_of(body.position[i]), all->centre[i].rate);
+  constexpr std::array<std::array<int, 2>, 6> entries{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  for (std::size_t k = 0; k < entries.size(); ++k)
+    rates.set(place_of(body.inertia[k]), all->inertia(entries[k][0], entries[k][1]).rate);
 }
 
 std::optional<double> density_of(const Body& body) {

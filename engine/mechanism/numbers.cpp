@@ -1,6 +1,7 @@
 #include "engine/mechanism/numbers.hpp"
 
 #include "engine/mechanism/fields.hpp"
+#include "engine/mechanism/number_rates.hpp"
 
 #include <utility>
 
@@ -23,8 +24,8 @@ class Collector {
     if (place) add(key(field), field, *place);
   }
   void field(const Field& field, std::optional<double>& place, double stands_for) {
-    all_.push_back(
-        {key(field), std::string(field.unit), place.value_or(stands_for), [&place](double v) { place = v; }});
+    all_.push_back({key(field), std::string(field.unit), place.value_or(stands_for), place_of(place),
+                    [&place](double v) { place = v; }});
   }
   void field(const Field& field, Vec3& place) { add(key(field), field, place); }
   void field(const Field& field, std::optional<Vec3>& place) {
@@ -33,7 +34,7 @@ class Collector {
   void field(const Field& field, std::optional<Vec3>& place, const Vec3& stands_for) {
     for (int i = 0; i < 3; ++i)
       all_.push_back({key(field) + "." + std::to_string(i), std::string(field.unit),
-                      place.value_or(stands_for)[i], [&place, stands_for, i](double v) {
+                      place.value_or(stands_for)[i], place_of(place, i), [&place, stands_for, i](double v) {
                         if (!place) place = stands_for;
                         (*place)[i] = v;
                       }});
@@ -86,7 +87,8 @@ class Collector {
   // "damping.1" of the second coordinate's, "spring.1.stiffness" of an object's.
   std::string key(const Field& field) const { return prefix_ + std::string(field.key) + index_; }
   void add(std::string key, const Field& field, double& place) {
-    all_.push_back({std::move(key), std::string(field.unit), place, [&place](double v) { place = v; }});
+    all_.push_back(
+        {std::move(key), std::string(field.unit), place, place_of(place), [&place](double v) { place = v; }});
   }
   void add(const std::string& key, const Field& field, Vec3& place) {
     for (int i = 0; i < 3; ++i)
@@ -137,7 +139,7 @@ std::vector<Number> numbers_of(NamedPoint& point) {
   std::vector<Number> all;
   for (int i = 0; i < 3; ++i) {
     double& place = point.at[i];
-    all.push_back({std::to_string(i), "m", place, [&place](double v) { place = v; }});
+    all.push_back({std::to_string(i), "m", place, place_of(place), [&place](double v) { place = v; }});
   }
   return all;
 }

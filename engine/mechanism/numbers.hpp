@@ -10,10 +10,11 @@
 namespace flyball {
 
 struct Number {
-  std::string key;                 // the address after the part's name: "drive.speed", "at.0"
-  std::string unit;                // as shown to a person, "" where it has none
-  double value = 0;                // or, for an optional field that is absent, what it stands for
-  std::function<void(double)> set; // valid as long as the part
+  std::string key;             // the address after the part's name: "drive.speed", "at.0"
+  std::string unit;            // as shown to a person, "" where it has none
+  double value = 0;            // or, for an optional field that is absent, what it stands for
+  const void* place = nullptr; // what its rate is kept under (number_rates.hpp); valid as long as the part
+  std::function<void(double)> set; // likewise
 };
 
 std::vector<Number> numbers_of(Body& body);

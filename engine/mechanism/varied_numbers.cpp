@@ -45,4 +45,10 @@ void VariedNumbers::set(std::span<const double> values) {
     places_[i].number.value = values[i];
 }
 
+void VariedNumbers::rates(std::size_t i, NumberRates& out) const {
+  out.clear();
+  out.set(places_[i].number.place, 1);
+  plan_.differentiate(out);
+}
+
 } // namespace flyball

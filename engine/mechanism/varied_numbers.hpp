@@ -22,6 +22,10 @@ class VariedNumbers {
   // the mechanism is then as it was. Allocates nothing else (but see FormulaPlan).
   void set(std::span<const double> values);
 
+  // How fast all numbers of the mechanism change when the number at address `i` does, at the numbers as they
+  // stand. Throws SceneError for a rate that is not finite.
+  void rates(std::size_t i, NumberRates& out) const;
+
  private:
   struct Place {
     std::string address;

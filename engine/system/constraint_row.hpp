@@ -7,7 +7,7 @@ namespace flyball {
 
 // Calls add(v, dPhi/dq_v) for each coordinate that moves the row.
 template <class S, class Add>
-void row_gradient(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row,
+void row_gradient(const CutJoint& cut, const CutParametersOf<S>& p, const ConstraintRow& row,
                   const Kinematics<S>& k, Add add) {
   if (row.type == RowType::gear) {
     add(cut.gear_va, S(-p.ratio));
@@ -35,8 +35,8 @@ void row_gradient(const CutJoint& cut, const CutParameters& p, const ConstraintR
 }
 
 template <class S>
-S row_value(const CutJoint& cut, const CutParameters& p, const ConstraintRow& row, const Configuration<S>& q,
-            const Kinematics<S>& k) {
+S row_value(const CutJoint& cut, const CutParametersOf<S>& p, const ConstraintRow& row,
+            const Configuration<S>& q, const Kinematics<S>& k) {
   if (row.type == RowType::gear) return q[cut.gear_b] - S(p.ratio) * q[cut.gear_a] - S(p.offset);
   const Vec3T<S> d = k.point(cut.ends.b, p.b) - k.point(cut.ends.a, p.a);
   if (row.type == RowType::distance) return d.norm() - S(p.length);

@@ -16,34 +16,40 @@ constexpr auto as_they_come = [] {
   return places;
 }();
 
-// The numbers that a law is evaluated with, at one state.
+// The numbers that a law is evaluated with, at one state. N: double, or Dual for those of the mechanism with
+// their rates.
+template <class N>
 struct LawState {
   const System& system;
-  const Parameters& p;
-  const Eigen::VectorXd& q;
-  const Kinematics<double>& k;
+  const BasicParameters<N>& p;
+  const Configuration<N>& q;
+  const Kinematics<N>& k;
 
-  double input(const DriveLaw::Input& input) const {
+  N input(const DriveLaw::Input& input) const {
     const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
-    if (!input.rate) return coordinate_value(system, p, q, c);
+    if (!input.rate) return coordinate_value<N>(system, p, q, c);
     const Link& link = system.links[static_cast<std::size_t>(c.link)];
     if (finds_speed(link)) return q[link.q];
     if (link.drive >= 0) return p.links[static_cast<std::size_t>(c.link)].speed * p.speed_scale;
-    return system.drives.empty() ? turning_rate(system, c.link, k) : 0; // at rest in a steady state
+    if constexpr (std::is_same_v<N, double>)
+      if (system.drives.empty()) return turning_rate(system, c.link, k);
+    return 0; // at rest in a steady state
   }
 
-  // With the rate 1 at one input.
-  Dual value(const DriveLaw& law, const DriveLawParameters& numbers, std::size_t moved = most_inputs) const {
-    if (!law.expression) return {numbers.value, 0};
+  // With the rates of the numbers, and the rate 1 at one input.
+  Dual value(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers,
+             std::size_t moved = most_inputs) const {
+    if (!law.expression) return numbers.value;
     std::array<Dual, most_inputs> inputs;
     for (std::size_t i = 0; i < law.inputs.size(); ++i)
-      inputs[i] = {input(law.inputs[i]), i == moved ? 1. : 0.};
+      inputs[i] = input(law.inputs[i]);
+    if (moved < law.inputs.size()) inputs[moved].rate = 1;
     return law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come);
   }
 
-  double value(std::size_t drive) const {
-    return value(system.torques[drive].torque, p.torques[drive].torque).value -
-           value(system.torques[drive].load, p.torques[drive].load).value;
+  Dual value(std::size_t drive) const {
+    return value(system.torques[drive].torque, p.torques[drive].torque) -
+           value(system.torques[drive].load, p.torques[drive].load);
   }
 
   // Adds the derivatives with all inputs of a kind to a row.
@@ -75,27 +81,29 @@ struct LawState {
 
 // Laws are evaluated in double precision: what they round is no more than the numbers they are given by.
 template <class S>
-double law_value(const System& system, const Parameters& p, std::size_t drive, const Configuration<S>& q,
-                 const Kinematics<S>& k) {
-  if constexpr (std::is_same_v<S, double>) {
-    return LawState{system, p, q, k}.value(drive);
+S law_value(const System& system, const ParametersOf<S>& p, std::size_t drive, const Configuration<S>& q,
+            const Kinematics<S>& k) {
+  if constexpr (std::is_same_v<S, Dual>) {
+    return LawState<Dual>{system, p, q, k}.value(drive);
+  } else if constexpr (std::is_same_v<S, double>) {
+    return LawState<double>{system, p, q, k}.value(drive).value;
   } else { // only of a steady state, whose kinematics no law asks for
     static const Kinematics<double> none;
     const Eigen::VectorXd rounded = q.template cast<double>();
-    return LawState{system, p, rounded, none}.value(drive);
+    return S(LawState<double>{system, p, rounded, none}.value(drive).value);
   }
 }
 
 } // namespace
 
 template <class S>
-void add_drive_torques(const System& system, const Parameters& p, const Configuration<S>& q,
+void add_drive_torques(const System& system, const ParametersOf<S>& p, const Configuration<S>& q,
                        const Kinematics<S>& k, Configuration<S>& f) {
   for (std::size_t i = 0; i < system.torques.size(); ++i) {
     const auto l = static_cast<std::size_t>(system.torques[i].link);
     const Link& link = system.links[l];
     if (finds_speed(link)) f[link.v] += S(p.links[l].force[0].damping) * q[link.q];
-    f[link.v] -= S(law_value(system, p, i, q, k));
+    f[link.v] -= law_value<S>(system, p, i, q, k);
   }
 }
 
@@ -104,7 +112,7 @@ void add_drive_torque_sizes(const System& system, const Parameters& p, const Eig
   for (std::size_t i = 0; i < system.torques.size(); ++i) {
     const auto l = static_cast<std::size_t>(system.torques[i].link);
     const Link& link = system.links[l];
-    const LawState state{system, p, q, k};
+    const LawState<double> state{system, p, q, k};
     force[link.v] += std::abs(state.value(system.torques[i].torque, p.torques[i].torque).value) +
                      std::abs(state.value(system.torques[i].load, p.torques[i].load).value);
     if (finds_speed(link)) force[link.v] += std::abs(p.links[l].force[0].damping * q[link.q]);
@@ -113,17 +121,17 @@ void add_drive_torque_sizes(const System& system, const Parameters& p, const Eig
 
 double drive_torque(const System& system, const Parameters& p, std::size_t drive, const Eigen::VectorXd& q,
                     const Kinematics<double>& k) {
-  return LawState{system, p, q, k}.value(drive);
+  return LawState<double>{system, p, q, k}.value(drive).value;
 }
 
 void add_drive_torque_stiffness(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                                 const Kinematics<double>& k, Eigen::MatrixXd& stiffness) {
-  LawState{system, p, q, k}.add_derivatives(false, stiffness);
+  LawState<double>{system, p, q, k}.add_derivatives(false, stiffness);
 }
 
 void add_drive_torque_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                               const Kinematics<double>& k, Eigen::MatrixXd& velocity) {
-  LawState{system, p, q, k}.add_derivatives(true, velocity);
+  LawState<double>{system, p, q, k}.add_derivatives(true, velocity);
 }
 
 double turning_rate(const System& system, int l, const Kinematics<double>& k) {
@@ -137,5 +145,7 @@ template void add_drive_torques<double>(const System&, const Parameters&, const 
                                         const Kinematics<double>&, Configuration<double>&);
 template void add_drive_torques<Extended>(const System&, const Parameters&, const Configuration<Extended>&,
                                           const Kinematics<Extended>&, Configuration<Extended>&);
+template void add_drive_torques<Dual>(const System&, const BasicParameters<Dual>&, const Configuration<Dual>&,
+                                      const Kinematics<Dual>&, Configuration<Dual>&);
 
 } // namespace flyball

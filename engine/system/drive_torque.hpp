@@ -16,7 +16,7 @@ namespace flyball {
 // Adds the dampers of what turns so, less torques, plus loads, to f. In a system for the motion, where it is
 // a coordinate like others, torques and loads alone.
 template <class S>
-void add_drive_torques(const System& system, const Parameters& parameters, const Configuration<S>& q,
+void add_drive_torques(const System& system, const ParametersOf<S>& parameters, const Configuration<S>& q,
                        const Kinematics<S>& kinematics, Configuration<S>& f);
 
 // Adds the sizes of these terms.

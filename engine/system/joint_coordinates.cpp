@@ -7,10 +7,11 @@
 namespace flyball {
 namespace {
 
-Vec3 any_perpendicular(const Vec3& z) {
-  Vec3::Index least = 0;
-  z.cwiseAbs().minCoeff(&least);
-  return z.cross(Vec3::Unit(least)).normalized();
+template <class N>
+Vec3T<N> any_perpendicular(const Vec3T<N>& z) {
+  Eigen::Index least = 0;
+  z.template cast<double>().cwiseAbs().minCoeff(&least);
+  return z.cross(Vec3T<N>::Unit(least)).normalized();
 }
 
 // How far `to` is turned from `from` about the unit vector `axis`, both projected on its plane.
@@ -26,21 +27,31 @@ double wrapped_angle(double angle) {
   return angle <= -std::numbers::pi ? angle + turn : angle;
 }
 
-JointFrame joint_frame(const Joint& joint) {
-  JointFrame frame;
+template <class N>
+BasicJointFrame<N> joint_frame(const Joint& joint, const NumberReader<N>& read) {
+  using Vector = Vec3T<N>;
+  BasicJointFrame<N> frame;
   for (std::size_t i = 0; i < joint.coordinates.size() && i < frame.drawn.size(); ++i)
-    frame.drawn[i] = joint.coordinates[i].drawn;
+    frame.drawn[i] = read(joint.coordinates[i].drawn);
   if (joint.type == JointType::free) {
-    frame.axes = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), Vec3::Zero()};
+    frame.axes = {Vector::UnitX(), Vector::UnitY(), Vector::UnitZ(), Vector::Zero()};
     return frame;
   }
-  const Vec3 z = has_axis(joint.type) ? Vec3(joint.axis.normalized()) : Vec3(Vec3::UnitZ());
-  const Vec3 x = joint.type == JointType::planar ? Vec3((joint.axis2 - z * z.dot(joint.axis2)).normalized())
-                                                 : any_perpendicular(z);
-  frame.axes = {x, z.cross(x), z, Vec3::Zero()};
-  if (joint.type == JointType::universal) frame.axes[3] = joint.axis2.normalized();
+  const Vector z = has_axis(joint.type) ? Vector(read(joint.axis).normalized()) : Vector(Vector::UnitZ());
+  Vector x;
+  if (joint.type == JointType::planar) {
+    const Vector axis2 = read(joint.axis2);
+    x = (axis2 - z * z.dot(axis2)).normalized();
+  } else {
+    x = any_perpendicular<N>(z);
+  }
+  frame.axes = {x, z.cross(x), z, Vector::Zero()};
+  if (joint.type == JointType::universal) frame.axes[3] = read(joint.axis2).normalized();
   return frame;
 }
+
+template JointFrame joint_frame<double>(const Joint&, const NumberReader<double>&);
+template BasicJointFrame<Dual> joint_frame<Dual>(const Joint&, const NumberReader<Dual>&);
 
 JointCoordinates joint_coordinates(JointType type, const JointFrame& frame, const Mat3& turn,
                                    const Vec3& shift) {

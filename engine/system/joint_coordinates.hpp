@@ -8,12 +8,20 @@
 namespace flyball {
 
 // What a joint's coordinates are measured along and about, in world axes of the drawn pose.
-struct JointFrame {
+template <class N>
+struct BasicJointFrame {
   // x, y, z (the joint's axis; of planar joints x is the in-plane axis), a universal joint's second axis.
-  std::array<Vec3, 4> axes;
-  std::array<double, 6> drawn{}; // rad or m, the labels of the drawn pose
+  std::array<Vec3T<N>, 4> axes;
+  std::array<N, 6> drawn{}; // rad or m, the labels of the drawn pose
 };
-JointFrame joint_frame(const Joint& joint);
+// Instantiated for double and Dual.
+template <class N>
+BasicJointFrame<N> joint_frame(const Joint& joint, const NumberReader<N>& read);
+
+using JointFrame = BasicJointFrame<double>;
+inline JointFrame joint_frame(const Joint& joint) {
+  return joint_frame<double>(joint, {});
+}
 
 struct JointCoordinates {
   // rad or m, coordinate_count(type) of them. Angles in (-pi, pi] from the label of the drawn pose, rotation

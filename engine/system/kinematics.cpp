@@ -9,20 +9,20 @@ namespace {
 // Axes of double precision are of unit length to double precision only. Wider numbers would see that turning
 // about one stretches what it turns, and loops held by large forces feel it.
 template <class S>
-Vec3T<S> unit_axis(const LinkParameters& p) {
+Vec3T<S> unit_axis(const LinkParametersOf<S>& p) {
   if constexpr (std::is_same_v<S, double>)
     return p.axis;
   else
-    return p.axis.cast<S>().normalized();
+    return p.axis.template cast<S>().normalized();
 }
 
 // Some links, in order, after those that they hang from.
 template <class S>
-void place_links(const System& system, const Parameters& p, const Configuration<S>& q, double t,
+void place_links(const System& system, const ParametersOf<S>& p, const Configuration<S>& q, double t,
                  std::size_t first, std::size_t last, Kinematics<S>& out) {
   for (std::size_t i = first; i < last; ++i) {
     const Link& link = system.links[i];
-    const LinkParameters& lp = p.links[i];
+    const LinkParametersOf<S>& lp = p.links[i];
     const LinkState<S>& parent = out.at(link.parent);
     LinkState<S>& x = out.links[i];
     S displacement = 0;
@@ -30,7 +30,7 @@ void place_links(const System& system, const Parameters& p, const Configuration<
       displacement = S(lp.start) + (finds_speed(link) ? q[link.q] : S(lp.speed)) * S(t);
     else if (link.type == LinkType::revolute || link.type == LinkType::prismatic)
       displacement = q[link.q] - S(lp.drawn);
-    x.o = parent.o + parent.R * lp.offset.cast<S>();
+    x.o = parent.o + parent.R * lp.offset.template cast<S>();
     switch (link.type) {
     case LinkType::fixed: x.R = parent.R; break;
     case LinkType::revolute: {
@@ -90,7 +90,7 @@ void place_links(const System& system, const Parameters& p, const Configuration<
 } // namespace
 
 template <class S>
-void forward(const System& system, const Parameters& p, const Configuration<S>& q, double t,
+void forward(const System& system, const ParametersOf<S>& p, const Configuration<S>& q, double t,
              Kinematics<S>& out) {
   out.links.resize(system.links.size());
   out.columns.resize(static_cast<std::size_t>(system.nv));
@@ -100,7 +100,7 @@ void forward(const System& system, const Parameters& p, const Configuration<S>& 
   out.ground.w.setZero();
   out.ground.v.setZero();
   out.ground.dw.setZero();
-  out.ground.dv = -p.gravity.cast<S>();
+  out.ground.dv = -p.gravity.template cast<S>();
   if (system.division.spine > 0) place_links(system, p, q, t, 0, system.division.spine, out);
   for_parts(system.division, [&](const SystemPart& part, std::size_t) {
     place_links(system, p, q, t, part.first, part.last, out);
@@ -124,17 +124,18 @@ void retract(const System& system, const Configuration<S>& step, Configuration<S
 }
 
 template <class S>
-Vec3T<S> rotation_vector(const Link& link, const LinkParameters& p, const Configuration<S>& q) {
+Vec3T<S> rotation_vector(const Link& link, const LinkParametersOf<S>& p, const Configuration<S>& q) {
   const Eigen::Quaternion<S> d(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
-  return log_rotation<S>((link.reversed ? d.conjugate() : d) * p.drawn_rotation.cast<S>());
+  return log_rotation<S>((link.reversed ? d.conjugate() : d) * p.drawn_rotation.template cast<S>());
 }
 
-double coordinate_value(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
-                        const CoordinateInfo& c) {
+template <class S>
+S coordinate_value(const System& system, const ParametersOf<S>& parameters, const Configuration<S>& q,
+                   const CoordinateInfo& c) {
   const Link& link = system.links[static_cast<std::size_t>(c.link)];
-  const LinkParameters& p = parameters.links[static_cast<std::size_t>(c.link)];
+  const LinkParametersOf<S>& p = parameters.links[static_cast<std::size_t>(c.link)];
   if (link.drive >= 0) return p.drawn + p.start;
-  if (link.type == LinkType::spherical) return rotation_vector(link, p, q)[c.index - link.coordinate];
+  if (link.type == LinkType::spherical) return rotation_vector<S>(link, p, q)[c.index - link.coordinate];
   return q[link.q];
 }
 
@@ -188,11 +189,19 @@ template void forward<double>(const System&, const Parameters&, const Configurat
                               Kinematics<double>&);
 template void forward<Extended>(const System&, const Parameters&, const Configuration<Extended>&, double,
                                 Kinematics<Extended>&);
+template void forward<Dual>(const System&, const BasicParameters<Dual>&, const Configuration<Dual>&, double,
+                            Kinematics<Dual>&);
 template void retract<double>(const System&, const Configuration<double>&, Configuration<double>&);
 template void retract<Extended>(const System&, const Configuration<Extended>&, Configuration<Extended>&);
+template double coordinate_value<double>(const System&, const Parameters&, const Eigen::VectorXd&,
+                                         const CoordinateInfo&);
+template Dual coordinate_value<Dual>(const System&, const BasicParameters<Dual>&, const Configuration<Dual>&,
+                                     const CoordinateInfo&);
 template Vec3T<double> rotation_vector<double>(const Link&, const LinkParameters&,
                                                const Configuration<double>&);
 template Vec3T<Extended> rotation_vector<Extended>(const Link&, const LinkParameters&,
                                                    const Configuration<Extended>&);
+template Vec3T<Dual> rotation_vector<Dual>(const Link&, const BasicLinkParameters<Dual>&,
+                                           const Configuration<Dual>&);
 
 } // namespace flyball

@@ -40,7 +40,7 @@ struct Kinematics {
   std::vector<Column<S>> columns; // by coordinate of q_R
   LinkState<S> ground;
   const LinkState<S>& at(int link) const { return link < 0 ? ground : links[static_cast<std::size_t>(link)]; }
-  Vec3T<S> point(int link, const Offset& offset) const {
+  Vec3T<S> point(int link, const OffsetOf<S>& offset) const {
     const LinkState<S>& l = at(link);
     return l.o + l.R * offset.template cast<S>();
   }
@@ -52,9 +52,9 @@ struct Kinematics {
 };
 
 // Phase `t`: seconds of driving since the drawn pose, at the full drive speeds of `parameters`, whatever
-// Parameters::speed_scale, and at those speeds that q has. Instantiated for double and Extended.
+// Parameters::speed_scale, and at those speeds that q has. Instantiated for double, Extended and Dual.
 template <class S>
-void forward(const System& system, const Parameters& parameters, const Configuration<S>& q, double t,
+void forward(const System& system, const ParametersOf<S>& parameters, const Configuration<S>& q, double t,
              Kinematics<S>& out);
 
 // q moved by a tangent step: rotations as exp(step) D, in the axes of the link's parent.
@@ -62,16 +62,17 @@ template <class S>
 void retract(const System& system, const Configuration<S>& step, Configuration<S>& q);
 
 // The value of a coordinate as its joint labels it: rad or m. Component k of a spherical link's rotation
-// vector.
-double coordinate_value(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
-                        const CoordinateInfo& coordinate);
+// vector. Instantiated for double and Dual.
+template <class S>
+S coordinate_value(const System& system, const ParametersOf<S>& parameters, const Configuration<S>& q,
+                   const CoordinateInfo& coordinate);
 // Whether whole turns of a link's coordinate do not matter: nothing springs back, stops, gears or drives it.
 // Such an angle is reported in (-pi, pi].
 bool turns_freely(const System& system, const Parameters& parameters, int link);
 
 // The rotation vector of a spherical link, in the joint's own order.
 template <class S>
-Vec3T<S> rotation_vector(const Link& link, const LinkParameters& parameters, const Configuration<S>& q);
+Vec3T<S> rotation_vector(const Link& link, const LinkParametersOf<S>& parameters, const Configuration<S>& q);
 
 // r' = J u: its rate when the link's coordinates move with u, in the joint's own order.
 Mat3 rotation_vector_rate(const Link& link, const LinkParameters& parameters, const Eigen::VectorXd& q);

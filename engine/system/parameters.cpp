@@ -9,110 +9,117 @@
 namespace flyball {
 namespace {
 
-// See Link::axis.
-Vec3 axis_of(const Joint* joint, int axis) {
-  switch (axis) {
-  case 0: return joint ? joint->axis.normalized() : Vec3(Vec3::UnitX());
-  case 1:
-    if (joint->type == JointType::planar) {
-      const Vec3 n = joint->axis.normalized();
-      return (joint->axis2 - n * n.dot(joint->axis2)).normalized();
-    }
-    return joint->axis2.normalized();
-  case 2: return joint->axis.normalized().cross(axis_of(joint, 1));
-  default: return Vec3::Unit(axis - 3);
-  }
-}
-
-Vec3 joint_point(const Mechanism& m, const TreeJoint& t) {
-  return t.joint >= 0 ? m.joints[static_cast<std::size_t>(t.joint)].at
-                      : m.bodies[static_cast<std::size_t>(t.child_body)].position;
-}
-
+template <class N>
 class Binder {
  public:
-  Binder(const System& s, const Mechanism& m, Parameters& p) : s_(s), m_(m), p_(p) {}
+  using Vector = Vec3T<N>;
+  using Tensor = Mat3T<N>;
+  using Rotation = Eigen::Quaternion<N>;
+
+  Binder(const System& s, const Mechanism& m, const NumberReader<N>& read, BasicParameters<N>& p)
+      : s_(s), m_(m), read_(read), p_(p) {}
 
   void run() {
-    p_.gravity = m_.gravity;
-    p_.origin = s_.tree_joints.empty() ? Vec3(Vec3::Zero()) : joint_point(m_, s_.tree_joints.front());
+    p_.gravity = read_(m_.gravity);
+    p_.origin = s_.tree_joints.empty() ? Vector(Vector::Zero()) : joint_point(s_.tree_joints.front());
     p_.links.resize(s_.links.size());
     for (std::size_t l = 0; l < s_.links.size(); ++l)
       bind_link(l);
     bind_speeds();
     bind_elements();
-    p_.length = reach();
-    p_.phase_free = phase_free();
   }
 
  private:
   const Joint& joint(int j) const { return m_.joints[static_cast<std::size_t>(j)]; }
 
+  // See Link::axis.
+  Vector axis_of(const Joint* joint, int axis) const {
+    switch (axis) {
+    case 0: return joint ? Vector(read_(joint->axis).normalized()) : Vector(Vector::UnitX());
+    case 1:
+      if (joint->type == JointType::planar) {
+        const Vector n = read_(joint->axis).normalized(), x = read_(joint->axis2);
+        return (x - n * n.dot(x)).normalized();
+      }
+      return read_(joint->axis2).normalized();
+    case 2: return read_(joint->axis).normalized().cross(axis_of(joint, 1));
+    default: return Vector::Unit(axis - 3);
+    }
+  }
+
+  Vector joint_point(const TreeJoint& t) const {
+    return t.joint >= 0 ? read_(joint(t.joint).at)
+                        : read_(m_.bodies[static_cast<std::size_t>(t.child_body)].position);
+  }
+
   void bind_link(std::size_t l) {
     const Link& link = s_.links[l];
     const TreeJoint& tree = s_.tree_joints[static_cast<std::size_t>(link.tree_joint)];
     const Joint* j = tree.joint >= 0 ? &joint(tree.joint) : nullptr;
-    LinkParameters& out = p_.links[l];
-    CoordinateForces force = std::move(out.force); // for its memory
+    BasicLinkParameters<N>& out = p_.links[l];
+    BasicCoordinateForces<N> force = std::move(out.force); // for its memory
     force.clear();
     out = {};
     out.force = std::move(force);
-    out.origin = joint_point(m_, tree) - p_.origin;
-    out.offset = link.parent >= 0 ? Vec3(out.origin - p_.links[static_cast<std::size_t>(link.parent)].origin)
-                                  : out.origin;
+    out.origin = joint_point(tree) - p_.origin;
+    out.offset = link.parent >= 0
+                     ? Vector(out.origin - p_.links[static_cast<std::size_t>(link.parent)].origin)
+                     : out.origin;
     if (link.type == LinkType::revolute || link.type == LinkType::prismatic)
-      out.axis = axis_of(j, link.axis) * (link.reversed ? -1. : 1.);
+      out.axis = axis_of(j, link.axis) * N(link.reversed ? -1. : 1.);
     if (link.type == LinkType::spherical) {
-      Vec3 r = Vec3::Zero();
+      Vector r = Vector::Zero();
       if (j)
         for (int k = 0; k < 3; ++k)
-          r[k] = j->coordinates[static_cast<std::size_t>(link.coordinate + k)].drawn;
-      out.drawn_rotation = exp_rotation(r);
+          r[k] = read_(j->coordinates[static_cast<std::size_t>(link.coordinate + k)].drawn);
+      out.drawn_rotation = exp_rotation<N>(r);
     }
     if (j && link.type != LinkType::fixed) {
       const int n = link.type == LinkType::spherical ? 3 : 1;
       for (int k = 0; k < n; ++k)
         bind_coordinate(j->coordinates[static_cast<std::size_t>(link.coordinate + k)], out, k);
-      out.drawn = j->coordinates[static_cast<std::size_t>(link.coordinate)].drawn;
+      out.drawn = read_(j->coordinates[static_cast<std::size_t>(link.coordinate)].drawn);
     }
     if (link.body >= 0) {
       const Body& b = m_.bodies[static_cast<std::size_t>(link.body)];
-      out.mass = b.mass;
-      out.com = b.position - p_.origin - out.origin;
-      Mat3 i;
-      i << b.inertia[0], b.inertia[3], b.inertia[4], b.inertia[3], b.inertia[1], b.inertia[5], b.inertia[4],
-          b.inertia[5], b.inertia[2];
-      out.has_inertia = !i.isZero(0);
-      const Mat3 r = b.rotation.normalized().toRotationMatrix();
-      out.inertia = b.rotation.coeffs() == Quat::Identity().coeffs() ? i : Mat3(r * i * r.transpose());
+      out.mass = read_(b.mass);
+      out.com = read_(b.position) - p_.origin - out.origin;
+      std::array<N, 6> tensor;
+      std::ranges::transform(b.inertia, tensor.begin(), [&](const double& x) { return read_(x); });
+      Tensor i;
+      i << tensor[0], tensor[3], tensor[4], tensor[3], tensor[1], tensor[5], tensor[4], tensor[5], tensor[2];
+      out.has_inertia = std::ranges::any_of(tensor, [](const N& x) { return x != N(0); });
+      const Rotation rotation = read_(b.rotation).normalized();
+      const Tensor r = rotation.toRotationMatrix();
+      out.inertia = rotation.coeffs() == Rotation::Identity().coeffs() ? i : Tensor(r * i * r.transpose());
     }
   }
 
-  static void bind_coordinate(const Coordinate& c, LinkParameters& out, int k) {
-    if (!c.spring && !c.stop && c.damping == 0) return;
-    CoordinateForce& f = out.force.hold(static_cast<std::size_t>(k));
-    f.damping = c.damping;
+  void bind_coordinate(const Coordinate& c, BasicLinkParameters<N>& out, int k) const {
+    const N damping = read_(c.damping);
+    if (!c.spring && !c.stop && damping == N(0)) return;
+    BasicCoordinateForce<N>& f = out.force.hold(static_cast<std::size_t>(k));
+    f.damping = damping;
     if (c.spring) {
-      f.stiffness = c.spring->stiffness;
-      f.free = c.spring->free;
+      f.stiffness = read_(c.spring->stiffness);
+      f.free = read_(c.spring->free);
     }
     if (c.stop) {
-      f.stop_stiffness = c.stop->stiffness;
+      f.stop_stiffness = read_(c.stop->stiffness);
       f.has_lower = c.stop->lower.has_value();
       f.has_upper = c.stop->upper.has_value();
-      f.lower = c.stop->lower.value_or(0);
-      f.upper = c.stop->upper.value_or(0);
+      if (c.stop->lower) f.lower = read_(*c.stop->lower);
+      if (c.stop->upper) f.upper = read_(*c.stop->upper);
     }
     out.elastic = out.elastic || f.elastic();
   }
 
-  double gear_offset(const Joint& g) const {
-    if (g.offset) return *g.offset;
+  N gear_offset(const Joint& g) const {
     const auto drawn = [&](int end) {
       const CoordinateReference r = find_coordinate(m_, g.joints[static_cast<std::size_t>(end)]);
-      return joint(r.joint).coordinates[static_cast<std::size_t>(r.coordinate)].drawn;
+      return read_(joint(r.joint).coordinates[static_cast<std::size_t>(r.coordinate)].drawn);
     };
-    return drawn(1) - g.ratio * drawn(0);
+    return read_(g.offset, drawn(1) - read_(g.ratio) * drawn(0));
   }
 
   bool is_end(const Joint& g, int end, const DrivenCoordinate& d) const {
@@ -129,33 +136,33 @@ class Binder {
       const Link& m = s_.links[static_cast<std::size_t>(motor.link)];
       const Coordinate& c = joint(s_.tree_joints[static_cast<std::size_t>(m.tree_joint)].joint)
                                 .coordinates[static_cast<std::size_t>(m.coordinate)];
-      double ratio = 1, value = c.drawn;
+      N ratio = 1, value = read_(c.drawn);
       CoordinateReference at{s_.tree_joints[static_cast<std::size_t>(m.tree_joint)].joint, m.coordinate};
       for (int gear : d.gears) {
         const Joint& g = joint(gear);
         const CoordinateReference a = find_coordinate(m_, g.joints[0]), b = find_coordinate(m_, g.joints[1]);
         if (a.joint == at.joint && a.coordinate == at.coordinate) {
-          ratio *= g.ratio;
-          value = g.ratio * value + gear_offset(g);
+          ratio *= read_(g.ratio);
+          value = read_(g.ratio) * value + gear_offset(g);
           at = b;
         } else {
-          ratio /= g.ratio;
-          value = (value - gear_offset(g)) / g.ratio;
+          ratio /= read_(g.ratio);
+          value = (value - gear_offset(g)) / read_(g.ratio);
           at = a;
         }
       }
-      LinkParameters& l = p_.links[static_cast<std::size_t>(d.link)];
+      BasicLinkParameters<N>& l = p_.links[static_cast<std::size_t>(d.link)];
       l.gear_ratio = ratio;
-      l.speed = ratio * c.drive->speed;
+      l.speed = ratio * read_(c.drive->speed);
       l.start = value - l.drawn;
-      p_.moving = p_.moving || l.speed != 0 || finds_speed(s_.links[static_cast<std::size_t>(d.link)]);
+      p_.moving = p_.moving || l.speed != N(0) || finds_speed(s_.links[static_cast<std::size_t>(d.link)]);
     }
   }
 
   // Of a world point of the drawn pose, in a link.
-  Offset in_link(const Vec3& drawn, int link) const {
-    const Vec3 p = drawn - p_.origin;
-    return link >= 0 ? Vec3(p - p_.links[static_cast<std::size_t>(link)].origin) : p;
+  BasicOffset<N> in_link(const Vector& drawn, int link) const {
+    const Vector p = drawn - p_.origin;
+    return link >= 0 ? Vector(p - p_.links[static_cast<std::size_t>(link)].origin) : p;
   }
 
   void bind_elements() {
@@ -163,27 +170,30 @@ class Binder {
     for (std::size_t i = 0; i < s_.springs.size(); ++i) {
       const PointSpringElement& e = s_.springs[i];
       const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
-      p_.springs[i] = {in_link(f.points[0], e.ends.a), in_link(f.points[1], e.ends.b), f.stiffness,
-                       f.free_length.value_or((f.points[1] - f.points[0]).norm()), f.damping};
+      const Vector a = read_(f.points[0]), b = read_(f.points[1]);
+      p_.springs[i] = {in_link(a, e.ends.a), in_link(b, e.ends.b), read_(f.stiffness),
+                       read_(f.free_length, (b - a).norm()), read_(f.damping)};
     }
     p_.body_forces.resize(s_.body_forces.size());
     for (std::size_t i = 0; i < s_.body_forces.size(); ++i) {
       const BodyForceElement& e = s_.body_forces[i];
       const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
       const int b = e.link >= 0 ? s_.links[static_cast<std::size_t>(e.link)].body : -1;
-      const Vec3 centre = b >= 0 ? m_.bodies[static_cast<std::size_t>(b)].position : Vec3(Vec3::Zero());
-      Vec3 vector = f.vector;
+      const Vector centre =
+          b >= 0 ? Vector(read_(m_.bodies[static_cast<std::size_t>(b)].position)) : Vector(Vector::Zero());
+      Vector vector = read_(f.vector);
       if (f.frame == ForceFrame::body && b >= 0)
-        vector = m_.bodies[static_cast<std::size_t>(b)].rotation.normalized() * vector;
-      p_.body_forces[i] = {f.type, f.frame,  in_link(f.at.value_or(centre), e.link),
-                           vector, f.linear, f.quadratic};
+        vector = read_(m_.bodies[static_cast<std::size_t>(b)].rotation).normalized() * vector;
+      p_.body_forces[i] = {f.type, f.frame,         in_link(read_(f.at, centre), e.link),
+                           vector, read_(f.linear), read_(f.quadratic)};
     }
     p_.cut_dampers.resize(s_.cut_dampers.size());
     for (std::size_t i = 0; i < s_.cut_dampers.size(); ++i) {
       const CutDamperElement& e = s_.cut_dampers[i];
       const Joint& j = joint(e.joint);
-      p_.cut_dampers[i] = {in_link(j.at, e.ends.a), in_link(j.at, e.ends.b), j.axis.normalized(),
-                           j.coordinates[static_cast<std::size_t>(e.coordinate)].damping};
+      const Vector at = read_(j.at);
+      p_.cut_dampers[i] = {in_link(at, e.ends.a), in_link(at, e.ends.b), read_(j.axis).normalized(),
+                           read_(j.coordinates[static_cast<std::size_t>(e.coordinate)].damping)};
     }
     p_.torques.resize(s_.torques.size());
     for (std::size_t i = 0; i < s_.torques.size(); ++i) {
@@ -191,102 +201,116 @@ class Binder {
       const Drive& drive = *joint(s_.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint)
                                 .coordinates[static_cast<std::size_t>(l.coordinate)]
                                 .drive;
-      p_.links[static_cast<std::size_t>(s_.torques[i].link)].speed = drive.speed;
-      bind_law(s_.torques[i].torque, drive.torque.value_or(0), p_.torques[i].torque);
-      bind_law(s_.torques[i].load, drive.load.value_or(0), p_.torques[i].load);
+      p_.links[static_cast<std::size_t>(s_.torques[i].link)].speed = drive.speed; // no number of the balance
+      bind_law(s_.torques[i].torque, drive.torque, p_.torques[i].torque);
+      bind_law(s_.torques[i].load, drive.load, p_.torques[i].load);
     }
     p_.cuts.resize(s_.cuts.size());
     for (std::size_t i = 0; i < s_.cuts.size(); ++i)
       bind_cut(s_.cuts[i], p_.cuts[i]);
   }
 
-  void bind_law(const DriveLaw& law, double value, DriveLawParameters& out) const {
-    out.value = value;
+  void bind_law(const DriveLaw& law, const std::optional<double>& value,
+                BasicDriveLawParameters<N>& out) const {
+    out.value = value ? read_(*value) : N(0);
     out.numbers.clear();
     if (!law.expression) return;
     for (const std::string& name : law.expression->names())
-      out.numbers.push_back({named_value(m_, name), 0});
+      out.numbers.push_back(read_(named_number(m_, name)));
   }
 
-  void bind_cut(const CutJoint& cut, CutParameters& out) const {
+  void bind_cut(const CutJoint& cut, BasicCutParameters<N>& out) const {
     const Joint& j = joint(cut.joint);
     out = {};
     if (cut.type == JointType::gear) {
-      out.ratio = j.ratio;
+      out.ratio = read_(j.ratio);
       out.offset = gear_offset(j);
       return;
     }
     if (cut.type == JointType::distance) {
-      out.a = in_link(j.points[0], cut.ends.a);
-      out.b = in_link(j.points[1], cut.ends.b);
-      out.length = j.length.value_or((j.points[1] - j.points[0]).norm());
+      const Vector a = read_(j.points[0]), b = read_(j.points[1]);
+      out.a = in_link(a, cut.ends.a);
+      out.b = in_link(b, cut.ends.b);
+      out.length = read_(j.length, (b - a).norm());
       return;
     }
-    out.a = in_link(j.at, cut.ends.a);
-    out.b = in_link(j.at, cut.ends.b);
+    const Vector at = read_(j.at);
+    out.a = in_link(at, cut.ends.a);
+    out.b = in_link(at, cut.ends.b);
     // Where a twin is welded the cut is a fixed joint, whatever the scene's is.
-    const JointFrame frame = cut.type == JointType::fixed ? joint_frame({}) : joint_frame(j);
+    static const Joint fixed;
+    const BasicJointFrame<N> frame = joint_frame<N>(cut.type == JointType::fixed ? fixed : j, read_);
     out.frame = frame.axes;
     out.drawn = frame.drawn;
     if (cut.type == JointType::universal) out.constant = out.frame[2].dot(out.frame[3]);
   }
 
-  // Half the largest distance from the middle of all points that matter.
-  double reach() const {
-    Eigen::AlignedBox3d box;
-    for (const LinkParameters& l : p_.links) {
-      box.extend(l.origin);
-      box.extend(Vec3(l.origin + l.com));
-    }
-    const auto add = [&](const Offset& at, int link) {
-      box.extend(link >= 0 ? Vec3(at + p_.links[static_cast<std::size_t>(link)].origin) : at);
-    };
-    for (std::size_t i = 0; i < s_.springs.size(); ++i) {
-      add(p_.springs[i].a, s_.springs[i].ends.a);
-      add(p_.springs[i].b, s_.springs[i].ends.b);
-    }
-    for (std::size_t i = 0; i < s_.cuts.size(); ++i) {
-      if (s_.cuts[i].type == JointType::gear) continue;
-      add(p_.cuts[i].a, s_.cuts[i].ends.a);
-      add(p_.cuts[i].b, s_.cuts[i].ends.b);
-    }
-    const double half = box.isEmpty() ? 0 : box.diagonal().norm() / 2;
-    return half > 0 ? half : 1;
-  }
-
-  bool phase_free() const {
-    if (!p_.moving) return true;
-    if (s_.drives.size() != 1) return false;
-    const int d = s_.drives.front().link;
-    const Link& link = s_.links[static_cast<std::size_t>(d)];
-    if (link.parent >= 0) return false;
-    if (link.type == LinkType::revolute &&
-        p_.gravity.cross(p_.links[static_cast<std::size_t>(d)].axis).norm() > 1e-14 * p_.gravity.norm())
-      return false;
-    const auto turns = [&](int l) { return l >= 0 && s_.links[static_cast<std::size_t>(l)].frame == d; };
-    const auto apart = [&](const PairEnds& e) { return turns(e.a) != turns(e.b); };
-    for (const PointSpringElement& e : s_.springs)
-      if (apart(e.ends)) return false;
-    for (const CutJoint& c : s_.cuts)
-      if (c.type != JointType::gear && apart(c.ends)) return false;
-    for (const CutDamperElement& e : s_.cut_dampers)
-      if (apart(e.ends)) return false;
-    for (std::size_t i = 0; i < s_.body_forces.size(); ++i)
-      if (turns(s_.body_forces[i].link) && p_.body_forces[i].type != ForceType::drag &&
-          p_.body_forces[i].frame == ForceFrame::world)
-        return false;
-    return true;
-  }
-
   const System& s_;
   const Mechanism& m_;
-  Parameters& p_;
+  const NumberReader<N>& read_;
+  BasicParameters<N>& p_;
 };
+
+// Half the largest distance from the middle of all points that matter.
+double reach(const System& system, const Parameters& p) {
+  Eigen::AlignedBox3d box;
+  for (const LinkParameters& l : p.links) {
+    box.extend(l.origin);
+    box.extend(Vec3(l.origin + l.com));
+  }
+  const auto add = [&](const Offset& at, int link) {
+    box.extend(link >= 0 ? Vec3(at + p.links[static_cast<std::size_t>(link)].origin) : at);
+  };
+  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+    add(p.springs[i].a, system.springs[i].ends.a);
+    add(p.springs[i].b, system.springs[i].ends.b);
+  }
+  for (std::size_t i = 0; i < system.cuts.size(); ++i) {
+    if (system.cuts[i].type == JointType::gear) continue;
+    add(p.cuts[i].a, system.cuts[i].ends.a);
+    add(p.cuts[i].b, system.cuts[i].ends.b);
+  }
+  const double half = box.isEmpty() ? 0 : box.diagonal().norm() / 2;
+  return half > 0 ? half : 1;
+}
+
+bool phase_free(const System& system, const Parameters& p) {
+  if (!p.moving) return true;
+  if (system.drives.size() != 1) return false;
+  const int d = system.drives.front().link;
+  const Link& link = system.links[static_cast<std::size_t>(d)];
+  if (link.parent >= 0) return false;
+  if (link.type == LinkType::revolute &&
+      p.gravity.cross(p.links[static_cast<std::size_t>(d)].axis).norm() > 1e-14 * p.gravity.norm())
+    return false;
+  const auto turns = [&](int l) { return l >= 0 && system.links[static_cast<std::size_t>(l)].frame == d; };
+  const auto apart = [&](const PairEnds& e) { return turns(e.a) != turns(e.b); };
+  for (const PointSpringElement& e : system.springs)
+    if (apart(e.ends)) return false;
+  for (const CutJoint& c : system.cuts)
+    if (c.type != JointType::gear && apart(c.ends)) return false;
+  for (const CutDamperElement& e : system.cut_dampers)
+    if (apart(e.ends)) return false;
+  for (std::size_t i = 0; i < system.body_forces.size(); ++i)
+    if (turns(system.body_forces[i].link) && p.body_forces[i].type != ForceType::drag &&
+        p.body_forces[i].frame == ForceFrame::world)
+      return false;
+  return true;
+}
 
 } // namespace
 
 void bind(const System& system, const Mechanism& mechanism, Parameters& parameters) {
-  Binder(system, mechanism, parameters).run();
+  Binder<double>(system, mechanism, {}, parameters).run();
+  parameters.length = reach(system, parameters);
+  parameters.phase_free = phase_free(system, parameters);
+}
+
+void bind(const System& system, const Mechanism& mechanism, const NumberRates& rates, const Parameters& of,
+          BasicParameters<Dual>& parameters) {
+  const NumberReader<Dual> read(rates);
+  Binder<Dual>(system, mechanism, read, parameters).run();
+  parameters.speed_scale = of.speed_scale;
 }
 
 void drawn_configuration(const System& system, const Parameters& parameters, Eigen::VectorXd& q) {

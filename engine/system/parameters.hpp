@@ -1,15 +1,18 @@
 // The numbers of a mechanism, laid out for the system's passes. Rewritten when a slider moves; a change of
-// numbers never recompiles.
+// numbers never recompiles. N: double, or Dual for the numbers with their rates.
 #pragma once
 
+#include "engine/mechanism/number_rates.hpp"
+#include "engine/system/spatial.hpp"
 #include "engine/system/system.hpp"
 
 namespace flyball {
 
 // Spring, damper and stop of one coordinate.
-struct CoordinateForce {
-  double stiffness = 0, free = 0, damping = 0;
-  double lower = 0, upper = 0, stop_stiffness = 0; // stop_stiffness 0: no stop
+template <class N>
+struct BasicCoordinateForce {
+  N stiffness = 0, free = 0, damping = 0;
+  N lower = 0, upper = 0, stop_stiffness = 0; // stop_stiffness 0: no stop
   bool has_lower = false, has_upper = false;
   bool elastic() const { return stiffness != 0 || stop_stiffness != 0; }
 
@@ -21,7 +24,7 @@ struct CoordinateForce {
     if (has_upper && q > S(upper)) g += S(stop_stiffness) * (q - S(upper));
     return g;
   }
-  double curvature(double q) const {
+  N curvature(N q) const {
     return stiffness + ((has_lower && q < lower) || (has_upper && q > upper) ? stop_stiffness : 0);
   }
   template <class S>
@@ -34,10 +37,12 @@ struct CoordinateForce {
 };
 
 // Those of a link, one each or three for a spherical one; most links have none and hold none.
-class CoordinateForces {
+template <class N>
+class BasicCoordinateForces {
  public:
-  const CoordinateForce& operator[](std::size_t i) const { return i < held_.size() ? held_[i] : none; }
-  CoordinateForce& hold(std::size_t i) {
+  using Force = BasicCoordinateForce<N>;
+  const Force& operator[](std::size_t i) const { return i < held_.size() ? held_[i] : none; }
+  Force& hold(std::size_t i) {
     if (i >= held_.size()) held_.resize(i + 1);
     return held_[i];
   }
@@ -48,89 +53,129 @@ class CoordinateForces {
   auto end() const { return held_.end(); }
 
  private:
-  static constexpr CoordinateForce none{};
-  std::vector<CoordinateForce> held_;
+  static constexpr Force none{};
+  std::vector<Force> held_;
 };
 
 // What every pass over the links reads comes first.
-struct LinkParameters {
-  Vec3 offset = Vec3::Zero(); // m, p of this link's origin in its parent's, drawn pose
-  Vec3 axis = Vec3::UnitZ();  // unit, drawn pose; turned round where the tree runs against the joint
-  double drawn = 0;           // label of the drawn pose
-  double mass = 0;            // kg
+template <class N>
+struct BasicLinkParameters {
+  Vec3T<N> offset = Vec3T<N>::Zero(); // m, p of this link's origin in its parent's, drawn pose
+  Vec3T<N> axis = Vec3T<N>::UnitZ();  // unit, drawn pose; turned round where the tree runs against the joint
+  N drawn = 0;                        // label of the drawn pose
+  N mass = 0;                         // kg
   bool has_inertia = false;
-  bool elastic = false;        // any of `force` is a spring or stop
-  Vec3 com = Vec3::Zero();     // m, mass centre from the link's origin, drawn pose
-  Mat3 inertia = Mat3::Zero(); // kg m^2, about the mass centre, drawn-pose world axes
-  double speed = 0;            // driven: rad/s or m/s, before Parameters::speed_scale; by a torque: at first
-  double start = 0;      // driven: displacement from the drawn pose at phase zero (a gear may ask for one)
-  double gear_ratio = 1; // driven: speed per speed of its motor
-  Vec3 origin = Vec3::Zero();             // m, this link's origin in the drawn pose, from Parameters::origin
-  Quat drawn_rotation = Quat::Identity(); // spherical: exp of the drawn rotation vector
-  CoordinateForces force;
+  bool elastic = false;                // any of `force` is a spring or stop
+  Vec3T<N> com = Vec3T<N>::Zero();     // m, mass centre from the link's origin, drawn pose
+  Mat3T<N> inertia = Mat3T<N>::Zero(); // kg m^2, about the mass centre, drawn-pose world axes
+  N speed = 0;      // driven: rad/s or m/s, before Parameters::speed_scale; by a torque: at first
+  N start = 0;      // driven: displacement from the drawn pose at phase zero (a gear may ask for one)
+  N gear_ratio = 1; // driven: speed per speed of its motor
+  Vec3T<N> origin = Vec3T<N>::Zero(); // m, this link's origin in the drawn pose, from Parameters::origin
+  Eigen::Quaternion<N> drawn_rotation =
+      Eigen::Quaternion<N>::Identity(); // spherical: exp of the drawn rotation vector
+  BasicCoordinateForces<N> force;
 };
 
 // A point fixed in a link, from the link's origin at the drawn pose.
-using Offset = Vec3;
+template <class N>
+using BasicOffset = Vec3T<N>;
 
-struct PointSpringParameters {
-  Offset a, b;
-  double stiffness = 0, free_length = 0, damping = 0;
+template <class N>
+struct BasicPointSpringParameters {
+  BasicOffset<N> a, b;
+  N stiffness = 0, free_length = 0, damping = 0;
 };
 
-struct BodyForceParameters {
+template <class N>
+struct BasicBodyForceParameters {
   ForceType type = ForceType::force;
   ForceFrame frame = ForceFrame::world;
-  Offset at;
-  Vec3 vector; // drawn-pose world axes
-  double linear = 0, quadratic = 0;
+  BasicOffset<N> at;
+  Vec3T<N> vector; // drawn-pose world axes
+  N linear = 0, quadratic = 0;
 };
 
-struct CutDamperParameters {
-  Offset a, b;
-  Vec3 axis; // fixed in end a
-  double damping = 0;
+template <class N>
+struct BasicCutDamperParameters {
+  BasicOffset<N> a, b;
+  Vec3T<N> axis; // fixed in end a
+  N damping = 0;
 };
 
-struct DriveLawParameters {
-  double value = 0;          // N m or N, where no expression gives it
+template <class N>
+struct BasicDriveLawParameters {
+  N value = 0;               // N m or N, where no expression gives it
   std::vector<Dual> numbers; // by name of the expression
 };
 
-struct DriveTorqueParameters {
-  DriveLawParameters torque, load;
+template <class N>
+struct BasicDriveTorqueParameters {
+  BasicDriveLawParameters<N> torque, load;
 };
 
-struct CutParameters {
-  Offset a, b;                   // the joint's point on either end; a distance joint's points
-  std::array<Vec3, 4> frame;     // x, y, z (axis), second axis; drawn pose
-  std::array<double, 6> drawn{}; // labels of the drawn pose, rad or m
-  double constant = 0;           // direction rows of a universal joint
-  double length = 0;             // distance
-  double ratio = 0, offset = 0;  // gear
+template <class N>
+struct BasicCutParameters {
+  BasicOffset<N> a, b;           // the joint's point on either end; a distance joint's points
+  std::array<Vec3T<N>, 4> frame; // x, y, z (axis), second axis; drawn pose
+  std::array<N, 6> drawn{};      // labels of the drawn pose, rad or m
+  N constant = 0;                // direction rows of a universal joint
+  N length = 0;                  // distance
+  N ratio = 0, offset = 0;       // gear
 };
 
-struct Parameters {
-  Vec3 origin = Vec3::Zero(); // m: the world point that positions are taken from, to keep digits far from the
-                              // world's origin
-  Vec3 gravity = Vec3::Zero();
-  double speed_scale = 1; // all drive speeds times this: homotopy from rest
-  double length = 1;      // m, characteristic: the mechanism's reach
-  bool moving = false;    // any drive turns
-  std::vector<LinkParameters> links;
-  std::vector<PointSpringParameters> springs;
-  std::vector<BodyForceParameters> body_forces;
-  std::vector<CutDamperParameters> cut_dampers;
-  std::vector<DriveTorqueParameters> torques;
-  std::vector<CutParameters> cuts;
+template <class N>
+struct BasicParameters {
+  Vec3T<N> origin = Vec3T<N>::Zero(); // m: the world point that positions are taken from, to keep digits far
+                                      // from the world's origin
+  Vec3T<N> gravity = Vec3T<N>::Zero();
+  N speed_scale = 1;   // all drive speeds times this: homotopy from rest
+  N length = 1;        // m, characteristic: the mechanism's reach
+  bool moving = false; // any drive turns
+  std::vector<BasicLinkParameters<N>> links;
+  std::vector<BasicPointSpringParameters<N>> springs;
+  std::vector<BasicBodyForceParameters<N>> body_forces;
+  std::vector<BasicCutDamperParameters<N>> cut_dampers;
+  std::vector<BasicDriveTorqueParameters<N>> torques;
+  std::vector<BasicCutParameters<N>> cuts;
   // The whole balance is the same at every phase of the drives, by the shape of the mechanism alone: one
   // frame turns about an axis along gravity and nothing acts between it and the ground.
   bool phase_free = false;
 };
 
+using CoordinateForce = BasicCoordinateForce<double>;
+using CoordinateForces = BasicCoordinateForces<double>;
+using LinkParameters = BasicLinkParameters<double>;
+using Offset = BasicOffset<double>;
+using PointSpringParameters = BasicPointSpringParameters<double>;
+using BodyForceParameters = BasicBodyForceParameters<double>;
+using CutDamperParameters = BasicCutDamperParameters<double>;
+using DriveLawParameters = BasicDriveLawParameters<double>;
+using DriveTorqueParameters = BasicDriveTorqueParameters<double>;
+using CutParameters = BasicCutParameters<double>;
+using Parameters = BasicParameters<double>;
+
+// Those that calculations with S take.
+template <class S>
+using LinkParametersOf = BasicLinkParameters<NumberOf<S>>;
+template <class S>
+using OffsetOf = BasicOffset<NumberOf<S>>;
+template <class S>
+using PointSpringParametersOf = BasicPointSpringParameters<NumberOf<S>>;
+template <class S>
+using BodyForceParametersOf = BasicBodyForceParameters<NumberOf<S>>;
+template <class S>
+using CutParametersOf = BasicCutParameters<NumberOf<S>>;
+template <class S>
+using ParametersOf = BasicParameters<NumberOf<S>>;
+
 // Rewrites `parameters` (no allocation after the first time). The mechanism must have the parts the system
 // was compiled from.
 void bind(const System& system, const Mechanism& mechanism, Parameters& parameters);
+// With rates, of the mechanism's numbers; all that the balance is made of, so neither the characteristic
+// length nor what holds at all phases. The scale of speeds is that of `of`.
+void bind(const System& system, const Mechanism& mechanism, const NumberRates& rates, const Parameters& of,
+          BasicParameters<Dual>& parameters);
 
 // The drawn pose as a configuration of q_R, one entry a coordinate, four a rotation.
 void drawn_configuration(const System& system, const Parameters& parameters, Eigen::VectorXd& q);

@@ -10,7 +10,7 @@
 
 namespace flyball {
 template <class S>
-AppliedForce<S> applied_force(const BodyForceElement& e, const BodyForceParameters& p,
+AppliedForce<S> applied_force(const BodyForceElement& e, const BodyForceParametersOf<S>& p,
                               const Kinematics<S>& k) {
   AppliedForce<S> a{k.point(e.link, p.at), Vec3T<S>::Zero(), Vec3T<S>::Zero()};
   if (p.type == ForceType::drag) {
@@ -18,14 +18,14 @@ AppliedForce<S> applied_force(const BodyForceElement& e, const BodyForceParamete
     a.force = -(S(p.linear) + S(p.quadratic) * v.norm()) * v;
     return a;
   }
-  Vec3T<S> vector = p.vector.cast<S>();
+  Vec3T<S> vector = p.vector.template cast<S>();
   if (p.frame == ForceFrame::body) vector = k.at(e.link).R * vector;
   (p.type == ForceType::torque ? a.torque : a.force) = vector;
   return a;
 }
 
 template <class S>
-SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParameters& p,
+SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParametersOf<S>& p,
                             const Kinematics<S>& k) {
   SpringState<S> s;
   s.a = k.point(e.ends.a, p.a);
@@ -34,7 +34,7 @@ SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParame
   s.length = d.norm();
   s.direction = s.length > 0 ? Vec3T<S>(d / s.length) : Vec3T<S>(Vec3T<S>::Zero());
   s.tension = S(p.stiffness) * (s.length - S(p.free_length));
-  if (p.damping != 0)
+  if (p.damping != NumberOf<S>(0))
     s.tension += S(p.damping) * s.direction.dot(k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a));
   return s;
 }
@@ -43,7 +43,7 @@ namespace {
 
 // Calls add(link, force) for those of a part that act on a link.
 template <class S, class Add>
-void for_applied_forces(const System& system, const Parameters& p, const Kinematics<S>& k,
+void for_applied_forces(const System& system, const ParametersOf<S>& p, const Kinematics<S>& k,
                         const SystemPart& part, const Add& add) {
   for (const int n : part.body_forces) {
     const auto i = static_cast<std::size_t>(n);
@@ -92,12 +92,12 @@ void add_in_parts(const System& system, const Pass& pass) {
 }
 
 template <class S>
-void add_spring(const System& system, const Parameters& p, const Kinematics<S>& k, std::size_t i,
+void add_spring(const System& system, const ParametersOf<S>& p, const Kinematics<S>& k, std::size_t i,
                 Configuration<S>& f) {
   const PointSpringElement& e = system.springs[i];
   const SpringState<S> s = spring_state(e, p.springs[i], k);
   // With no free length the force is k d, well defined where the points meet.
-  const bool linear = p.springs[i].free_length == 0 && p.springs[i].damping == 0;
+  const bool linear = p.springs[i].free_length == NumberOf<S>(0) && p.springs[i].damping == NumberOf<S>(0);
   const Vec3T<S> pull =
       linear ? Vec3T<S>(S(p.springs[i].stiffness) * (s.b - s.a)) : Vec3T<S>(s.tension * s.direction);
   for (const SupportColumn& c : e.ends.support) {
@@ -107,11 +107,11 @@ void add_spring(const System& system, const Parameters& p, const Kinematics<S>& 
 }
 
 template <class S>
-void add_cut_damper(const System& system, const Parameters& p, const Kinematics<S>& k, std::size_t i,
+void add_cut_damper(const System& system, const ParametersOf<S>& p, const Kinematics<S>& k, std::size_t i,
                     Configuration<S>& f) {
   const CutDamperElement& e = system.cut_dampers[i];
-  const CutDamperParameters& d = p.cut_dampers[i];
-  const Vec3T<S> axis = k.at(e.ends.a).R * d.axis.cast<S>();
+  const auto& d = p.cut_dampers[i];
+  const Vec3T<S> axis = k.at(e.ends.a).R * d.axis.template cast<S>();
   const Vec3T<S> b = k.point(e.ends.b, d.b);
   const S rate = e.angular ? axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w)
                            : axis.dot(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b));
@@ -126,7 +126,7 @@ void add_cut_damper(const System& system, const Parameters& p, const Kinematics<
 template <class S>
 struct ResidualPass {
   const System& system;
-  const Parameters& p;
+  const ParametersOf<S>& p;
   const Configuration<S>&q, &lambda;
   const Kinematics<S>& k;
   Residual<S>& out;
@@ -142,7 +142,7 @@ struct ResidualPass {
   void add_links(std::size_t first, std::size_t last, std::size_t spine) const {
     for (std::size_t i = last; i-- > first;) {
       const Link& link = system.links[i];
-      const LinkParameters& lp = p.links[i];
+      const LinkParametersOf<S>& lp = p.links[i];
       const LinkState<S>& x = k.links[i];
       Vec3T<S>&force = out.force[i], &moment = out.moment[i];
       add_inertia_force(lp, x, p.moving, force, moment);
@@ -208,7 +208,7 @@ void add_pair_forces(const System& system, const Parameters& p, const Kinematics
 }
 
 template <class S>
-void evaluate_constraints(const System& system, const Parameters& p, const Configuration<S>& q,
+void evaluate_constraints(const System& system, const ParametersOf<S>& p, const Configuration<S>& q,
                           const Kinematics<S>& k, Configuration<S>& phi) {
   phi.resize(system.rows);
   if (system.rows == 0) return;
@@ -222,7 +222,7 @@ void evaluate_constraints(const System& system, const Parameters& p, const Confi
 }
 
 template <class S>
-void evaluate_residual(const System& system, const Parameters& p, const Configuration<S>& q,
+void evaluate_residual(const System& system, const ParametersOf<S>& p, const Configuration<S>& q,
                        const Configuration<S>& lambda, const Kinematics<S>& k, Residual<S>& out) {
   ResidualPass<S>{system, p, q, lambda, k, out}.run();
 }
@@ -412,5 +412,7 @@ template void evaluate_residual<double>(const System&, const Parameters&, const 
 template void evaluate_residual<Extended>(const System&, const Parameters&, const Configuration<Extended>&,
                                           const Configuration<Extended>&, const Kinematics<Extended>&,
                                           Residual<Extended>&);
+template void evaluate_residual<Dual>(const System&, const BasicParameters<Dual>&, const Configuration<Dual>&,
+                                      const Configuration<Dual>&, const Kinematics<Dual>&, Residual<Dual>&);
 
 } // namespace flyball

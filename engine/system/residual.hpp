@@ -19,14 +19,14 @@ struct Residual {
   std::vector<Vec3T<S>> spine_force, spine_moment; // workspace: of each part on each link of the spine
 };
 
-// `kinematics` must be at (q, t). Instantiated for double and Extended.
+// `kinematics` must be at (q, t). Instantiated for double, Extended and Dual.
 template <class S>
-void evaluate_residual(const System& system, const Parameters& parameters, const Configuration<S>& q,
+void evaluate_residual(const System& system, const ParametersOf<S>& parameters, const Configuration<S>& q,
                        const Configuration<S>& lambda, const Kinematics<S>& kinematics, Residual<S>& out);
 
 // Phi alone.
 template <class S>
-void evaluate_constraints(const System& system, const Parameters& parameters, const Configuration<S>& q,
+void evaluate_constraints(const System& system, const ParametersOf<S>& parameters, const Configuration<S>& q,
                           const Kinematics<S>& kinematics, Configuration<S>& phi);
 
 // How large the terms of each equation are before they cancel, for scaling and for the rounding error of f:
@@ -50,7 +50,7 @@ struct AppliedForce {
   Vec3T<S> point, force, torque;
 };
 template <class S>
-AppliedForce<S> applied_force(const BodyForceElement& element, const BodyForceParameters& parameters,
+AppliedForce<S> applied_force(const BodyForceElement& element, const BodyForceParametersOf<S>& parameters,
                               const Kinematics<S>& kinematics);
 
 // Tension of a point spring (N, pulling its ends together), its direction a to b, and its second end.
@@ -60,7 +60,7 @@ struct SpringState {
   S length, tension;
 };
 template <class S>
-SpringState<S> spring_state(const PointSpringElement& element, const PointSpringParameters& parameters,
+SpringState<S> spring_state(const PointSpringElement& element, const PointSpringParametersOf<S>& parameters,
                             const Kinematics<S>& kinematics);
 
 } // namespace flyball

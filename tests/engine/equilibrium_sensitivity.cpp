@@ -46,5 +46,5 @@ TEST_CASE("the conical pendulum's angle has the rate of its closed form", "[sens
   const double angle = s.coordinates[1].value;
   REQUIRE(!s.sensitivities.empty());
   CHECK(s.sensitivities[0].address == "joints.spin.drive.speed");
-  CHECK(s.sensitivities[0].rates[0].value == Approx(2 / std::tan(angle) / speed).epsilon(1e-8));
+  CHECK(s.sensitivities[0].rates[0].value == Approx(2 / std::tan(angle) / speed).epsilon(1e-13));
 }

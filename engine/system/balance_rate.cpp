@@ -1,0 +1,20 @@
+#include "engine/system/balance_rate.hpp"
+
+namespace flyball {
+
+void BalanceRate::evaluate(const System& system, const Mechanism& mechanism, const NumberRates& rates,
+                           const Parameters& parameters, const Eigen::VectorXd& q,
+                           const Eigen::VectorXd& lambda) {
+  bind(system, mechanism, rates, parameters, parameters_);
+  q_ = q.cast<Dual>();
+  lambda_ = lambda.cast<Dual>();
+  forward<Dual>(system, parameters_, q_, 0, kinematics_);
+  evaluate_residual<Dual>(system, parameters_, q_, lambda_, kinematics_, residual_);
+  const auto take_rates = [](const Configuration<Dual>& from, Eigen::VectorXd& to) {
+    to = from.unaryExpr([](const Dual& x) { return x.rate; });
+  };
+  take_rates(residual_.f, force_);
+  take_rates(residual_.phi, phi_);
+}
+
+} // namespace flyball
