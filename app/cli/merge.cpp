@@ -1,11 +1,10 @@
 #include "app/cli/command.hpp"
 #include "app/cli/npz.hpp"
 #include "app/cli/output.hpp"
-#include "app/cli/row_output.hpp"
-#include "app/cli/sweep_part.hpp"
+#include "app/cli/part.hpp"
+#include "app/cli/spread_report.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
-#include "engine/mechanism/text.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -13,6 +12,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <memory>
 
 namespace flyball::cli {
@@ -21,7 +21,7 @@ namespace {
 struct OpenPart {
   std::filesystem::path file;
   std::ifstream in; // behind the first line
-  SweepPart part;
+  Part part;
 
   explicit OpenPart(const std::filesystem::path& path) : file(path), in(path, std::ios::binary) {
     if (!in) throw SceneError(file.string(), "cannot read");
@@ -30,14 +30,15 @@ struct OpenPart {
     part = read_part_head(file, line);
   }
 };
+using OpenParts = std::vector<std::unique_ptr<OpenPart>>;
 
-// In order, all of one sweep, none missing and none twice.
-void check_parts(std::vector<std::unique_ptr<OpenPart>>& parts) {
+// In order, all of one study, none missing and none twice.
+void check_parts(OpenParts& parts) {
   const OpenPart& first = *parts.front();
   for (const auto& each : parts)
     if (const std::string what = each->part.differs_from(first.part); !what.empty())
-      throw SceneError(each->file.string(), "expected a part of the same sweep as " + first.file.string() +
-                                                "; its " + what + " is another");
+      throw SceneError(each->file.string(), "expected a part of the same " + first.part.study + " as " +
+                                                first.file.string() + "; its " + what + " is another");
   std::ranges::stable_sort(parts, {}, [](const auto& p) { return p->part.shard.number; });
   for (std::size_t i = 1; i < parts.size(); ++i)
     if (parts[i]->part.shard.number == parts[i - 1]->part.shard.number)
@@ -55,31 +56,47 @@ void check_parts(std::vector<std::unique_ptr<OpenPart>>& parts) {
   }
   if (count > named) missing += fmt::format(" and {} more", count - named);
   if (count > 0)
-    throw SceneError("parts",
-                     fmt::format("expected all {} of the sweep; missing {}", first.part.shard.of, missing));
+    throw SceneError("parts", fmt::format("expected all {} of the {}; missing {}", first.part.shard.of,
+                                          first.part.study, missing));
+}
+
+SceneError damaged(const OpenPart& part) {
+  return {part.file.string(), "expected rows and their number behind them; it is damaged"};
+}
+
+// The cells of a row without its line end; what is quoted stays so. False where a quote has no end.
+bool split(std::string_view row, std::vector<std::string_view>& cells) {
+  cells.clear();
+  for (std::size_t begin = 0;;) {
+    std::size_t end = begin;
+    while (end < row.size() && row[end] == '"') { // and what is quoted again, right behind
+      end = row.find('"', end + 1);
+      if (end++ == std::string_view::npos) return false;
+    }
+    end = std::min(row.find(',', end), row.size());
+    cells.push_back(row.substr(begin, end - begin));
+    if (end == row.size()) return true;
+    begin = end + 1;
+  }
 }
 
 // Rows of CSV as numbers again, by columns.
 class RowColumns {
  public:
-  RowColumns(std::size_t columns, std::size_t status, std::size_t stable)
-      : columns_(columns), status_(status), stable_(stable) {}
+  explicit RowColumns(const std::vector<Column>& columns) : columns_(columns), bytes_(columns.size()) {}
 
   // False where the row has other columns, or something that is no number where one stands.
-  bool add(std::string_view row) {
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      const std::size_t comma = row.find(',');
-      if ((comma == std::string_view::npos) != (i + 1 == columns_.size())) return false;
-      if (!add(i, row.substr(0, comma))) return false;
-      if (comma != std::string_view::npos) row.remove_prefix(comma + 1);
-    }
+  bool add(std::span<const std::string_view> cells) {
+    if (cells.size() != columns_.size()) return false;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (!add(i, cells[i])) return false;
     ++rows_;
     return true;
   }
   std::size_t rows() const { return rows_; }
   std::string take() {
     std::string all;
-    for (std::string& column : columns_) {
+    for (std::string& column : bytes_) {
       all += column;
       column.clear();
     }
@@ -89,45 +106,70 @@ class RowColumns {
 
  private:
   bool add(std::size_t column, std::string_view text) {
-    std::string& out = columns_[column];
-    if (column == status_) {
-      append_word(out, text);
-    } else if (column == stable_) {
-      if (!text.empty() && text != "true" && text != "false") return false;
-      out += static_cast<char>(npz_stable(text.empty() ? std::nullopt : std::optional(text == "true")));
-    } else {
+    std::string& out = bytes_[column];
+    switch (columns_[column].kind) {
+    case CellKind::number: {
       double value = std::nan("");
       const char* end = text.data() + text.size();
       if (!text.empty() && std::from_chars(text.data(), end, value).ptr != end) return false;
       append_item(out, value);
+      return true;
     }
-    return true;
+    case CellKind::word: append_word(out, text); return true;
+    case CellKind::verdict:
+      if (!text.empty() && text != "true" && text != "false") return false;
+      out += static_cast<char>(npz_verdict(text.empty() ? std::nullopt : std::optional(text == "true")));
+      return true;
+    case CellKind::text: return true;
+    }
+    return false;
   }
 
-  std::vector<std::string> columns_; // bytes
-  std::size_t status_, stable_, rows_ = 0;
+  std::vector<Column> columns_;
+  std::vector<std::string> bytes_; // by column
+  std::size_t rows_ = 0;
 };
 
-// Calls for each row, with its line end, and checks that they are as many as the part says.
-template <class Take>
-void for_rows(OpenPart& part, const Take& take) {
-  std::uint64_t left = part.part.end() - part.part.begin();
-  std::string row;
-  for (; left > 0 && std::getline(part.in, row) && !part.in.eof(); --left) {
-    row += '\n';
-    take(row);
-  }
-  if (left > 0 || part.in.peek() != std::ifstream::traits_type::eof())
-    throw SceneError(part.file.string(),
-                     fmt::format("expected {} rows; it is damaged", part.part.end() - part.part.begin()));
+// How many rows a file's last line tells.
+std::uint64_t rows_of(OpenPart& part) {
+  constexpr std::streamoff longest = 64;
+  const auto here = part.in.tellg();
+  part.in.seekg(0, std::ios::end);
+  part.in.seekg(std::max<std::streamoff>(0, part.in.tellg() - longest));
+  std::string line, last;
+  while (std::getline(part.in, line))
+    last = line;
+  const auto rows = read_part_end(last);
+  part.in.clear();
+  part.in.seekg(here);
+  if (!rows || !part.in) throw damaged(part);
+  return *rows;
 }
 
-void merge_to_csv(std::vector<std::unique_ptr<OpenPart>>& parts, const std::filesystem::path& file) {
+using TakeRow = std::function<void(OpenPart& part, const std::string& row)>;
+
+// Calls for each row, with its line end, and checks that they are as many as the part says.
+void for_rows(OpenPart& part, const TakeRow& take) {
+  std::uint64_t count = 0;
+  std::string row;
+  for (; std::getline(part.in, row) && !part.in.eof(); ++count) {
+    if (const auto rows = read_part_end(row)) {
+      if (*rows != count || part.in.peek() != std::ifstream::traits_type::eof()) break;
+      return;
+    }
+    row += '\n';
+    take(part, row);
+  }
+  throw damaged(part);
+}
+
+void merge_to_csv(OpenParts& parts, const std::filesystem::path& file, const TakeRow& look) {
   constexpr std::size_t piece = 1 << 20; // bytes
   FileWriter out(file);
   std::string bytes = csv_head(parts.front()->part.columns);
   for (const auto& part : parts)
-    for_rows(*part, [&](const std::string& row) {
+    for_rows(*part, [&](OpenPart& from, const std::string& row) {
+      look(from, row);
       bytes += row;
       if (bytes.size() < piece) return;
       out.write(bytes);
@@ -137,27 +179,52 @@ void merge_to_csv(std::vector<std::unique_ptr<OpenPart>>& parts, const std::file
   out.finish();
 }
 
-void merge_to_npz(std::vector<std::unique_ptr<OpenPart>>& parts, const std::filesystem::path& file) {
-  const SweepPart& sweep = parts.front()->part;
-  const std::vector<NpzColumn> columns = npz_columns(sweep.columns, sweep.variations.size());
-  const auto stable = std::ranges::find(columns, "|i1", &NpzColumn::type) - columns.begin();
+void merge_to_npz(OpenParts& parts, const std::filesystem::path& file, const TakeRow& look) {
+  const std::vector<Column>& columns = parts.front()->part.columns;
   constexpr std::size_t piece = 10'000; // rows
-  NpzWriter out(file, columns, sweep.rows);
-  RowColumns rows(columns.size(), sweep.variations.size(), static_cast<std::size_t>(stable));
-  std::uint64_t written = 0;
+  std::uint64_t all = 0, written = 0;
+  for (const auto& part : parts)
+    all += rows_of(*part);
+  NpzWriter out(file, npz_columns(columns), all);
+  RowColumns rows(columns);
+  std::vector<std::string_view> cells;
   const auto write = [&] {
     const std::uint64_t begin = written;
     written += rows.rows();
     out.write(begin, written, rows.take());
   };
   for (const auto& part : parts)
-    for_rows(*part, [&](const std::string& row) {
-      if (!rows.add(std::string_view(row).substr(0, row.size() - 1)))
-        throw SceneError(part->file.string(), "expected rows of numbers; it is damaged");
+    for_rows(*part, [&](OpenPart& from, const std::string& row) {
+      look(from, row);
+      if (!split(std::string_view(row).substr(0, row.size() - 1), cells) || !rows.add(cells))
+        throw damaged(from);
       if (rows.rows() == piece) write();
     });
   write();
   out.finish();
+}
+
+void merge(OpenParts& parts, const std::filesystem::path& file, const TakeRow& look) {
+  if (file.extension() == ".npz")
+    merge_to_npz(parts, file, look);
+  else
+    merge_to_csv(parts, file, look);
+}
+
+// Samples have statistics besides.
+void merge_spread(OpenParts& parts, const std::filesystem::path& file, bool json) {
+  SpreadReport report = read_spread(parts.front()->file, parts.front()->part);
+  std::vector<std::string_view> cells;
+  merge(parts, file, [&](OpenPart& from, const std::string& row) {
+    if (!split(std::string_view(row).substr(0, row.size() - 1), cells) || !add_sample(cells, report))
+      throw damaged(from);
+  });
+  add_statistics(report.tolerances, report.seed, report.answer);
+  if (file == "-") return;
+  if (json)
+    print_json(to_json(report));
+  else
+    print_text(to_text(report));
 }
 
 } // namespace
@@ -166,27 +233,29 @@ void add_merge(CLI::App& app, Ending&) {
   struct Options {
     std::vector<std::string> parts;
     std::string out;
+    bool json = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("merge", "Put the parts of a sweep together that `sweep --shard` has written");
+      app.add_subcommand("merge", "Put the parts of a study together that --shard has written");
   command->add_option("parts", options->parts, "Files of the parts, in any order")->required();
   command
       ->add_option("-o,--output", options->out,
                    "Write a table to a file (-: standard output), or columns for NumPy where it ends in .npz")
       ->required();
+  command->add_flag("--json", options->json, "Of a spread: print its statistics as a JSON object");
   command->footer("Example: flyball merge part*.csv -o curve.csv");
   command->callback([options] {
-    std::vector<std::unique_ptr<OpenPart>> parts;
+    OpenParts parts;
     for (const std::string& file : options->parts) {
       check_outputs(file, {{"--output", options->out}});
       parts.push_back(std::make_unique<OpenPart>(file));
     }
     check_parts(parts);
-    if (options->out.ends_with(".npz"))
-      merge_to_npz(parts, options->out);
+    if (parts.front()->part.study == "spread")
+      merge_spread(parts, options->out, options->json);
     else
-      merge_to_csv(parts, options->out);
+      merge(parts, options->out, [](OpenPart&, const std::string&) {});
   });
 }
 

@@ -129,14 +129,13 @@ std::string end_record(std::uint64_t members, std::uint64_t begin, std::uint64_t
 
 } // namespace
 
-std::vector<NpzColumn> npz_columns(const std::vector<std::string>& names, std::size_t variations) {
+std::vector<NpzColumn> npz_columns(const std::vector<Column>& columns) {
   std::vector<NpzColumn> all;
-  const auto last_stable = std::find(names.rbegin(), names.rend(), "stable");
-  for (auto it = names.begin(); it != names.end(); ++it) {
-    const auto place = static_cast<std::size_t>(it - names.begin());
-    NpzColumn column{*it, "<f8", 8};
-    if (place == variations) column = {*it, fmt::format("|S{}", word_size), word_size};
-    if (it == last_stable.base() - 1) column = {*it, "|i1", 1};
+  for (const auto& [name, kind] : columns) {
+    if (kind == CellKind::text) continue;
+    NpzColumn column{name, "<f8", 8};
+    if (kind == CellKind::word) column = {name, fmt::format("|S{}", word_size), word_size};
+    if (kind == CellKind::verdict) column = {name, "|i1", 1};
     while (std::ranges::find(all, column.name, &NpzColumn::name) != all.end())
       column.name += "_";
     all.push_back(std::move(column));
@@ -154,8 +153,8 @@ void append_word(std::string& out, std::string_view word) {
   out.resize(begin + word_size, '\0');
 }
 
-std::int8_t npz_stable(std::optional<bool> stable) {
-  return static_cast<std::int8_t>(stable ? (*stable ? 1 : 0) : -1);
+std::int8_t npz_verdict(std::optional<bool> verdict) {
+  return static_cast<std::int8_t>(verdict ? (*verdict ? 1 : 0) : -1);
 }
 
 std::uint64_t NpzWriter::Member::data() const {

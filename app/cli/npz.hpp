@@ -6,6 +6,7 @@
 // the other, is used. Sizes and places have 64 bits (PKWARE, .ZIP File Format Specification 6.3, 4.5.3).
 #pragma once
 
+#include "app/cli/row_output.hpp"
 #include "engine/mechanism/file.hpp"
 
 #include <cstdint>
@@ -23,12 +24,12 @@ struct NpzColumn {
   std::size_t size = 0; // bytes of an item
 };
 
-// Of a sweep's columns: numbers but for `status`, a word, which is the first after so many variations, and
-// `stable`: 1, 0, or -1 where it is not known. Numbers that are not there are NaN.
-std::vector<NpzColumn> npz_columns(const std::vector<std::string>& names, std::size_t variations);
+// Numbers, NaN where there is none; words; verdicts: 1, 0, or -1 where it is not known. Texts, which may be
+// of any length, are left out.
+std::vector<NpzColumn> npz_columns(const std::vector<Column>& columns);
 void append_item(std::string& out, double value);
 void append_word(std::string& out, std::string_view word); // of npz_columns' size
-std::int8_t npz_stable(std::optional<bool> stable);
+std::int8_t npz_verdict(std::optional<bool> verdict);
 
 class NpzWriter {
  public:

@@ -3,36 +3,29 @@
 #include "app/cli/output.hpp"
 #include "app/cli/processes.hpp"
 #include "app/cli/progress.hpp"
-#include "app/cli/row_output.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
+#include "app/cli/spread_report.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/file.hpp"
 #include "engine/mechanism/formulas.hpp"
-#include "engine/mechanism/safe_text.hpp"
-#include "engine/mechanism/text.hpp"
+#include "engine/mechanism/validate.hpp"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
+#include <chrono>
 #include <cmath>
 #include <memory>
 
 namespace flyball::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct SpreadArguments {
   SceneArgument scene;
   std::vector<std::string> tolerance;
   std::size_t samples = 1000;
   std::uint64_t seed = 1;
-  std::string csv;
+  std::string csv, shard;
   bool json = false;
 };
 
@@ -69,145 +62,69 @@ Tolerance parse_tolerance(const Mechanism& mechanism, std::string_view text) {
   return tolerance;
 }
 
-Json number_json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json statistics_json(const SpreadStatistics& s) {
-  if (s.count == 0) return nullptr;
-  return {{"count", s.count}, {"mean", s.mean}, {"deviation", s.deviation},
-          {"min", s.least},   {"q05", s.low},   {"median", s.median},
-          {"q95", s.high},    {"max", s.most}};
-}
-
-Json shares_json(const std::vector<Tolerance>& tolerances, const std::vector<double>& shares) {
-  if (shares.empty()) return nullptr;
-  Json out = Json::object();
-  for (std::size_t k = 0; k < tolerances.size(); ++k)
-    out[tolerances[k].address] = number_json(shares[k]);
-  return out;
-}
-
-Json answer_json(const std::vector<Tolerance>& tolerances, std::uint64_t seed, const SpreadAnswer& a) {
-  Json out = {{"status", word(a.status)}, {"message", a.message}, {"samples", a.samples}, {"seed", seed}};
-  out["tolerances"] = Json::array();
-  for (const Tolerance& t : tolerances)
-    out["tolerances"].push_back({{"address", t.address},
-                                 {"distribution", word(t.distribution)},
-                                 {"width", t.width},
-                                 {"deviation", t.deviation()}});
-  out["fates"] = Json::object();
-  for (int i = 0; i < fates; ++i)
-    out["fates"][std::string(word(static_cast<SampleFate>(i)))] = a.counts[static_cast<std::size_t>(i)];
-  out["outputs"] = Json::object();
-  for (const SpreadOutput& o : a.outputs)
-    out["outputs"][o.name] = {
-        {"unit", o.unit},
-        {"nominal", number_json(o.nominal)},
-        {"followed", statistics_json(o.followed)},
-        {"elsewhere", statistics_json(o.elsewhere)},
-        {"linear_deviation", o.linear_shares.empty() ? Json(nullptr) : number_json(o.linear_deviation)},
-        {"linear_shares", shares_json(tolerances, o.linear_shares)},
-        {"sampled_shares", shares_json(tolerances, o.sampled_shares)}};
-  out["run_time_s"] = a.run_time_s;
-  return out;
-}
-
-std::string answer_text(const Mechanism& m, const std::vector<Tolerance>& tolerances, const SpreadAnswer& a) {
-  std::string out = fmt::format("{}: {}\n\n", printable(m.name), printable(a.message));
-  const auto named = [](const SpreadOutput& o) {
-    return printable(o.name) + (o.unit.empty() ? "" : " [" + o.unit + "]");
+// Makes samples and puts them out as they come; keeps what they tell where that is asked for.
+void make(const Mechanism& mechanism, const SpreadArguments& arguments, const Part& part, bool keep,
+          WorkSharing& sharing, SpreadReport& report) {
+  SpreadAnswer& answer = report.answer;
+  std::unique_ptr<RowOutput> file;
+  if (!arguments.csv.empty() && sharing.takes())
+    file = arguments.shard.empty() ? csv_output(arguments.csv, csv_head(part.columns))
+                                   : part_output(part, arguments.csv);
+  if (file) file->begin();
+  answer.values.resize(answer.outputs.size());
+  std::string rows;
+  const auto put_out = [&](std::size_t largest) {
+    if (!file || rows.size() <= largest) return;
+    file->take(0, 0, rows);
+    rows.clear();
   };
-  std::vector<std::vector<std::string>> rows{
-      {"", "nominal", "mean", "deviation", "by rates", "5 %", "median", "95 %"}};
-  for (const SpreadOutput& o : a.outputs) {
-    const SpreadStatistics& s = o.followed;
-    const auto text = [&](double value) { return s.count ? fmt::format("{:.6g}", value) : std::string("-"); };
-    rows.push_back({named(o), fmt::format("{:.8g}", o.nominal), text(s.mean), text(s.deviation),
-                    o.linear_shares.empty() ? "-" : fmt::format("{:.6g}", o.linear_deviation), text(s.low),
-                    text(s.median), text(s.high)});
-  }
-  out += aligned(rows, true) + "\nshares of the variance, by rates and by samples\n";
-  rows = {{""}};
-  for (const Tolerance& t : tolerances) {
-    rows[0].push_back(printable(t.address));
-    rows[0].emplace_back("");
-  }
-  for (const SpreadOutput& o : a.outputs) {
-    std::vector<std::string> row{named(o)};
-    const auto share = [&](const std::vector<double>& shares, std::size_t k) {
-      return shares.empty() ? std::string("-") : fmt::format("{:.1f} %", 100 * shares[k]);
-    };
-    for (std::size_t k = 0; k < tolerances.size(); ++k) {
-      row.push_back(share(o.linear_shares, k));
-      row.push_back(share(o.sampled_shares, k));
-    }
-    rows.push_back(std::move(row));
-  }
-  out += aligned(rows, true);
-  const auto elsewhere = a.counts[static_cast<std::size_t>(SampleFate::elsewhere)];
-  if (elsewhere > 0) {
-    out += "\nof the samples in another steady state\n";
-    rows = {{"", "mean", "deviation", "least", "most"}};
-    for (const SpreadOutput& o : a.outputs)
-      if (const SpreadStatistics& s = o.elsewhere; s.count)
-        rows.push_back({named(o), fmt::format("{:.6g}", s.mean), fmt::format("{:.6g}", s.deviation),
-                        fmt::format("{:.6g}", s.least), fmt::format("{:.6g}", s.most)});
-    out += aligned(rows, true);
-  }
-  return out + fmt::format("\n{:.0f} ms\n", a.run_time_s * 1e3);
-}
-
-std::string to_csv(const Mechanism& m, const std::vector<Tolerance>& tolerances, std::uint64_t seed,
-                   const SpreadAnswer& a) {
-  std::vector<double> nominal;
-  std::vector<std::string> names;
-  for (const Tolerance& t : tolerances) {
-    names.push_back(t.address);
-    nominal.push_back(get_parameter(m, t.address));
-  }
-  names.emplace_back("fate");
-  for (const SpreadOutput& o : a.outputs)
-    names.push_back(o.name);
-  std::string out = csv_head(names);
-  for (std::size_t i = 0; i < a.samples; ++i) {
-    for (const double number : sampled_numbers(nominal, tolerances, seed, i))
-      out += csv_number(number) + ",";
-    out += word(a.fate[i]);
-    for (const std::vector<double>& values : a.values)
-      out += "," + csv_number(values[i]);
-    out += "\n";
-  }
-  return out;
+  SpreadOptions options;
+  options.seed = arguments.seed;
+  ProgressBar progress("solving");
+  options.progress = [&](std::size_t done, std::size_t all) { progress.show("solving", done, all); };
+  make_samples(mechanism, report.tolerances, options, part.begin(), part.end() - part.begin(), sharing,
+               [&](std::size_t i, SampleFate fate, std::span<const double> values) {
+                 if (file) rows += sample_row(report, i, fate, values);
+                 put_out(1 << 16);
+                 if (!keep) return;
+                 answer.fate.push_back(fate);
+                 for (std::size_t k = 0; k < values.size(); ++k)
+                   answer.values[k].push_back(values[k]);
+               });
+  put_out(0);
+  if (file) file->finish();
 }
 
 void run(const SpreadArguments& arguments, Ending& ending) {
+  const auto begin = std::chrono::steady_clock::now();
   check_outputs(arguments.scene.file, {{"--csv", arguments.csv}});
   const std::unique_ptr<WorkSharing> sharing = share_work();
   const Mechanism mechanism = arguments.scene.load();
-  std::vector<Tolerance> tolerances;
-  SpreadAnswer answer;
+  const std::optional<Shard> shard =
+      arguments.shard.empty() ? std::nullopt : std::optional(parse_shard("--shard", arguments.shard));
+  SpreadReport report{mechanism.name, warnings_json(find_warnings(mechanism)), {}, arguments.seed, {}};
   try {
     for (const std::string& text : arguments.tolerance)
-      tolerances.push_back(parse_tolerance(mechanism, text));
-    SpreadOptions options;
-    options.samples = arguments.samples;
-    options.seed = arguments.seed;
-    ProgressBar progress("solving");
-    options.progress = [&](std::size_t done, std::size_t all) { progress.show("solving", done, all); };
-    answer = spread(mechanism, tolerances, options, *sharing);
+      report.tolerances.push_back(parse_tolerance(mechanism, text));
+    report.answer = spread_by_rates(mechanism, report.tolerances, {});
   } catch (const SceneError& error) {
     throw SceneError(arguments.scene.file.string() + ": " + error.where(), error.expected());
   }
+  const bool any = report.answer.status == Status::converged;
+  if (any) {
+    Part part = sample_part(mechanism, report, arguments.samples);
+    part.shard = shard.value_or(Shard{});
+    make(mechanism, arguments, part, !shard, *sharing, report);
+  }
   if (!sharing->takes()) return;
-  ending = end_with(answer.status == Status::converged, arguments.scene.file, answer.message);
-  if (!arguments.csv.empty() && answer.status == Status::converged)
-    write_bytes(arguments.csv, to_csv(mechanism, tolerances, arguments.seed, answer));
-  if (arguments.csv == "-") return;
+  if (any && !shard) add_statistics(report.tolerances, arguments.seed, report.answer);
+  ending = end_with(any, arguments.scene.file, report.answer.message);
+  if (arguments.csv == "-" || (any && shard)) return;
+  report.answer.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (arguments.json)
-    print_json(with_warnings(answer_json(tolerances, arguments.seed, answer), mechanism));
-  else if (answer.status == Status::converged)
-    print_text(answer_text(mechanism, tolerances, answer));
+    print_json(to_json(report));
+  else if (any)
+    print_text(to_text(report));
 }
 
 } // namespace
@@ -230,8 +147,10 @@ void add_spread(CLI::App& app, Ending& ending) {
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Which samples: the same seed gives the same to the bit")
       ->capture_default_str();
-  command->add_option("--csv", arguments->csv, "Write the samples to a file (-: standard output)");
-  command->add_flag("--json", arguments->json, "Print a JSON object");
+  CLI::Option* csv =
+      command->add_option("--csv", arguments->csv, "Write the samples to a file (-: standard output)");
+  CLI::Option* json = command->add_flag("--json", arguments->json, "Print a JSON object");
+  add_shard(*command, arguments->shard, csv)->excludes(json); // which `merge` prints
   command->footer("Example: flyball spread governor.json --tolerance joints.slide.spring.stiffness=normal:2% "
                   "--samples 10000");
   command->callback([arguments, &ending] { run(*arguments, ending); });

@@ -1,75 +1,45 @@
 #include "engine/study/sweep.hpp"
 #include "app/cli/command.hpp"
 #include "app/cli/output.hpp"
+#include "app/cli/part.hpp"
 #include "app/cli/processes.hpp"
-#include "app/cli/progress.hpp"
-#include "app/cli/row_output.hpp"
 #include "app/cli/scene_argument.hpp"
-#include "app/cli/sweep_part.hpp"
+#include "app/cli/shared_rows.hpp"
+#include "app/cli/sweep_rows.hpp"
 #include "engine/mechanism/error.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
-#include <optional>
 
 namespace flyball::cli {
 namespace {
 
 constexpr double most_points = 1e12, most_in_table = 1e6;
 
-using Outputs = std::vector<std::unique_ptr<RowOutput>>;
+using FormatRows = std::string (*)(const SweepColumns&, std::span<const SweepPoint>);
 
-// A block of rows in all forms: how many have an answer, then each form's bytes after their number.
-std::string pack(const std::vector<SweepPoint>& points, const Outputs& outputs) {
-  std::string out;
-  const auto add_count = [&](std::uint64_t n) { out.append(reinterpret_cast<const char*>(&n), sizeof n); };
-  add_count(static_cast<std::uint64_t>(
-      std::ranges::count(points, Status::converged, [](const SweepPoint& p) { return p.solution.status; })));
-  for (const auto& output : outputs) {
-    const std::string rows = output->format(points);
-    add_count(rows.size());
-    out += rows;
-  }
-  return out;
-}
-
-// Returns how many have an answer.
-std::uint64_t unpack(std::size_t begin, std::size_t end, std::string_view block, const Outputs& outputs) {
-  const auto take_count = [&] {
-    std::uint64_t n = 0;
-    std::memcpy(&n, block.data(), sizeof n);
-    block.remove_prefix(sizeof n);
-    return n;
-  };
-  const std::uint64_t answers = take_count();
-  for (const auto& output : outputs) {
-    const std::uint64_t size = take_count();
-    output->take(begin, end, block.substr(0, size));
-    block.remove_prefix(size);
-  }
-  return answers;
-}
-
-struct SweepOptions {
+struct SweepArguments {
   SceneArgument scene;
   std::vector<std::string> vary;
   std::string csv, npz, shard;
-  bool json = false, no_times = false;
+  bool all = false, json = false, no_times = false;
+  double search_time = 1;
 };
 
-void run(const SweepOptions& options, Ending& ending) {
+void run(const SweepArguments& options, Ending& ending) {
   check_outputs(options.scene.file, {{"--csv", options.csv}, {"--npz", options.npz}});
   const std::unique_ptr<WorkSharing> sharing = share_work();
   const Mechanism mechanism = options.scene.load();
   std::vector<Variation> variations;
   double total = 1;
+  nlohmann::ordered_json asked = nlohmann::ordered_json::array();
   for (const std::string& text : options.vary) {
     const Range range = parse_range("--vary", text, true);
     variations.push_back({range.address, range.from, range.to, range.count});
+    asked.push_back({range.address, range.from, range.to, range.count});
     total *= range.count;
   }
   const bool table = options.csv.empty() && options.npz.empty() && !options.json;
@@ -78,65 +48,71 @@ void run(const SweepOptions& options, Ending& ending) {
     throw SceneError("--vary",
                      "expected at most 1000000 combinations in a table to read; --csv and --npz take more");
 
-  const bool times = !options.no_times && options.shard.empty() && !started_together();
-  const SweepColumns columns(mechanism, variations, times);
-  const Shard shard = options.shard.empty() ? Shard() : parse_shard("--shard", options.shard);
-  const SweepPart part(mechanism, columns, shard);
-  Outputs outputs;
+  const bool times = !options.no_times && !options.all && options.shard.empty() && !started_together();
+  const SweepColumns columns{variations, value_columns(mechanism), options.all, times};
+  nlohmann::ordered_json request = {{"variations", std::move(asked)}};
+  if (options.all) request["all equilibria"] = {{"search time", options.search_time}};
+  Part part = part_of("sweep", mechanism, std::move(request), columns.columns(), grid_size(variations));
+  if (!options.shard.empty()) part.shard = parse_shard("--shard", options.shard);
+
+  std::vector<FormatRows> formats;
+  SharedRows rows;
+  const auto add = [&](FormatRows format, std::unique_ptr<RowOutput> output) {
+    formats.push_back(format);
+    rows.outputs.push_back(std::move(output));
+  };
   if (!options.csv.empty())
-    outputs.push_back(
-        csv_output(columns, options.csv, options.shard.empty() ? csv_head(columns.names()) : part.head()));
-  if (!options.npz.empty()) outputs.push_back(npz_output(columns, options.npz, part.rows));
-  if (options.json) outputs.push_back(json_output(columns, mechanism));
-  if (table) outputs.push_back(table_output(columns, mechanism));
+    add(csv_rows, options.shard.empty() ? csv_output(options.csv, csv_head(part.columns))
+                                        : part_output(part, options.csv));
+  if (!options.npz.empty()) add(npz_rows, npz_output(part.columns, options.npz, part.count));
+  if (options.json) add(json_rows, json_output(mechanism));
+  if (table) add(table_rows, table_output(table_head(columns, mechanism)));
 
   const auto in_scene = [&options](const SceneError& error) {
     return SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
   };
-  std::uint64_t answers = 0;
-  SharedWork work;
-  work.count = part.end() - part.begin();
-  work.maker = [&]() -> BlockMaker {
+  SolveOptions search;
+  search.search_time = options.search_time;
+  rows.count = part.end() - part.begin();
+  if (options.all) rows.largest_block = 1; // each takes its time
+  rows.maker = [&]() -> RowMaker {
     try {
       return [&, solver = std::make_shared<GridSolver>(mechanism, variations)](std::size_t begin,
                                                                                std::size_t end) {
+        RowBlock block;
         std::vector<SweepPoint> points;
         try {
-          for (std::size_t i = begin; i < end; ++i)
-            points.push_back(solver->solve(part.begin() + i));
+          for (std::size_t i = part.begin() + begin; i < part.begin() + end; ++i) {
+            if (options.all)
+              std::ranges::move(solver->solve_all(i, search), std::back_inserter(points));
+            else
+              points.push_back(solver->solve(i));
+          }
         } catch (const SceneError& error) {
           throw in_scene(error);
         }
-        return pack(points, outputs);
+        block.answers = static_cast<std::uint64_t>(std::ranges::count(
+            points, Status::converged, [](const SweepPoint& p) { return p.solution.status; }));
+        for (const FormatRows format : formats)
+          block.forms.push_back(format(columns, points));
+        return block;
       };
     } catch (const SceneError& error) {
       throw in_scene(error);
     }
   };
-  work.take = [&](std::size_t begin, std::size_t end, std::string_view block) {
-    answers += unpack(begin, end, block, outputs);
-  };
-  if (!sharing->takes()) return sharing->run(work);
-  for (const auto& output : outputs)
-    output->begin();
-  {
-    ProgressBar progress("solving");
-    work.progress = [&](std::size_t done, std::size_t all) { progress.show("solving", done, all); };
-    sharing->run(work);
-  }
-  for (const auto& output : outputs)
-    output->finish();
-  if (answers > 0 || work.count == 0) return;
+  const std::uint64_t answers = put_out(rows, *sharing);
+  if (!sharing->takes() || answers > 0 || rows.count == 0) return;
   // Why no point has an answer: what is said of the first.
   ending = end_with(false, options.scene.file,
-                    fmt::format("no steady state at any of the {} points; at the first: {}", work.count,
+                    fmt::format("no steady state at any of the {} points; at the first: {}", rows.count,
                                 GridSolver(mechanism, variations).solve(part.begin()).solution.message));
 }
 
 } // namespace
 
 void add_sweep(CLI::App& app, Ending& ending) {
-  auto options = std::make_shared<SweepOptions>();
+  auto options = std::make_shared<SweepArguments>();
   CLI::App* command =
       app.add_subcommand("sweep", "Find the steady state over a range of one or more parameters");
   options->scene.add_to(*command);
@@ -146,17 +122,22 @@ void add_sweep(CLI::App& app, Ending& ending) {
       ->required()
       ->take_all()
       ->allow_extra_args(false);
+  CLI::Option* all = command->add_flag(
+      "--all", options->all, "All equilibria that a bounded search finds at each point, a row each");
+  command
+      ->add_option("--search-time", options->search_time,
+                   "With --all: the search's budget at each point, in seconds of one core, counted in "
+                   "operations so that every run finds the same (default 1)")
+      ->check(above_zero())
+      ->needs(all);
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "Write a table to a file (-: standard output)");
   CLI::Option* npz = command->add_option("--npz", options->npz, "Write columns for NumPy to a file");
+  npz->excludes(all); // of how many rows it is, is to be known beforehand: `merge` has counted them
   CLI::Option* json = command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
   json->excludes(npz);
   command->add_flag("--no-times", options->no_times, "Leave out run times: the same bytes in every run");
-  command
-      ->add_option("--shard", options->shard,
-                   "Compute part K of N alone, K/N, and write it to --csv for `flyball merge`; without times")
-      ->needs(csv)
-      ->excludes(npz);
+  add_shard(*command, options->shard, csv)->excludes(npz);
   command->footer(
       "Example: flyball sweep governor.json --vary joints.spin.drive.speed=5:20:31 --csv curve.csv");
   command->callback([options, &ending] { run(*options, ending); });

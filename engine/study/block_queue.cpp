@@ -6,15 +6,16 @@
 namespace flyball {
 namespace {
 
-constexpr std::size_t largest_block = 1000;  // indices
 constexpr std::size_t blocks_per_maker = 16; // of a small range
-constexpr std::size_t waiting_per_maker = 4; // blocks
+constexpr std::size_t waiting_per_maker = 4; // blocks, and at least so many
+constexpr std::size_t indices_waiting = 32;  // indices, which may take very different times
 
 } // namespace
 
-BlockQueue::BlockQueue(std::size_t count, std::size_t makers)
-    : count_(count), size_(std::clamp<std::size_t>(count / (blocks_per_maker * makers), 1, largest_block)),
-      ahead_(waiting_per_maker * makers * size_) {}
+BlockQueue::BlockQueue(const SharedWork& work, std::size_t makers)
+    : count_(work.count),
+      size_(std::clamp<std::size_t>(work.count / (blocks_per_maker * makers), 1, work.largest_block)),
+      ahead_(makers * std::max(waiting_per_maker * size_, indices_waiting)) {}
 
 BlockQueue::Next BlockQueue::next_locked(IndexBlock& block) {
   if (stopped_ || given_until_ == count_) return Next::none;

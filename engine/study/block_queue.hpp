@@ -19,7 +19,7 @@ struct IndexBlock {
 class BlockQueue {
  public:
   // `makers`: how many make blocks at a time. Blocks are small enough for all to end at about the same time.
-  BlockQueue(std::size_t count, std::size_t makers);
+  BlockQueue(const SharedWork& work, std::size_t makers);
 
   enum class Next {
     block, // to be made now

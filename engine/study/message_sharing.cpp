@@ -71,7 +71,7 @@ void MessageSharing::run(const SharedWork& work) {
 
 void MessageSharing::serve(const SharedWork& work) {
   const int others = passing_.size() - 1;
-  BlockQueue queue(work.count, static_cast<std::size_t>(passing_.size()));
+  BlockQueue queue(work, static_cast<std::size_t>(passing_.size()));
   std::deque<int> ready; // processes that wait for an answer, once for each
   int answers = in_hand * others;
   const auto handle = [&](MessagePassing::Message m) {

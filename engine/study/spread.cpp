@@ -265,44 +265,65 @@ std::vector<double> sampled_numbers(std::span<const double> nominal, std::span<c
   return numbers;
 }
 
-SpreadAnswer spread(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
-                    const SpreadOptions& options, WorkSharing& sharing) {
-  const auto begin = std::chrono::steady_clock::now();
+SpreadAnswer spread_by_rates(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
+                             const SpreadOptions& options) {
   SpreadAnswer out;
   const std::vector<OutputName> outputs = outputs_of(mechanism);
-  const std::vector<double> nominal = nominal_numbers(mechanism, tolerances);
-  Sampler first(mechanism, tolerances, outputs, options);
-  out.status = first.first().status;
-  if (!first.nominal()) {
-    out.message = first.first().message;
+  out.nominal = nominal_numbers(mechanism, tolerances);
+  const Sampler sampler(mechanism, tolerances, outputs, options);
+  out.status = sampler.first().status;
+  if (!sampler.nominal()) {
+    out.message = sampler.first().message;
     return out;
   }
-  if (!first.regular()) {
+  if (!sampler.regular()) {
     out.status = Status::not_converged;
     out.message =
         "The nominal steady state is singular, as at a fold or where nothing resists: its branch cannot be "
         "followed to samples.";
     return out;
   }
-  out.samples = options.samples;
-  out.values.assign(outputs.size(), std::vector<double>(options.samples));
-  out.fate.resize(options.samples);
+  const Eigen::MatrixXd& rates = sampler.rates();
+  for (Eigen::Index k = 0; k < rates.rows(); ++k) {
+    const OutputName& named = outputs[static_cast<std::size_t>(k)];
+    SpreadOutput output;
+    output.name = named.name;
+    output.unit = named.unit;
+    output.nominal = sampler.nominal()->values[k];
+    double variance = 0;
+    const bool rated = rates.row(k).allFinite();
+    for (std::size_t t = 0; t < tolerances.size() && rated; ++t) {
+      const double by = rates(k, static_cast<Eigen::Index>(t)) * tolerances[t].deviation();
+      output.linear_shares.push_back(by * by);
+      variance += by * by;
+    }
+    for (double& share : output.linear_shares)
+      share = variance > 0 ? share / variance : 0;
+    output.linear_deviation = std::sqrt(variance);
+    out.outputs.push_back(std::move(output));
+  }
+  return out;
+}
 
+void make_samples(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
+                  const SpreadOptions& options, std::size_t first, std::size_t count, WorkSharing& sharing,
+                  const TakeSample& take) {
   // A block has of each sample its fate and the values, as bytes of doubles.
+  const std::vector<OutputName> outputs = outputs_of(mechanism);
   const std::size_t width = outputs.size() + 1;
   SharedWork work;
-  work.count = options.samples;
+  work.count = count;
   work.cancel = options.cancel;
   if (options.progress) work.progress = options.progress;
   work.maker = [&] {
     auto sampler = std::make_shared<Sampler>(mechanism, tolerances, outputs, options);
-    return [sampler, width, &options](std::size_t from, std::size_t to) {
+    return [sampler, width, first, &options](std::size_t from, std::size_t to) {
       const Interruptible scope(options.cancel);
       std::vector<double> row(width);
       std::string block;
       try {
         for (std::size_t i = from; i < to; ++i) {
-          row[0] = static_cast<double>(sampler->make(i, std::span(row).subspan(1)));
+          row[0] = static_cast<double>(sampler->make(first + i, std::span(row).subspan(1)));
           block.append(reinterpret_cast<const char*>(row.data()), width * sizeof(double));
         }
       } catch (const Interrupted&) { // nothing more is taken
@@ -312,64 +333,64 @@ SpreadAnswer spread(const Mechanism& mechanism, std::span<const Tolerance> toler
   };
   work.take = [&](std::size_t from, std::size_t, std::string_view block) {
     std::vector<double> row(width);
-    for (std::size_t i = from; block.size() >= width * sizeof(double); ++i) {
+    for (std::size_t i = first + from; block.size() >= width * sizeof(double); ++i) {
       std::memcpy(row.data(), block.data(), width * sizeof(double));
       block.remove_prefix(width * sizeof(double));
-      out.fate[i] = static_cast<SampleFate>(static_cast<int>(row[0]));
-      for (std::size_t k = 0; k < outputs.size(); ++k)
-        out.values[k][i] = row[k + 1];
+      take(i, static_cast<SampleFate>(static_cast<unsigned char>(row[0])), std::span(row).subspan(1));
     }
   };
   sharing.run(work);
+}
+
+void add_statistics(std::span<const Tolerance> tolerances, std::uint64_t seed, SpreadAnswer& answer) {
+  answer.samples = answer.fate.size();
+  for (const SampleFate fate : answer.fate)
+    ++answer.counts[static_cast<std::size_t>(fate)];
+  for (std::size_t k = 0; k < answer.outputs.size(); ++k) {
+    SpreadOutput& output = answer.outputs[k];
+    std::vector<double> followed, elsewhere;
+    for (std::size_t i = 0; i < answer.samples; ++i) {
+      if (!std::isfinite(answer.values[k][i])) continue;
+      (answer.fate[i] == SampleFate::elsewhere ? elsewhere : followed).push_back(answer.values[k][i]);
+    }
+    output.followed = statistics(std::move(followed));
+    output.elsewhere = statistics(std::move(elsewhere));
+    output.sampled_shares =
+        regression_shares(answer.nominal, tolerances, seed, answer.fate, answer.values[k], output.nominal);
+  }
+  answer.message = std::to_string(answer.samples) + " samples: " + std::to_string(answer.counts[0]) +
+                   " followed the nominal state";
+  const auto also = [&](SampleFate fate, const char* words) {
+    if (const std::size_t count = answer.counts[static_cast<std::size_t>(fate)])
+      answer.message += ", " + std::to_string(count) + " " + words;
+  };
+  also(SampleFate::elsewhere, "are in another, which its branch does not lead to");
+  also(SampleFate::unstable, "followed to an unstable one");
+  also(SampleFate::none, "have no steady state");
+  also(SampleFate::no_mechanism, "make no mechanism");
+  answer.message += ".";
+}
+
+SpreadAnswer spread(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
+                    const SpreadOptions& options, WorkSharing& sharing) {
+  const auto begin = std::chrono::steady_clock::now();
+  SpreadAnswer out = spread_by_rates(mechanism, tolerances, options);
+  if (out.status != Status::converged) return out;
+  out.values.assign(out.outputs.size(), std::vector<double>(options.samples));
+  out.fate.resize(options.samples);
+  make_samples(mechanism, tolerances, options, 0, options.samples, sharing,
+               [&](std::size_t i, SampleFate fate, std::span<const double> values) {
+                 out.fate[i] = fate;
+                 for (std::size_t k = 0; k < values.size(); ++k)
+                   out.values[k][i] = values[k];
+               });
   if (options.cancel && *options.cancel) {
     out.status = Status::not_converged;
     out.message = "Cancelled.";
     return out;
   }
   if (!sharing.takes()) return out;
-
-  for (const SampleFate fate : out.fate)
-    ++out.counts[static_cast<std::size_t>(fate)];
-  const Eigen::MatrixXd rates = first.rates();
-  for (std::size_t k = 0; k < outputs.size(); ++k) {
-    SpreadOutput output;
-    output.name = outputs[k].name;
-    output.unit = outputs[k].unit;
-    output.nominal = first.nominal()->values[static_cast<Eigen::Index>(k)];
-    std::vector<double> followed, elsewhere;
-    for (std::size_t i = 0; i < options.samples; ++i) {
-      if (!std::isfinite(out.values[k][i])) continue;
-      (out.fate[i] == SampleFate::elsewhere ? elsewhere : followed).push_back(out.values[k][i]);
-    }
-    output.followed = statistics(std::move(followed));
-    output.elsewhere = statistics(std::move(elsewhere));
-    double variance = 0;
-    const bool rated = rates.row(static_cast<Eigen::Index>(k)).allFinite();
-    for (std::size_t t = 0; t < tolerances.size() && rated; ++t) {
-      const double by =
-          rates(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(t)) * tolerances[t].deviation();
-      output.linear_shares.push_back(by * by);
-      variance += by * by;
-    }
-    for (double& share : output.linear_shares)
-      share = variance > 0 ? share / variance : 0;
-    output.linear_deviation = std::sqrt(variance);
-    output.sampled_shares =
-        regression_shares(nominal, tolerances, options.seed, out.fate, out.values[k], output.nominal);
-    out.outputs.push_back(std::move(output));
-  }
-  const std::size_t well = out.counts[0];
-  out.message =
-      std::to_string(options.samples) + " samples: " + std::to_string(well) + " followed the nominal state";
-  const auto also = [&](SampleFate fate, const char* words) {
-    if (const std::size_t count = out.counts[static_cast<std::size_t>(fate)])
-      out.message += ", " + std::to_string(count) + " " + words;
-  };
-  also(SampleFate::elsewhere, "are in another, which its branch does not lead to");
-  also(SampleFate::unstable, "followed to an unstable one");
-  also(SampleFate::none, "have no steady state");
-  also(SampleFate::no_mechanism, "make no mechanism");
-  out.message += ".";
+  add_statistics(tolerances, options.seed, out);
   out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }

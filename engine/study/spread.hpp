@@ -27,7 +27,7 @@ struct Tolerance {
 };
 
 // What became of a sample.
-enum class SampleFate {
+enum class SampleFate : unsigned char {
   followed,     // the nominal state's branch leads there
   elsewhere,    // it does not, as beyond a fold: the steady state that the drawn pose then leads to
   unstable,     // followed, to a state that is not stable
@@ -68,6 +68,7 @@ struct SpreadOutput {
 struct SpreadAnswer {
   Status status = Status::not_converged; // converged: there is a nominal state; else `message` says why not
   std::string message;
+  std::vector<double> nominal; // the numbers, by tolerance
   std::size_t samples = 0;
   std::array<std::size_t, fates> counts{}; // by SampleFate
   std::vector<SpreadOutput> outputs;
@@ -80,8 +81,22 @@ struct SpreadAnswer {
 std::vector<double> sampled_numbers(std::span<const double> nominal, std::span<const Tolerance> tolerances,
                                     std::uint64_t seed, std::size_t i);
 
-// Throws SceneError for addresses that the mechanism does not take, and for tolerances without a width.
+// All of it. Throws SceneError for addresses that the mechanism does not take, and for tolerances without a
+// width.
 SpreadAnswer spread(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
                     const SpreadOptions& options, WorkSharing& sharing);
+
+// The same in parts, for those who keep no samples, or have them from elsewhere. First the nominal state and
+// what its rates promise.
+SpreadAnswer spread_by_rates(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
+                             const SpreadOptions& options);
+// Then samples: `count` of them from `first` on, one after the other. `values`: of the outputs, not a number
+// where there is none.
+using TakeSample = std::function<void(std::size_t i, SampleFate fate, std::span<const double> values)>;
+void make_samples(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
+                  const SpreadOptions& options, std::size_t first, std::size_t count, WorkSharing& sharing,
+                  const TakeSample& take);
+// At last what they tell: of the answer's `values` and `fate`.
+void add_statistics(std::span<const Tolerance> tolerances, std::uint64_t seed, SpreadAnswer& answer);
 
 } // namespace flyball

@@ -42,23 +42,44 @@ GridSolver::GridSolver(const Mechanism& mechanism, std::span<const Variation> va
   analysis_.vary(addresses);
 }
 
-SweepPoint GridSolver::solve(std::size_t i, const std::atomic<bool>* cancel) {
-  SweepPoint point;
+bool GridSolver::set(std::size_t i, SweepPoint& point) {
   point.parameters = grid_values(variations_, i);
   try {
     analysis_.set(point.parameters);
+    return true;
   } catch (const SceneError& error) {
     if (!geometry_varies_) throw; // a mistake of one point is one of all
     point.solution.status = Status::infeasible;
     point.solution.message = error.what();
-    return point;
+    return false;
   }
+}
+
+SweepPoint GridSolver::solve(std::size_t i, const std::atomic<bool>* cancel) {
+  SweepPoint point;
+  if (!set(i, point)) return point;
   SolveOptions options;
   options.details = false;
   options.search = search;
   options.cancel = cancel;
   point.solution = analysis_.solve(options);
   return point;
+}
+
+std::vector<SweepPoint> GridSolver::solve_all(std::size_t i, const SolveOptions& options) {
+  SweepPoint point;
+  if (!set(i, point)) return {point};
+  SolveOptions all = options;
+  all.details = false;
+  std::vector<SweepPoint> points;
+  std::vector<Solution> equilibria = analysis_.solve_all(all).equilibria;
+  for (Solution& solution : equilibria)
+    points.push_back({point.parameters, std::move(solution), equilibria.size(), points.size()});
+  if (points.empty()) {
+    points.push_back(solve(i, options.cancel)); // which says why
+    points.front().equilibria = points.front().solution.status == Status::converged ? 1 : 0;
+  }
+  return points;
 }
 
 std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variation> variations, int threads,

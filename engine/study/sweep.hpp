@@ -20,6 +20,8 @@ struct Variation {
 struct SweepPoint {
   std::vector<double> parameters; // by variation
   Solution solution;              // without details
+  // Of solve_all: how many there are here, and which of them this is, from zero.
+  std::size_t equilibria = 0, equilibrium = 0;
 };
 
 // How many combinations there are, and the values of one of them, the last variation moving fastest.
@@ -36,8 +38,14 @@ class GridSolver {
   // parameters: then it is one of the point's. `cancel` is polled between iterations; the point is then
   // not_converged.
   SweepPoint solve(std::size_t i, const std::atomic<bool>* cancel = nullptr);
+  // All equilibria that a bounded search finds (Analysis::solve_all, by the search's options), each a point.
+  // Where there are none, one point that says why, as solve() does.
+  std::vector<SweepPoint> solve_all(std::size_t i, const SolveOptions& search);
 
  private:
+  // False where no mechanism can be made of its numbers, as the point then says.
+  bool set(std::size_t i, SweepPoint& point);
+
   std::vector<Variation> variations_;
   Analysis analysis_;
   bool geometry_varies_;

@@ -14,7 +14,7 @@ ThreadSharing::ThreadSharing(int threads)
 
 void ThreadSharing::run(const SharedWork& work) {
   const std::size_t makers = std::clamp<std::size_t>(work.count, 1, threads_);
-  BlockQueue queue(work.count, makers);
+  BlockQueue queue(work, makers);
   {
     std::vector<std::jthread> threads;
     for (std::size_t i = 0; i < makers; ++i)

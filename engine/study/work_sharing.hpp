@@ -15,7 +15,8 @@ namespace flyball {
 using BlockMaker = std::function<std::string(std::size_t begin, std::size_t end)>;
 
 struct SharedWork {
-  std::size_t count = 0; // of indices, from zero
+  std::size_t count = 0;            // of indices, from zero
+  std::size_t largest_block = 1000; // indices; fewer where each takes its time or says a lot
   // Called by each thread that makes blocks, for what it keeps from one to the next.
   std::function<BlockMaker()> maker;
   // Called in order of the indices, by the thread that called run().

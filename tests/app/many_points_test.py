@@ -1,10 +1,11 @@
-"""Sweeps of many points: the same bytes by one process, by shards put together and by processes under MPI; columns
+"""Studies of many points: the same bytes by one process, by shards put together and by processes under MPI; columns
 for NumPy; memory that does not grow with the points.
 
 Usage: many_points_test.py FLYBALL SCENE [--processes]
 
 With --processes under mpirun alone; exit 77 where there is none, or the program was built without MPI.
 """
+import json
 import pathlib
 import resource
 import shutil
@@ -19,6 +20,11 @@ import zipfile
 FLYBALL, SCENE = sys.argv[1:3]
 SKIPPED = 77
 SPEED = "joints.spin.drive.speed"
+# What shares its work besides a sweep: of each how many rows at least it has.
+STUDIES = {
+    "spread": (1501, ["spread", pathlib.Path(SCENE).with_name("governor_parametric.json"), "--samples", 1501,
+                      "--tolerance", "parameters.L=uniform:45%", "--tolerance", "parameters.k=triangular:20"]),
+}
 failures = []
 
 
@@ -140,7 +146,7 @@ def check_shards(folder):
     refused([SCENE, *vary, "--shard", "2/7"], None, "one twice", "expected each part once")
     refused(None, lambda b: b[:-40], "cut off", "damaged")
     refused(None, lambda b: b + b"1,2,3\n", "too long", "damaged")
-    refused(None, lambda b: b[5:], "no part", "expected a part of a sweep")
+    refused(None, lambda b: b[5:], "no part", "expected a part, as")
     code, _, error = run("merge", *parts, "-o", parts[0])
     check(code == 2, f"a part is not written over: {error}")
     check(sweep("--shard", "8/7", "--csv", merged)[0] == 2, "part 8 of 7")
@@ -152,6 +158,57 @@ def check_shards(folder):
         run(*few, "--shard", f"{i}/3", "--csv", folder / f"few{i}.csv")
     run("merge", *[folder / f"few{i}.csv" for i in range(1, 4)], "-o", merged)
     check(merged.read_bytes() == whole.read_bytes(), "more parts than points")
+
+
+def check_studies(folder):
+    """Whatever shares its work: parts put together are the whole, one done again alone, too."""
+    for name, (least, words) in STUDIES.items():
+        whole, merged, npz = folder / f"{name}.csv", folder / f"{name}_merged.csv", folder / f"{name}.npz"
+        code, _, error = run(*words, "--csv", whole)
+        count = len(whole.read_text().splitlines()) - 1
+        check(code == 0 and count >= least, f"{name}: {error} {count} rows")
+        check(run(*words, "--csv", "-")[1] == whole.read_text(), f"{name}: standard output has the same bytes")
+        parts = [folder / f"{name}{i}.csv" for i in range(1, 4)]
+        for i, part in enumerate(parts, 1):
+            code, out, error = run(*words, "--shard", f"{i}/3", "--csv", part)
+            check(code == 0 and out == "", f"{name}, shard {i}: {error}")
+        parts[1].unlink()
+        code, _, error = run("merge", parts[0], parts[2], "-o", merged)
+        check(code == 2 and "missing 2" in error and not merged.exists(), f"{name}: what is missing is told: {error}")
+        run(*words, "--shard", "2/3", "--csv", parts[1])
+        code, _, error = run("merge", *reversed(parts), "-o", merged)
+        check(code == 0 and merged.read_bytes() == whole.read_bytes(), f"{name}: merged is the whole: {error}")
+        code, _, error = run("merge", *parts, "-o", npz)
+        check(code == 0 and {len(values) for values in columns_of(npz).values()} == {count}, f"{name}: npz: {error}")
+        kept = parts[1].read_bytes()
+        for damage, what in ((kept[:-30], "cut off"), (kept + b"1,2\n", "too long"),
+                             (kept.replace(b"\n", b"\n1,2\n", 1), "a row too many")):
+            parts[1].write_bytes(damage)
+            merged.unlink(missing_ok=True)
+            code, _, error = run("merge", *parts, "-o", merged)
+            check(code == 2 and "damaged" in error and parts[1].name in error and not merged.exists(),
+                  f"{name}, {what}: {code} {error}")
+        run(*words, "--set", "gravity.1=-9", "--shard", "2/3", "--csv", parts[1])
+        code, _, error = run("merge", *parts, "-o", merged)
+        check(code == 2 and "its scene" in error, f"{name}, another scene: {error}")
+
+
+def check_statistics(folder):
+    """Statistics of parts are those of the whole; other seeds and sweeps do not go with them."""
+    words = STUDIES["spread"][1]
+    parts = [folder / f"seed{i}.csv" for i in range(1, 3)]
+    for i, part in enumerate(parts, 1):
+        run(*words, "--shard", f"{i}/2", "--csv", part)
+    whole = json.loads(run(*words, "--json")[1])
+    merged = json.loads(run("merge", *parts, "-o", folder / "both.csv", "--json")[1])
+    check(whole.pop("run_time_s") > 0 and merged.pop("run_time_s") is None, "merging tells no run time")
+    check(whole == merged and whole["fates"]["no_mechanism"] > 0 and whole["samples"] == 1501, f"statistics: {merged}")
+    run(*words, "--seed", 2, "--shard", "2/2", "--csv", parts[1])
+    code, _, error = run("merge", *parts, "-o", folder / "both.csv")
+    check(code == 2 and "its seed" in error, f"another seed: {error}")
+    sweep("--shard", "2/2", "--csv", parts[1])
+    code, _, error = run("merge", *parts, "-o", folder / "both.csv")
+    check(code == 2 and "its study" in error, f"a sweep and a spread: {error}")
 
 
 def check_turning(folder):
@@ -190,6 +247,13 @@ def check_processes(folder):
         check(together.read_bytes() == whole.read_bytes(), f"{count} processes give the same CSV")
         check((folder / "together.npz").read_bytes() == npz.read_bytes(), f"{count} processes give the same npz")
         together.unlink()
+    for name, (_, words) in STUDIES.items():
+        run(*words, "--csv", whole)
+        for count in (2, 3):
+            start[-1] = str(count)
+            code, _, error = run(*words, "--csv", together, before=start)
+            check(code == 0 and together.read_bytes() == whole.read_bytes(), f"{name} by {count} processes: {error}")
+            together.unlink(missing_ok=True)
     code, _, error = run("sweep", SCENE, "--vary", "bodies.collar.mass=1:-1:2001", "--csv", together, before=start)
     check(code == 2 and "bodies.collar.mass: expected zero or more" in error, f"a mistake at some point: {error}")
     code, _, error = sweep("--csv", folder / "nowhere" / "x.csv", before=start)
@@ -203,6 +267,8 @@ with tempfile.TemporaryDirectory() as name:
         check_processes(pathlib.Path(name))
     else:
         check_shards(pathlib.Path(name))
+        check_studies(pathlib.Path(name))
+        check_statistics(pathlib.Path(name))
         check_turning(pathlib.Path(name))
         check_memory(pathlib.Path(name))
 sys.exit(1 if failures else 0)

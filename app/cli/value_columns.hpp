@@ -1,0 +1,25 @@
+// What rows of a study tell of a steady state: a number each of its free coordinates, speeds that torques
+// give, and measures. The same columns at every point, whether it has an answer or not.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/solve/solution.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flyball::cli {
+
+struct ValueColumn {
+  std::string name, unit; // "slide", or "free.2"
+  bool measure = false;   // one of the measures rather than the coordinates
+  std::size_t place = 0;  // there
+};
+std::vector<ValueColumn> value_columns(const Mechanism& mechanism);
+
+// Not finite where there is none, or a coordinate turns with the drives.
+double value_at(std::span<const CoordinateSolution> coordinates, std::span<const MeasureSolution> measures,
+                const ValueColumn& value);
+
+} // namespace flyball::cli

@@ -1,0 +1,44 @@
+#include "engine/study/branch_grid.hpp"
+
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/validate.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+GridFollower::GridFollower(const Mechanism& mechanism, std::span<const Variation> over, std::string address,
+                           double from, double to, const BranchOptions& options)
+    : mechanism_(mechanism), over_(over.begin(), over.end()), address_(std::move(address)), from_(from),
+      to_(to), options_(options) {
+  expect_no_found_speed(mechanism, address_);
+  std::vector<std::string> taken{address_};
+  for (const Variation& v : over_)
+    taken.push_back(v.address);
+  Mechanism trial = mechanism;
+  for (auto each = taken.begin(); each != taken.end(); ++each) {
+    set_parameter(trial, *each, get_parameter(mechanism, *each));
+    if (std::find(taken.begin(), each, *each) != each) throw SceneError(*each, "expected it once");
+  }
+}
+
+GridBranches GridFollower::follow(std::size_t i) const {
+  GridBranches out;
+  out.parameters = grid_values(over_, i);
+  std::vector<ParameterValue> numbers;
+  for (std::size_t v = 0; v < over_.size(); ++v)
+    numbers.push_back({over_[v].address, out.parameters[v]});
+  try {
+    Mechanism there = mechanism_;
+    set_parameters(there, numbers);
+    validate(there);
+    out.diagram = follow_branches(there, address_, from_, to_, options_);
+  } catch (const SceneError& error) {
+    out.diagram.status = Status::infeasible;
+    out.diagram.message = error.what();
+  }
+  return out;
+}
+
+} // namespace flyball
