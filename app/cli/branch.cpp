@@ -1,8 +1,11 @@
+#include "app/cli/branch_over.hpp"
+#include "app/cli/branch_rows.hpp"
 #include "app/cli/command.hpp"
 #include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
+#include "app/cli/study_part.hpp"
 #include "app/plot/branch_plot.hpp"
 #include "app/plot/svg.hpp"
 #include "app/render/offscreen.hpp"
@@ -24,69 +27,6 @@
 
 namespace flyball::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json point_json(const ResponsePoint& p) {
-  Json out = {{"parameter", p.parameter}, {"coordinates", coordinates_json(p.coordinates)}};
-  if (std::ranges::any_of(p.coordinates, [](const CoordinateSolution& c) { return c.speed.has_value(); }))
-    out["speeds"] = speeds_json(p.coordinates);
-  if (!p.measures.empty()) out["measures"] = measures_json(p.measures);
-  out["stable"] = p.stable ? Json(*p.stable) : Json(nullptr);
-  out["stability_reason"] = p.stability_reason ? Json(word(*p.stability_reason)) : Json(nullptr);
-  out["eigenvalues"] = Json::array();
-  for (const auto& e : p.eigenvalues)
-    out["eigenvalues"].push_back({e.real(), e.imag()});
-  if (p.floquet) out["floquet"] = floquet_json(*p.floquet);
-  return out;
-}
-
-Json diagram_json(const ResponseDiagram& d) {
-  Json out = {{"status", word(d.status)},
-              {"message", d.message},
-              {"branches", Json::array()},
-              {"special", Json::array()}};
-  for (const ResponseBranch& b : d.branches) {
-    Json points = Json::array();
-    for (const ResponsePoint& p : b.points)
-      points.push_back(point_json(p));
-    out["branches"].push_back(
-        {{"points", std::move(points)}, {"connected", b.connected}, {"begin", b.begin}, {"end", b.end}});
-  }
-  for (const SpecialPoint& s : d.special) {
-    Json entry = {{"type", word(s.type)}, {"branch", s.branch}};
-    entry.update(point_json(s.at));
-    out["special"].push_back(std::move(entry));
-  }
-  out["search"] = d.searched.empty() ? Json(nullptr)
-                                     : Json({{"at", d.searched}, {"starts", d.starts}, {"complete", false}});
-  out["run_time_s"] = d.run_time_s;
-  return out;
-}
-
-std::string diagram_csv(const Mechanism& m, const std::string& address, const ResponseDiagram& d) {
-  std::string out = "branch," + csv_field(address);
-  if (!d.branches.empty() && !d.branches.front().points.empty())
-    for (const CoordinateSolution& c : d.branches.front().points.front().coordinates)
-      if (const auto found = found_number(c)) out += "," + csv_field(found->name);
-  for (const NamedMeasure& measure : m.measures)
-    out += "," + csv_field(measure.name);
-  out += ",stable,special\n";
-  const auto row = [&](int branch, const ResponsePoint& p, std::string_view special) {
-    out += fmt::format("{},{}", branch, csv_number(p.parameter));
-    for (const CoordinateSolution& c : p.coordinates)
-      if (const auto found = found_number(c)) out += "," + csv_number(found->value);
-    for (const MeasureSolution& measure : p.measures)
-      out += "," + (measure.value ? csv_number(*measure.value) : "");
-    out += fmt::format(",{},{}\n", p.stable ? (*p.stable ? "true" : "false") : "", special);
-  };
-  for (std::size_t b = 0; b < d.branches.size(); ++b)
-    for (const ResponsePoint& p : d.branches[b].points)
-      row(static_cast<int>(b), p, "");
-  for (const SpecialPoint& s : d.special)
-    row(s.branch, s.at, word(s.type));
-  return out;
-}
 
 // What to draw: what is named, else the first free coordinate. Throws SceneError naming those there are.
 PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, const std::string& name) {
@@ -123,7 +63,8 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
 void add_branch(CLI::App& app, Ending& ending) {
   struct Options {
     SceneArgument scene;
-    std::string vary, csv, svg, png, plot;
+    std::string vary, csv, svg, png, plot, shard;
+    std::vector<std::string> over;
     bool all = false, json = false;
   };
   auto options = std::make_shared<Options>();
@@ -134,24 +75,40 @@ void add_branch(CLI::App& app, Ending& ending) {
   command->add_flag("--all", options->all,
                     "Also the branches that nothing connects with the drawn pose's, from a bounded search "
                     "for all equilibria at both ends and at the present value");
+  CLI::Option* over =
+      command
+          ->add_option("--over", options->over,
+                       "Follow them at each value of another number: address=from:to:count; given again, at "
+                       "all combinations")
+          ->take_all()
+          ->allow_extra_args(false);
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "Write a table to a file (-: standard output)");
-  command->add_option("--svg", options->svg, "Draw the curve into a file (-: standard output)");
-  command->add_option("--png", options->png,
-                      "Draw the curve into a picture, without a display (-: standard output)");
-  command->add_option(
-      "--plot", options->plot,
-      "The coordinate or measure that --svg and --png draw: joint, joint.index or the measure's "
-      "name (default: the first coordinate)");
+  command->add_option("--svg", options->svg, "Draw the curve into a file (-: standard output)")
+      ->excludes(over);
+  command
+      ->add_option("--png", options->png,
+                   "Draw the curve into a picture, without a display (-: standard output)")
+      ->excludes(over);
+  command
+      ->add_option("--plot", options->plot,
+                   "The coordinate or measure that --svg and --png draw: joint, joint.index or the measure's "
+                   "name (default: the first coordinate)")
+      ->excludes(over);
   command->add_flag("--json", options->json, "Print a JSON object")->excludes(csv);
+  add_shard(*command, options->shard, csv)->needs(over);
   command->footer("Example: flyball branch conical_pendulum.json --vary joints.spin.drive.speed=0:10 --json");
   command->callback([options, &ending] {
     check_outputs(options->scene.file,
                   {{"--csv", options->csv}, {"--svg", options->svg}, {"--png", options->png}});
-    std::optional<ProgressBar> progress(std::in_place, "reading");
-    const Mechanism mechanism = options->scene.load();
     const Range range = parse_range("--vary", options->vary);
     if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
+    if (!options->over.empty())
+      return branch_over(options->scene,
+                         {range, options->over, options->all, options->json, options->csv, options->shard},
+                         ending);
+    std::optional<ProgressBar> progress(std::in_place, "reading");
+    const Mechanism mechanism = options->scene.load();
     ResponseDiagram diagram;
     try {
       BranchOptions follow;
@@ -175,9 +132,11 @@ void add_branch(CLI::App& app, Ending& ending) {
     // Files of earlier runs are not replaced by empty ones.
     if (!options->csv.empty() && !diagram.branches.empty())
       write_bytes(options->csv, diagram_csv(mechanism, range.address, diagram));
-    if (options->json)
-      print_json(with_warnings(diagram_json(diagram), mechanism));
-    else if (options->csv.empty() && options->svg != "-" && options->png != "-") // else it is theirs
+    if (options->json) {
+      nlohmann::ordered_json told = diagram_json(diagram);
+      told["run_time_s"] = diagram.run_time_s;
+      print_json(with_warnings(std::move(told), mechanism));
+    } else if (options->csv.empty() && options->svg != "-" && options->png != "-") // else it is theirs
       print_text(diagram_text(mechanism, range.address, diagram));
     ending = end_with(any, options->scene.file, diagram.message);
   });

@@ -1,8 +1,8 @@
 #include "app/cli/command.hpp"
 #include "app/cli/npz.hpp"
 #include "app/cli/output.hpp"
-#include "app/cli/part.hpp"
 #include "app/cli/spread_report.hpp"
+#include "app/cli/study_part.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 struct OpenPart {
   std::filesystem::path file;
   std::ifstream in; // behind the first line
-  Part part;
+  StudyPart part;
 
   explicit OpenPart(const std::filesystem::path& path) : file(path), in(path, std::ios::binary) {
     if (!in) throw SceneError(file.string(), "cannot read");

@@ -19,7 +19,7 @@ class ProcessSharing final : public WorkSharing {
     const auto make = library_.find<MessagePassing* (*)()>("flyball_message_passing");
     if (!make)
       throw SceneError("mpirun", "expected a flyball that was built where MPI is (Debian: libopenmpi-dev); "
-                                 "without it `sweep --shard` shares work");
+                                 "without it --shard shares work");
     passing_.reset(make());
     sharing_ = std::make_unique<MessageSharing>(*passing_);
   }

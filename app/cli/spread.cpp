@@ -63,7 +63,7 @@ Tolerance parse_tolerance(const Mechanism& mechanism, std::string_view text) {
 }
 
 // Makes samples and puts them out as they come; keeps what they tell where that is asked for.
-void make(const Mechanism& mechanism, const SpreadArguments& arguments, const Part& part, bool keep,
+void make(const Mechanism& mechanism, const SpreadArguments& arguments, const StudyPart& part, bool keep,
           WorkSharing& sharing, SpreadReport& report) {
   SpreadAnswer& answer = report.answer;
   std::unique_ptr<RowOutput> file;
@@ -112,7 +112,7 @@ void run(const SpreadArguments& arguments, Ending& ending) {
   }
   const bool any = report.answer.status == Status::converged;
   if (any) {
-    Part part = sample_part(mechanism, report, arguments.samples);
+    StudyPart part = sample_part(mechanism, report, arguments.samples);
     part.shard = shard.value_or(Shard{});
     make(mechanism, arguments, part, !shard, *sharing, report);
   }

@@ -115,7 +115,7 @@ std::string to_text(const SpreadReport& report) {
   return out;
 }
 
-Part sample_part(const Mechanism& mechanism, const SpreadReport& report, std::size_t samples) {
+StudyPart sample_part(const Mechanism& mechanism, const SpreadReport& report, std::size_t samples) {
   Json tolerances = Json::array(), outputs = Json::array();
   std::vector<Column> columns;
   for (const Tolerance& t : report.tolerances) {
@@ -127,7 +127,7 @@ Part sample_part(const Mechanism& mechanism, const SpreadReport& report, std::si
     outputs.push_back({o.name, o.unit, o.nominal, o.linear_deviation, o.linear_shares});
     columns.push_back({o.name});
   }
-  Part part =
+  StudyPart part =
       part_of("spread", mechanism, {{"tolerances", tolerances}, {"seed", report.seed}, {"samples", samples}},
               columns, samples);
   part.told = {{"name", report.name},
@@ -148,7 +148,7 @@ std::string sample_row(const SpreadReport& report, std::size_t i, SampleFate fat
   return out + "\n";
 }
 
-SpreadReport read_spread(const std::filesystem::path& file, const Part& part) {
+SpreadReport read_spread(const std::filesystem::path& file, const StudyPart& part) {
   try {
     SpreadReport report;
     part.told.at("name").get_to(report.name);

@@ -1,7 +1,7 @@
 // What `flyball spread` tells: of samples that it made itself, or that `merge` has read from parts.
 #pragma once
 
-#include "app/cli/part.hpp"
+#include "app/cli/study_part.hpp"
 #include "engine/study/spread.hpp"
 
 #include <nlohmann/json.hpp>
@@ -26,12 +26,12 @@ nlohmann::ordered_json to_json(const SpreadReport& report);
 
 // Its samples as rows: the numbers, what became of them, the outputs. Of the report all but samples and their
 // statistics is read.
-Part sample_part(const Mechanism& mechanism, const SpreadReport& report, std::size_t samples);
+StudyPart sample_part(const Mechanism& mechanism, const SpreadReport& report, std::size_t samples);
 std::string sample_row(const SpreadReport& report, std::size_t i, SampleFate fate,
                        std::span<const double> values);
 
 // The same back. Throws SceneError that names the file where the part is none of a spread.
-SpreadReport read_spread(const std::filesystem::path& file, const Part& part);
+SpreadReport read_spread(const std::filesystem::path& file, const StudyPart& part);
 // Adds a row to the answer's samples; false where it is none.
 bool add_sample(std::span<const std::string_view> cells, SpreadReport& report);
 

@@ -1,10 +1,10 @@
 #include "engine/study/sweep.hpp"
 #include "app/cli/command.hpp"
 #include "app/cli/output.hpp"
-#include "app/cli/part.hpp"
 #include "app/cli/processes.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/shared_rows.hpp"
+#include "app/cli/study_part.hpp"
 #include "app/cli/sweep_rows.hpp"
 #include "engine/mechanism/error.hpp"
 
@@ -52,7 +52,7 @@ void run(const SweepArguments& options, Ending& ending) {
   const SweepColumns columns{variations, value_columns(mechanism), options.all, times};
   nlohmann::ordered_json request = {{"variations", std::move(asked)}};
   if (options.all) request["all equilibria"] = {{"search time", options.search_time}};
-  Part part = part_of("sweep", mechanism, std::move(request), columns.columns(), grid_size(variations));
+  StudyPart part = part_of("sweep", mechanism, std::move(request), columns.columns(), grid_size(variations));
   if (!options.shard.empty()) part.shard = parse_shard("--shard", options.shard);
 
   std::vector<FormatRows> formats;

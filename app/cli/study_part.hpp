@@ -30,7 +30,7 @@ Shard parse_shard(std::string_view option, std::string_view text);
 // Adds --shard, which needs the file that --csv names.
 CLI::Option* add_shard(CLI::App& command, std::string& text, CLI::Option* csv);
 
-struct Part {
+struct StudyPart {
   std::string study;              // the command: "sweep"
   std::string version;            // of the program
   std::string scene;              // hash of the scene with its settings, as 16 figures
@@ -43,17 +43,17 @@ struct Part {
   std::uint64_t begin() const { return count * (shard.number - 1) / shard.of; } // its share
   std::uint64_t end() const { return count * shard.number / shard.of; }
   // What the other is of, where that is not the same: "scene", "variations", ...; else empty.
-  std::string differs_from(const Part& other) const;
+  std::string differs_from(const StudyPart& other) const;
 };
 
-Part part_of(std::string study, const Mechanism& mechanism, nlohmann::ordered_json request,
-             std::vector<Column> columns, std::uint64_t count);
+StudyPart part_of(std::string study, const Mechanism& mechanism, nlohmann::ordered_json request,
+                  std::vector<Column> columns, std::uint64_t count);
 
 // A file with the part's rows, which come as CSV.
-std::unique_ptr<RowOutput> part_output(const Part& part, const std::filesystem::path& file);
+std::unique_ptr<RowOutput> part_output(const StudyPart& part, const std::filesystem::path& file);
 
 // From a file's first line. Throws SceneError that names the file.
-Part read_part_head(const std::filesystem::path& file, std::string_view line);
+StudyPart read_part_head(const std::filesystem::path& file, std::string_view line);
 // The number of rows that a last line tells; nothing where it is none.
 std::optional<std::uint64_t> read_part_end(std::string_view line);
 

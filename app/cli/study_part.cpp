@@ -1,4 +1,4 @@
-#include "app/cli/part.hpp"
+#include "app/cli/study_part.hpp"
 
 #include "app/document/file_watch.hpp"
 #include "engine/mechanism/error.hpp"
@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view mark = "# part by flyball: ", end_mark = "# rows: ";
 constexpr std::array<std::string_view, 4> kinds{"number", "word", "verdict", "text"}; // by CellKind
 
-std::string head(const Part& part) {
+std::string head(const StudyPart& part) {
   nlohmann::ordered_json columns = nlohmann::ordered_json::array();
   for (const Column& column : part.columns)
     columns.push_back({column.name, kinds[static_cast<std::size_t>(column.kind)]});
@@ -33,7 +33,8 @@ std::string head(const Part& part) {
 
 class PartOutput final : public RowOutput {
  public:
-  PartOutput(const Part& part, const std::filesystem::path& file) : rows_(csv_output(file, head(part))) {}
+  PartOutput(const StudyPart& part, const std::filesystem::path& file)
+      : rows_(csv_output(file, head(part))) {}
 
   void begin() override { rows_->begin(); }
   void take(std::size_t begin, std::size_t end, std::string_view rows) override {
@@ -73,7 +74,7 @@ CLI::Option* add_shard(CLI::App& command, std::string& text, CLI::Option* csv) {
       ->needs(csv);
 }
 
-std::string Part::differs_from(const Part& other) const {
+std::string StudyPart::differs_from(const StudyPart& other) const {
   if (study != other.study) return "study";
   if (scene != other.scene) return "scene or its settings";
   for (const auto& [name, value] : request.items())
@@ -85,8 +86,8 @@ std::string Part::differs_from(const Part& other) const {
   return {};
 }
 
-Part part_of(std::string study, const Mechanism& mechanism, nlohmann::ordered_json request,
-             std::vector<Column> columns, std::uint64_t count) {
+StudyPart part_of(std::string study, const Mechanism& mechanism, nlohmann::ordered_json request,
+                  std::vector<Column> columns, std::uint64_t count) {
   return {std::move(study),
           FLYBALL_VERSION,
           fmt::format("{:016x}", text_hash(write_scene(mechanism))),
@@ -97,15 +98,15 @@ Part part_of(std::string study, const Mechanism& mechanism, nlohmann::ordered_js
           nullptr};
 }
 
-std::unique_ptr<RowOutput> part_output(const Part& part, const std::filesystem::path& file) {
+std::unique_ptr<RowOutput> part_output(const StudyPart& part, const std::filesystem::path& file) {
   return std::make_unique<PartOutput>(part, file);
 }
 
-Part read_part_head(const std::filesystem::path& file, std::string_view line) {
+StudyPart read_part_head(const std::filesystem::path& file, std::string_view line) {
   try {
     if (!line.starts_with(mark)) throw std::runtime_error("");
     const auto json = nlohmann::ordered_json::parse(line.substr(mark.size()));
-    Part part;
+    StudyPart part;
     json.at("study").get_to(part.study);
     json.at("version").get_to(part.version);
     json.at("scene").get_to(part.scene);

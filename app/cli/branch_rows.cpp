@@ -1,0 +1,156 @@
+#include "app/cli/branch_rows.hpp"
+
+#include "app/cli/output.hpp"
+#include "app/cli/solution_json.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace flyball::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array special_types{SpecialPointType::fold, SpecialPointType::branch_point,
+                                   SpecialPointType::hopf, SpecialPointType::flutter,
+                                   SpecialPointType::parametric};
+
+Json point_json(const ResponsePoint& p) {
+  Json out = {{"parameter", p.parameter}, {"coordinates", coordinates_json(p.coordinates)}};
+  if (std::ranges::any_of(p.coordinates, [](const CoordinateSolution& c) { return c.speed.has_value(); }))
+    out["speeds"] = speeds_json(p.coordinates);
+  if (!p.measures.empty()) out["measures"] = measures_json(p.measures);
+  out["stable"] = p.stable ? Json(*p.stable) : Json(nullptr);
+  out["stability_reason"] = p.stability_reason ? Json(word(*p.stability_reason)) : Json(nullptr);
+  out["eigenvalues"] = Json::array();
+  for (const auto& e : p.eigenvalues)
+    out["eigenvalues"].push_back({e.real(), e.imag()});
+  if (p.floquet) out["floquet"] = floquet_json(*p.floquet);
+  return out;
+}
+
+// From the number of the branch to what is special about the point.
+std::string point_cells(std::span<const ValueColumn> values, int branch, const ResponsePoint& p,
+                        std::string_view special) {
+  std::string out = fmt::format("{},{}", branch, csv_number(p.parameter));
+  for (const ValueColumn& value : values)
+    out += "," + csv_number(value_at(p.coordinates, p.measures, value));
+  return out + fmt::format(",{},{}", p.stable ? (*p.stable ? "true" : "false") : "", special);
+}
+
+// Why a branch begins or ends at this point of it.
+std::string note(const ResponseBranch& branch, std::size_t point) {
+  std::string out;
+  if (point == 0 && !branch.begin.empty()) out = "begins: " + branch.begin;
+  if (point + 1 == branch.points.size()) out += (out.empty() ? "ends: " : "; ends: ") + branch.end;
+  return csv_field(printable(out));
+}
+
+} // namespace
+
+Json diagram_json(const ResponseDiagram& d) {
+  Json out = {{"status", word(d.status)},
+              {"message", d.message},
+              {"branches", Json::array()},
+              {"special", Json::array()}};
+  for (const ResponseBranch& b : d.branches) {
+    Json points = Json::array();
+    for (const ResponsePoint& p : b.points)
+      points.push_back(point_json(p));
+    out["branches"].push_back(
+        {{"points", std::move(points)}, {"connected", b.connected}, {"begin", b.begin}, {"end", b.end}});
+  }
+  for (const SpecialPoint& s : d.special) {
+    Json entry = {{"type", word(s.type)}, {"branch", s.branch}};
+    entry.update(point_json(s.at));
+    out["special"].push_back(std::move(entry));
+  }
+  out["search"] = d.searched.empty() ? Json(nullptr)
+                                     : Json({{"at", d.searched}, {"starts", d.starts}, {"complete", false}});
+  return out;
+}
+
+std::string diagram_csv(const Mechanism& m, const std::string& address, const ResponseDiagram& d) {
+  const std::vector<ValueColumn> values = value_columns(m);
+  std::string out = "branch," + csv_field(address);
+  for (const ValueColumn& value : values)
+    out += "," + csv_field(value.name);
+  out += ",stable,special\n";
+  for (std::size_t b = 0; b < d.branches.size(); ++b)
+    for (const ResponsePoint& p : d.branches[b].points)
+      out += point_cells(values, static_cast<int>(b), p, "") + "\n";
+  for (const SpecialPoint& s : d.special)
+    out += point_cells(values, s.branch, s.at, word(s.type)) + "\n";
+  return out;
+}
+
+std::vector<Column> BranchColumns::columns() const {
+  std::vector<Column> out;
+  for (const Variation& variation : over)
+    out.push_back({variation.address});
+  out.insert(out.end(), {{"status", CellKind::word}, {"branch"}, {address}});
+  for (const ValueColumn& value : values)
+    out.push_back({value.name});
+  out.insert(out.end(),
+             {{"stable", CellKind::verdict}, {"special", CellKind::word}, {"note", CellKind::text}});
+  return out;
+}
+
+std::string csv_rows(const BranchColumns& columns, const GridBranches& place) {
+  const ResponseDiagram& d = place.diagram;
+  std::string grid, out;
+  for (const double value : place.parameters)
+    grid += csv_number(value) + ",";
+  grid += word(d.status);
+  if (d.branches.empty())
+    return grid + std::string(columns.values.size() + 5, ',') + csv_field(printable(d.message)) + "\n";
+  const auto add = [&](int branch, const ResponsePoint& p, std::string_view special,
+                       const std::string& words) {
+    out += grid + "," + point_cells(columns.values, branch, p, special) + "," + words + "\n";
+  };
+  for (std::size_t b = 0; b < d.branches.size(); ++b)
+    for (std::size_t i = 0; i < d.branches[b].points.size(); ++i)
+      add(static_cast<int>(b), d.branches[b].points[i], "", note(d.branches[b], i));
+  for (const SpecialPoint& s : d.special)
+    add(s.branch, s.at, word(s.type), "");
+  return out;
+}
+
+std::string json_rows(const BranchColumns& columns, const GridBranches& place) {
+  Json row;
+  for (std::size_t v = 0; v < columns.over.size(); ++v)
+    row["parameters"][columns.over[v].address] = place.parameters[v];
+  row.update(diagram_json(place.diagram));
+  return json_row(row.dump(2));
+}
+
+std::vector<std::string> table_head(const BranchColumns& columns, const Mechanism& mechanism) {
+  std::vector<std::string> head;
+  for (const Variation& v : columns.over)
+    head.push_back(named_with_unit(v.address, parameter_unit(mechanism, v.address)));
+  head.insert(head.end(), {"status", "branches", "points"});
+  for (const SpecialPointType type : special_types)
+    head.emplace_back(word(type));
+  return head;
+}
+
+std::string table_rows(const BranchColumns&, const GridBranches& place) {
+  const ResponseDiagram& d = place.diagram;
+  std::string out;
+  for (const double value : place.parameters)
+    out += fmt::format("{:.8g}\t", value);
+  std::size_t points = 0;
+  for (const ResponseBranch& branch : d.branches)
+    points += branch.points.size();
+  out += fmt::format("{}\t{}\t{}", word(d.status), d.branches.size(), points);
+  for (const SpecialPointType type : special_types)
+    out += fmt::format("\t{}", std::ranges::count(d.special, type, &SpecialPoint::type));
+  return out + "\n";
+}
+
+} // namespace flyball::cli

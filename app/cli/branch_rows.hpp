@@ -1,0 +1,37 @@
+// What `branch` tells of a diagram, as JSON and as rows: of one by itself, and of each place of a grid.
+#pragma once
+
+#include "app/cli/row_output.hpp"
+#include "app/cli/value_columns.hpp"
+#include "engine/study/branch_grid.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <vector>
+
+namespace flyball::cli {
+
+// Without its run time.
+nlohmann::ordered_json diagram_json(const ResponseDiagram& diagram);
+// All of a table: branch, parameter, values, `stable`, `special`.
+std::string diagram_csv(const Mechanism& mechanism, const std::string& address,
+                        const ResponseDiagram& diagram);
+
+struct BranchColumns {
+  std::vector<Variation> over;
+  std::string address; // of the number that is varied along branches
+  std::vector<ValueColumn> values;
+
+  std::vector<Column> columns() const;
+};
+
+// Of one place, as row_output.hpp wants them. A row each point and special point, or one that says why there
+// is none. `note`: why a branch begins or ends, in words, at its ends.
+std::string csv_rows(const BranchColumns& columns, const GridBranches& place);
+std::string json_rows(const BranchColumns& columns, const GridBranches& place);
+// One row, with how many branches there are and how many special points of each kind.
+std::string table_rows(const BranchColumns& columns, const GridBranches& place);
+std::vector<std::string> table_head(const BranchColumns& columns, const Mechanism& mechanism);
+
+} // namespace flyball::cli
