@@ -5,7 +5,9 @@ Usage: many_points_test.py FLYBALL SCENE [--processes]
 
 With --processes under mpirun alone; exit 77 where there is none, or the program was built without MPI.
 """
+import csv
 import json
+import math
 import pathlib
 import resource
 import shutil
@@ -24,6 +26,13 @@ SPEED = "joints.spin.drive.speed"
 STUDIES = {
     "spread": (1501, ["spread", pathlib.Path(SCENE).with_name("governor_parametric.json"), "--samples", 1501,
                       "--tolerance", "parameters.L=uniform:45%", "--tolerance", "parameters.k=triangular:20"]),
+    # Arms too long for their links make no mechanism: a row each.
+    "branch": (2000, ["branch", pathlib.Path(SCENE).with_name("governor_parametric.json"), "--vary",
+                      "parameters.w=5:15", "--over", "parameters.L=0.1:0.24:15", "--over", "parameters.k=500:1500:3"]),
+    "branch_all": (2000, ["branch", pathlib.Path(SCENE).with_name("conical_pendulum.json"), "--vary",
+                          "joints.spin.drive.speed=0:10", "--over", "gravity.1=-4:-16:9", "--all"]),
+    "sweep_all": (100, ["sweep", pathlib.Path(SCENE).with_name("conical_pendulum.json"), "--all", "--vary",
+                        "joints.spin.drive.speed=0:10:9", "--vary", "gravity.1=-4:-16:5"]),
 }
 failures = []
 
@@ -68,8 +77,8 @@ def columns_of(file):
     return columns
 
 
-def check_columns(csv, npz):
-    head, *rows = [line.split(",") for line in csv.read_text().splitlines()]
+def check_columns(table, npz):
+    head, *rows = [line.split(",") for line in table.read_text().splitlines()]
     columns = columns_of(npz)
     check(list(columns) == head, "npz has the columns of the CSV")
     for i, name in enumerate(head):
@@ -211,6 +220,45 @@ def check_statistics(folder):
     check(code == 2 and "its study" in error, f"a sweep and a spread: {error}")
 
 
+def rows_of(file):
+    with open(file, newline="") as text:
+        return list(csv.DictReader(text))
+
+
+def check_grids(folder):
+    """Forks of a conical pendulum over gravity, and how many equilibria there are on either side of them."""
+    length = 0.7  # m, of the scene's pendulum
+    run(*STUDIES["branch_all"][1], "--csv", folder / "forks.csv")
+    forks = [row for row in rows_of(folder / "forks.csv") if row["special"] == "branch_point"]
+    check(len({row["gravity.1"] for row in forks}) == 9, "a fork at each place of the grid")
+    for row in forks:
+        speed, fork = float(row[SPEED]), math.sqrt(-float(row["gravity.1"]) / length)
+        check(abs(speed - fork) < 1e-9, f"a fork at {speed} rather than {fork}")
+    run(*STUDIES["sweep_all"][1], "--csv", folder / "regions.csv")
+    for row in rows_of(folder / "regions.csv"):
+        beyond = float(row[SPEED]) ** 2 * length > -float(row["gravity.1"])
+        check(row["equilibria"] == ("4" if beyond else "2"), f"equilibria: {row}")
+    # What cannot be made is told in its place, and where nothing can, on standard error, too.
+    words = STUDIES["branch"][1]
+    run(*words, "--csv", folder / "arms.csv")
+    for row in rows_of(folder / "arms.csv"):
+        right = float(row["parameters.L"]) < 0.21844  # twice the link
+        check((row["status"] == "converged") == right and (right or "not finite" in row["note"]), f"a place: {row}")
+        check(row["note"] in ("", "ends: the end of the range") or not right, f"an end: {row}")
+    told = json.loads(run(*words, "--json")[1])
+    check([place["status"] for place in told["points"]].count("infeasible") == 9 and len(told["points"]) == 45,
+          "JSON has each place")
+    code, out, error = run(*words[:5], "parameters.L=0.23:0.24:2")
+    check(code == 1 and "no branch at any of the 2 places" in error and out.count("infeasible") == 2, f"none: {error}")
+    for wrong, expected in ((["--over", "parameters.w=1:2:2"], "expected it once"),
+                            (["--over", "parameters.none=1:2:2"], "parameters.none"),
+                            (["--over", "parameters.L=0.1:0.2"], "address=from:to:count"),
+                            (["--shard", "1/2", "--csv", folder / "x.csv"], "--over"),
+                            (["--over", "parameters.L=0.1:0.2:2", "--svg", folder / "x.svg"], "excludes")):
+        code, _, error = run(*words[:4], *wrong)
+        check(code == 2 and expected in error, f"{wrong}: {code} {error}")
+
+
 def check_turning(folder):
     """What turns with the drives has no cell, and moves no other out of its column."""
     scene, file = pathlib.Path(SCENE).with_name("governor_bearing.json"), folder / "turning.csv"
@@ -266,9 +314,10 @@ with tempfile.TemporaryDirectory() as name:
     if "--processes" in sys.argv:
         check_processes(pathlib.Path(name))
     else:
+        check_memory(pathlib.Path(name))  # first: it looks at the largest process until then
         check_shards(pathlib.Path(name))
         check_studies(pathlib.Path(name))
         check_statistics(pathlib.Path(name))
+        check_grids(pathlib.Path(name))
         check_turning(pathlib.Path(name))
-        check_memory(pathlib.Path(name))
 sys.exit(1 if failures else 0)

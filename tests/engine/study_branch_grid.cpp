@@ -6,7 +6,6 @@
 
 using namespace flyball;
 using namespace flyball::test;
-using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
