@@ -54,6 +54,8 @@ std::vector<OutputName> outputs_of(const Mechanism& mechanism) {
   for (const CoordinateSolution& c : Analysis(mechanism).summary().coordinates)
     if (const auto found = found_number(c); found && !c.dependent)
       out.push_back({found->name, std::string(found->unit)});
+  if (out.empty() && mechanism.measures.empty())
+    throw SceneError("joints", "expected a coordinate that is free, or a measure: nothing scatters here");
   if (out.size() > most_coordinates) out.clear();
   for (const NamedMeasure& measure : mechanism.measures)
     out.push_back({measure.name, measure.unit});

@@ -26,6 +26,7 @@ LONG = 1  # s
 SKIPPED = 77
 RUN_TIMES = {"run_time_s", "motion_s", "direct_s", "ratio"}
 DRAWN = {"governor", "brace_of_wrong_length"}  # a picture takes a second: two of them
+MANY = 40  # bodies, with which a grid takes too long
 # Comparisons with motions that go on to the limit of time: how far they come is the clock's affair.
 CLOCKED = {("motion_with_a_far_point", "compare"), ("motion_of_a_string_held_far_away", "compare")}
 
@@ -78,6 +79,13 @@ def commands(path):
         yield ["design", "--connected", *vary, "--want", f"{wanted}=0.1", "--json"]
     yield ["solve", "--all", "--json"]
     yield ["branch", "--all", *vary, "--json"]
+    if len(scene["bodies"]) > MANY:
+        return
+    yield ["sweep", "--all", "--search-time", "0.05", "--vary", f"{address}={low!r}:{high!r}:2", "--csv", "OUT"]
+    over = "gravity.0=0:1:2" if address == "gravity.1" else "gravity.1=0:-10:2"
+    yield ["branch", *vary, "--over", over, "--csv", "OUT"]
+    yield ["spread", "--tolerance", f"{address}=normal:{abs(high - low) / 50 or 1!r}", "--samples", "20", "--json",
+           "--csv", "OUT"]
 
 
 def without_times(value):

@@ -250,7 +250,7 @@ def check_grids(folder):
           "JSON has each place")
     code, out, error = run(*words[:5], "parameters.L=0.23:0.24:2")
     check(code == 1 and "no branch at any of the 2 places" in error and out.count("infeasible") == 2, f"none: {error}")
-    for wrong, expected in ((["--over", "parameters.w=1:2:2"], "expected it once"),
+    for wrong, expected in ((["--over", "parameters.w=1:2:2"], "varied already"),
                             (["--over", "parameters.none=1:2:2"], "parameters.none"),
                             (["--over", "parameters.L=0.1:0.2"], "address=from:to:count"),
                             (["--shard", "1/2", "--csv", folder / "x.csv"], "--over"),
