@@ -25,8 +25,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json mark_json(const DirectMark& m) {
-  return {{"iterations", m.iterations}, {"error", m.error}, {"run_time_s", m.run_time_s}};
+Json error_json(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+// By name, where there are measures.
+void add_measure_errors(Json& mark, const Comparison& c, const std::vector<double>& errors) {
+  for (std::size_t i = 0; i < c.measures.size(); ++i)
+    mark["measure_errors"][c.measures[i].name] = i < errors.size() ? error_json(errors[i]) : Json(nullptr);
+}
+
+Json mark_json(const Comparison& c, const DirectMark& m) {
+  Json out = {{"iterations", m.iterations}, {"error", m.error}, {"run_time_s", m.run_time_s}};
+  add_measure_errors(out, c, m.measure_errors);
+  return out;
 }
 
 Json comparison_json(const Comparison& c) {
@@ -38,20 +50,25 @@ Json comparison_json(const Comparison& c) {
   out["reference"] = {{"coordinates", std::move(reference)},
                       {"error", c.reference_error},
                       {"residual", c.reference_residual}};
+  for (const MeasureSolution& m : c.measures)
+    out["reference"]["measures"][m.name] = {{"value", m.value ? Json(*m.value) : Json(nullptr)},
+                                            {"unit", m.unit}};
   out["direct"] = Json::array();
   for (const DirectMark& m : c.direct)
-    out["direct"].push_back(mark_json(m));
-  out["answer"] = mark_json(c.answer);
+    out["direct"].push_back(mark_json(c, m));
+  out["answer"] = mark_json(c, c.answer);
   out["motion"] = Json::array();
   for (const MotionCurve& curve : c.motion) {
     Json points = Json::array();
-    for (const MotionPoint& p : curve.points)
+    for (const MotionPoint& p : curve.points) {
       points.push_back({{"tolerance", p.tolerance},
-                        {"error", std::isfinite(p.error) ? Json(p.error) : Json(nullptr)},
+                        {"error", error_json(p.error)},
                         {"run_time_s", p.run_time_s},
                         {"steps", p.steps},
                         {"evaluations", p.evaluations},
                         {"status", word(p.status)}});
+      add_measure_errors(points.back(), c, p.measure_errors);
+    }
     out["motion"].push_back(
         {{"method", word(curve.method)}, {"duration", curve.duration}, {"points", std::move(points)}});
   }
@@ -129,17 +146,30 @@ std::string to_text(const Mechanism& mechanism, const Comparison& c) {
 
 struct CompareCommand {
   SceneArgument scene;
-  std::string csv, svg;
+  std::string csv, svg, plot;
   int repeats = 5;
   std::vector<double> durations;
   double time_limit = usual_time_limit;
   bool json = false;
 };
 
+// The measure of that name; none for "". Throws SceneError naming those there are.
+std::optional<std::size_t> plotted_measure(const Mechanism& m, const std::string& name) {
+  if (name.empty()) return {};
+  const auto found = std::ranges::find(m.measures, name, &NamedMeasure::name);
+  if (found != m.measures.end()) return static_cast<std::size_t>(found - m.measures.begin());
+  std::vector<std::string_view> names;
+  for (const NamedMeasure& measure : m.measures)
+    names.push_back(measure.name);
+  throw SceneError("--plot " + name,
+                   names.empty() ? "the scene has no measures" : "expected one of " + word_list(names));
+}
+
 Ending run_compare(const CompareCommand& options) {
   check_outputs(options.scene.file, {{"--csv", options.csv}, {"--svg", options.svg}});
   std::optional<ProgressBar> progress(std::in_place, "reading");
   const Mechanism mechanism = options.scene.load();
+  const std::optional<std::size_t> plotted = plotted_measure(mechanism, options.plot);
   Comparison comparison;
   try {
     progress->show({"solving"});
@@ -161,7 +191,7 @@ Ending run_compare(const CompareCommand& options) {
   // Files of earlier runs are not replaced by empty ones.
   const bool any = !comparison.reference.empty();
   if (any && !options.svg.empty())
-    write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison)));
+    write_bytes(options.svg, to_svg(comparison_plot(mechanism.name, comparison, plotted)));
   if (any && !options.csv.empty()) write_bytes(options.csv, comparison_csv(comparison));
   if (options.json)
     print_json(with_warnings(comparison_json(comparison), mechanism));
@@ -179,7 +209,12 @@ void add_compare(CLI::App& app, Ending& ending) {
       app.add_subcommand("compare", "Measure error against run time: direct solution and damped motion");
   options->scene.add_to(*command);
   command->add_option("--csv", options->csv, "Write all measurements to a file (-: standard output)");
-  command->add_option("--svg", options->svg, "Draw them, on logarithmic axes (-: standard output)");
+  CLI::Option* svg =
+      command->add_option("--svg", options->svg, "Draw them, on logarithmic axes (-: standard output)");
+  command
+      ->add_option("--plot", options->plot,
+                   "The measure whose error --svg draws (default: the largest error of the coordinates)")
+      ->needs(svg);
   command->add_option("--repeats", options->repeats, "Runs of which the median time is told")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

@@ -7,9 +7,12 @@
 
 namespace flyball {
 
-Plot comparison_plot(const std::string& title, const Comparison& comparison);
+// Of the coordinates, or of one of Comparison::measures.
+Plot comparison_plot(const std::string& title, const Comparison& comparison,
+                     std::optional<std::size_t> measure = {});
 
-// Everything that was measured, a line a mark: times in s, errors in radians or relative to the reach.
+// Everything that was measured, a line a mark: times in s, errors in radians or relative to the reach, those
+// of measures in their units.
 std::string comparison_csv(const Comparison& comparison);
 
 } // namespace flyball

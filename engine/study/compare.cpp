@@ -5,6 +5,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/report/measures.hpp"
 #include "engine/report/report.hpp"
 #include "engine/search/steady_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
@@ -66,6 +67,7 @@ class Direct {
     bind(system_, mechanism, parameters_);
     set_scaling(system_, parameters_, scaling_);
     drawn_configuration(system_, parameters_, drawn_);
+    measures_.bind(mechanism, system_, parameters_);
   }
 
   const System& system() const { return system_; }
@@ -110,6 +112,7 @@ class Direct {
     const Eigen::VectorXd q = reference_.cast<double>();
     forward<double>(system_, parameters_, q, 0, w_.kinematics);
     out.reference = coordinate_solutions(system_, parameters_, q, correction.cwiseAbs(), w_.kinematics);
+    measured_ = measures_.evaluate_at(problem(), q, w_);
   }
 
   // The largest difference from q*, in radians or relative to the reach.
@@ -139,6 +142,14 @@ class Direct {
     return worst;
   }
 
+  // Of the measures, from what they are at q*.
+  std::vector<double> measure_errors(const Eigen::VectorXd& q) {
+    if (measures_.empty()) return {};
+    const Eigen::VectorXd away = (measures_.evaluate_at(problem(), q, w_) - measured_).cwiseAbs();
+    return {away.begin(), away.end()};
+  }
+  const Eigen::VectorXd& measured() const { return measured_; } // at q*
+
   // The state after so many plain iterations from the drawn pose, and whether more would change it.
   bool iterate(int count, Unknowns& z) {
     z.q = drawn_;
@@ -164,6 +175,8 @@ class Direct {
   SteadyState steady_;
   Stability stability_;
   ExtendedVector reference_;
+  MeasureSet measures_;
+  Eigen::VectorXd measured_;
 };
 
 // Long enough for the slowest motion about the steady state to shrink to 1e-2, 1e-4 ... 1e-10; s.
@@ -210,9 +223,8 @@ Run simulated(const Mechanism& mechanism, const SimulationOptions& options) {
   return simulate(mechanism, options);
 }
 
-// The error of where a run ended; not a number where it did not come to its end.
-double end_error(const Run& run, const Direct& direct, const std::vector<std::string>& neutral) {
-  if (run.status != RunStatus::completed) return std::numeric_limits<double>::quiet_NaN();
+// Where a run ended.
+Eigen::VectorXd end_of(const Run& run, const Direct& direct) {
   const auto nq = static_cast<std::ptrdiff_t>(direct.system().nq);
   const auto sample =
       static_cast<std::ptrdiff_t>(run.states.size()) - (nq + static_cast<std::ptrdiff_t>(direct.system().nv));
@@ -220,12 +232,12 @@ double end_error(const Run& run, const Direct& direct, const std::vector<std::st
   // What torques drive is compared by its speed; the motion's coordinates are in the same order.
   for (const Link& link : direct.system().links)
     if (finds_speed(link)) q[link.q] = run.states[static_cast<std::size_t>(sample + nq + link.v)];
-  return direct.error_of(q, neutral);
+  return q;
 }
 
 // One run and its repeats. Nothing where nobody waits for it any more.
 std::optional<MotionPoint> measure(const Mechanism& mechanism, const SimulationOptions& simulation,
-                                   int repeats, const Time& time, const Direct& direct,
+                                   int repeats, const Time& time, Direct& direct,
                                    const std::vector<std::string>& neutral) {
   MotionPoint point;
   point.tolerance = simulation.tolerance;
@@ -235,7 +247,12 @@ std::optional<MotionPoint> measure(const Mechanism& mechanism, const SimulationO
     if (time.watch.over()) break;
     times.push_back(run.statistics.run_time_s);
     if (i == 0) {
-      point.error = end_error(run, direct, neutral);
+      point.error = std::numeric_limits<double>::quiet_NaN();
+      if (run.status == RunStatus::completed) {
+        const Eigen::VectorXd q = end_of(run, direct);
+        point.error = direct.error_of(q, neutral);
+        point.measure_errors = direct.measure_errors(q);
+      }
       point.steps = run.statistics.steps;
       point.evaluations = run.statistics.evaluations;
       point.status = run.status;
@@ -249,7 +266,7 @@ std::optional<MotionPoint> measure(const Mechanism& mechanism, const SimulationO
 
 // One curve a method and duration, into out.motion. False where it was broken off.
 bool measure_motions(const Mechanism& mechanism, const CompareOptions& options,
-                     const std::vector<double>& durations, const Time& time, const Direct& direct,
+                     const std::vector<double>& durations, const Time& time, Direct& direct,
                      const std::vector<std::string>& neutral, Comparison& out) {
   const std::size_t all = options.integrators.size() * durations.size() * options.tolerances.size();
   std::size_t done = 0;
@@ -303,12 +320,22 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
   }
   direct.settle_reference(answer, out);
   out.answer = {direct.iterations(), direct.error_of(answer.q, steady.neutral),
-                time_of(options.repeats, time, [&] { direct.answer(answer); })};
+                time_of(options.repeats, time, [&] { direct.answer(answer); }),
+                direct.measure_errors(answer.q)};
+  for (std::size_t i = 0; i < mechanism.measures.size(); ++i) {
+    MeasureSolution& measure = out.measures.emplace_back();
+    measure.name = mechanism.measures[i].name;
+    measure.unit = mechanism.measures[i].unit;
+    const double value = direct.measured()[static_cast<Eigen::Index>(i)];
+    if (std::isfinite(value)) measure.value = value;
+  }
   for (int i = 0; i <= 30 && !time.watch.over(); ++i) {
     Unknowns z;
     const bool converged = direct.iterate(i, z);
     const double error = direct.error_of(z.q, steady.neutral);
-    out.direct.push_back({i, error, time_of(options.repeats, time, [&] { direct.iterate(i, z); })});
+    std::vector<double> measure_errors = direct.measure_errors(z.q);
+    out.direct.push_back(
+        {i, error, time_of(options.repeats, time, [&] { direct.iterate(i, z); }), std::move(measure_errors)});
     if (converged) break;
   }
   if (out.direct.empty() || !(out.direct.back().error < 1e-6)) out.direct.clear();

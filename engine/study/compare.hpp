@@ -24,10 +24,13 @@ struct CompareOptions {
   std::function<void(std::size_t done, std::size_t all)> progress{};
 };
 
-// Errors are the largest of all coordinates, in radians or relative to the mechanism's reach.
+// Errors are the largest of all coordinates, in radians or relative to the mechanism's reach. Those of
+// measures are of each in its unit, as of a steady state with these coordinates; not a number where one has
+// no value.
 struct DirectMark {
   int iterations = 0;
   double error = 0, run_time_s = 0;
+  std::vector<double> measure_errors{};
 };
 
 struct MotionPoint {
@@ -36,6 +39,7 @@ struct MotionPoint {
   double run_time_s = 0;
   long steps = 0, evaluations = 0;
   RunStatus status = RunStatus::completed;
+  std::vector<double> measure_errors{}; // none where the run did not come to its end
 };
 
 struct MotionCurve {
@@ -59,10 +63,11 @@ struct Comparison {
   // The reference q*, iterated in extended precision until it stood: values rounded to double, `error` how
   // far the last correction moved it.
   std::vector<CoordinateSolution> reference;
-  double reference_error = 0;     // the largest of these, scaled
-  double reference_residual = 0;  // of q* in extended precision, scaled
-  std::vector<DirectMark> direct; // by iteration; without the iterations where a fallback was needed
-  DirectMark answer;              // with refinement, existence and the sign of stability
+  std::vector<MeasureSolution> measures; // there, rounded; without errors
+  double reference_error = 0;            // the largest of these, scaled
+  double reference_residual = 0;         // of q* in extended precision, scaled
+  std::vector<DirectMark> direct;        // by iteration; without the iterations where a fallback was needed
+  DirectMark answer;                     // with refinement, existence and the sign of stability
   std::vector<MotionCurve> motion;
   std::optional<SpeedRatio> best;
 };

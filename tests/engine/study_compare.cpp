@@ -96,6 +96,38 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("errors of measures are those that the coordinates' errors make") {
+  Mechanism m = shipped("governor");
+  m.measures = {{"lift", "", "coordinate(slide)", "m"},
+                {"pull", "", "1000 N/m * (0.15 m - coordinate(slide))", "N"},
+                {"spring", "", "reaction(slide)", "N"},
+                {"none", "", "1 m / (coordinate(slide) - coordinate(slide)) * 1 m", "m"}};
+  CompareOptions o = quick();
+  o.integrators = {Integrator::bdf};
+  o.durations = {4};
+  const Comparison c = compare(m, o);
+  INFO(c.message);
+  REQUIRE(c.measures.size() == 4);
+  const auto slide = std::ranges::find(c.reference, std::string("slide"), &CoordinateSolution::joint);
+  CHECK(c.measures[0].value == Approx(slide->value).epsilon(1e-15));
+  CHECK(c.measures[1].unit == "N");
+  CHECK_FALSE(c.measures[3].value);
+  // From where it is drawn, 0.0744 m down.
+  REQUIRE(c.direct.size() > 3);
+  CHECK(c.direct[0].measure_errors[0] == Approx(slide->value - 0.0744).epsilon(1e-12));
+  for (const DirectMark& mark : c.direct) {
+    REQUIRE(mark.measure_errors.size() == 4);
+    CHECK(mark.measure_errors[1] == Approx(1000 * mark.measure_errors[0]).margin(1e-12));
+    CHECK(std::isnan(mark.measure_errors[3]));
+  }
+  CHECK(c.answer.measure_errors[0] < 1e-16);
+  CHECK(c.answer.measure_errors[2] < 1e-11);
+  REQUIRE(c.motion.size() == 1);
+  const MotionPoint &rough = c.motion[0].points.front(), &fine = c.motion[0].points.back();
+  CHECK(fine.measure_errors[0] < rough.measure_errors[0]);
+  CHECK(fine.measure_errors[1] == Approx(1000 * fine.measure_errors[0]).epsilon(1e-6));
+}
+
 TEST_CASE("what is asked for is what is measured") {
   CompareOptions o = quick();
   o.tolerances = {1e-4, 1e-6};
