@@ -3,6 +3,7 @@
 
 #include "engine/mechanism/error.hpp"
 #include "engine/study/branch_grid.hpp"
+#include "engine/study/fold_curve.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -25,6 +26,34 @@ TEST_CASE("a conical pendulum's fork over gravity and mass stands where w^2 L = 
     const auto fork = std::ranges::find(special, SpecialPointType::branch_point, &SpecialPoint::type);
     REQUIRE(fork != special.end());
     CHECK(fork->at.parameter == Approx(std::sqrt(-place.parameters[0] / 0.7)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("folds over a grid lie on the curve that the plane's folds make") {
+  // A pendulum hinged off the axis: two independent ways to its folds, which w^2 ~ g carries over gravity.
+  const Mechanism m = conical(0.7, 0.1, 5);
+  const std::vector<Variation> over{{"gravity.1", -6, -12, 4}};
+  BranchOptions options;
+  options.all = true;
+  const GridFollower follower(m, over, speed, 1, 8, options);
+  PlaneOptions curves;
+  curves.all = true;
+  const PlaneCurves plane = fold_curves(m, {speed, 1, 8}, {"gravity.1", -12, -6}, curves);
+  double ratio = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const GridBranches place = follower.follow(i);
+    CAPTURE(place.parameters[0], place.diagram.message);
+    const auto& special = place.diagram.special;
+    const auto fold = std::ranges::find(special, SpecialPointType::fold, &SpecialPoint::type);
+    REQUIRE(fold != special.end());
+    const double w = fold->at.parameter, g = place.parameters[0];
+    if (i > 0) CHECK(w * w / g == Approx(ratio).epsilon(1e-9));
+    ratio = w * w / g;
+    double nearest = 1; // of the curve's points beside it, which lie on w^2 ~ g, too
+    for (const PlaneCurve& curve : plane.curves)
+      for (const auto& point : curve.points)
+        nearest = std::min(nearest, std::abs(point.x * point.x / point.y / ratio - 1));
+    CHECK(nearest < 1e-8);
   }
 }
 
