@@ -1,6 +1,7 @@
 #include "app/cli/command.hpp"
 #include "app/cli/npz.hpp"
 #include "app/cli/output.hpp"
+#include "app/cli/row_columns.hpp"
 #include "app/cli/spread_report.hpp"
 #include "app/cli/study_part.hpp"
 #include "engine/mechanism/error.hpp"
@@ -9,8 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -64,77 +64,14 @@ SceneError damaged(const OpenPart& part) {
   return {part.file.string(), "expected rows and their number behind them; it is damaged"};
 }
 
-// The cells of a row without its line end; what is quoted stays so. False where a quote has no end.
-bool split(std::string_view row, std::vector<std::string_view>& cells) {
-  cells.clear();
-  for (std::size_t begin = 0;;) {
-    std::size_t end = begin;
-    while (end < row.size() && row[end] == '"') { // and what is quoted again, right behind
-      end = row.find('"', end + 1);
-      if (end++ == std::string_view::npos) return false;
-    }
-    end = std::min(row.find(',', end), row.size());
-    cells.push_back(row.substr(begin, end - begin));
-    if (end == row.size()) return true;
-    begin = end + 1;
-  }
-}
-
-// Rows of CSV as numbers again, by columns.
-class RowColumns {
- public:
-  explicit RowColumns(const std::vector<Column>& columns) : columns_(columns), bytes_(columns.size()) {}
-
-  // False where the row has other columns, or something that is no number where one stands.
-  bool add(std::span<const std::string_view> cells) {
-    if (cells.size() != columns_.size()) return false;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      if (!add(i, cells[i])) return false;
-    ++rows_;
-    return true;
-  }
-  std::size_t rows() const { return rows_; }
-  std::string take() {
-    std::string all;
-    for (std::string& column : bytes_) {
-      all += column;
-      column.clear();
-    }
-    rows_ = 0;
-    return all;
-  }
-
- private:
-  bool add(std::size_t column, std::string_view text) {
-    std::string& out = bytes_[column];
-    switch (columns_[column].kind) {
-    case CellKind::number: {
-      double value = std::nan("");
-      const char* end = text.data() + text.size();
-      if (!text.empty() && std::from_chars(text.data(), end, value).ptr != end) return false;
-      append_item(out, value);
-      return true;
-    }
-    case CellKind::word: append_word(out, text); return true;
-    case CellKind::verdict:
-      if (!text.empty() && text != "true" && text != "false") return false;
-      out += static_cast<char>(npz_verdict(text.empty() ? std::nullopt : std::optional(text == "true")));
-      return true;
-    case CellKind::text: return true;
-    }
-    return false;
-  }
-
-  std::vector<Column> columns_;
-  std::vector<std::string> bytes_; // by column
-  std::size_t rows_ = 0;
-};
-
 // How many rows a file's last line tells.
 std::uint64_t rows_of(OpenPart& part) {
   constexpr std::streamoff longest = 64;
   const auto here = part.in.tellg();
   part.in.seekg(0, std::ios::end);
+  if (!part.in)
+    throw SceneError(part.file.string(),
+                     "expected a file, of which the rows are counted first for columns for NumPy");
   part.in.seekg(std::max<std::streamoff>(0, part.in.tellg() - longest));
   std::string line, last;
   while (std::getline(part.in, line))
@@ -187,7 +124,6 @@ void merge_to_npz(OpenParts& parts, const std::filesystem::path& file, const Tak
     all += rows_of(*part);
   NpzWriter out(file, npz_columns(columns), all);
   RowColumns rows(columns);
-  std::vector<std::string_view> cells;
   const auto write = [&] {
     const std::uint64_t begin = written;
     written += rows.rows();
@@ -196,8 +132,7 @@ void merge_to_npz(OpenParts& parts, const std::filesystem::path& file, const Tak
   for (const auto& part : parts)
     for_rows(*part, [&](OpenPart& from, const std::string& row) {
       look(from, row);
-      if (!split(std::string_view(row).substr(0, row.size() - 1), cells) || !rows.add(cells))
-        throw damaged(from);
+      if (!rows.add(std::string_view(row).substr(0, row.size() - 1))) throw damaged(from);
       if (rows.rows() == piece) write();
     });
   write();
@@ -216,7 +151,7 @@ void merge_spread(OpenParts& parts, const std::filesystem::path& file, bool json
   SpreadReport report = read_spread(parts.front()->file, parts.front()->part);
   std::vector<std::string_view> cells;
   merge(parts, file, [&](OpenPart& from, const std::string& row) {
-    if (!split(std::string_view(row).substr(0, row.size() - 1), cells) || !add_sample(cells, report))
+    if (!split_row(std::string_view(row).substr(0, row.size() - 1), cells) || !add_sample(cells, report))
       throw damaged(from);
   });
   add_statistics(report.tolerances, report.seed, report.answer);

@@ -1,8 +1,10 @@
 #include "engine/study/spread.hpp"
 #include "app/cli/command.hpp"
+#include "app/cli/npz.hpp"
 #include "app/cli/output.hpp"
 #include "app/cli/processes.hpp"
 #include "app/cli/progress.hpp"
+#include "app/cli/row_columns.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
 #include "app/cli/spread_report.hpp"
@@ -16,6 +18,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 namespace flyball::cli {
 namespace {
@@ -25,7 +28,7 @@ struct SpreadArguments {
   std::vector<std::string> tolerance;
   std::size_t samples = 1000;
   std::uint64_t seed = 1;
-  std::string csv, shard;
+  std::string csv, npz, shard;
   bool json = false;
 };
 
@@ -62,42 +65,71 @@ Tolerance parse_tolerance(const Mechanism& mechanism, std::string_view text) {
   return tolerance;
 }
 
-// Makes samples and puts them out as they come; keeps what they tell where that is asked for.
+// Where samples go as they come, some at a time.
+class SampleFiles {
+ public:
+  SampleFiles(const SpreadArguments& arguments, const StudyPart& part) : columns_(part.columns) {
+    if (!arguments.csv.empty())
+      csv_ = arguments.shard.empty() ? csv_output(arguments.csv, csv_head(part.columns))
+                                     : part_output(part, arguments.csv);
+    if (!arguments.npz.empty()) npz_.emplace(arguments.npz, npz_columns(part.columns), part.count);
+    if (csv_) csv_->begin();
+  }
+
+  void add(const SpreadReport& report, std::size_t i, SampleFate fate, std::span<const double> values) {
+    if (!csv_ && !npz_) return;
+    const std::string row = sample_row(report, i, fate, values);
+    if (csv_) rows_ += row;
+    if (npz_) columns_.add(std::string_view(row).substr(0, row.size() - 1));
+    constexpr std::size_t some = 1000;
+    if (++waiting_ == some) put_out();
+  }
+  void finish() {
+    put_out();
+    if (csv_) csv_->finish();
+    if (npz_) npz_->finish();
+  }
+
+ private:
+  void put_out() {
+    if (csv_) csv_->take(done_, done_ + waiting_, rows_);
+    if (npz_) npz_->write(done_, done_ + waiting_, columns_.take());
+    rows_.clear();
+    done_ += std::exchange(waiting_, 0);
+  }
+
+  std::unique_ptr<RowOutput> csv_;
+  std::optional<NpzWriter> npz_;
+  std::string rows_;
+  RowColumns columns_;
+  std::size_t waiting_ = 0, done_ = 0; // samples
+};
+
+// Makes samples and puts them out; keeps what they tell where that is asked for.
 void make(const Mechanism& mechanism, const SpreadArguments& arguments, const StudyPart& part, bool keep,
           WorkSharing& sharing, SpreadReport& report) {
   SpreadAnswer& answer = report.answer;
-  std::unique_ptr<RowOutput> file;
-  if (!arguments.csv.empty() && sharing.takes())
-    file = arguments.shard.empty() ? csv_output(arguments.csv, csv_head(part.columns))
-                                   : part_output(part, arguments.csv);
-  if (file) file->begin();
+  std::optional<SampleFiles> files;
+  if (sharing.takes()) files.emplace(arguments, part);
   answer.values.resize(answer.outputs.size());
-  std::string rows;
-  const auto put_out = [&](std::size_t largest) {
-    if (!file || rows.size() <= largest) return;
-    file->take(0, 0, rows);
-    rows.clear();
-  };
   SpreadOptions options;
   options.seed = arguments.seed;
   ProgressBar progress("solving");
   options.progress = [&](std::size_t done, std::size_t all) { progress.show("solving", done, all); };
   make_samples(mechanism, report.tolerances, options, part.begin(), part.end() - part.begin(), sharing,
                [&](std::size_t i, SampleFate fate, std::span<const double> values) {
-                 if (file) rows += sample_row(report, i, fate, values);
-                 put_out(1 << 16);
+                 files->add(report, i, fate, values);
                  if (!keep) return;
                  answer.fate.push_back(fate);
                  for (std::size_t k = 0; k < values.size(); ++k)
                    answer.values[k].push_back(values[k]);
                });
-  put_out(0);
-  if (file) file->finish();
+  if (files) files->finish();
 }
 
 void run(const SpreadArguments& arguments, Ending& ending) {
   const auto begin = std::chrono::steady_clock::now();
-  check_outputs(arguments.scene.file, {{"--csv", arguments.csv}});
+  check_outputs(arguments.scene.file, {{"--csv", arguments.csv}, {"--npz", arguments.npz}});
   const std::unique_ptr<WorkSharing> sharing = share_work();
   const Mechanism mechanism = arguments.scene.load();
   const std::optional<Shard> shard =
@@ -149,8 +181,9 @@ void add_spread(CLI::App& app, Ending& ending) {
       ->capture_default_str();
   CLI::Option* csv =
       command->add_option("--csv", arguments->csv, "Write the samples to a file (-: standard output)");
+  CLI::Option* npz = command->add_option("--npz", arguments->npz, "Write them as columns for NumPy");
   CLI::Option* json = command->add_flag("--json", arguments->json, "Print a JSON object");
-  add_shard(*command, arguments->shard, csv)->excludes(json); // which `merge` prints
+  add_shard(*command, arguments->shard, csv)->excludes(json)->excludes(npz); // which `merge` makes
   command->footer("Example: flyball spread governor.json --tolerance joints.slide.spring.stiffness=normal:2% "
                   "--samples 10000");
   command->callback([arguments, &ending] { run(*arguments, ending); });

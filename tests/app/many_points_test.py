@@ -84,7 +84,7 @@ def check_columns(table, npz):
     for i, name in enumerate(head):
         cells = [row[i] for row in rows]
         values = columns[name]
-        if name == "status":
+        if name in ("status", "fate"):
             check(list(values) == cells, "status in npz")
         elif name == "stable":
             check([{"true": 1, "false": 0, "": -1}[cell] for cell in cells] == list(values), "stable in npz")
@@ -98,6 +98,8 @@ def check_columns(table, npz):
         return
     with numpy.load(npz) as arrays:
         check(list(arrays) == head, "NumPy finds the columns")
+        if "slide" not in head or "status" not in head:
+            return
         check(arrays["slide"].dtype == numpy.float64 and len(arrays["slide"]) == len(rows), "NumPy reads numbers")
         check(arrays["status"][0].decode() == rows[0][head.index("status")], "NumPy reads words")
 
@@ -208,8 +210,11 @@ def check_statistics(folder):
     parts = [folder / f"seed{i}.csv" for i in range(1, 3)]
     for i, part in enumerate(parts, 1):
         run(*words, "--shard", f"{i}/2", "--csv", part)
-    whole = json.loads(run(*words, "--json")[1])
+    whole = json.loads(run(*words, "--json", "--npz", folder / "whole.npz")[1])
     merged = json.loads(run("merge", *parts, "-o", folder / "both.csv", "--json")[1])
+    run("merge", *parts, "-o", folder / "both.npz")
+    check((folder / "both.npz").read_bytes() == (folder / "whole.npz").read_bytes(), "merged npz is the whole's")
+    check_columns(folder / "both.csv", folder / "both.npz")
     check(whole.pop("run_time_s") > 0 and merged.pop("run_time_s") is None, "merging tells no run time")
     check(whole == merged and whole["fates"]["no_mechanism"] > 0 and whole["samples"] == 1501, f"statistics: {merged}")
     run(*words, "--seed", 2, "--shard", "2/2", "--csv", parts[1])
