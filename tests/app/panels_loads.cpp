@@ -82,6 +82,31 @@ TEST_CASE("with a body selected the arrows are its free-body diagram, with value
   CHECK(has_row(app, "Free body: ball2"));
 }
 
+TEST_CASE("the legend stands where it hides the fewest arrows, and does not jump while the view is turned") {
+  Robot robot;
+  App& app = robot.app;
+  const auto middle = [&](const char* widget) {
+    const WidgetRect at = app.widgets.at(widget);
+    return (at.from.y + at.to.y) / 2;
+  };
+  CHECK(middle("legend") < middle("view"));
+  robot.key('A'); // the shaft's bearing is above it
+  robot.frames(2);
+  CHECK(middle("legend") > middle("view"));
+  const WidgetRect view = app.widgets.at("view");
+  robot.point({view.from.x + 20, view.from.y + 120});
+  robot.press();
+  look_from(app, 0, 1.57);
+  robot.frames(2);
+  CHECK(middle("legend") > middle("view"));
+  robot.release();
+  robot.frames(2);
+  CHECK(middle("legend") < middle("view"));
+  robot.key('A');
+  robot.frames(2);
+  CHECK(middle("legend") < middle("view"));
+}
+
 TEST_CASE("an arrow that is pointed at tells what it is") {
   Robot robot({1280, 900});
   App& app = robot.app;

@@ -84,34 +84,69 @@ std::vector<LegendRow> legend_rows(App& app) {
   return rows;
 }
 
+namespace {
+
+// How much of the loads' arrows lies in a part of the view, in fifths of an arrow.
+int arrows_within(const App& app, const PanelRect& view, ImVec2 from, ImVec2 to) {
+  const ShownScene& shown = app.view.scene;
+  if (!shown.scene || !shown.source.loads) return 0;
+  const ViewSize size{static_cast<double>(view.width), static_cast<double>(view.height)};
+  int within = 0;
+  for (const LoadArrow& arrow : shown.scene->arrows.arrows)
+    for (const double part : {0.2, 0.4, 0.6, 0.8, 1.}) {
+      const auto at = app.view.camera.project(arrow.from + part * (arrow.to - arrow.from), size);
+      if (!at) continue;
+      const float x = view.x + static_cast<float>(at->x()), y = view.y + static_cast<float>(at->y());
+      within += x > from.x && x < to.x && y > from.y && y < to.y;
+    }
+  return within;
+}
+
+// The corner of the view in which a legend of this size hides the fewest arrows, the upper one where that is
+// all the same. It does not jump while the view is turned.
+float legend_top(App& app, const PanelRect& view, ImVec2 size) {
+  const float s = app.scale, left = view.x + view.width - 10 * s - size.x;
+  const float upper = view.y + 10 * s, lower = view.y + view.height - 44 * s - size.y; // above the chips
+  const auto hidden = [&](float top) {
+    return arrows_within(app, view, {left, top}, {left + size.x, top + size.y});
+  };
+  if (!ImGui::IsAnyMouseDown()) app.panels.legend_low = lower > upper && hidden(lower) < hidden(upper);
+  return app.panels.legend_low ? lower : upper;
+}
+
+} // namespace
+
 void legend(App& app, const PanelRect& view) {
   const std::vector<LegendRow> rows = legend_rows(app);
   if (rows.empty() || view.width < 260 * app.scale || view.height < 160 * app.scale) return;
   const UiColors& colors = colors_of(app);
   const float s = app.scale;
-  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(view.y + 10 * s)},
-                          ImGuiCond_Always, {1, 0});
-  ImGui::SetNextWindowBgAlpha(0.88f);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 4 * s});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {6 * s, 2 * s});
-  ImGui::Begin("legend", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
-                   ImGuiWindowFlags_NoNav);
   const float line = ImGui::GetTextLineHeight(), side = std::round(0.55f * line);
   const float mark = std::round(1.4f * line);
   float width = mark; // of the widest mark
   for (const LegendRow& row : rows)
     width = std::max(width, row.length + 2 * s);
-  ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::vector<LegendRow> shown = app.panels.legend ? rows : std::vector<LegendRow>();
   float room = ImGui::CalcTextSize("Shown").x + 16 * s;
   for (const LegendRow& row : shown)
     room = std::max(room, (row.mark == LegendMark::note ? s : width + 7 * s) +
                               ImGui::CalcTextSize(row.words.c_str()).x);
+  const ImVec2 padding(8 * s, 4 * s);
+  const float gap = 2 * s, lines = static_cast<float>(shown.size());
+  const ImVec2 size(room + 2 * padding.x, (lines + 1) * line + lines * gap + 2 * padding.y);
+  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(legend_top(app, view, size))},
+                          ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowBgAlpha(0.88f);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {6 * s, gap});
+  ImGui::Begin("legend", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 from = ImGui::GetCursorScreenPos();
   if (ImGui::InvisibleButton("title", {room, line})) open_legend(app, !app.panels.legend);
   note_widget(app.widgets, "legend");

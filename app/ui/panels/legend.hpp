@@ -22,7 +22,8 @@ struct LegendRow {
 // What is in the view now; nothing for an empty document.
 std::vector<LegendRow> legend_rows(App& app);
 
-// A small window in the view's upper right corner, which a click on its title folds.
+// A small window in a right corner of the view, the upper one unless it hides loads' arrows there, which a
+// click on its title folds.
 void legend(App& app, const PanelRect& view);
 
 } // namespace flyball
