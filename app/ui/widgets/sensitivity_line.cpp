@@ -84,7 +84,9 @@ std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
     shown.share = std::abs(rate.value) / (c->angle ? 1 : size);
     out.push_back(std::move(shown));
   }
-  std::ranges::stable_sort(out, std::greater<>(), &ShownRate::share);
+  // Rounding alone shall not decide between the two sides of a mechanism, and change its mind.
+  std::ranges::stable_sort(out, std::greater<>(),
+                           [](const ShownRate& rate) { return static_cast<float>(rate.share); });
   const double size_of_number = std::max(std::abs(control->value), std::abs(control->to - control->from));
   for (ShownRate& rate : out)
     if (rate.share <= nothing * out.front().share || rate.share * size_of_number <= nothing) rate.value = 0;
