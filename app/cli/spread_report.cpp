@@ -2,6 +2,7 @@
 
 #include "app/cli/output.hpp"
 #include "app/cli/solution_json.hpp"
+#include "app/plot/spread_plot.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
@@ -23,9 +24,18 @@ Json number_json(double value) {
 
 Json statistics_json(const SpreadStatistics& s) {
   if (s.count == 0) return nullptr;
-  return {{"count", s.count}, {"mean", s.mean}, {"deviation", s.deviation},
-          {"min", s.least},   {"q05", s.low},   {"median", s.median},
-          {"q95", s.high},    {"max", s.most}};
+  return {{"count", s.count},
+          {"mean", s.mean},
+          {"mean_error", s.mean_error},
+          {"deviation", s.deviation},
+          {"deviation_error", s.deviation_error},
+          {"min", s.least},
+          {"q025", s.lowest},
+          {"q05", s.low},
+          {"median", s.median},
+          {"q95", s.high},
+          {"q975", s.highest},
+          {"max", s.most}};
 }
 
 Json shares_json(const std::vector<Tolerance>& tolerances, const std::vector<double>& shares) {
@@ -139,13 +149,7 @@ StudyPart sample_part(const Mechanism& mechanism, const SpreadReport& report, st
 
 std::string sample_row(const SpreadReport& report, std::size_t i, SampleFate fate,
                        std::span<const double> values) {
-  std::string out;
-  for (const double number : sampled_numbers(report.answer.nominal, report.tolerances, report.seed, i))
-    out += csv_number(number) + ",";
-  out += word(fate);
-  for (const double value : values)
-    out += "," + csv_number(value);
-  return out + "\n";
+  return spread_row(report.answer, report.tolerances, report.seed, i, fate, values);
 }
 
 SpreadReport read_spread(const std::filesystem::path& file, const StudyPart& part) {

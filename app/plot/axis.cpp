@@ -31,6 +31,13 @@ Extent shown_extent(const Plot& plot, const PlotLook& look, int axis) {
       for (const auto& p : curve.points)
         // A point that the other axis cannot show takes no room on this one.
         if (std::isfinite(p[1 - k])) extent.add(p[k]);
+  for (const PlotBand& band : plot.bands)
+    if (is_shown(band, look))
+      for (const auto& [x, lower, upper] : band.points) {
+        if (!std::isfinite(x) || !std::isfinite(lower) || !std::isfinite(upper)) continue;
+        extent.add(axis == 0 ? x : lower);
+        extent.add(axis == 0 ? x : upper);
+      }
   for (const PlotMark& mark : plot.marks)
     if (std::isfinite(mark.at[1 - k])) extent.add(mark.at[k]);
   for (const PlotReference& reference : plot.references)

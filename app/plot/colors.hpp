@@ -18,6 +18,8 @@ const PlotColors& plot_colors(PlotGround ground);
 // Okabe and Ito's palette (2008), which every common colour vision can tell apart; see plot_color in
 // plot.hpp.
 std::uint32_t curve_color(int index, PlotGround ground);
+// How much of its colour the ground of a band has, 0 to 1; its edges have more.
+inline constexpr double band_fill = 0.22, band_edge = 0.7;
 // Viridis: perceptually uniform, from dark blue at 0 to yellow at 1.
 std::uint32_t heat_color(double part);
 

@@ -40,6 +40,15 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
       out += end;
     }
   }
+  for (const PlotBand& band : plot.bands)
+    for (const std::size_t k : {1U, 2U}) {
+      if (!is_shown(band, look)) continue;
+      const std::string name = csv_field(band.name + (k == 1 ? ", from" : ", to"));
+      for (const auto& point : band.points) {
+        row(name, point[0], point[k]);
+        out += end;
+      }
+    }
   for (const PlotMark& mark : plot.marks) {
     row(csv_field(mark.label.empty() ? "mark" : mark.label), mark.at[0], mark.at[1]);
     out += end;

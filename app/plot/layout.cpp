@@ -131,24 +131,28 @@ struct Builder {
     double x = out.area.left;
     int row = 0;
     std::set<std::string> known;
-    for (std::size_t i = 0; i < plot.curves.size(); ++i) {
-      const PlotCurve& curve = plot.curves[i];
-      if (curve.hidden || curve.name.empty() || !known.insert(curve.name).second) continue;
+    const auto add = [&](const std::string& full, std::size_t i, bool band) {
+      if (full.empty() || !known.insert(full).second) return;
       const double room = out.area.width() - sample - gap;
-      const std::string name = cut_text(metrics, PlotFont::words, curve.name, room);
+      const std::string name = cut_text(metrics, PlotFont::words, full, room);
       const double width = sample + gap + metrics.width_of(PlotFont::words, name);
       if (x > out.area.left && x + width > out.area.right) {
         x = out.area.left;
         ++row;
       }
       const double y = top + row * height;
-      out.legend.push_back({curve.name,
+      out.legend.push_back({full,
                             i,
+                            band,
                             {x - 3 * s(), y, x + width + 3 * s(), y + height},
                             {x, y, x + sample, y + height},
                             text(PlotFont::words, name, x + sample + gap, y + 2 * s(), -1)});
       x += width + 16 * s();
-    }
+    };
+    for (std::size_t i = 0; i < plot.curves.size(); ++i)
+      if (!plot.curves[i].hidden) add(plot.curves[i].name, i, false);
+    for (std::size_t i = 0; i < plot.bands.size(); ++i)
+      add(plot.bands[i].name, i, true);
     return out.legend.empty() ? 0 : row + 1;
   }
 
@@ -271,8 +275,33 @@ struct Builder {
     out.bar.reset();
   }
 
+  PlotBandLines band_lines(std::size_t index) const {
+    const PlotBox& area = out.area;
+    const double wide = 10 * area.width(), high = 10 * area.height();
+    PlotBandLines lines{index, {}};
+    bool joined = false;
+    for (const auto& [value, lower, upper] : plot.bands[index].points) {
+      const double x = out.x.pixel(value), top = out.y.pixel(upper);
+      double bottom = out.y.pixel(lower);
+      if (out.y.logarithmic && lower <= 0) bottom = area.bottom; // nothing, on that axis
+      if (!std::isfinite(x) || !std::isfinite(top) || !std::isfinite(bottom)) {
+        joined = false;
+        continue;
+      }
+      if (!joined) lines.lower_upper.emplace_back();
+      joined = true;
+      const double at = std::clamp(x, area.left - wide, area.right + wide);
+      for (const std::size_t k : {0U, 1U})
+        lines.lower_upper.back()[k].push_back(
+            {at, std::clamp(k == 0 ? bottom : top, area.top - high, area.bottom + high)});
+    }
+    return lines;
+  }
+
   void lay_contents() {
     if (plot.heat) out.cells = heat_cells(*plot.heat, out);
+    for (std::size_t i = 0; i < plot.bands.size(); ++i)
+      if (is_shown(plot.bands[i], look)) out.bands.push_back(band_lines(i));
     for (std::size_t i = 0; i < plot.curves.size(); ++i) {
       const PlotCurve& curve = plot.curves[i];
       if (!is_shown(curve, look)) continue;

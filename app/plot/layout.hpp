@@ -37,9 +37,10 @@ struct PlotTick {
 
 struct PlotLegendEntry {
   std::string name;
-  std::size_t curve = 0; // the first of that name
-  PlotBox box;           // for clicking
-  PlotBox sample;        // the piece of line before the text
+  std::size_t curve = 0; // the first of that name; of the bands where it is one
+  bool band = false;
+  PlotBox box;    // for clicking
+  PlotBox sample; // the piece of line before the text
   PlotText text;
 };
 
@@ -47,6 +48,13 @@ struct PlotCurveLines {
   std::size_t curve = 0;
   std::vector<PixelLine> lines; // not dashed yet
   PixelLine shapes;             // centres
+};
+
+struct PlotBandLines {
+  std::size_t band = 0;
+  // From break to break, as many points of one as of the other, at the same x. Only what lies far outside is
+  // cut off.
+  std::vector<std::array<PixelLine, 2>> lower_upper;
 };
 
 struct PlotPlaced { // a mark or reference line
@@ -84,6 +92,7 @@ struct PlotLayout {
   std::vector<PlotLegendEntry> legend;
   std::vector<PlotCell> cells;
   std::optional<PlotBar> bar{};
+  std::vector<PlotBandLines> bands;          // those shown
   std::vector<PlotCurveLines> curves;        // those shown
   std::vector<PlotPlaced> references, marks; // those in range
 

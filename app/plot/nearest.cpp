@@ -75,6 +75,7 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
                                      double x, double py) {
   std::vector<PlotReading> readings;
   for (const PlotLegendEntry& entry : layout.legend) {
+    if (entry.band) continue;
     std::optional<double> best;
     double least = 0;
     for (const PlotCurve& curve : plot.curves) {
@@ -93,6 +94,32 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
       }
     }
     if (best) readings.push_back({entry.curve, *best});
+  }
+  return readings;
+}
+
+std::vector<BandReading> bands_at(const Plot& plot, const PlotLook& look, const PlotLayout& layout, double x,
+                                  double py) {
+  std::vector<BandReading> readings;
+  for (const PlotLegendEntry& entry : layout.legend) {
+    if (!entry.band) continue;
+    std::optional<BandReading> best;
+    double least = 0;
+    for (std::size_t b = 0; b < plot.bands.size(); ++b) {
+      const PlotBand& band = plot.bands[b];
+      if (band.name != entry.name || !is_shown(band, look)) continue;
+      for (std::size_t i = 1; i < band.points.size(); ++i) {
+        const auto &p = band.points[i - 1], &q = band.points[i];
+        if (!((p[0] <= x && x <= q[0]) || (q[0] <= x && x <= p[0])) || p[0] == q[0]) continue;
+        const BandReading here{b, value_between(layout, {p[0], p[1]}, {q[0], q[1]}, x),
+                               value_between(layout, {p[0], p[2]}, {q[0], q[2]}, x)};
+        const double distance = std::abs(layout.y.pixel((here.lower + here.upper) / 2) - py);
+        if (!std::isfinite(distance) || (best && distance >= least)) continue;
+        best = here;
+        least = distance;
+      }
+    }
+    if (best) readings.push_back(*best);
   }
   return readings;
 }

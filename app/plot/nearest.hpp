@@ -28,4 +28,13 @@ struct PlotReading {
 std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, const PlotLayout& layout,
                                      double x, double py);
 
+struct BandReading {
+  std::size_t band = 0;
+  double lower = 0, upper = 0;
+};
+
+// What the bands shown are at `x`; of several parts of one name the one nearest to pixel `py`.
+std::vector<BandReading> bands_at(const Plot& plot, const PlotLook& look, const PlotLayout& layout, double x,
+                                  double py);
+
 } // namespace flyball

@@ -18,4 +18,8 @@ bool is_shown(const PlotCurve& curve, const PlotLook& look) {
   return !curve.hidden && !look.hidden.contains(curve.name);
 }
 
+bool is_shown(const PlotBand& band, const PlotLook& look) {
+  return !look.hidden.contains(band.name);
+}
+
 } // namespace flyball

@@ -46,6 +46,13 @@ struct PlotCurve {
   bool hatching = false;             // marks an area: nothing is read off it, nor is it data for a CSV file
 };
 
+// An area between two values over x, such as a range that most keep to, or the bars of a histogram.
+struct PlotBand {
+  std::string name;                          // in the legend, as of curves
+  std::vector<std::array<double, 3>> points; // x, rising or falling, lower, upper; not finite: broken
+  int color = plot_color::blue;
+};
+
 // A line from edge to edge, such as a steady value.
 struct PlotReference {
   int axis = 1; // whose value it stands at; 1: a horizontal line
@@ -85,6 +92,7 @@ struct Plot {
   std::string title;
   PlotAxis x, y;
   std::vector<PlotCurve> curves;
+  std::vector<PlotBand> bands{}; // below the curves
   std::vector<PlotReference> references;
   std::vector<PlotMark> marks;
   std::optional<PlotHeat> heat{};
@@ -107,5 +115,6 @@ const PlotAxis& axis_of(const Plot& plot, int axis);
 std::string axis_text(const std::string& label, const std::string& unit);
 bool is_logarithmic(const Plot& plot, const PlotLook& look, int axis);
 bool is_shown(const PlotCurve& curve, const PlotLook& look);
+bool is_shown(const PlotBand& band, const PlotLook& look);
 
 } // namespace flyball

@@ -159,6 +159,23 @@ struct Drawing {
       shape(c.shape, p[0], p[1], c.shape_size, color, false);
   }
 
+  void band(const PlotBandLines& lines) {
+    const std::string color = hex(curve_color(plot.bands[lines.band].color, ground));
+    for (const auto& [lower, upper] : lines.lower_upper) {
+      std::string path, edges;
+      for (std::size_t i = 0; i < upper.size(); ++i)
+        path += fmt::format("{}{} {}", i == 0 ? 'M' : 'L', px(upper[i][0]), px(upper[i][1]));
+      edges = path;
+      for (std::size_t i = lower.size(); i-- > 0;)
+        path += fmt::format("L{} {}", px(lower[i][0]), px(lower[i][1]));
+      for (std::size_t i = 0; i < lower.size(); ++i)
+        edges += fmt::format("{}{} {}", i == 0 ? 'M' : 'L', px(lower[i][0]), px(lower[i][1]));
+      out += fmt::format("<path d=\"{}Z\" fill=\"{}\" fill-opacity=\"{}\"/>\n", path, color, px(band_fill));
+      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-opacity=\"{}\"/>\n", edges, color,
+                         px(band_edge));
+    }
+  }
+
   void references() {
     const PlotBox& a = layout.area;
     for (const PlotPlaced& r : layout.references) {
@@ -173,6 +190,15 @@ struct Drawing {
 
   void legend() {
     for (const PlotLegendEntry& entry : layout.legend) {
+      if (entry.band) {
+        const PlotBox& box = entry.sample;
+        out += fmt::format(
+            "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"10\" fill=\"{}\" fill-opacity=\"{}\"/>\n",
+            px(box.left), px((box.top + box.bottom) / 2 - 5), px(box.width()),
+            hex(curve_color(plot.bands[entry.curve].color, ground)), px(2 * band_fill));
+        text(entry.text, colors.text);
+        continue;
+      }
       const PlotCurve& c = plot.curves[entry.curve];
       const std::uint32_t color = curve_color(c.color, ground);
       const double y = (entry.sample.top + entry.sample.bottom) / 2;
@@ -263,6 +289,8 @@ std::string to_svg(const Plot& plot, const SvgOptions& options, const PlotLook& 
     d.frame_lines();
     d.heat();
     d.out += fmt::format("<g clip-path=\"url(#{}area)\">\n", d.prefix);
+    for (const PlotBandLines& lines : layout.bands)
+      d.band(lines);
     d.references();
     for (const PlotCurveLines& lines : layout.curves)
       d.curve(lines);

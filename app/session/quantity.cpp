@@ -344,6 +344,11 @@ Quantity parse_quantity(std::string_view text, std::string_view unit) {
 }
 
 Quantity parse_quantity(std::string_view text, std::string_view unit, std::string_view shown) {
+  if (unit == "%") { // which no unit is combined with: behind the number, or left out
+    const std::size_t end = text.find_last_not_of(' ');
+    if (end != std::string_view::npos && text[end] == '%') text = text.substr(0, end);
+    return parse_quantity(text, "", "");
+  }
   try {
     const auto value_of = [](std::string_view of) {
       return of.empty() ? Value{1, {}} : Parser(plain_signs(of), {1, {}}).whole();

@@ -17,7 +17,7 @@ struct Quantity {
   explicit operator bool() const { return mistake.empty(); }
 };
 
-// `unit` is the field's ("rad/s", "kg m^2", "" for a plain number). The value is finite.
+// `unit` is the field's ("rad/s", "kg m^2", "%", "" for a plain number). The value is finite.
 Quantity parse_quantity(std::string_view text, std::string_view unit);
 // The same of a field that is shown in another unit than its value has: a plain number is in `shown`.
 Quantity parse_quantity(std::string_view text, std::string_view unit, std::string_view shown);

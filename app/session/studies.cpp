@@ -13,6 +13,7 @@ void open_study(Session& session, StudyKind study) {
   if (study != StudyKind::modes) close_modes(session);
   if (study != StudyKind::map) close_map(session);
   if (study != StudyKind::response) close_response(session);
+  if (study != StudyKind::spread) close_spread(session);
   session.study.open = study;
   if (study == StudyKind::motion) show_motion(session, true);
 }
@@ -22,13 +23,16 @@ void update_studies(Session& session) {
   update_modes(session);
   update_map(session);
   update_response(session);
+  update_band(session);
+  update_spread(session);
   update_comparison(session);
 }
 
 bool studying(const Session& session) {
   const StudyState& study = session.study;
   return computing_motion(session) || computing_response(session) || comparing(session) ||
-         study.states.running() || finding_modes(session) || computing_map(session);
+         study.states.running() || finding_modes(session) || computing_map(session) ||
+         study.spread.samples.running() || study.band.computed.running();
 }
 
 } // namespace flyball

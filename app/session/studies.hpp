@@ -5,13 +5,15 @@
 #include "app/session/map.hpp"
 #include "app/session/modes.hpp"
 #include "app/session/response.hpp"
+#include "app/session/spread.hpp"
+#include "app/session/spread_band.hpp"
 #include "app/session/states.hpp"
 
 namespace flyball {
 
 struct Session;
 
-enum class StudyKind { none, motion, compare, response, states, modes, map };
+enum class StudyKind { none, motion, compare, response, states, modes, map, spread };
 
 struct StudyState {
   StudyKind open = StudyKind::none;
@@ -20,6 +22,8 @@ struct StudyState {
   StatesStudy states;
   ModesState modes;
   MapState map;
+  SpreadState spread;
+  BandState band; // around the response curve
 };
 
 // Shows a study, in the explore mode; the same again, or none, closes it.

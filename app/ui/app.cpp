@@ -80,6 +80,7 @@ void update(App& app, double seconds, ViewSize view) {
   // What is closed is looked at afresh when it is opened again.
   if (app.study.open != StudyKind::response) app.plots.response = {};
   if (app.study.open != StudyKind::map) app.plots.map = {};
+  if (app.study.open != StudyKind::spread) app.plots.spread = {};
   if (app.study.open != StudyKind::modes) {
     const bool hertz = app.plots.campbell.hertz;
     app.plots.campbell = {};

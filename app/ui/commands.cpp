@@ -567,6 +567,14 @@ const std::array all_commands{
             .run = [](App& app) { open_study(app, StudyKind::map); },
             .enabled = holds_parts,
             .checked = [](const App& app) { return app.study.open == StudyKind::map; }},
+    Command{
+        .id = "study.spread",
+        .title = "Spread by tolerances",
+        .help =
+            "How the steady state scatters with tolerances of numbers: a histogram, and whose share it is.",
+        .run = [](App& app) { open_study(app, StudyKind::spread); },
+        .enabled = holds_parts,
+        .checked = [](const App& app) { return app.study.open == StudyKind::spread; }},
     Command{.id = "study.compare",
             .title = "Compare",
             .help = "Error against run time: the direct solution and the damped motion.",

@@ -1,12 +1,7 @@
 #include "engine/study/spread.hpp"
 
 #include "engine/linear/interruption.hpp"
-#include "engine/mechanism/address.hpp"
-#include "engine/mechanism/error.hpp"
-#include "engine/mechanism/measure_plan.hpp"
-#include "engine/mechanism/text.hpp"
-#include "engine/mechanism/validate.hpp"
-#include "engine/study/steady_map.hpp"
+#include "engine/study/spread_sampler.hpp"
 
 #include <Random123/philox.h>
 
@@ -21,162 +16,12 @@
 namespace flyball {
 namespace {
 
-using State = SteadyMap::State;
-
-constexpr std::size_t most_coordinates = 64; // that are told; of more the measures alone
-constexpr double other_states = 0.05;        // s, as of a sweep's points
-
-std::vector<double> nominal_numbers(const Mechanism& mechanism, std::span<const Tolerance> tolerances) {
-  std::vector<double> numbers;
-  for (const Tolerance& tolerance : tolerances)
-    numbers.push_back(get_parameter(mechanism, tolerance.address));
-  return numbers;
-}
-
-std::vector<FreeNumber> free_numbers(const Mechanism& mechanism, std::span<const Tolerance> tolerances) {
-  std::vector<FreeNumber> free;
-  for (const Tolerance& tolerance : tolerances) {
-    if (!(tolerance.width > 0) || !std::isfinite(tolerance.width))
-      throw SceneError(tolerance.address, "expected a tolerance above zero");
-    const double value = get_parameter(mechanism, tolerance.address);
-    free.push_back({tolerance.address, value - tolerance.width, value + tolerance.width});
-  }
-  return free;
-}
-
-struct OutputName {
-  std::string name, unit;
-};
-
-// Free coordinates and speeds that are found, then measures.
-std::vector<OutputName> outputs_of(const Mechanism& mechanism) {
-  std::vector<OutputName> out;
-  for (const CoordinateSolution& c : Analysis(mechanism).summary().coordinates)
-    if (const auto found = found_number(c); found && !c.dependent)
-      out.push_back({found->name, std::string(found->unit)});
-  if (out.empty() && mechanism.measures.empty())
-    throw SceneError("joints", "expected a coordinate that is free, or a measure: nothing scatters here");
-  if (out.size() > most_coordinates) out.clear();
-  for (const NamedMeasure& measure : mechanism.measures)
-    out.push_back({measure.name, measure.unit});
-  if (out.empty())
-    throw SceneError("measures", "expected one or more: of so many coordinates none is told by itself");
-  return out;
-}
-
-std::vector<std::string> names_of(const std::vector<OutputName>& outputs) {
-  std::vector<std::string> names;
-  for (const OutputName& output : outputs)
-    names.push_back(output.name);
-  return names;
-}
-
-// One sample after the other, each from the nominal state.
-class Sampler {
- public:
-  Sampler(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
-          const std::vector<OutputName>& outputs, const SpreadOptions& options)
-      : mechanism_(mechanism), tolerances_(tolerances), outputs_(outputs), options_(options),
-        nominal_numbers_(nominal_numbers(mechanism, tolerances)),
-        map_(mechanism, free_numbers(mechanism, tolerances), names_of(outputs), options.cancel),
-        nominal_(map_.begin(options.start, first_)) {
-    if (!nominal_ || !map_.find_rates(*nominal_)) return;
-    regular_ = true;
-    rates_ = map_.rates();
-  }
-
-  const Solution& first() const { return first_; }
-  const std::optional<State>& nominal() const { return nominal_; }
-  bool regular() const { return regular_; }
-  // Of the outputs with the numbers, (outputs, numbers).
-  const Eigen::MatrixXd& rates() const { return rates_; }
-
-  // Leaves the values of the outputs, not a number where there is none.
-  SampleFate make(std::size_t i, std::span<double> values) {
-    std::ranges::fill(values, std::numeric_limits<double>::quiet_NaN());
-    const std::vector<double> numbers = sampled_numbers(nominal_numbers_, tolerances_, options_.seed, i);
-    const Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(numbers.data(), map_.count());
-    if (State state = *nominal_; map_.walk_to(state, p)) {
-      const Solution solution = map_.solution(state, false);
-      if (solution.status == Status::converged) {
-        std::ranges::copy(state.values, values.begin());
-        return solution.stable == false ? SampleFate::unstable : SampleFate::followed;
-      }
-    }
-    return solve(numbers, values);
-  }
-
- private:
-  // As a scene by itself.
-  SampleFate solve(const std::vector<double>& numbers, std::span<double> values) {
-    Mechanism there = mechanism_;
-    std::vector<ParameterValue> set;
-    for (std::size_t k = 0; k < numbers.size(); ++k)
-      set.push_back({tolerances_[k].address, numbers[k]});
-    try {
-      set_parameters(there, set);
-      validate(there);
-    } catch (const SceneError&) {
-      return SampleFate::no_mechanism;
-    }
-    SolveOptions solve;
-    solve.details = false;
-    solve.search = other_states;
-    solve.cancel = options_.cancel;
-    const Solution solution = Analysis(there).solve(solve);
-    if (solution.status == Status::infeasible) return SampleFate::no_mechanism;
-    if (solution.status != Status::converged) return SampleFate::none;
-    for (std::size_t k = 0; k < outputs_.size(); ++k) {
-      for (const CoordinateSolution& c : solution.coordinates)
-        if (const auto found = found_number(c); found && found->name == outputs_[k].name)
-          values[k] = found->value;
-      for (const MeasureSolution& measure : solution.measures)
-        if (measure.name == outputs_[k].name && measure.value) values[k] = *measure.value;
-    }
-    return SampleFate::elsewhere;
-  }
-
-  const Mechanism& mechanism_;
-  std::span<const Tolerance> tolerances_;
-  const std::vector<OutputName>& outputs_;
-  const SpreadOptions& options_;
-  std::vector<double> nominal_numbers_;
-  SteadyMap map_;
-  Solution first_;
-  std::optional<State> nominal_;
-  bool regular_ = false;
-  Eigen::MatrixXd rates_;
-};
-
 double quantile(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
   const double part = at - static_cast<double>(below);
   return below + 1 < sorted.size() ? sorted[below] + part * (sorted[below + 1] - sorted[below])
                                    : sorted[below];
-}
-
-SpreadStatistics statistics(std::vector<double> values) {
-  SpreadStatistics out;
-  out.count = values.size();
-  if (values.empty()) return out;
-  std::ranges::sort(values);
-  const auto n = static_cast<double>(values.size());
-  // By differences from the middle one, so that a small scatter about a large number keeps its digits.
-  const double middle = values[values.size() / 2];
-  double sum = 0, squares = 0;
-  for (const double value : values) {
-    sum += value - middle;
-    squares += (value - middle) * (value - middle);
-  }
-  out.mean = middle + sum / n;
-  if (values.size() > 1) out.deviation = std::sqrt(std::max(0., (squares - sum * sum / n) / (n - 1)));
-  out.least = values.front();
-  out.most = values.back();
-  out.low = quantile(values, 0.05);
-  out.median = quantile(values, 0.5);
-  out.high = quantile(values, 0.95);
-  return out;
 }
 
 // Squares of the standardised coefficients of a linear regression over the samples that followed.
@@ -267,12 +112,45 @@ std::vector<double> sampled_numbers(std::span<const double> nominal, std::span<c
   return numbers;
 }
 
+SpreadStatistics spread_statistics(std::vector<double> values) {
+  SpreadStatistics out;
+  out.count = values.size();
+  if (values.empty()) return out;
+  std::ranges::sort(values);
+  const auto n = static_cast<double>(values.size());
+  // By differences from the middle one, so that a small scatter about a large number keeps its digits.
+  const double middle = values[values.size() / 2];
+  double sum = 0, squares = 0, fourth = 0;
+  for (const double value : values) {
+    sum += value - middle;
+    squares += (value - middle) * (value - middle);
+  }
+  out.mean = middle + sum / n;
+  if (values.size() > 1) out.deviation = std::sqrt(std::max(0., (squares - sum * sum / n) / (n - 1)));
+  for (const double value : values) {
+    const double square = (value - out.mean) * (value - out.mean);
+    fourth += square * square / n;
+  }
+  const double variance = out.deviation * out.deviation;
+  out.mean_error = out.deviation / std::sqrt(n);
+  if (variance > 0)
+    out.deviation_error = std::sqrt(std::max(0., fourth - variance * variance) / n) / (2 * out.deviation);
+  out.least = values.front();
+  out.most = values.back();
+  out.lowest = quantile(values, 0.025);
+  out.low = quantile(values, 0.05);
+  out.median = quantile(values, 0.5);
+  out.high = quantile(values, 0.95);
+  out.highest = quantile(values, 0.975);
+  return out;
+}
+
 SpreadAnswer spread_by_rates(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
                              const SpreadOptions& options) {
   SpreadAnswer out;
-  const std::vector<OutputName> outputs = outputs_of(mechanism);
+  const std::vector<SpreadName> outputs = spread_outputs(mechanism);
   out.nominal = nominal_numbers(mechanism, tolerances);
-  const Sampler sampler(mechanism, tolerances, outputs, options);
+  const SpreadSampler sampler(mechanism, tolerances, outputs, options);
   out.status = sampler.first().status;
   if (!sampler.nominal()) {
     out.message = sampler.first().message;
@@ -287,7 +165,7 @@ SpreadAnswer spread_by_rates(const Mechanism& mechanism, std::span<const Toleran
   }
   const Eigen::MatrixXd& rates = sampler.rates();
   for (Eigen::Index k = 0; k < rates.rows(); ++k) {
-    const OutputName& named = outputs[static_cast<std::size_t>(k)];
+    const SpreadName& named = outputs[static_cast<std::size_t>(k)];
     SpreadOutput output;
     output.name = named.name;
     output.unit = named.unit;
@@ -311,18 +189,19 @@ void make_samples(const Mechanism& mechanism, std::span<const Tolerance> toleran
                   const SpreadOptions& options, std::size_t first, std::size_t count, WorkSharing& sharing,
                   const TakeSample& take) {
   // A block has of each sample its fate and the values, as bytes of doubles.
-  const std::vector<OutputName> outputs = outputs_of(mechanism);
+  const std::vector<SpreadName> outputs = spread_outputs(mechanism);
   const std::size_t width = outputs.size() + 1;
   SharedWork work;
   work.count = count;
   work.cancel = options.cancel;
   if (options.progress) work.progress = options.progress;
   work.maker = [&] {
-    auto sampler = std::make_shared<Sampler>(mechanism, tolerances, outputs, options);
+    auto sampler = std::make_shared<SpreadSampler>(mechanism, tolerances, outputs, options);
     return [sampler, width, first, &options](std::size_t from, std::size_t to) {
       const Interruptible scope(options.cancel);
       std::vector<double> row(width);
       std::string block;
+      if (!sampler->regular()) return block; // cancelled before it knew the nominal state
       try {
         for (std::size_t i = from; i < to; ++i) {
           row[0] = static_cast<double>(sampler->make(first + i, std::span(row).subspan(1)));
@@ -355,8 +234,8 @@ void add_statistics(std::span<const Tolerance> tolerances, std::uint64_t seed, S
       if (!std::isfinite(answer.values[k][i])) continue;
       (answer.fate[i] == SampleFate::elsewhere ? elsewhere : followed).push_back(answer.values[k][i]);
     }
-    output.followed = statistics(std::move(followed));
-    output.elsewhere = statistics(std::move(elsewhere));
+    output.followed = spread_statistics(std::move(followed));
+    output.elsewhere = spread_statistics(std::move(elsewhere));
     output.sampled_shares =
         regression_shares(answer.nominal, tolerances, seed, answer.fate, answer.values[k], output.nominal);
   }

@@ -24,6 +24,7 @@ struct Tolerance {
   double width =
       0; // in the number's unit, > 0: standard deviation of a normal one, else half the whole width
   double deviation() const; // standard
+  bool operator==(const Tolerance&) const = default;
 };
 
 // What became of a sample.
@@ -49,7 +50,11 @@ struct SpreadStatistics {
   std::size_t count = 0;
   double mean = 0, deviation = 0, least = 0, most = 0;
   double low = 0, median = 0, high = 0; // quantiles 0.05, 0.5, 0.95, interpolated
+  double lowest = 0, highest = 0;       // quantiles 0.025 and 0.975: between them are 95 %
+  // Standard errors of mean and deviation: how far as many other samples would put them.
+  double mean_error = 0, deviation_error = 0;
 };
+SpreadStatistics spread_statistics(std::vector<double> values);
 
 struct SpreadOutput {
   std::string name, unit; // a free coordinate's label (rad, m), or a measure

@@ -37,6 +37,9 @@ TEST_CASE("numbers and expressions without a unit are in the field's unit") {
       Typed{"2 - 3 - 4", "m", -5},
       Typed{"16/4/2", "m", 2},
       Typed{"2^3", "", 8},
+      Typed{"2 %", "%", 2},
+      Typed{"1/4%", "%", 0.25},
+      Typed{"2.5", "%", 2.5},
       Typed{"-2^2", "", -4},
       Typed{"2^-1", "", 0.5},
       Typed{"(1+1)^(1+2)", "", 8},
@@ -159,6 +162,7 @@ TEST_CASE("units of the same kind are converted") {
 
 TEST_CASE("what cannot be understood is refused with the reason") {
   const std::array refused{
+      Refused{"2 mm", "%", "Expected a plain number"},
       Refused{"", "m", "Nothing was typed"},
       Refused{"   ", "m", "Nothing was typed"},
       Refused{"12 kg", "m", "Expected a length, e.g. 0.1 m or 100 mm"},

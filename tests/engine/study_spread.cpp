@@ -2,7 +2,7 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/mechanism/error.hpp"
-#include "engine/study/spread.hpp"
+#include "engine/study/spread_band.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -183,4 +183,97 @@ TEST_CASE("tolerances that make no sense are refused") {
   CHECK_THROWS_AS(spread_by(m, {{"parameters.none", Distribution::normal, 1}}, 5), SceneError);
   CHECK_THROWS_AS(spread_by(m, {{"parameters.c", Distribution::normal, 1}}, 5), SceneError);
   CHECK_THROWS_AS(spread_by(m, {}, 5), SceneError);
+}
+
+TEST_CASE("standard errors of mean and deviation are those of many repetitions") {
+  // Of uniform numbers, whose fourth moment is not a normal one's.
+  const std::vector<double> nominal{0};
+  const std::vector<Tolerance> tolerances{{"a", Distribution::uniform, 1}};
+  constexpr int repetitions = 400;
+  constexpr std::size_t n = 500;
+  double means = 0, deviations = 0, squares = 0, told_mean = 0, told_deviation = 0, mean_squares = 0;
+  for (int r = 0; r < repetitions; ++r) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < n; ++i)
+      values.push_back(sampled_numbers(nominal, tolerances, static_cast<std::uint64_t>(r), i)[0]);
+    const SpreadStatistics s = spread_statistics(values);
+    CHECK(s.lowest < s.low);
+    CHECK(s.high < s.highest);
+    means += s.mean / repetitions;
+    mean_squares += s.mean * s.mean / repetitions;
+    deviations += s.deviation / repetitions;
+    squares += s.deviation * s.deviation / repetitions;
+    told_mean += s.mean_error / repetitions;
+    told_deviation += s.deviation_error / repetitions;
+  }
+  CHECK(std::sqrt(mean_squares - means * means) == Approx(told_mean).epsilon(0.15));
+  CHECK(std::sqrt(squares - deviations * deviations) == Approx(told_deviation).epsilon(0.15));
+  // Of a normal distribution it would be 1.6 times as much.
+  CHECK(told_deviation == Approx(std::sqrt(1 / 3. * 0.8 / (4. * n))).epsilon(0.03));
+}
+
+TEST_CASE("a band has at each place the spread there, to the bit") {
+  const Mechanism m = shipped("governor_parametric");
+  const std::vector<Tolerance> tolerances{{"parameters.L", Distribution::normal, 2e-4},
+                                          {"parameters.w", Distribution::uniform, 0.05}};
+  SpreadOptions options;
+  options.samples = 300;
+  std::vector<BandPlace> places;
+  for (const double w : {9., 11., 14.}) {
+    Mechanism there = m;
+    set_parameter(there, "parameters.w", w);
+    places.push_back({w, start_values(solve(there).coordinates)});
+  }
+  ThreadSharing one(1), two(2);
+  const SpreadBand band = spread_band(m, "parameters.w", places, tolerances, options, one),
+                   again = spread_band(m, "parameters.w", places, tolerances, options, two);
+  REQUIRE(band.points.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Mechanism there = m;
+    set_parameter(there, "parameters.w", places[i].number);
+    options.start = places[i].start;
+    const SpreadAnswer own = spread(there, tolerances, options, two);
+    CHECK(band.points[i].counts == own.counts);
+    CHECK(band.points[i].others() == 0);
+    REQUIRE(band.points[i].outputs.size() == own.outputs.size());
+    for (std::size_t k = 0; k < own.outputs.size(); ++k) {
+      CHECK(band.outputs[k] == own.outputs[k].name);
+      CHECK(band.points[i].outputs[k].low == own.outputs[k].followed.low);
+      CHECK(band.points[i].outputs[k].high == own.outputs[k].followed.high);
+      CHECK(band.points[i].outputs[k].mean == again.points[i].outputs[k].mean);
+    }
+  }
+}
+
+TEST_CASE("near a fold a band tells how many samples leave the branch") {
+  // A pendulum hinged off the axis, leaning in: w^2 (o + L sin a) = g tan a folds at 4.7554 rad/s (README).
+  const double fold = 4.75536807929276;
+  const Mechanism m = conical(0.7, 0.1, 1);
+  const long double folds_at = -std::asin(std::cbrt(0.1L / 0.7L));
+  const auto lean = [&](double w) {
+    return static_cast<double>(root(
+        [&](long double a) {
+          return standard_gravity * std::tan(a) / (0.1L + 0.7L * std::sin(a)) -
+                 w * static_cast<long double>(w);
+        },
+        -1.4L, folds_at));
+  };
+  std::vector<BandPlace> places;
+  for (const double w : {fold + 0.05, fold + 1})
+    places.push_back({w, {{"swing", lean(w)}}});
+  const std::vector<Tolerance> tolerances{{speed, Distribution::uniform, 0.1}};
+  SpreadOptions options;
+  options.samples = 400;
+  ThreadSharing sharing(1);
+  const SpreadBand band = spread_band(m, speed, places, tolerances, options, sharing);
+  REQUIRE(band.points.size() == 2);
+  CHECK(band.points[0].samples() == 400);
+  CHECK(static_cast<double>(band.points[0].others()) == Approx(100).margin(45)); // a quarter is slower
+  CHECK(band.points[0].outputs[0].count == 400 - band.points[0].others());
+  CHECK(band.points[1].others() == 0);
+  // Where branches cross none is followed.
+  const std::vector<BandPlace> crossing{{std::sqrt(standard_gravity / 0.7), {{"swing", 0}}}};
+  const SpreadBand none = spread_band(conical(0.7, 0, 1), speed, crossing, tolerances, options, sharing);
+  CHECK(none.points[0].samples() == 0);
+  CHECK(none.points[0].outputs.empty());
 }

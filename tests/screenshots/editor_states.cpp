@@ -197,6 +197,25 @@ TEST_CASE("the landscape is drawn below the view") {
   }
 }
 
+TEST_CASE("how the governor scatters is drawn below the view, and around its response") {
+  Hand hand("governor_parametric.json");
+  set_mode(hand.app, Mode::explore);
+  hand.app.study.spread.begun = true;
+  hand.app.study.spread.choice.tolerances = {{"parameters.w", Distribution::normal, 2},
+                                             {"parameters.L", Distribution::uniform, 0.006, false},
+                                             {"parameters.m", Distribution::triangular, 20},
+                                             {"parameters.k", Distribution::normal, 5}};
+  SECTION("histogram") {
+    open_study(hand.app, StudyKind::spread);
+    hand.check("study-spread");
+  }
+  SECTION("band") {
+    open_study(hand.app, StudyKind::response);
+    hand.app.study.band.wanted = true;
+    hand.check("study-band");
+  }
+}
+
 TEST_CASE("the tutorial's pictures are what its steps lead to") {
   Robot robot(building_size, steady_options().numbers);
   robot.app.view.samples = 4;

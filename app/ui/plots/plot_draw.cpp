@@ -103,6 +103,25 @@ void draw_curve(const PlotPen& pen, const PlotCurve& curve, const PlotCurveLines
     draw_shape(pen, curve.shape, p[0], p[1], curve.shape_size, color);
 }
 
+// Flat, so that no seams show where its parts meet.
+void draw_band(const PlotPen& pen, const PlotBand& band, const PlotBandLines& lines) {
+  const std::uint32_t color = curve_color(band.color, pen.ground);
+  const ImU32 fill = packed_color(color, static_cast<float>(band_fill)),
+              edge = packed_color(color, static_cast<float>(band_edge));
+  for (const auto& [lower, upper] : lines.lower_upper) {
+    const ImDrawListFlags before = pen.list.Flags;
+    pen.list.Flags &= ~ImDrawListFlags_AntiAliasedFill;
+    for (std::size_t i = 1; i < upper.size(); ++i)
+      if (upper[i][0] != upper[i - 1][0])
+        pen.list.AddQuadFilled(pen.at(upper[i - 1][0], upper[i - 1][1]), pen.at(upper[i][0], upper[i][1]),
+                               pen.at(lower[i][0], lower[i][1]), pen.at(lower[i - 1][0], lower[i - 1][1]),
+                               fill);
+    pen.list.Flags = before;
+    draw_line(pen, upper, PlotLine::solid, 1, edge);
+    draw_line(pen, lower, PlotLine::solid, 1, edge);
+  }
+}
+
 void draw_references(const PlotPen& pen, const Plot& plot, const PlotLayout& layout) {
   for (const PlotPlaced& placed : layout.references) {
     const PlotReference& r = plot.references[placed.index];
@@ -135,8 +154,17 @@ void draw_label(const PlotPen& pen, const PlotText& text, const PlotColors& colo
 void draw_legend(const PlotPen& pen, const Plot& plot, const PlotLook& look, const PlotLayout& layout,
                  const PlotColors& colors) {
   for (const PlotLegendEntry& entry : layout.legend) {
-    const PlotCurve& c = plot.curves[entry.curve];
     const bool hidden = look.hidden.contains(entry.name);
+    if (entry.band) {
+      const std::uint32_t own = curve_color(plot.bands[entry.curve].color, pen.ground);
+      const double middle = std::floor((entry.sample.top + entry.sample.bottom) / 2), half = 5 * layout.scale;
+      pen.list.AddRectFilled(pen.at(entry.sample.left, middle - half),
+                             pen.at(entry.sample.right, middle + half),
+                             packed_color(hidden ? colors.faint : own, 2 * static_cast<float>(band_fill)));
+      draw_text(pen, entry.text, packed_color(hidden ? colors.faint : colors.text));
+      continue;
+    }
+    const PlotCurve& c = plot.curves[entry.curve];
     const ImU32 color = packed_color(hidden ? colors.faint : curve_color(c.color, pen.ground));
     const double y = std::floor((entry.sample.top + entry.sample.bottom) / 2) + 0.5;
     if (c.line != PlotLine::none)
@@ -276,6 +304,8 @@ void draw_plot(const PlotPen& pen, const Plot& plot, const PlotLook& look, const
   for (const PlotCell& cell : layout.cells)
     pen.list.AddRectFilled(pen.at(cell.box.left, cell.box.top), pen.at(cell.box.right, cell.box.bottom),
                            packed_color(cell.color));
+  for (const PlotBandLines& lines : layout.bands)
+    draw_band(pen, plot.bands[lines.band], lines);
   draw_references(pen, plot, layout);
   for (const PlotCurveLines& lines : layout.curves)
     draw_curve(pen, plot.curves[lines.curve], lines);

@@ -76,8 +76,16 @@ std::vector<ReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& at) 
         {frame.plot.curves[r.curve].name, value_at(layout.y, r.y), frame.plot.y.unit, color_of(r.curve)});
     if (pixel >= layout.area.top && pixel <= layout.area.bottom) dot(frame, at[0], pixel, color_of(r.curve));
   }
+  const std::vector<BandReading> bands = bands_at(frame.plot, frame.view.look, layout, x, at[1]);
+  for (const BandReading& r : bands) {
+    const PlotBand& band = frame.plot.bands[r.band];
+    const std::string upper = value_at(layout.y, r.upper);
+    // Bars stand on nothing.
+    lines.push_back({band.name, r.lower == 0 ? upper : value_at(layout.y, r.lower) + " … " + upper,
+                     frame.plot.y.unit, packed_color(curve_color(band.color, frame.pen.ground))});
+  }
   const double y = layout.y.value(at[1]);
-  if (readings.empty()) lines.push_back(axis_line(frame, 1, y));
+  if (readings.empty() && bands.empty()) lines.push_back(axis_line(frame, 1, y));
   if (frame.plot.heat && layout.bar) {
     const double value = heat_value(*frame.plot.heat, x, y, layout.x.logarithmic, layout.y.logarithmic);
     if (std::isfinite(value))

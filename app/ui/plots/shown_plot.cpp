@@ -24,6 +24,11 @@ void show_axis(Plot& plot, int axis, const std::string& unit, const DisplayUnits
   for (PlotCurve& curve : plot.curves)
     for (auto& point : curve.points)
       point[k] *= shown.factor;
+  for (PlotBand& band : plot.bands)
+    for (auto& [x, lower, upper] : band.points) {
+      (axis == 0 ? x : lower) *= shown.factor;
+      if (axis == 1) upper *= shown.factor;
+    }
   for (PlotReference& reference : plot.references)
     if (reference.axis == axis) reference.at *= shown.factor;
   for (PlotMark& mark : plot.marks)

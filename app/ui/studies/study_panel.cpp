@@ -23,6 +23,8 @@ constexpr std::array tabs{
     Tab{StudyKind::states, "study/states", "States", "Every equilibrium that a bounded search finds"},
     Tab{StudyKind::modes, "study/modes", "Modes", "How the steady state swings, and at which speeds"},
     Tab{StudyKind::map, "study/map", "Map", "A coordinate over the plane of two parameters, with its folds"},
+    Tab{StudyKind::spread, "study/spread", "Spread",
+        "How the steady state scatters with tolerances of numbers"},
     Tab{StudyKind::compare, "study/compare", "Compare", "Error against run time: direct solution and motion"},
 };
 
@@ -78,6 +80,7 @@ void study_panel(App& app, const PanelRect& rect) {
   case StudyKind::states: states_panel(app); break;
   case StudyKind::modes: modes_panel(app); break;
   case StudyKind::map: map_panel(app); break;
+  case StudyKind::spread: spread_panel(app); break;
   }
   ImGui::End();
   if (closed) open_study(app, StudyKind::none);

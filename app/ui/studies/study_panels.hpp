@@ -14,6 +14,7 @@ void response_panel(App& app);
 void states_panel(App& app);
 void modes_panel(App& app);
 void map_panel(App& app);
+void spread_panel(App& app);
 
 // The name and the unit of what a plot over time can show.
 struct MotionQuantity {

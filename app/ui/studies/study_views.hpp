@@ -32,7 +32,7 @@ struct ResponseView {
   Plot plot;                         // of the result, with the answer's marker
   std::vector<ResponsePiece> pieces; // by curve of the plot
   struct Of {
-    std::shared_ptr<const void> curve, design; // what was found
+    std::shared_ptr<const void> curve, design, band; // what was found
     std::string quantity;
     DisplayUnits units;
     bool pulled = false; // the marker, in this moment
@@ -52,6 +52,17 @@ struct MapView {
     bool operator==(const Of&) const = default;
   } of;
   std::uint64_t marked = 0; // ticket of the answer that the marker shows
+};
+
+struct SpreadView {
+  PlotView view;
+  Plot plot;
+  struct Of {
+    std::shared_ptr<const void> samples; // what was found
+    std::string output;
+    DisplayUnits units;
+    bool operator==(const Of&) const = default;
+  } of;
 };
 
 struct CampbellView {
@@ -86,6 +97,7 @@ struct StudyViews {
   CompareView compare;
   ResponseView response;
   MapView map;
+  SpreadView spread;
   CampbellView campbell;
   std::array<MotionPlot, 2> motion;
 };

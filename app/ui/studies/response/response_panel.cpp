@@ -114,25 +114,50 @@ void found(App& app) {
   note_widget(app.widgets, "response/found");
 }
 
+void band_choice(App& app) {
+  BandState& band = app.study.band;
+  const std::string refusal = band_refusal(app);
+  if (check_row(app, "response/band", "Band of the tolerances", band.wanted,
+                "How far the steady states along the curve scatter with the tolerances that Spread has: the "
+                "middle 90 % of samples.",
+                refusal.empty() || band.wanted ? nullptr : refusal.c_str()))
+    band.wanted = !band.wanted;
+  if (!band.wanted) return;
+  if (!band.computed.problem.empty())
+    paragraph(band.computed.problem, colors_of(app).bad);
+  else if (const std::string words = refusal.empty() ? band_words(app) : refusal; !words.empty())
+    paragraph(words, colors_of(app).dim);
+  note_widget(app.widgets, "response/band/words");
+}
+
 // A bar for what takes long.
 void progress(App& app) {
   ResponseState& state = app.study.response;
   ResponseCurve& curve = state.curve;
   auto& design = state.design.answer;
+  auto& band = app.study.band.computed;
   double& waiting_since = app.plots.response.waiting_since;
-  if (!curve.running() && !design.running()) {
+  if (!curve.running() && !design.running() && !band.running()) {
     waiting_since = -1;
     return;
   }
   if (waiting_since < 0) waiting_since = ImGui::GetTime();
   if (ImGui::GetTime() - waiting_since < curve_patience) return;
-  task_bar(app, "response/progress", curve.running() ? curve.progress() : design.progress(),
-           curve.running() ? curve.seconds() : design.seconds(),
-           ImGui::GetContentRegionAvail().x - 70 * app.scale);
+  const float room = ImGui::GetContentRegionAvail().x - 70 * app.scale;
+  const auto bar = [&](const auto& study) {
+    task_bar(app, "response/progress", study.progress(), study.seconds(), room);
+  };
+  if (curve.running())
+    bar(curve);
+  else if (design.running())
+    bar(design);
+  else
+    bar(band);
   ImGui::SameLine();
   if (text_button(app, "response/cancel", "Cancel")) {
     curve.stop();
     design.stop();
+    band.stop();
   }
 }
 
@@ -303,6 +328,7 @@ void response_choices(App& app) {
           "Also looks for branches that nothing connects with the drawn pose's: a bounded search at both "
           "ends and at the present value, which takes longer."))
     app.study.response.choice.all = !app.study.response.choice.all;
+  band_choice(app);
   progress(app);
   found(app);
   branch_note(app);

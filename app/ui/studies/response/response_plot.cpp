@@ -130,6 +130,43 @@ std::string mark_label(const SpecialPoint& special, const ShownUnit& unit) {
          (unit.text.empty() ? "" : " " + unit.text);
 }
 
+// What was found of the band, also while it is found anew for a curve that moves.
+std::shared_ptr<const void> shown_band(const App& app) {
+  const auto& band = app.study.band.computed;
+  const bool fits = band.found && (band.found->of.curve == app.study.response.curve.found || band.running());
+  return fits && app.study.band.wanted ? band.found : nullptr;
+}
+
+// In SI units. Where samples leave the branch the band is of the others alone, and looks so.
+void add_band(const App& app, Plot& plot) {
+  const std::optional<std::size_t> output = band_output(app);
+  if (!output || !shown_band(app)) return;
+  const FoundBand& found = app.study.band.computed.found->result;
+  for (const BandStretch& stretch : found.stretches) {
+    bool joined = false;
+    for (std::size_t i = stretch.first; i + 1 < stretch.first + stretch.count; ++i) {
+      if (i + 1 >= found.band.points.size()) break;
+      const BandPoint &a = found.band.points[i], &b = found.band.points[i + 1];
+      if (a.outputs.empty() || b.outputs.empty() || a.outputs[*output].count == 0 ||
+          b.outputs[*output].count == 0) {
+        joined = false;
+        continue;
+      }
+      const bool some = a.others() > 0 || b.others() > 0;
+      const std::string name = some ? "5 % to 95 % of those that follow" : "5 % to 95 % of samples";
+      if (!joined || plot.bands.back().name != name) {
+        plot.bands.push_back({name, {}, some ? plot_color::orange : plot_color::sky_blue});
+        plot.bands.back().points.push_back({a.number, a.outputs[*output].low, a.outputs[*output].high});
+      }
+      plot.bands.back().points.push_back({b.number, b.outputs[*output].low, b.outputs[*output].high});
+      joined = true;
+    }
+  }
+  // The legend begins with what is the rule.
+  std::ranges::stable_partition(plot.bands,
+                                [](const PlotBand& band) { return band.color == plot_color::sky_blue; });
+}
+
 } // namespace
 
 Plot response_plot(const ResponseCurve::Found& found, const ResponseQuantity& quantity,
@@ -170,7 +207,7 @@ void draw_response(App& app) {
   // Until a curve with reactions is there the one before stays.
   const bool told = curve && (curve->of.reactions || !needs_reactions(state.choice.quantity));
   const bool pulled = drawn.view.drag == PlotView::Drag::pull;
-  const ResponseView::Of of{curve, design, state.choice.quantity, app.units, pulled};
+  const ResponseView::Of of{curve, design, shown_band(app), state.choice.quantity, app.units, pulled};
   if (drawn.of != of && told) {
     const std::optional<PlotRange> before = drawn.plot.y.range;
     const bool same = drawn.plot.y.label == quantity.title;
@@ -185,6 +222,7 @@ void draw_response(App& app) {
                               .shape = PlotShape::diamond,
                               .color = plot_color::green});
     }
+    add_band(app, plot);
     show_axis(plot, 0, plot.x.unit, app.units);
     show_axis(plot, 1, quantity.unit, app.units);
     // While one slider is dragged the axis only grows: a curve that moves is seen against it.

@@ -1,0 +1,330 @@
+// How the steady state scatters: which numbers have tolerances, what comes of them, and the histogram.
+#include "app/plot/spread_plot.hpp"
+#include "app/render/icons.hpp"
+#include "app/session/units.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/plots/shown_plot.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/task_bar.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/address.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace flyball {
+
+namespace {
+
+constexpr float spread_choices_width = 392, spread_words_width = 262; // points
+constexpr double most_samples = 1e6;
+constexpr std::array distributions{Distribution::normal, Distribution::uniform, Distribution::triangular};
+
+const char* width_help(Distribution distribution) {
+  return distribution == Distribution::normal ? "Its standard deviation." : "Half of its whole width.";
+}
+
+void distribution_choice(App& app, const std::string& name, ChosenTolerance& chosen, float width) {
+  ImGui::SetNextItemWidth(width);
+  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
+  const bool open = ImGui::BeginCombo(("##" + name).c_str(), std::string(word(chosen.distribution)).c_str());
+  ImGui::PopStyleColor();
+  if (!open) {
+    note_widget(app.widgets, name);
+    help_on_hover("How the number is distributed about its value.");
+    return;
+  }
+  for (const Distribution each : distributions) {
+    const std::string text(word(each));
+    if (ImGui::Selectable(text.c_str(), each == chosen.distribution)) chosen.distribution = each;
+    note_widget(app.widgets, name + "/" + text);
+    if (each == chosen.distribution) mark_chosen(app.widgets);
+  }
+  ImGui::EndCombo();
+}
+
+// "speed of spin   normal   1 %   in rad/s   x".
+void tolerance_row(App& app, std::size_t i) {
+  ChosenTolerance& chosen = app.study.spread.choice.tolerances[i];
+  const float s = app.scale, gap = 5 * s, start = ImGui::GetCursorPosX();
+  const std::string name = "spread/" + chosen.address;
+  const std::string unit = parameter_unit(app.mechanism(), chosen.address),
+                    shown = shown_unit(unit, app.units).text;
+  ImGui::AlignTextToFramePadding();
+  clipped_text(parameter_phrase(chosen.address), 112 * s);
+  ImGui::SameLine(0, 0);
+  ImGui::SetCursorPosX(start + 116 * s);
+  distribution_choice(app, name + "/distribution", chosen, 92 * s);
+  ImGui::SameLine(0, gap);
+  quantity_field(app,
+                 {.name = name + "/width",
+                  .value = chosen.width,
+                  .unit = chosen.percent ? "%" : unit,
+                  .help = width_help(chosen.distribution),
+                  .least = Least::above_zero,
+                  .set =
+                      [address = chosen.address](App& changed, double typed) {
+                        for (ChosenTolerance& each : changed.study.spread.choice.tolerances)
+                          if (each.address == address) each.width = typed;
+                      },
+                  .at_once = true},
+                 76 * s);
+  ImGui::SameLine(0, gap);
+  const std::string other = chosen.percent ? (shown.empty() ? "plain" : "in " + shown) : "in %";
+  if (text_button(app, name + "/unit", other.c_str())) tell_in_percent(app, i, !chosen.percent);
+  help_on_hover("Tells the width so; it stays what it is.");
+  ImGui::SameLine(0, 0);
+  ImGui::SetCursorPosX(start + (spread_choices_width - 34) * s);
+  if (margin_button(app, name + "/remove", icon::close, "No tolerance."))
+    later(app, [address = chosen.address](App& then) {
+      std::erase_if(then.study.spread.choice.tolerances,
+                    [&](const ChosenTolerance& each) { return each.address == address; });
+    });
+  if (chosen.percent && get_parameter(app.mechanism(), chosen.address) == 0)
+    paragraph("It is zero, of which a part is nothing.", colors_of(app).warn);
+}
+
+void another_tolerance(App& app) {
+  std::vector<std::string> phrases, addresses = numbers_without_tolerance(app);
+  std::set<std::string> taken;
+  for (const std::string& address : addresses) {
+    // Numbers that would be called the same go by their address.
+    std::string phrase = parameter_phrase(address);
+    phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : address);
+  }
+  if (const auto other = name_choice_row(app, "spread/add", "Add", phrases, "another number…",
+                                         "A number that is to have a tolerance, too.")) {
+    const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *other) - phrases.begin());
+    later(app, [address = addresses[i]](App& then) { add_tolerance(then, address); });
+  }
+}
+
+void output_choice(App& app) {
+  const auto& found = app.study.spread.samples.found;
+  if (!found) return;
+  std::vector<std::string> names;
+  for (const SpreadOutput& output : found->result.outputs)
+    names.push_back(output.name);
+  if (const auto other = name_choice_row(app, "spread/output", "Show", names, app.study.spread.output,
+                                         "The coordinate or measure whose samples are shown."))
+    app.study.spread.output = *other;
+}
+
+void samples_field(App& app) {
+  const float width = row_label(app, "Samples", "How many steady states are solved.");
+  quantity_field(app,
+                 {.name = "spread/samples",
+                  .value = static_cast<double>(app.study.spread.choice.samples),
+                  .unit = "",
+                  .help = "How many steady states are solved. What is told by them is as exact as one over "
+                          "the root of their number.",
+                  .least = Least::above_zero,
+                  .set =
+                      [](App& changed, double typed) {
+                        changed.study.spread.choice.samples =
+                            static_cast<std::size_t>(std::clamp(std::round(typed), 2., most_samples));
+                      },
+                  .at_once = true},
+                 width);
+}
+
+void spread_progress(App& app) {
+  SpreadState& state = app.study.spread;
+  const UiColors& colors = colors_of(app);
+  const bool long_wait = state.samples.running() && (state.samples.seconds() > 0.25 || !state.samples.found);
+  if (long_wait) {
+    if (text_button(app, "spread/cancel", "Cancel")) state.samples.stop();
+    ImGui::SameLine();
+    task_bar(app, "spread/progress", state.samples.progress(), state.samples.seconds(),
+             std::max(ImGui::GetContentRegionAvail().x - margin_width(app), 20 * app.scale));
+    return;
+  }
+  if (!state.samples.problem.empty()) paragraph(state.samples.problem, colors.bad);
+  if (!app.mistakes.empty())
+    paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
+  else if (!converged(app) && !solving(app))
+    paragraph("There is no steady state that could scatter.", colors.warn);
+  else if (chosen_tolerances(app).empty())
+    paragraph("No number has a tolerance.", colors.dim);
+  const bool stale = state.stale && !state.samples.quick() && !state.samples.running();
+  if (stale && state.samples.found) paragraph("Made before the last changes.", colors.warn);
+  if (stale || !state.samples.problem.empty())
+    if (text_button(app, "spread/again", "Make again", true)) sample_spread(app);
+}
+
+void spread_choices(App& app) {
+  output_choice(app);
+  samples_field(app);
+  heading(app, "Tolerances");
+  for (std::size_t i = 0; i < app.study.spread.choice.tolerances.size(); ++i)
+    tolerance_row(app, i);
+  another_tolerance(app);
+  spread_progress(app);
+  if (!app.study.spread.samples.found) return;
+  if (text_button(app, "spread/copy", "Copy the samples")) {
+    const auto& found = *app.study.spread.samples.found;
+    ImGui::SetClipboardText(spread_csv(found.result, found.of.tolerances, found.of.seed).c_str());
+    app.notice = "The samples are on the clipboard, as CSV.";
+  }
+  ImGui::SameLine();
+  if (text_button(app, "spread/band", "Band on the response"))
+    later(app, [](App& then) {
+      then.study.band.wanted = true;
+      open_study(then, StudyKind::response);
+    });
+  help_on_hover("Shows the response curve with the band in which the middle 90 % of samples lie.");
+}
+
+// With as many digits as its standard error leaves.
+void estimated_row(App& app, const char* label, double value, double error, const ShownUnit& unit,
+                   const char* help) {
+  const NumberStyle& numbers = app.options.numbers;
+  row(app, label,
+      value_text(value * unit.factor, error * unit.factor, numbers) + " ± " +
+          magnitude_text(error * unit.factor, numbers),
+      unit.text.c_str(), help);
+}
+
+void statistics_rows(App& app, const SpreadOutput& output) {
+  const SpreadStatistics& s = output.followed;
+  const ShownUnit unit = shown_unit(output.unit, app.units);
+  const NumberStyle& numbers = app.options.numbers;
+  const auto plain = [&](const char* label, double value, double error, const char* help) {
+    row(app, label, value_text(value * unit.factor, error * unit.factor, numbers), unit.text.c_str(), help);
+  };
+  heading(app, output.name.c_str());
+  plain("Nominal", output.nominal, s.mean_error > 0 ? s.mean_error / 10 : 0, "The state that is shown.");
+  if (s.count > 1) {
+    estimated_row(app, "Mean", s.mean, s.mean_error, unit,
+                  "Of the samples that followed, with its standard error: chance of the samples.");
+    note_widget(app.widgets, "spread/mean");
+    estimated_row(app, "Deviation", s.deviation, s.deviation_error, unit,
+                  "Standard deviation of the samples that followed, with its standard error.");
+    note_widget(app.widgets, "spread/deviation");
+  }
+  if (!output.linear_shares.empty())
+    plain("by the rates", output.linear_deviation, output.linear_deviation / 1000,
+          "What the rates of the nominal state promise, to first order.");
+  if (s.count > 1) {
+    plain("95 % from", s.lowest, s.deviation_error, "2.5 % of the samples that followed are below.");
+    plain("to", s.highest, s.deviation_error, "2.5 % of the samples that followed are above.");
+  }
+}
+
+void fate_rows(App& app, const SpreadAnswer& answer, const SpreadOutput& output) {
+  heading(app, (std::to_string(answer.samples) + " samples").c_str());
+  const auto count = [&](SampleFate fate, const char* label, const char* help) {
+    const std::size_t n = answer.counts[static_cast<std::size_t>(fate)];
+    if (n == 0 && fate != SampleFate::followed) return;
+    row(app, label, std::to_string(n), "", help);
+    note_widget(app.widgets, "spread/fate/" + std::string(word(fate)));
+  };
+  count(SampleFate::followed, "followed", "The nominal state's branch leads there.");
+  count(SampleFate::unstable, "to an unstable state", "They followed, to a state that is not stable.");
+  count(
+      SampleFate::elsewhere, "in another state",
+      "The nominal state's branch does not lead there, as beyond a fold: the state that the drawn pose then "
+      "leads to.");
+  count(SampleFate::none, "without a state", "They have no steady state.");
+  count(SampleFate::no_mechanism, "no mechanism",
+        "Their numbers make none: a mass below zero, a loop that cannot be closed.");
+  if (const SpreadStatistics& e = output.elsewhere; e.count > 0) {
+    const ShownUnit unit = shown_unit(output.unit, app.units);
+    const auto text = [&](double value) { return short_text(unit.shown(value), 5); };
+    row(app, "mean of the others", text(e.mean), unit.text.c_str(),
+        "Of the samples in another steady state.");
+    row(app, "they lie from", text(e.least), unit.text.c_str(), "Of the samples in another steady state.");
+    row(app, "to", text(e.most), unit.text.c_str(), "Of the samples in another steady state.");
+  }
+  if (app.options.numbers.run_times)
+    row(app, "Run time", duration_text(answer.run_time_s, app.options.numbers), "");
+}
+
+// Digits that end at `right` (pixels of the window's contents).
+void digits_to(App& app, const std::string& text, float right) {
+  ImGui::PushFont(app.fonts.digits);
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(right - ImGui::CalcTextSize(text.c_str()).x);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopFont();
+}
+
+void share_rows(App& app, const std::vector<Tolerance>& tolerances, const SpreadOutput& output) {
+  heading(app, "Shares of the variance");
+  help_on_hover(
+      "By the rates of the nominal state, and by a linear regression of the samples. What the latter "
+      "leave of 100 % is not linear, or chance.");
+  const float first = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - 86 * app.scale,
+              second = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - 6 * app.scale;
+  const UiColors& colors = colors_of(app);
+  const auto title = [&](const char* text, float right) {
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(right - ImGui::CalcTextSize(text).x);
+    ImGui::TextColored(colors.dim, "%s", text);
+  };
+  ImGui::TextUnformatted("");
+  title("by rates", first);
+  title("by samples", second);
+  const auto share = [](const std::vector<double>& shares, std::size_t k) {
+    return shares.empty() ? std::string("–") : rounded_text(std::round(1000 * shares[k]) / 10, 4) + " %";
+  };
+  for (std::size_t k = 0; k < tolerances.size(); ++k) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
+    clipped_text(parameter_phrase(tolerances[k].address), first - ImGui::GetCursorPosX() - 56 * app.scale);
+    ImGui::PopStyleColor();
+    digits_to(app, share(output.linear_shares, k), first);
+    digits_to(app, share(output.sampled_shares, k), second);
+    note_widget(app.widgets, "spread/share/" + tolerances[k].address);
+  }
+}
+
+void spread_words(App& app) {
+  const SpreadOutput* output = shown_output(app);
+  if (!output) return;
+  const auto& found = *app.study.spread.samples.found;
+  statistics_rows(app, *output);
+  share_rows(app, found.of.tolerances, *output);
+  fate_rows(app, found.result, *output);
+}
+
+void draw_histogram(App& app) {
+  const SpreadState& state = app.study.spread;
+  SpreadView& drawn = app.plots.spread;
+  const SpreadOutput* output = shown_output(app);
+  if (!output) return;
+  const SpreadView::Of of{state.samples.found, state.output, app.units};
+  if (drawn.of != of) {
+    const auto& all = state.samples.found->result.outputs;
+    Plot plot = histogram_plot(state.samples.found->result, static_cast<std::size_t>(output - all.data()));
+    show_axis(plot, 0, output->unit, app.units);
+    if (drawn.of.output != of.output) fit_plot(drawn.view);
+    replace_plot(drawn.plot, std::move(plot));
+    drawn.of = of;
+  }
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  plot_view(app, "spread", drawn.view, drawn.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
+}
+
+} // namespace
+
+void spread_panel(App& app) {
+  const float s = app.scale;
+  const auto column = [&](const char* name, float width, auto contents) {
+    ImGui::BeginChild(name, {width, 0});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
+    contents(app);
+    ImGui::PopStyleVar();
+    ImGui::EndChild();
+    ImGui::SameLine(0, 14 * s);
+  };
+  column("choices", spread_choices_width * s, spread_choices);
+  column("words", spread_words_width * s, spread_words);
+  ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  draw_histogram(app);
+  ImGui::EndChild();
+}
+
+} // namespace flyball

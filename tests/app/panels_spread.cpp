@@ -1,0 +1,168 @@
+// The spread as a person uses it: tolerances, the histogram, whose share it is, and the band around the
+// response.
+#include "robot.hpp"
+
+#include "app/ui/keyboard/keyboard.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+struct SpreadRobot : Robot {
+  explicit SpreadRobot(const std::string& scene = "governor_parametric") : Robot({1400, 1000}) {
+    open_scene(app, shipped_file(scene));
+    frames(3);
+    open_study(app, StudyKind::motion);
+    frames(2);
+    click("study/spread");
+    frames(3);
+  }
+  SpreadState& state() { return app.study.spread; }
+  const Plot& plot() { return app.plots.spread.plot; }
+  void retype(const std::string& field, const std::string& text) {
+    click(field);
+    key('A', true);
+    type(text);
+    key(key_enter);
+    frames(3);
+  }
+};
+
+double samples_in(const PlotBand& band) {
+  double sum = 0;
+  for (std::size_t i = 1; i + 1 < band.points.size(); i += 2)
+    sum += band.points[i][2];
+  return sum;
+}
+
+} // namespace
+
+TEST_CASE("without being asked for there are no samples") {
+  Robot robot;
+  CHECK_FALSE(robot.app.study.spread.samples.asked);
+  CHECK(robot.app.widgets.count("plot/spread/area") == 0);
+}
+
+TEST_CASE("the histogram holds every sample, beside the numbers that say what it is") {
+  SpreadRobot robot;
+  REQUIRE(robot.state().samples.found);
+  REQUIRE(robot.plot().bands.size() == 1);
+  CHECK(samples_in(robot.plot().bands[0]) == 2000);
+  CHECK(robot.plot().x.label == "slide");
+  for (const char* name : {"plot/spread/area", "spread/mean", "spread/deviation", "spread/copy"})
+    CHECK(robot.app.widgets.count(name) == 1);
+  CHECK(robot.plot().curves.size() == 1); // as the rates promise
+  robot.click("spread/copy");
+  const std::string csv = ImGui::GetClipboardText();
+  CHECK(csv.starts_with("parameters.w,parameters.L,fate,arm1,"));
+  CHECK(std::ranges::count(csv, '\n') == 2001);
+}
+
+TEST_CASE("a width is typed in per cent or in the number's unit, and what it is scatters so") {
+  SpreadRobot robot;
+  const auto deviation = [&] { return shown_output(robot.app)->linear_deviation; };
+  const double before = deviation();
+  robot.retype("spread/parameters.w/width", "2 %");
+  robot.retype("spread/parameters.L/width", "2");
+  CHECK(deviation() == Approx(2 * before).epsilon(1e-6));
+  robot.click("spread/parameters.L/unit");
+  robot.frames(2);
+  CHECK_FALSE(robot.state().choice.tolerances[1].percent);
+  CHECK(robot.state().choice.tolerances[1].width == Approx(0.0032).epsilon(1e-12));
+  CHECK(deviation() == Approx(2 * before).epsilon(1e-6));
+  robot.retype("spread/parameters.L/width", "1.6 mm");
+  CHECK(robot.state().choice.tolerances[1].width == Approx(0.0016).epsilon(1e-12));
+  // A uniform one of that half width scatters less.
+  const double normal = deviation();
+  robot.click("spread/parameters.L/distribution");
+  robot.click("spread/parameters.L/distribution/uniform");
+  robot.frames(3);
+  CHECK(robot.state().choice.tolerances[1].distribution == Distribution::uniform);
+  CHECK(deviation() < normal);
+  robot.click("spread/parameters.L/remove");
+  robot.frames(3);
+  REQUIRE(robot.state().choice.tolerances.size() == 1);
+  CHECK(shown_output(robot.app)->linear_shares == std::vector<double>{1});
+}
+
+TEST_CASE("another number gets a tolerance, another output is shown, and more samples are made") {
+  SpreadRobot robot;
+  robot.click("spread/add");
+  robot.click("spread/add/m");
+  robot.frames(3);
+  REQUIRE(robot.state().choice.tolerances.size() == 3);
+  CHECK(robot.state().choice.tolerances[2].address == "parameters.m");
+  CHECK(shown_output(robot.app)->linear_shares.size() == 3);
+  robot.click("spread/output");
+  robot.click("spread/output/height");
+  robot.frames(2);
+  CHECK(robot.plot().x.label == "height");
+  robot.retype("spread/samples", "500");
+  CHECK(samples_in(robot.plot().bands[0]) == 500);
+}
+
+TEST_CASE("the spread is reached by keys") {
+  SpreadRobot robot;
+  focus_widget(robot.app, "spread/parameters.w/width");
+  robot.frames(2);
+  robot.key(257);
+  robot.key('A', true);
+  robot.type("3");
+  robot.key(key_enter);
+  robot.frames(3);
+  CHECK(robot.state().choice.tolerances[0].width == 3);
+}
+
+TEST_CASE("samples beyond a fold are told apart, in words and in the histogram") {
+  SpreadRobot robot("conical_pendulum");
+  // The straight state is left by those that turn faster than sqrt(g / L).
+  change_parameter(robot.app, "joints.spin.drive.speed", 3.7);
+  robot.state().choice.tolerances = {{"joints.spin.drive.speed", Distribution::uniform, 0.1, false}};
+  robot.frames(4);
+  REQUIRE(robot.state().samples.found);
+  const SpreadAnswer& answer = robot.state().samples.found->result;
+  const auto elsewhere = answer.counts[static_cast<std::size_t>(SampleFate::elsewhere)];
+  CHECK(elsewhere > 200);
+  CHECK(robot.app.widgets.count("spread/fate/elsewhere") == 1);
+  const auto& bands = robot.plot().bands;
+  const auto band = std::ranges::find(bands, "in another steady state", &PlotBand::name);
+  REQUIRE(band != bands.end());
+  CHECK(samples_in(*band) == static_cast<double>(elsewhere));
+}
+
+TEST_CASE("from the spread to the band around the response, which is switched off there") {
+  SpreadRobot robot;
+  robot.click("spread/band");
+  robot.frames(4);
+  CHECK(robot.app.study.open == StudyKind::response);
+  choose_response(robot.app, "parameters.w");
+  robot.frames(4);
+  const Plot& plot = robot.app.plots.response.plot;
+  REQUIRE_FALSE(plot.bands.empty());
+  CHECK(plot.bands[0].name == "5 % to 95 % of samples");
+  // The state that is shown lies within.
+  REQUIRE(plot.marker);
+  double lower = 0, upper = 0;
+  for (const PlotBand& band : plot.bands)
+    for (std::size_t i = 1; i < band.points.size(); ++i)
+      if (band.points[i - 1][0] <= plot.marker->x && plot.marker->x <= band.points[i][0]) {
+        lower = std::min(band.points[i - 1][1], band.points[i][1]);
+        upper = std::max(band.points[i - 1][2], band.points[i][2]);
+      }
+  CHECK(lower < plot.marker->y);
+  CHECK(plot.marker->y < upper);
+  CHECK(robot.app.widgets.count("plot/response/legend/5 % to 95 % of samples") == 1);
+  CHECK(robot.app.widgets.count("response/band/words") == 1);
+  robot.click("response/band");
+  robot.frames(3);
+  CHECK(robot.app.plots.response.plot.bands.empty());
+  CHECK_FALSE(robot.app.study.band.computed.found);
+}
