@@ -202,9 +202,9 @@ TEST_CASE("how the governor scatters is drawn below the view, and around its res
   set_mode(hand.app, Mode::explore);
   hand.app.study.spread.begun = true;
   hand.app.study.spread.choice.tolerances = {{"parameters.w", Distribution::normal, 2},
-                                             {"parameters.L", Distribution::uniform, 0.006, false},
+                                             {"parameters.L", Distribution::uniform, 0.003, false},
                                              {"parameters.m", Distribution::triangular, 20},
-                                             {"parameters.k", Distribution::normal, 5}};
+                                             {"parameters.k", Distribution::normal, 3}};
   SECTION("histogram") {
     open_study(hand.app, StudyKind::spread);
     hand.check("study-spread");
