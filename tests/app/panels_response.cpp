@@ -533,7 +533,7 @@ TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
     CHECK(app.widgets.count("parameters/" + address + "/rate") == 1);
     const std::vector<ShownRate> rates = shown_rates(app, address);
     REQUIRE(rates.size() == 3);
-    CHECK(rates[0].share >= rates[1].share);
+    CHECK(rates[0].share >= (1 - 1e-6) * rates[1].share); // alike: the first is named
     const double at = get_parameter(app.mechanism(), address), step = 1e-4 * at;
     const auto solved = [&](double value) {
       Mechanism mechanism = app.mechanism();

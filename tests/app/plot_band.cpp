@@ -1,0 +1,133 @@
+// Areas between two values, and the histogram that is made of them.
+#include "app/plot/axis.hpp"
+#include "app/plot/csv.hpp"
+#include "app/plot/nearest.hpp"
+#include "app/plot/spread_plot.hpp"
+#include "app/plot/svg.hpp"
+#include "tests/catch.hpp"
+
+#include <cmath>
+#include <limits>
+
+using namespace flyball;
+
+namespace {
+
+const double nothing = std::numeric_limits<double>::quiet_NaN();
+
+Plot banded() {
+  Plot plot;
+  plot.x.label = "x";
+  plot.y.label = "y";
+  plot.x.room = plot.y.room = 0;
+  plot.bands.push_back({"range", {{0, 1, 2}, {1, 2, 4}, {2, nothing, nothing}, {3, 1, 3}, {4, 1, 5}}});
+  return plot;
+}
+
+PlotLayout layout_of(const Plot& plot, const PlotLook& look = {}) {
+  return plot_layout(plot, look, 400, 300, {});
+}
+
+} // namespace
+
+TEST_CASE("a band takes its room, is broken where it has no values, and stands in the legend") {
+  const Plot plot = banded();
+  CHECK(axis_range(plot, {}, 0) == PlotRange{0, 4});
+  CHECK(axis_range(plot, {}, 1) == PlotRange{1, 5});
+  const PlotLayout layout = layout_of(plot);
+  REQUIRE(layout.bands.size() == 1);
+  REQUIRE(layout.bands[0].lower_upper.size() == 2);
+  const auto& [lower, upper] = layout.bands[0].lower_upper[0];
+  REQUIRE(lower.size() == 2);
+  CHECK(upper[1][1] == Approx(layout.y.pixel(4)));
+  CHECK(lower[1][1] == Approx(layout.y.pixel(2)));
+  REQUIRE(layout.legend.size() == 1);
+  CHECK(layout.legend[0].band);
+  CHECK(layout.legend[0].name == "range");
+  PlotLook hidden;
+  hidden.hidden.insert("range");
+  CHECK(layout_of(plot, hidden).bands.empty());
+  CHECK(layout_of(plot, hidden).legend.size() == 1);
+}
+
+TEST_CASE("a band is read between its points, and not where it is broken") {
+  const Plot plot = banded();
+  const PlotLayout layout = layout_of(plot);
+  const auto at = bands_at(plot, {}, layout, 0.5, 0);
+  REQUIRE(at.size() == 1);
+  CHECK(at[0].lower == Approx(1.5));
+  CHECK(at[0].upper == Approx(3));
+  CHECK(bands_at(plot, {}, layout, 1.5, 0).empty());
+  CHECK(readings_at(plot, {}, layout, 0.5, 0).empty());
+  CHECK_FALSE(nearest_along(plot, {}, layout, 100, 100)); // nothing is dragged along its edges
+}
+
+TEST_CASE("on a logarithmic axis bars stand on the frame") {
+  Plot plot = banded();
+  plot.y.logarithmic = true;
+  plot.bands[0].points = {{0, 0, 10}, {1, 0, 100}};
+  const PlotLayout layout = layout_of(plot);
+  REQUIRE(layout.bands[0].lower_upper.size() == 1);
+  CHECK(layout.bands[0].lower_upper[0][0][0][1] == layout.area.bottom);
+}
+
+TEST_CASE("both ends of a band are in the table, and its ground in the picture") {
+  const Plot plot = banded();
+  const std::string table = to_csv(plot);
+  CHECK_THAT(table, ContainsSubstring("\"range, from\",1,2\r\n"));
+  CHECK_THAT(table, ContainsSubstring("\"range, to\",1,4\r\n"));
+  CHECK_THAT(to_svg(plot), ContainsSubstring("fill-opacity=\"0.22\""));
+}
+
+TEST_CASE("a histogram holds each sample once, and the normal curve as many") {
+  SpreadAnswer answer;
+  answer.nominal = {0};
+  answer.samples = 1000;
+  const std::vector<Tolerance> tolerances{{"a", Distribution::normal, 2}};
+  std::vector<double> values, followed;
+  for (std::size_t i = 0; i < answer.samples; ++i) {
+    const double value = sampled_numbers(answer.nominal, tolerances, 1, i)[0];
+    answer.fate.push_back(i % 10 == 0   ? SampleFate::elsewhere
+                          : i % 10 == 1 ? SampleFate::none
+                                        : SampleFate::followed);
+    values.push_back(i % 10 == 0 ? 50 + value : i % 10 == 1 ? nothing : value);
+  }
+  answer.values = {values};
+  SpreadOutput slide;
+  slide.name = "slide";
+  slide.unit = "m";
+  slide.linear_deviation = 2;
+  slide.linear_shares = {1};
+  answer.outputs = {slide};
+  add_statistics(tolerances, 1, answer);
+  const Plot plot = histogram_plot(answer, 0);
+  REQUIRE(plot.bands.size() == 2);
+  const auto count = [](const PlotBand& band) {
+    double sum = 0;
+    for (std::size_t i = 1; i + 1 < band.points.size(); i += 2)
+      sum += band.points[i][2];
+    return sum;
+  };
+  CHECK(count(plot.bands[0]) == 800);
+  CHECK(plot.bands[1].name == "in another steady state");
+  CHECK(count(plot.bands[1]) == 100);
+  REQUIRE(plot.curves.size() == 1);
+  const double width = plot.bands[0].points[2][0] - plot.bands[0].points[1][0];
+  double area = 0;
+  const auto& curve = plot.curves[0].points;
+  for (std::size_t i = 1; i < curve.size(); ++i)
+    area += (curve[i][0] - curve[i - 1][0]) * (curve[i][1] + curve[i - 1][1]) / 2;
+  CHECK(area / width == Approx(800).epsilon(1e-3));
+  CHECK(spread_csv(answer, tolerances, 1).starts_with("a,fate,slide\n"));
+
+  SECTION("samples that are all alike have one bar") {
+    for (double& value : answer.values[0])
+      value = 3;
+    answer.fate.assign(1000, SampleFate::followed);
+    answer.counts = {};
+    add_statistics(tolerances, 1, answer);
+    const Plot flat = histogram_plot(answer, 0);
+    REQUIRE(flat.bands.size() == 1);
+    CHECK(count(flat.bands[0]) == 1000);
+  }
+}
