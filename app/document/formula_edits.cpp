@@ -1,6 +1,7 @@
 #include "app/document/formula_edits.hpp"
 
 #include "app/document/measure_edits.hpp"
+#include "app/document/turns.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/numbers.hpp"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -25,7 +27,38 @@ void all_or_nothing(Mechanism& mechanism, const Change& change) {
   mechanism = std::move(next);
 }
 
+// A body's turn about an axis.
+struct TurnPlace {
+  Body* body = nullptr; // null: the address is none of a turn
+  std::size_t axis = 0;
+  Turns turns; // as they are
+};
+
+TurnPlace turn_place(Mechanism& mechanism, const std::string& address) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string start = "bodies.", end = ".turn." + std::to_string(axis);
+    if (!address.starts_with(start) || !address.ends_with(end)) continue;
+    const int index =
+        body_index(mechanism, address.substr(start.size(), address.size() - start.size() - end.size()));
+    if (index < 0) continue;
+    Body& body = mechanism.bodies[static_cast<std::size_t>(index)];
+    return {&body, axis, given_turns(mechanism, body).value_or(Turns{turns_of(body.rotation), {}})};
+  }
+  return {};
+}
+
+void put_turn(Mechanism& mechanism, TurnPlace place, const std::string& address, const std::string& text) {
+  if (!text.empty()) { // in its own words before it is part of a longer one
+    const double angle = evaluate_expression(mechanism, text, "rad", address);
+    place.turns.angles[static_cast<Eigen::Index>(place.axis)] = angle * 180 / std::numbers::pi;
+  }
+  place.turns.texts[place.axis] = text;
+  set_turns(*place.body, place.turns);
+}
+
 void put(Mechanism& mechanism, const std::string& address, const std::string& text) {
+  if (TurnPlace turn = turn_place(mechanism, address); turn.body)
+    return put_turn(mechanism, std::move(turn), address, text);
   const auto [formulas, key] = formula_place(mechanism, address);
   if (!formulas) throw SceneError(address, "there is no such number");
   std::erase_if(*formulas, [&key = key](const Formula& formula) { return formula.key == key; });
@@ -90,6 +123,12 @@ void rename_in(Mechanism& mechanism, std::vector<Named>& list, int index, const 
 }
 
 void forget(Mechanism& mechanism, const std::string& name, const std::string& path) {
+  // One number of a rotation alone says nothing.
+  for (Body& body : mechanism.bodies)
+    if (std::ranges::any_of(body.formulas, [&](const Formula& formula) {
+          return formula.key.starts_with("rotation.") && names(formula.text, name);
+        }))
+      forget_rotation(body.formulas);
   visit_formulas(mechanism, [&](Formulas& formulas) {
     std::erase_if(formulas, [&](const Formula& formula) { return names(formula.text, name); });
   });
@@ -117,6 +156,11 @@ void evaluate_names(Mechanism& mechanism) {
   evaluate_formulas(named);
   mechanism.parameters = std::move(named.parameters);
   mechanism.points = std::move(named.points);
+}
+
+std::string unit_at(const Mechanism& mechanism, const std::string& address) {
+  Mechanism& looked_at = const_cast<Mechanism&>(mechanism); // no more
+  return turn_place(looked_at, address).body ? "rad" : expressible_number(looked_at, address).unit;
 }
 
 [[noreturn]] void refuse(const Mechanism& mechanism, const GivenNumber& given) {
@@ -197,6 +241,32 @@ std::string owner(const std::string& part) {
 
 } // namespace
 
+std::optional<std::string> expression_at(const Mechanism& mechanism, const std::string& address) {
+  const TurnPlace turn = turn_place(const_cast<Mechanism&>(mechanism), address); // only looked at
+  if (!turn.body) return formula_at(mechanism, address);
+  const std::string& text = turn.turns.texts[turn.axis];
+  return text.empty() ? std::nullopt : std::optional(text);
+}
+
+double expressed_value(const Mechanism& mechanism, const std::string& address) {
+  Mechanism& looked_at = const_cast<Mechanism&>(mechanism); // no more
+  if (const TurnPlace turn = turn_place(looked_at, address); turn.body)
+    return turn.turns.angles[static_cast<Eigen::Index>(turn.axis)] * std::numbers::pi / 180;
+  return expressible_number(looked_at, address).value;
+}
+
+void set_by_itself(Mechanism& mechanism, const std::string& address, double value) {
+  all_or_nothing(mechanism, [&](Mechanism& next) {
+    if (TurnPlace turn = turn_place(next, address); turn.body) {
+      turn.turns.texts[turn.axis].clear();
+      turn.turns.angles[static_cast<Eigen::Index>(turn.axis)] = value * 180 / std::numbers::pi;
+      return set_turns(*turn.body, turn.turns);
+    }
+    put(next, address, "");
+    expressible_number(next, address).set(value);
+  });
+}
+
 void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text) {
   all_or_nothing(mechanism, [&](Mechanism& next) { put(next, address, text); });
 }
@@ -208,14 +278,31 @@ void stand_at_point(Mechanism& mechanism, const std::string& vector, const std::
   });
 }
 
+void name_place(Mechanism& mechanism, const std::string& vector, const std::string& name) {
+  all_or_nothing(mechanism, [&](Mechanism& next) {
+    check_name(next, name, "points." + name);
+    NamedPoint point;
+    point.name = name;
+    for (const int i : {0, 1, 2}) {
+      const std::string address = vector + "." + std::to_string(i);
+      point.at[i] = expressed_value(next, address);
+      if (const std::optional<std::string> formula = expression_at(next, address))
+        point.formulas.push_back({std::to_string(i), *formula});
+    }
+    next.points.push_back(std::move(point));
+    for (const int i : {0, 1, 2})
+      put(next, vector + "." + std::to_string(i), point_coordinate(name, i));
+  });
+}
+
 void name_number(Mechanism& mechanism, const std::string& address, const std::string& name) {
   all_or_nothing(mechanism, [&](Mechanism& next) {
     check_name(next, name, "parameters." + name);
     NamedParameter parameter;
     parameter.name = name;
-    parameter.value = get_parameter(next, address);
-    parameter.unit = parameter_unit(next, address);
-    if (const std::optional<std::string> formula = formula_at(next, address))
+    parameter.value = expressed_value(next, address);
+    parameter.unit = unit_at(next, address);
+    if (const std::optional<std::string> formula = expression_at(next, address))
       parameter.formulas = {{"value", *formula}};
     next.parameters.push_back(std::move(parameter));
     put(next, address, name);
@@ -313,7 +400,12 @@ void settle_formulas(const Mechanism& before, Mechanism& next) {
         same = near(evaluated(settled, given), given.value, solved);
       } catch (const SceneError&) { // of names that are not here
       }
-      if (!same) put(settled, given.address, "");
+      if (same) continue;
+      put(settled, given.address, "");
+      // One number of a rotation alone says nothing.
+      if (given.address.starts_with(given.part + ".rotation."))
+        for (const int i : {0, 1, 2, 3})
+          put(settled, given.part + ".rotation." + std::to_string(i), "");
       continue;
     }
     if (!is_moved(given)) continue;

@@ -1,20 +1,32 @@
 // Edits of named parameters, points and expressions. All throw SceneError, and leave the mechanism as it was,
 // where they cannot be done.
+//
+// An address is one of expressible_number, or of a body's turn about a world axis, "bodies.arm.turn.2", which
+// is given by expressions of its rotation (see turns.hpp).
 #pragma once
 
 #include "engine/mechanism/formulas.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace flyball {
 
+// The expression that gives the number at an address; nothing for a number by itself.
+std::optional<std::string> expression_at(const Mechanism& mechanism, const std::string& address);
+// Its value, in SI units and radians.
+double expressed_value(const Mechanism& mechanism, const std::string& address);
 // The number at an address is given by an expression from now on (without its "="), or, where that is empty,
 // stays by itself what it is.
 void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text);
-// The same of a vector's three numbers ("joints.spin.at"): it stands at a named point.
+// It is by itself this value (SI units, radians) from now on.
+void set_by_itself(Mechanism& mechanism, const std::string& address, double value);
+// The expressions of a vector's three numbers ("joints.spin.at"): it stands at a named point.
 void stand_at_point(Mechanism& mechanism, const std::string& vector, const std::string& point);
+// A named point where a vector is, at which it stands from then on.
+void name_place(Mechanism& mechanism, const std::string& vector, const std::string& name);
 // A named parameter of the number's value and unit, by which the number is given from then on.
 void name_number(Mechanism& mechanism, const std::string& address, const std::string& name);
 // A name that no parameter, point or measure has: the wish, or with a figure behind it.

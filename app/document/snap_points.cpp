@@ -7,22 +7,26 @@ namespace {
 
 class Collector {
  public:
-  void add(const Vec3& point, Part part, std::string what) {
-    if (!point.allFinite() || there(point)) return;
+  void add(const Vec3& point, Part part, std::string what, const std::string& named = {}) {
+    if (!point.allFinite()) return;
+    if (SnapPoint* other = there(point)) {
+      if (other->named.empty()) other->named = named;
+      return;
+    }
     along_.emplace(direction().dot(point), all_.size());
-    all_.push_back({point, std::move(part), std::move(what)});
+    all_.push_back({point, std::move(part), std::move(what), named});
   }
   std::vector<SnapPoint> take() { return std::move(all_); }
 
  private:
   // Points are sorted along a direction that no mechanism lies across: what is near a point is near it there.
   static Vec3 direction() { return {0.5671, 0.3907, 0.7250}; }
-  bool there(const Vec3& point) const {
+  SnapPoint* there(const Vec3& point) {
     const double near = 1e-9 * (1 + point.norm()), at = direction().dot(point);
     for (auto other = along_.lower_bound(at - near); other != along_.end() && other->first <= at + near;
          ++other)
-      if ((all_[other->second].point - point).norm() <= near) return true;
-    return false;
+      if ((all_[other->second].point - point).norm() <= near) return &all_[other->second];
+    return nullptr;
   }
 
   std::vector<SnapPoint> all_;
@@ -50,6 +54,8 @@ std::vector<SnapPoint> snap_points(const Mechanism& mechanism) {
       if (shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule)
         for (const Vec3& point : {shape.from, shape.to})
           all.add(point, {PartKind::body, body.name}, "end of " + body.name);
+  for (const NamedPoint& point : mechanism.points)
+    all.add(point.at, {}, "point " + point.name, point.name);
   all.add(Vec3::Zero(), {}, "origin");
   return all.take();
 }

@@ -146,6 +146,18 @@ std::optional<Vec3> point_position(const Mechanism& mechanism, const PointId& po
   return default_point(mechanism, point);
 }
 
+std::string point_address(const Mechanism& mechanism, const PointId& point) {
+  const std::string ends = "points." + std::to_string(point.end);
+  const PartId id = find_part(mechanism, point.part);
+  const auto i = static_cast<std::size_t>(id.index);
+  if (id.kind == PartKind::joint)
+    return "joints." + point.part.name + "." +
+           (mechanism.joints[i].type == JointType::distance ? ends : "at");
+  if (id.kind == PartKind::force)
+    return "forces." + point.part.name + "." + (mechanism.forces[i].type == ForceType::spring ? ends : "at");
+  return {};
+}
+
 void set_point(Mechanism& mechanism, const PointId& point, const Vec3& position, OuterJoints joints) {
   const std::optional<Vec3> now = point_position(mechanism, point);
   if (!now || !position.allFinite() || position == *now) return;

@@ -39,6 +39,8 @@ struct PointId {
 };
 // Nothing where the part has no such point.
 std::optional<Vec3> point_position(const Mechanism& mechanism, const PointId& point);
+// The address of its three numbers, "joints.arm.at"; empty for a body, which takes along what is on it.
+std::string point_address(const Mechanism& mechanism, const PointId& point);
 // Moves this point alone (for a body: the whole body). A spring's free length and a distance joint's length
 // that are given stay as they are.
 void set_point(Mechanism& mechanism, const PointId& point, const Vec3& position,

@@ -85,7 +85,13 @@ std::string what_of(const std::vector<std::string>& parts) {
     return "inertia " +
            std::array<std::string, 6>{
                "xx", "yy", "zz", "xy", "xz", "yz"}[static_cast<std::size_t>(std::atoi(parts[3].c_str()) % 6)];
-  constexpr std::array vectors{"position", "at", "axis", "axes", "x_axis", "points", "vector"};
+  if (parts.size() > 4 && parts[2] == "shapes") {
+    std::vector<std::string> of_shape{parts[0], parts[1]};
+    of_shape.insert(of_shape.end(), parts.begin() + 4, parts.end());
+    return what_of(of_shape) + " of shape " + parts[3];
+  }
+  constexpr std::array vectors{"position", "at",   "axis", "axes", "x_axis", "points",
+                               "vector",   "size", "from", "to",   "turn"};
   const bool vector = parts.size() > 3 && std::ranges::find(vectors, parts[2]) != vectors.end();
   if (vector) return parts[2] + (parts.size() > 4 ? " " + parts[3] : "") + " " + axis(parts.back());
   if (parts.size() > 3 && is_index(parts.back())) return parts[2] + " " + parts.back();

@@ -1,5 +1,6 @@
 #include "engine/mechanism/formulas.hpp"
 
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/formula_plan.hpp"
 #include "engine/mechanism/given_names.hpp"
@@ -77,7 +78,8 @@ void visit_parts(Mechanism& m, const PartVisitor& visit) {
     if (!body.formulas.empty()) visit(path, body.formulas, [&] { return all_numbers_of(body); });
     for (std::size_t i = 0; i < body.shapes.size(); ++i)
       if (Shape& shape = body.shapes[i]; !shape.formulas.empty())
-        visit(path + ".shapes." + std::to_string(i), shape.formulas, [&] { return all_numbers_of(shape); });
+        visit(path + ".shapes." + std::to_string(i), shape.formulas,
+              [&] { return all_numbers_of(shape, body); });
   }
   for (Joint& joint : m.joints)
     if (!joint.formulas.empty())
@@ -308,6 +310,22 @@ FormulaPlace formula_place(Mechanism& mechanism, std::string_view address) {
   const auto shape = static_cast<std::size_t>(std::max(std::atoi(std::string(next()).c_str()), 0));
   if (shape >= shapes.size()) return {};
   return {&shapes[shape].formulas, address};
+}
+
+Number expressible_number(Mechanism& mechanism, std::string_view address) {
+  const auto [formulas, key] = formula_place(mechanism, address);
+  const auto number = [&key = key](std::vector<Number> numbers) -> std::optional<Number> {
+    const auto found = std::ranges::find(numbers, key, &Number::key);
+    return found == numbers.end() ? std::nullopt : std::optional(std::move(*found));
+  };
+  for (Body& body : mechanism.bodies) {
+    if (&body.formulas == formulas && key.starts_with("rotation."))
+      if (auto entry = number(all_numbers_of(body))) return std::move(*entry);
+    for (Shape& shape : body.shapes)
+      if (&shape.formulas == formulas)
+        if (auto size = number(all_numbers_of(shape, body))) return std::move(*size);
+  }
+  return addressed_number(mechanism, address);
 }
 
 std::optional<std::string> formula_at(const Mechanism& mechanism, std::string_view address) {

@@ -18,6 +18,8 @@
 
 namespace flyball {
 
+struct Number; // numbers.hpp
+
 // Sets every number that an expression gives, dependent parameters and points first, and what follows from
 // densities. Throws SceneError that names the place: an expression that cannot be read, an unknown name, a
 // dimension that does not fit, a circle of parameters, a value that is not finite. What was set before stays
@@ -27,8 +29,12 @@ void evaluate_formulas(Mechanism& mechanism);
 // The expression that gives the number at an address, without its "="; nothing for a number by itself.
 std::optional<std::string> formula_at(const Mechanism& mechanism, std::string_view address);
 
-// Where a number that has an address, or one of a shape ("bodies.arm.shapes.0.radius") or rotation
-// ("bodies.arm.rotation.0"), keeps its expression; null where there is no such part.
+// A number that has an address, or one of a shape ("bodies.arm.shapes.0.radius") or rotation
+// ("bodies.arm.rotation.0"), which only expressions may give; valid as long as its part. Throws SceneError
+// where there is none.
+Number expressible_number(Mechanism& mechanism, std::string_view address);
+
+// Where such a number keeps its expression; null where there is no such part.
 struct FormulaPlace {
   Formulas* formulas = nullptr;
   std::string_view key; // a part of the address

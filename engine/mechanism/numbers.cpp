@@ -3,6 +3,7 @@
 #include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/number_rates.hpp"
 
+#include <optional>
 #include <utility>
 
 namespace flyball {
@@ -11,8 +12,8 @@ namespace {
 // The numbers among the fields that are visited; texts, choices and what is only seen have no address.
 class Collector {
  public:
-  explicit Collector(std::string prefix = {}, bool rotation = false)
-      : prefix_(std::move(prefix)), rotation_(rotation) {}
+  explicit Collector(std::string prefix = {}, bool rotation = false, std::optional<Vec3> centre = {})
+      : prefix_(std::move(prefix)), rotation_(rotation), centre_(std::move(centre)) {}
 
   void describe(const std::string&) {}
   void type(const Field&, const auto&) {}
@@ -29,6 +30,7 @@ class Collector {
   }
   void field(const Field& field, Vec3& place) { add(key(field), field, place); }
   void field(const Field& field, std::optional<Vec3>& place) {
+    if (centre_) return this->field(field, place, *centre_);
     if (place) add(key(field), field, *place);
   }
   void field(const Field& field, std::optional<Vec3>& place, const Vec3& stands_for) {
@@ -106,6 +108,7 @@ class Collector {
 
   std::string prefix_, index_;
   bool rotation_, angle_ = true;
+  std::optional<Vec3> centre_; // m; where what has no place of its own is
   std::vector<Number> all_;
 };
 
@@ -123,8 +126,8 @@ std::vector<Number> all_numbers_of(Body& body) {
   return all.take();
 }
 
-std::vector<Number> all_numbers_of(Shape& shape) {
-  Collector all;
+std::vector<Number> all_numbers_of(Shape& shape, const Body& body) {
+  Collector all({}, false, body.position);
   visit_fields(all, shape);
   return all.take();
 }

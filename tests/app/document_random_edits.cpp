@@ -10,6 +10,7 @@
 #include "app/document/rename.hpp"
 #include "app/document/snap_points.hpp"
 #include "app/document/transform.hpp"
+#include "app/document/turns.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/mass_properties.hpp"
@@ -146,6 +147,8 @@ class Person {
     Mechanism again = document_.mechanism();
     evaluate_formulas(again);
     CHECK(again == document_.mechanism());
+    for (const Body& body : again.bodies)
+      if (is_rotation_given(body)) CHECK(std::abs(body.rotation.norm() - 1) < 1e-9);
     CHECK(document_.position() == at_);
     CHECK(document_.steps().size() == past_.size());
     CHECK(existing(document_.selection(), document_.mechanism()) == document_.selection());
@@ -281,6 +284,19 @@ class Person {
       names.push_back(each.name);
     return dice_.one_of(names);
   }
+  // Of a number that takes an expression, also one without an address.
+  std::string expressible(const Mechanism& m) {
+    std::vector<std::string> all = parameter_addresses(m);
+    for (const Body& body : m.bodies) {
+      const std::string path = "bodies." + body.name;
+      for (const char* axis : {"0", "1", "2"})
+        all.push_back(path + ".turn." + axis);
+      for (std::size_t i = 0; i < body.shapes.size(); ++i)
+        for (const char* key : {".radius", ".size.1", ".at.0", ".from.2"})
+          all.push_back(path + ".shapes." + std::to_string(i) + key);
+    }
+    return dice_.one_of(all);
+  }
   void try_to(Mechanism& m, const std::function<void()>& act) {
     const Mechanism before = m;
     try {
@@ -296,7 +312,7 @@ class Person {
     else if (dice_.chance(0.5) && !m.points.empty() && !m.joints.empty())
       try_to(m, [&] { stand_at_point(m, "joints." + name(PartKind::joint) + ".at", known_name(m)); });
     else if (m.parameters.size() < 8)
-      try_to(m, [&] { name_number(m, dice_.one_of(parameter_addresses(m)), free_name(m, "p")); });
+      try_to(m, [&] { name_number(m, expressible(m), free_name(m, "p")); });
   }
   void express(Mechanism& m) {
     static const std::vector<std::string> forms{"2*@", "@ + @", "-@", "sqrt(@*@ + @^2)", "@ + 1", "0.5",
@@ -304,7 +320,7 @@ class Person {
     std::string text = dice_.one_of(forms);
     for (std::size_t at; (at = text.find('@')) != std::string::npos;)
       text.replace(at, 1, known_name(m));
-    try_to(m, [&] { set_expression(m, dice_.one_of(parameter_addresses(m)), text); });
+    try_to(m, [&] { set_expression(m, expressible(m), text); });
   }
   void rename_something(Mechanism& m) {
     const std::string which = known_name(m), to = dice_.chance(0.2) ? known_name(m) : free_name(m, "n");
