@@ -62,7 +62,9 @@ void App::mode_chosen() {
 }
 
 void set_tool(App& app, Tool tool) {
-  app.keyboard.at.clear(); // the tool works in the view
+  app.keyboard.at.clear();                 // the tool works in the view
+  for (auto& behind : app.keyboard.behind) // also if it was chosen in the menu of a field
+    behind = {};
   if (tool != Tool::select && tool != Tool::box && tool != Tool::pull) set_mode(app, Mode::build);
   app.tool.tool = tool;
 }

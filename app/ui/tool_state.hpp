@@ -30,21 +30,24 @@ enum class Tool {
   force,
   torque,
   drag,
+  point, // a named one, where a vector shall stand
 };
 
 // A place that a click would mean.
 struct Aim {
   Vec3 point = Vec3::Zero(); // m, drawn pose
   std::string body{ground_name};
-  std::string what; // that it snapped to: "arm1", "centre of ball1"; empty: to nothing
-  WorkPlane plane;  // that the cursor moves on
-  double step = 0;  // m, of the plane's grid; 0: none
+  std::string what;  // that it snapped to: "arm1", "centre of ball1"; empty: to nothing
+  std::string named; // the named point there
+  WorkPlane plane;   // that the cursor moves on
+  double step = 0;   // m, of the plane's grid; 0: none
 };
 
 // A handle of the gizmo, or a point of the selected part, held by the hand.
 struct Grab {
   Handle handle = Handle::plane;
   std::optional<PointId> point; // where it is a point
+  std::string named;            // or a named point
   int normal = 2;               // as in Gizmo
   std::shared_ptr<const Mechanism> before;
   Selection selection;
@@ -56,6 +59,7 @@ struct Grab {
   Vec3 by = Vec3::Zero();      // m, so far
   double angle = 0, swept = 0; // rad, so far; swept: without snapping
   std::string what;            // that it snapped to
+  std::string stands;          // the named point there, at which it stays
   std::string typed;           // a number instead of the hand's
   bool shift = false;          // held when it was moved last
 };
@@ -63,6 +67,7 @@ struct Grab {
 // A joint before it is made.
 struct JointDraft {
   Vec3 at = Vec3::Zero();            // m
+  std::string named{};               // the named point there
   std::array<std::string, 2> bodies; // parent, child
   Vec3 axis = Vec3::UnitZ(), axis2 = Vec3::UnitX();
   bool axis_chosen = false, axis2_chosen = false; // by the person
@@ -94,11 +99,14 @@ struct ToolState {
   bool snap = true;                           // to points, the grid and round angles
   JointType joint_type = JointType::revolute; // of the next joint
   std::optional<Vec3> last_point{};           // m, that was used: the next one is on a plane through it
+  std::string point{};                        // a named one that is selected, while no part is
+  std::string standing{};                     // the vector that shall stand at one, "joints.arm.at"
 
   // Of one movement of the hand, or of the few clicks that a tool takes.
   Tool begun = Tool::select; // the tool that these belong to
   Handle hovered = Handle::none;
   std::optional<PointId> hovered_point{};
+  std::string hovered_name{}; // of a named point
   std::optional<Grab> grab{};
   std::optional<AssemblyGrab> assembly{};
   std::optional<PullGrab> pull{};

@@ -1,7 +1,9 @@
 // Parameters and expressions by mouse and keys.
 #include "desk.hpp"
 
+#include "app/document/create.hpp"
 #include "app/document/formula_edits.hpp"
+#include "app/document/turns.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 
@@ -88,4 +90,176 @@ TEST_CASE("a slider that asks for what cannot be made says so and stays") {
   d.enter("parameters/parameters.L/value", "0.4");
   CHECK(d.app.notice.find("the value is not finite") != std::string::npos);
   CHECK(d.m() == d.app.document.stored());
+}
+
+namespace {
+
+// The whole inspector of a body in sight, and nothing selected before.
+struct TallDesk : Desk {
+  explicit TallDesk(const std::string& scene = "governor") : Desk(scene, {1200, 2000}) {
+    app.panels.inspector_share = 0.8f;
+  }
+  void ask(const std::string& field) {
+    frames(60);
+    click(ImVec2(widget(field).from.x + 10, widget(field).from.y + 8), 1);
+    frames(2);
+  }
+  const Body& ball() const { return m().bodies[static_cast<std::size_t>(body_index(m(), "ball1"))]; }
+};
+
+} // namespace
+
+TEST_CASE("a shape's numbers take expressions and names as others do") {
+  TallDesk d("governor_parametric");
+  d.build();
+  d.pick(PartKind::body, "ball1");
+  const std::size_t steps = d.app.document.position();
+  d.enter("inspector/shapes/0/radius", "=L/8");
+  CHECK(d.ball().shapes[0].radius == 0.02);
+  CHECK(formula_at(d.m(), "bodies.ball1.shapes.0.radius") == "L/8");
+  CHECK(d.app.document.steps().back().name == "Set radius of shape 0 of ball1 by an expression");
+  SECTION("a number takes its place in one step, and undo brings it back") {
+    d.enter("inspector/shapes/0/radius", "30 mm");
+    CHECK(d.ball().shapes[0].radius == 0.03);
+    CHECK_FALSE(formula_at(d.m(), "bodies.ball1.shapes.0.radius"));
+    CHECK(d.app.document.position() == steps + 2);
+    d.key('Z', true);
+    CHECK(formula_at(d.m(), "bodies.ball1.shapes.0.radius") == "L/8");
+  }
+  SECTION("it is named, and its name has a slider") {
+    d.ask("inspector/shapes/1/radius");
+    d.click("inspector/shapes/1/radius/name it");
+    d.frames(2);
+    CHECK(formula_at(d.m(), "bodies.ball1.shapes.1.radius") == "radius2"); // a measure is called radius
+    CHECK(get_parameter(d.m(), "parameters.radius2") == 0.005);
+    set_mode(d.app, Mode::explore);
+    d.frames(3);
+    CHECK(d.app.widgets.contains("parameters/parameters.radius2/value"));
+  }
+  SECTION("dragged by its label it takes what it rests on along") {
+    const WidgetRect label = d.widget("inspector/shapes/0/radius/label");
+    d.drag(label.center(), {label.center().x + 40, label.center().y});
+    CHECK(d.ball().shapes[0].radius > 0.02);
+    CHECK(std::abs(get_parameter(d.m(), "parameters.L") - 8 * d.ball().shapes[0].radius) < 1e-12);
+  }
+  SECTION("a vector stands at a point by its name, and leaves it") {
+    d.enter("inspector/shapes/1/to/x", "=C1");
+    CHECK(d.ball().shapes[1].to == d.m().points[3].at);
+    CHECK(formula_at(d.m(), "bodies.ball1.shapes.1.to.2") == "C1.z");
+    d.ask("inspector/shapes/1/to/y");
+    d.click("inspector/shapes/1/to/y/leave point");
+    d.frames(2);
+    CHECK_FALSE(formula_at(d.m(), "bodies.ball1.shapes.1.to.0"));
+    CHECK(d.ball().shapes[1].to == d.m().points[3].at);
+  }
+  SECTION("what does not fit is said in its place") {
+    d.frames(60);
+    d.click("inspector/shapes/0/radius");
+    d.type("=m");
+    d.frames(1);
+    CHECK(d.app.inspector.typing.mistake.find("expected m, found kg") != std::string::npos);
+    d.key(key_escape);
+    d.frames(60);
+    d.click("inspector/shapes/0/radius");
+    d.type("=-L");
+    d.frames(1);
+    CHECK(d.app.inspector.typing.mistake == "Expected more than zero.");
+    d.key(key_escape);
+  }
+}
+
+TEST_CASE("the mass of a uniform solid follows a size that an expression gives") {
+  TallDesk d;
+  d.build();
+  edit(d.app, "Add ball", [](Mechanism& next, Selection& selection) {
+    selection.set({PartKind::body, add_body(next, {.at = {0.5, 0, 0}, .radius = 0.1})});
+  });
+  d.frames(3);
+  const double mass = d.m().bodies.back().mass;
+  d.enter("inspector/shapes/0/radius", "=2*100 mm");
+  CHECK(d.m().bodies.back().shapes[0].radius == 0.2);
+  CHECK(std::abs(d.m().bodies.back().mass / mass - 8) < 1e-12);
+  // Its centre stands by itself from now on, where the body's is.
+  d.enter("inspector/shapes/0/at/y", "=0.25 m");
+  CHECK(*d.m().bodies.back().shapes[0].at == Vec3(0.5, 0.25, 0));
+  CHECK(d.m().bodies.back().position == Vec3(0.5, 0.25, 0));
+}
+
+TEST_CASE("a turn takes an expression, which is kept as one of the quaternion") {
+  TallDesk d;
+  d.build();
+  d.pick(PartKind::body, "ball1");
+  d.click("inspector/rotation section");
+  d.frames(2);
+  const std::string z = "inspector/rotation/z";
+  const auto shows = [&](double x, double y, double angle) {
+    return 1 - std::abs(d.ball().rotation.dot(rotation_by({x, y, angle}))) < 1e-14;
+  };
+  d.enter(z, "30");
+  CHECK(shows(0, 0, 30));
+  d.ask(z);
+  d.click(z + "/name it");
+  d.frames(2);
+  CHECK(formula_at(d.m(), "bodies.ball1.rotation.0") == "cos(turn_z/2)");
+  CHECK(parameter_unit(d.m(), "parameters.turn_z") == "rad");
+  CHECK(shows(0, 0, 30));
+  const std::size_t steps = d.app.document.position();
+  SECTION("another turn beside it stays a number") {
+    d.enter("inspector/rotation/x", "10");
+    CHECK(expression_at(d.m(), "bodies.ball1.turn.2") == "turn_z");
+    CHECK(shows(10, 0, 30));
+    CHECK(d.app.document.position() == steps + 1);
+    d.enter("inspector/rotation/x", "=turn_z/3");
+    CHECK(shows(10, 0, 30));
+    CHECK(expression_at(d.m(), "bodies.ball1.turn.0") == "turn_z/3");
+  }
+  SECTION("it is typed again as it was, and stays") {
+    d.frames(60);
+    d.click(z);
+    CHECK(d.app.inspector.typing.text == "=turn_z");
+    d.key(key_escape);
+    d.frames(2);
+    CHECK(d.app.document.position() == steps);
+  }
+  SECTION("a number takes its place in one step") {
+    d.enter(z, "45");
+    CHECK(shows(0, 0, 45));
+    CHECK_FALSE(is_rotation_given(d.ball()));
+    CHECK(d.app.document.position() == steps + 1);
+    d.key('Z', true);
+    CHECK(expression_at(d.m(), "bodies.ball1.turn.2") == "turn_z");
+    CHECK(shows(0, 0, 30));
+  }
+  SECTION("dragged by its label it takes the parameter along") {
+    const WidgetRect label = d.widget(z + "/label");
+    d.drag(label.center(), {label.center().x + 40, label.center().y});
+    const double angle = get_parameter(d.m(), "parameters.turn_z") * 180 / 3.14159265358979323846;
+    CHECK(angle > 30.5);
+    CHECK(shows(0, 0, angle));
+  }
+  SECTION("renamed") {
+    edit(d.app, "Rename", [](Mechanism& next, Selection&) { rename_parameter(next, "turn_z", "phi"); });
+    d.frames(2);
+    CHECK(expression_at(d.m(), "bodies.ball1.turn.2") == "phi");
+  }
+}
+
+TEST_CASE("a quaternion given otherwise is shown, and a turn that is typed takes its place") {
+  TallDesk d;
+  d.build();
+  edit(d.app, "By hand", [](Mechanism& next, Selection&) {
+    Body& ball = next.bodies[1];
+    ball.formulas = {{"rotation.0", "sqrt(1 - 0.5^2)"}, {"rotation.3", "0.5"}};
+    evaluate_formulas(next);
+  });
+  d.pick(PartKind::body, "ball1");
+  d.frames(2);
+  CHECK(is_rotation_given(d.ball()));
+  const std::size_t steps = d.app.document.position();
+  d.enter("inspector/rotation/x", "20");
+  CHECK_FALSE(is_rotation_given(d.ball()));
+  CHECK(1 - std::abs(d.ball().rotation.dot(rotation_by({20, 0, 60}))) < 1e-14);
+  CHECK(d.app.document.position() == steps + 1);
+  d.key('Z', true);
+  CHECK(formula_at(d.m(), "bodies.ball1.rotation.3") == "0.5");
 }

@@ -2,6 +2,7 @@
 #include "building.hpp"
 #include "stored_picture.hpp"
 
+#include "app/document/formula_edits.hpp"
 #include "app/session/motion.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/file_commands.hpp"
@@ -59,6 +60,16 @@ TEST_CASE("a joint is being placed") {
   hand.check("editor-placing-joint");
 }
 
+TEST_CASE("a named point is picked for a joint") {
+  Hand hand("governor_parametric.json");
+  hand.key('1');
+  hand.choose(PartKind::joint, "slide");
+  set_tool(hand.app, Tool::point);
+  hand.app.tool.standing = "joints.slide.at";
+  hand.frames(3);
+  hand.check("editor-picking-point");
+}
+
 TEST_CASE("each kind of part has its inspector") {
   SECTION("body") {
     Hand hand("governor.json");
@@ -96,6 +107,17 @@ TEST_CASE("each kind of part has its inspector") {
     Hand hand("governor_parametric.json");
     hand.choose(PartKind::joint, "slide");
     hand.check("inspector-expressions");
+  }
+  SECTION("a body that expressions give") {
+    Hand hand("governor_parametric.json");
+    edit(hand.app, "Turn", [](Mechanism& next, Selection&) {
+      set_expression(next, "bodies.ball1.turn.2", "20 deg");
+      name_number(next, "bodies.ball1.shapes.1.radius", "rod");
+    });
+    hand.app.panels.inspector_share = 0.9f;
+    hand.app.inspector.open["inspector/mass section"] = false;
+    hand.choose(PartKind::body, "ball1");
+    hand.check("inspector-shapes");
   }
   SECTION("several parts") {
     Hand hand("governor.json");

@@ -1,50 +1,29 @@
 #include "app/document/transform.hpp"
+#include "app/document/turns.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/tools/joints_along.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/mass_properties.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <numbers>
 
 namespace flyball {
 
 namespace {
 
-constexpr double degrees_in_radian = 180 / std::numbers::pi;
-
 Selection only(const Body& body) {
   return {{{PartKind::body, body.name}}};
 }
 
-// Rx, then Ry, then Rz, about the world's axes (deg).
-Quat turned(const Vec3& turns) {
-  const Vec3 angles = turns / degrees_in_radian;
-  return Quat(Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
-              Eigen::AngleAxisd(angles.x(), Vec3::UnitX()));
-}
-
-Vec3 turns_of(const Quat& rotation) {
-  const Mat3 r = rotation.normalized().toRotationMatrix();
-  const double y = std::asin(std::clamp(-r(2, 0), -1.0, 1.0));
-  const bool locked = std::abs(r(2, 0)) > 1 - 1e-12; // x and z turn about the same axis then
-  const double x = locked ? 0 : std::atan2(r(2, 1), r(2, 2));
-  const double z = locked ? std::atan2(-r(0, 1), r(1, 1)) : std::atan2(r(1, 0), r(0, 0));
-  Vec3 turns = Vec3(x, y, z) * degrees_in_radian;
-  for (double& turn : turns)
-    turn = std::strtod(fmt::format("{:.9f}", turn).c_str(), nullptr) + 0.0; // no negative zero
-  return turns;
-}
-
-// Angles that were typed stay as typed, though others would turn the body as far.
-Vec3 shown_turns(App& app, const Body& body) {
+// The turns as they are shown: those that expressions give, or else angles that were typed as typed, though
+// others would turn the body as far.
+Turns shown_turns(App& app, const Body& body) {
+  if (std::optional<Turns> given = given_turns(app.mechanism(), body)) return std::move(*given);
   InspectorState& state = app.inspector;
   const Part part{PartKind::body, body.name};
   if (state.turned != part || state.turned_to.coeffs() != body.rotation.coeffs()) {
@@ -52,26 +31,30 @@ Vec3 shown_turns(App& app, const Body& body) {
     state.turned_to = body.rotation;
     state.turns = turns_of(body.rotation);
   }
-  return state.turns;
+  return {state.turns, {}};
 }
 
 void turn_body(App& app, const std::string& name, int axis, double angle) {
   const int index = body_index(app.mechanism(), name);
   if (index < 0) return;
-  Vec3 turns = shown_turns(app, app.mechanism().bodies[static_cast<std::size_t>(index)]);
-  turns[axis] = angle;
+  Turns turns = shown_turns(app, app.mechanism().bodies[static_cast<std::size_t>(index)]);
+  turns.angles[axis] = angle;
+  const bool given = !turns.texts[static_cast<std::size_t>(axis)].empty();
   edit(app, "Turn " + name, [&](Mechanism& mechanism, Selection&) {
     Body& body = mechanism.bodies[static_cast<std::size_t>(index)];
-    const Quat to = turned(turns);
+    const Quat to = rotation_by(turns.angles);
     if (!app.inspector.mass_alone)
       rotate_parts(mechanism, only(body), body.position, to * body.rotation.normalized().conjugate(),
                    joints_of_moved(app, false));
-    body.rotation = to;
+    if (given)
+      body.rotation = to; // what the expression rests on changes
+    else
+      set_turns(body, turns);
   });
   if (!app.inspector.mass_alone)
     tell_joints(app, only(app.mechanism().bodies[static_cast<std::size_t>(index)]), false);
   app.inspector.turned_to = app.mechanism().bodies[static_cast<std::size_t>(index)].rotation;
-  app.inspector.turns = turns;
+  app.inspector.turns = turns.angles;
 }
 
 void move_body(App& app, const std::string& name, int axis, double to) {
@@ -165,6 +148,19 @@ void density_row(App& app, const Body& body) {
                 }});
 }
 
+// Of a rotation whose quaternion is given otherwise than by turns.
+void quaternion_rows(App& app, const Body& body) {
+  const Quat& q = body.rotation;
+  const std::array<double, 4> values{q.w(), q.x(), q.y(), q.z()};
+  constexpr std::array letters{"w", "x", "y", "z"};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto text = formula_at(app.mechanism(), "bodies." + body.name + ".rotation." + std::to_string(i));
+    const std::string value = short_text(values[i], 9);
+    row(app, std::string("Quaternion ") + letters[i], text ? "=" + *text : value, "",
+        text ? (value + "; a turn that is typed takes the place of all four.").c_str() : nullptr);
+  }
+}
+
 } // namespace
 
 bool is_uniform_solid(const Body& body) {
@@ -236,12 +232,16 @@ void rotation_section(App& app, const Body& body) {
   if (!inspector_section(app, "inspector/rotation section", "Rotation as drawn", turned)) return;
   vector_rows(app, "Turned",
               {.name = "inspector/rotation",
-               .value = shown_turns(app, body),
+               .value = shown_turns(app, body).angles,
                .unit = "deg",
-               .help = "The body is turned about the world's x, then y, then z axis.",
+               .help =
+                   "The body is turned about the world's x, then y, then z axis. In an expression angles are "
+                   "in radians unless they have a unit: =30 deg.",
+               .expression = "bodies." + body.name + ".turn",
                .set = [name = body.name](App& changed, int axis, double angle) {
                  turn_body(changed, name, axis, angle);
                }});
+  if (is_rotation_given(body) && !given_turns(app.mechanism(), body)) quaternion_rows(app, body);
 }
 
 void body_inspector(App& app, const Body& body) {

@@ -3,6 +3,8 @@
 #include "app/render/icons.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
@@ -139,7 +141,18 @@ void parameter_row(App& app, const NamedParameter& parameter) {
   ImGui::PopID();
 }
 
+// The point whose row is worked in is selected in the view, and marked in the list.
+void follow_row(App& app, const NamedPoint& point, const std::string& widget, const ImVec2& from) {
+  for (const char* field : {"/name", "/x", "/y", "/z"})
+    if (typing_in(app, widget + field) || has_keyboard(app, widget + field)) select_point(app, point.name);
+  if (selected_point(app) != &point) return;
+  const float x = from.x - 5 * app.scale;
+  ImGui::GetWindowDrawList()->AddRectFilled({x, from.y}, {x + 2 * app.scale, ImGui::GetItemRectMax().y},
+                                            packed(colors_of(app).accent));
+}
+
 void point_rows(App& app, const NamedPoint& point) {
+  const ImVec2 from = ImGui::GetCursorScreenPos();
   const std::string widget = "inspector/point/" + point.name;
   const float width = ImGui::GetContentRegionAvail().x, margin = margin_width(app);
   named_field(app, widget + "/name", point.name, width - margin, rename_point);
@@ -153,6 +166,7 @@ void point_rows(App& app, const NamedPoint& point) {
                .unit = "m",
                .help = "In the world, as drawn; what stands there moves along.",
                .address = "points." + point.name});
+  follow_row(app, point, widget, from);
 }
 
 void points_section(App& app) {

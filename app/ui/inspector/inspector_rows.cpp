@@ -272,8 +272,10 @@ void vector_rows(App& app, const std::string& label, const VectorField& field,
                          .unit = field.unit,
                          .help = field.help,
                          .standard = field.standard,
-                         .axis = i};
+                         .axis = i,
+                         .follow = field.follow};
     if (!field.address.empty()) number.address = field.address + "." + std::to_string(i);
+    if (!field.expression.empty()) number.expression = field.expression + "." + std::to_string(i);
     if (field.set) number.set = [set = field.set, i](App& changed, double value) { set(changed, i, value); };
     quantity_row(app, i == 0 ? label : "", number, i == 0 ? reset : std::function<void(App&)>());
   }

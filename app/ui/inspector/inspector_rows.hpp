@@ -49,9 +49,11 @@ struct VectorField {
   std::string name; // of the widgets: "inspector/at" has "inspector/at/x"
   Vec3 value = Vec3::Zero();
   std::string unit{}, help{};
-  std::string address{}; // of the vector
+  std::string address{};    // of the vector
+  std::string expression{}; // where those of its numbers are kept, if it has no address
   std::function<void(App&, int, double)> set{};
   bool standard = false;
+  std::function<void(const App&, const Mechanism&, Mechanism&)> follow{}; // see QuantityField
 };
 void vector_rows(App& app, const std::string& label, const VectorField& field,
                  const std::function<void(App&)>& reset = {});

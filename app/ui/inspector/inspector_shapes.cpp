@@ -29,6 +29,19 @@ void take_again(const App& app, Body& body, double density) {
   take_mass_properties(body, same ? given->second.density : density);
 }
 
+// The mass follows a shape that an expression gives, unless expressions give what would follow.
+void mass_follows(const App& app, const std::string& name, const Mechanism& before, Mechanism& next) {
+  const int from = body_index(before, name), to = body_index(next, name);
+  if (from < 0 || to < 0) return;
+  const Body& earlier = before.bodies[static_cast<std::size_t>(from)];
+  const bool given = std::ranges::any_of(earlier.formulas, [](const Formula& formula) {
+    return formula.key == "mass" || formula.key.starts_with("position") || formula.key.starts_with("inertia");
+  });
+  const std::optional<double> density = density_of(earlier);
+  if (!earlier.density && !given && density && follows_shapes(app, earlier))
+    take_again(app, next.bodies[static_cast<std::size_t>(to)], *density);
+}
+
 // Edits one shape; the mass follows where it did before.
 void edit_shape(App& app, const std::string& body, std::size_t index, const char* what,
                 const Change& change) {
@@ -53,19 +66,30 @@ struct ShapeRows {
 
   const Shape& shape() const { return body.shapes[index]; }
   Vec3 centre() const { return shape().at.value_or(body.position); }
+  std::string expression(const std::string& key) const {
+    return "bodies." + body.name + ".shapes." + std::to_string(index) + "." + key;
+  }
+  auto follow() const {
+    return [body = body.name](const App& changed, const Mechanism& before, Mechanism& next) {
+      mass_follows(changed, body, before, next);
+    };
+  }
 
-  void length(const std::string& label, const std::string& key, double value, const char* help,
-              const std::function<void(Shape&, double)>& set) const {
+  void length(const std::string& label, const std::string& widget, const std::string& key, double value,
+              const char* help, const std::function<void(Shape&, double)>& set) const {
     quantity_row(app, label,
-                 {.name = name + "/" + key,
+                 {.name = name + "/" + widget,
                   .value = value,
                   .unit = "m",
                   .help = help,
                   .least = Least::above_zero,
-                  .set = [body = body.name, index = index, set](App& changed, double typed) {
-                    edit_shape(changed, body, index, "Size",
-                               [set, typed](Body&, Shape& s) { set(s, typed); });
-                  }});
+                  .expression = expression(key),
+                  .set =
+                      [body = body.name, index = index, set](App& changed, double typed) {
+                        edit_shape(changed, body, index, "Size",
+                                   [set, typed](Body&, Shape& s) { set(s, typed); });
+                      },
+                  .follow = follow()});
   }
 
   void point(const std::string& label, const std::string& key, const Vec3& value, const char* help,
@@ -75,12 +99,14 @@ struct ShapeRows {
                  .value = value,
                  .unit = "m",
                  .help = help,
+                 .expression = expression(key),
                  .set =
                      [body = body.name, index = index, place](App& changed, int axis, double typed) {
                        edit_shape(changed, body, index, "Shape",
                                   [=](Body& b, Shape& s) { place(b, s)[axis] = typed; });
                      },
-                 .standard = standard});
+                 .standard = standard,
+                 .follow = follow()});
   }
 
   void sizes() const {
@@ -90,10 +116,11 @@ struct ShapeRows {
       for (int i = 0; i < 3; ++i) {
         const auto at = static_cast<std::size_t>(i);
         length(std::string("Edge ") + axis_letters[at], std::string("size/") + axis_letters[at],
-               shape().size[i], helps[at], [i](Shape& s, double value) { s.size[i] = value; });
+               "size." + std::to_string(i), shape().size[i], helps[at],
+               [i](Shape& s, double value) { s.size[i] = value; });
       }
     } else {
-      length("Radius", "radius", shape().radius, "Radius of the shape.",
+      length("Radius", "radius", "radius", shape().radius, "Radius of the shape.",
              [](Shape& s, double value) { s.radius = value; });
     }
     if (shape().type == ShapeType::sphere || shape().type == ShapeType::box) {

@@ -69,7 +69,8 @@ void steer(App& app, const ViewInput& input) {
     stop_glide(app);
     app.view.camera.zoom(std::pow(zoom_step, static_cast<double>(io.MouseWheel)), input.cursor, input.size);
   }
-  const bool on_handle = app.tool.hovered != Handle::none || app.tool.hovered_point;
+  const bool on_handle =
+      app.tool.hovered != Handle::none || app.tool.hovered_point || !app.tool.hovered_name.empty();
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && app.view.hovered.kind == PartKind::none &&
       !on_handle && !places(app.tool.tool) &&
       (frames_with_left(app.navigation) || !takes_left_drag(app, input)))

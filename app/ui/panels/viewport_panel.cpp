@@ -4,6 +4,7 @@
 #include "app/ui/panels/legend.hpp"
 #include "app/ui/panels/load_labels.hpp"
 #include "app/ui/panels/view_overlays.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tool_cursor.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/tools/tools_hand.hpp"
@@ -32,6 +33,7 @@ void use_tool(App& app, const ViewInput& input) {
   case Tool::force:
   case Tool::torque:
   case Tool::drag: return use_forces(app, input);
+  case Tool::point: return pick_point(app, input);
   }
 }
 
@@ -53,6 +55,7 @@ void viewport_panel(App& app, const PanelRect& rect) {
   keep_tool_state(app);
   use_tool_cursor(app, input);
   if (use_hand(app, input)) input.pressed = input.released = false;
+  use_points(app, input);
   use_gizmo(app, input);
   use_selecting(app, input);
   const std::uint64_t revision = app.document.revision();

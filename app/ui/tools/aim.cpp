@@ -99,6 +99,7 @@ Aim find_aim(App& app, const ViewInput& input) {
                : nullptr) {
     aim.plane.through = aim.point = point->point;
     aim.what = point->what;
+    aim.named = point->named;
     aim.body = body_at(mechanism, *point, hit, bodies, reach * input.metres_per_pixel());
     return aim;
   }

@@ -92,10 +92,12 @@ Vec2 first_place(App& app, ViewSize view) {
 // Left to right and top to bottom, as they are seen.
 std::optional<Vec2> next_point(App& app, const Vec2& from, ViewSize view, bool back) {
   std::vector<std::pair<double, double>> places;
-  for (const SnapPoint& snap : cached_snap_points(app))
+  for (const SnapPoint& snap : cached_snap_points(app)) {
+    if (app.tool.tool == Tool::point && snap.named.empty()) continue;
     if (const auto at = app.view.camera.project(snap.point, view))
       if (at->x() >= 0 && at->y() >= 0 && at->x() < view.width && at->y() < view.height)
         places.emplace_back(std::round(at->x()), std::round(at->y()));
+  }
   if (places.empty()) return std::nullopt;
   std::ranges::sort(places);
   const std::pair now(std::round(from.x()), std::round(from.y()));

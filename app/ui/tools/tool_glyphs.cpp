@@ -198,6 +198,7 @@ void draw_tool_glyph(ImDrawList& list, Tool tool, ImVec2 center, float half, ImU
   case Tool::force: return draw_force(pen);
   case Tool::torque: return draw_torque(pen);
   case Tool::drag: return draw_stream(pen);
+  case Tool::point: return; // begun from a field, not from the strip
   }
 }
 

@@ -1,6 +1,7 @@
 #include "app/ui/tools/tools.hpp"
 
 #include "app/ui/commands.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools_hand.hpp"
 #include "app/ui/tools/typed_size.hpp"
 
@@ -105,6 +106,7 @@ void keep_tool_state(App& app) {
   if (tool.grab && (other || app.mode != Mode::build)) let_go(app, true);
   if (other) drop_begun(tool);
   tool.begun = tool.tool;
+  if (!selected_point(app)) tool.point.clear();
   if (tool.first && !has_body(app, tool.first->body)) drop_begun(tool);
   if (tool.joint && !(has_body(app, tool.joint->bodies[0]) && has_body(app, tool.joint->bodies[1])))
     tool.joint.reset();
@@ -135,6 +137,9 @@ bool step_back(App& app) {
   } else if (tool.tool != Tool::select) {
     tool.tool = Tool::select;
     return true;
+  } else if (!tool.point.empty()) {
+    tool.point.clear();
+    return true;
   } else {
     return false;
   }
@@ -152,7 +157,25 @@ void end_tool(App& app, const ViewInput& input) {
   if (!input.shift) app.tool.tool = Tool::select;
 }
 
-std::string tool_hint(const App& app) {
+namespace {
+
+// Of what a click or the end of a drag would leave at a named point; empty: nothing.
+std::string standing_hint(const App& app) {
+  const ToolState& tool = app.tool;
+  const std::string& name = tool.grab ? tool.grab->stands : tool.caches.aim.named;
+  const bool takes = tool.grab || (tool.tool == Tool::joint && !tool.joint) || tool.tool == Tool::distance ||
+                     tool.tool == Tool::spring || tool.tool == Tool::damper || tool.tool == Tool::force ||
+                     tool.tool == Tool::torque || tool.tool == Tool::drag;
+  return takes && !name.empty() ? "It stands at " + name + " then, and moves with it. " : "";
+}
+
+// "arm" of "joints.arm.at".
+std::string owner_of(const std::string& address) {
+  const std::string path = address.substr(address.find('.') + 1);
+  return path.substr(0, path.find('.'));
+}
+
+std::string hint_of_tool(const App& app) {
   const ToolState& tool = app.tool;
   if (tool.grab)
     return std::string(tool.snap ? "Ctrl drags freely." : "Ctrl snaps.") +
@@ -192,8 +215,16 @@ std::string tool_hint(const App& app) {
   case Tool::force: return "Click a point of a body: a force of 1 N downwards. Esc ends.";
   case Tool::torque: return "Click a body: a torque of 1 N m about the line of sight. Esc ends.";
   case Tool::drag: return "Click a point of a body that the air holds back. Esc ends.";
+  case Tool::point:
+    return "Click the named point where " + owner_of(tool.standing) + " shall stand. Esc ends.";
   }
   return "";
+}
+
+} // namespace
+
+std::string tool_hint(const App& app) {
+  return standing_hint(app) + hint_of_tool(app);
 }
 
 const std::vector<SnapPoint>& cached_snap_points(App& app) {

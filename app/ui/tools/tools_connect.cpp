@@ -2,6 +2,7 @@
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/tools/typed_size.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -43,14 +44,17 @@ void add(App& app, const ViewInput& input, const Aim& from, const Aim& to) {
   const std::array<Vec3, 2> points{from.point, to.point};
   const Tool tool = app.tool.tool;
   edit(app, "Add " + word_of(tool), [&](Mechanism& mechanism, Selection& selection) {
-    switch (tool) {
-    case Tool::rod:
+    if (tool == Tool::rod)
       return selection.set({PartKind::body, add_body(mechanism, rod_between(input, points[0], points[1]))});
-    case Tool::distance: return selection.set({PartKind::joint, add_distance(mechanism, bodies, points)});
-    case Tool::spring:
-      return selection.set({PartKind::force, add_spring(mechanism, bodies, points, stiffness, 0)});
-    default: return selection.set({PartKind::force, add_spring(mechanism, bodies, points, 0, damping)});
-    }
+    Part part;
+    if (tool == Tool::distance)
+      part = {PartKind::joint, add_distance(mechanism, bodies, points)};
+    else
+      part = {PartKind::force, tool == Tool::spring ? add_spring(mechanism, bodies, points, stiffness, 0)
+                                                    : add_spring(mechanism, bodies, points, 0, damping)};
+    stand_at(mechanism, point_address(mechanism, {part, 0}), from.named);
+    stand_at(mechanism, point_address(mechanism, {part, 1}), to.named);
+    selection.set(part);
   });
 }
 
@@ -92,6 +96,7 @@ Aim second_end(const App& app, const ViewInput& input, const Aim& from, const Ai
   const auto length = typed_length(app.tool.typed, app.units, &mistake);
   if (!length) return seen;
   Aim end = seen;
+  end.named.clear();
   end.point = from.point + *length * direction(app, input, from, seen);
   return end;
 }

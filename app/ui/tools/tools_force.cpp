@@ -1,6 +1,7 @@
 // Forces, torques and drag: one click on a body.
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 
 #include <cmath>
@@ -41,8 +42,9 @@ void use_forces(App& app, const ViewInput& input) {
   }
   const ForceType type = type_of(tool.tool);
   edit(app, "Add " + std::string(type_name(type)), [&](Mechanism& mechanism, Selection& selection) {
-    selection.set(
-        {PartKind::force, add_force(mechanism, type, aim.body, aim.point, first_vector(app, input, aim))});
+    const std::string name = add_force(mechanism, type, aim.body, aim.point, first_vector(app, input, aim));
+    stand_at(mechanism, "forces." + name + ".at", aim.named);
+    selection.set({PartKind::force, name});
   });
   tool.last_point = aim.point;
   end_tool(app, input);

@@ -1,10 +1,12 @@
 // Moving and turning the selected parts by handles in the view. A drag is one step of the history, made of
 // the state it began with at every movement.
+#include "app/document/formula_edits.hpp"
 #include "app/session/quantity.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/gizmo_drawing.hpp"
 #include "app/ui/tools/joints_along.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/viewport/snapping.hpp"
 
@@ -26,8 +28,15 @@ std::optional<PointId> only_point(const Mechanism& mechanism, const Selection& s
   return first;
 }
 
+// The one point that is held.
+std::optional<PointId> point_of(const Mechanism& mechanism, const Grab& grab) {
+  return grab.point ? grab.point : only_point(mechanism, grab.selection);
+}
+
 void move_grabbed(Mechanism& mechanism, const Grab& grab, const Vec3& target, OuterJoints joints) {
-  if (const auto point = grab.point ? grab.point : only_point(mechanism, grab.selection))
+  if (const int named = point_index(mechanism, grab.named); named >= 0)
+    mechanism.points[static_cast<std::size_t>(named)].at = target;
+  else if (const auto point = point_of(mechanism, grab))
     set_point(mechanism, *point, target, joints);
   else
     move_parts(mechanism, grab.selection, target - grab.centre, joints);
@@ -43,6 +52,10 @@ std::optional<Vec3> other_end(const Grab& grab) {
 std::vector<SnapPoint> targets_of(const Grab& grab) {
   Mechanism moved = *grab.before;
   move_grabbed(moved, grab, grab.centre + Vec3(1.2345e3, 2.3456e3, 3.4567e3), OuterJoints::follow);
+  try {
+    settle_formulas(*grab.before, moved); // what the same point or parameter gives moves along
+  } catch (const SceneError&) {           // it cannot be moved so far
+  }
   std::vector<SnapPoint> stayed = snap_points(moved), before = snap_points(*grab.before);
   const auto place = [](const SnapPoint& p) { return std::array{p.point.x(), p.point.y(), p.point.z()}; };
   std::ranges::sort(before, {}, place);
@@ -54,6 +67,7 @@ std::vector<SnapPoint> targets_of(const Grab& grab) {
 std::string step_name(const Grab& grab) {
   const std::vector<Part>& parts = grab.selection.parts;
   const std::string what = parts.size() == 1 ? parts[0].name : std::to_string(parts.size()) + " parts";
+  if (!grab.named.empty()) return "Move " + grab.named;
   if (grab.point) return "Move end of " + what;
   return (is_ring(grab.handle) ? "Rotate " : "Move ") + what;
 }
@@ -63,6 +77,7 @@ void take_hold(App& app, const ViewInput& input, const Gizmo& gizmo, Handle hand
   Grab grab;
   grab.handle = handle;
   grab.point = std::move(point);
+  if (const NamedPoint* named = selected_point(app)) grab.named = named->name;
   grab.normal = gizmo.normal;
   grab.before = app.document.steps()[app.document.position()].mechanism;
   grab.selection = app.selection();
@@ -82,6 +97,7 @@ void edit_grabbed(App& app, const std::function<void(Mechanism&)>& change) {
     mechanism = *grab.before;
     selection = grab.selection;
     change(mechanism);
+    settle_formulas(*grab.before, mechanism); // not by what an earlier movement has made of it
   });
   app.gesture = gesture;
 }
@@ -112,6 +128,7 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
   const std::array<bool, 3> free = free_coordinates(grab.handle, grab.normal);
   Vec3 target = grab.centre + *by;
   grab.what.clear();
+  grab.stands.clear();
   const Quantity typed = parse_quantity(grab.typed, "m", shown_unit("m", app.units).text);
   const bool arrow = std::ranges::count(free, true) == 1;
   // Along the arrow; else as far from the other end, or from where it was, on the line to where the hand is.
@@ -127,6 +144,7 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
       grab.what = point->what;
       for (int i = 0; i < 3; ++i)
         if (free[static_cast<std::size_t>(i)]) target[i] = point->point[i];
+      if (target == point->point && point_of(*grab.before, grab)) grab.stands = point->named;
     }
   } else if (!input.moved) {
     return; // a press does not move anything
@@ -137,6 +155,8 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
   grab.shift = input.shift;
   edit_grabbed(app, [&](Mechanism& mechanism) {
     move_grabbed(mechanism, grab, target, joints_of_moved(app, input.shift));
+    if (const auto point = point_of(mechanism, grab))
+      stand_at(mechanism, point_address(mechanism, *point), grab.stands);
   });
   tell_joints(app, grab.selection, input.shift);
 }
@@ -195,13 +215,14 @@ void let_go(App& app, bool keep) {
 void use_gizmo(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
   const bool wanted = app.mode == Mode::build && (tool.tool == Tool::select || tool.tool == Tool::rotate);
-  const auto centre = wanted ? cached_centre(app) : std::nullopt;
+  const NamedPoint* named = selected_point(app);
+  const auto centre = !wanted ? std::nullopt : named ? std::optional(named->at) : cached_centre(app);
   const Handle before = std::exchange(tool.hovered, Handle::none);
   if (!centre) {
     tool.hovered_point.reset();
     return;
   }
-  Gizmo gizmo{tool.tool == Tool::rotate ? GizmoKind::rings : GizmoKind::arrows,
+  Gizmo gizmo{tool.tool == Tool::rotate && !named ? GizmoKind::rings : GizmoKind::arrows,
               *centre,
               axis_in_view(input.camera),
               input.camera,

@@ -3,6 +3,7 @@
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/joint_guess.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/snapping.hpp"
@@ -26,6 +27,7 @@ void begin_joint(App& app, const ViewInput& input, const Aim& aim) {
   draft.before = app.tool.joint ? app.tool.joint->before : app.selection();
   const double reach = snap_reach * input.point * input.metres_per_pixel();
   draft.at = aim.point;
+  draft.named = aim.named;
   draft.bodies = guess_bodies(app.mechanism(), cached_scene(app).instances, draft.before, draft.at, reach);
   if (draft.bodies[1].empty()) {
     app.notice = "There is nothing to join yet: place a body first.";
@@ -111,8 +113,10 @@ bool make_joint(App& app) {
   if (!draft || draft->picking_axis || draft->bodies[0] == draft->bodies[1]) return false;
   edit(app, "Join " + draft->bodies[0] + " and " + draft->bodies[1],
        [&](Mechanism& mechanism, Selection& selection) {
-         selection.set({PartKind::joint, add_joint(mechanism, app.tool.joint_type, draft->bodies, draft->at,
-                                                   draft->axis, draft->axis2)});
+         const std::string name =
+             add_joint(mechanism, app.tool.joint_type, draft->bodies, draft->at, draft->axis, draft->axis2);
+         stand_at(mechanism, "joints." + name + ".at", draft->named);
+         selection.set({PartKind::joint, name});
        });
   app.tool.joint.reset();
   if (!ImGui::GetIO().KeyShift) app.tool.tool = Tool::select;

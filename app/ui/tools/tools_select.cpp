@@ -1,6 +1,7 @@
 // Pointing at parts, picking them, and framing them.
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/box_select.hpp"
@@ -22,7 +23,8 @@ namespace {
 // mechanism under it.
 void point_at_parts(App& app, const ViewInput& input) {
   const bool steering = input.active && (input.moved || !input.held);
-  const bool handle = app.tool.hovered != Handle::none || app.tool.hovered_point || app.tool.grab;
+  const bool handle = app.tool.hovered != Handle::none || app.tool.hovered_point || app.tool.grab ||
+                      !app.tool.hovered_name.empty();
   if ((!input.hovered && !input.released) || steering || handle) {
     app.view.hovered = {};
     app.view.pointed_at = Vec2::Constant(-1);
@@ -39,7 +41,8 @@ void point_at_parts(App& app, const ViewInput& input) {
 // A tool that attaches something shows to which body it would.
 void point_at_body(App& app, const ViewInput& input) {
   const Tool tool = app.tool.tool;
-  const bool attaches = tool != Tool::ball && tool != Tool::block && tool != Tool::rod && tool != Tool::plate;
+  const bool attaches = tool != Tool::ball && tool != Tool::block && tool != Tool::rod &&
+                        tool != Tool::plate && tool != Tool::point;
   app.view.hovered = {};
   app.view.pointed_at = Vec2::Constant(-1);
   if (attaches && input.hovered)
@@ -47,6 +50,8 @@ void point_at_body(App& app, const ViewInput& input) {
 }
 
 void click_part(App& app, const ViewInput& input) {
+  if (!app.tool.hovered_name.empty()) return select_point(app, app.tool.hovered_name);
+  app.tool.point.clear();
   const Part part = part_of(*shown_mechanism(app), app.view.hovered);
   Selection selection = app.selection();
   if (!input.ctrl && !input.shift)

@@ -6,16 +6,15 @@
 #include "app/session/quantity.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/widgets/number_menu.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
-#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -58,22 +57,17 @@ Quantity typed_quantity(const App& app, const std::string& text, const QuantityF
   return typed_quantity(text, field.unit, shown_unit(field.unit, app.units).text);
 }
 
-// The expression that gives the number, or nothing.
-std::optional<std::string> formula_of(const App& app, const QuantityField& field) {
-  if (field.address.empty() || !field.various.empty()) return {};
-  return formula_at(app.mechanism(), field.address);
-}
-
 bool is_expression(const QuantityField& field, std::string_view text) {
-  return !field.address.empty() && text.starts_with('=');
+  return !place_of(field).empty() && text.starts_with('=');
 }
 
 // What a typed expression does; a point's name alone gives all three numbers of a vector.
 void set_typed_expression(Mechanism& mechanism, const QuantityField& field, const std::string& text) {
-  if (field.axis >= 0 && field.unit == "m" && point_index(mechanism, text) >= 0)
-    stand_at_point(mechanism, field.address.substr(0, field.address.rfind('.')), text);
+  const std::string vector = vector_of(field);
+  if (!vector.empty() && point_index(mechanism, text) >= 0)
+    stand_at_point(mechanism, vector, text);
   else
-    set_expression(mechanism, field.address, text);
+    set_expression(mechanism, place_of(field), text);
 }
 
 std::string mistake_in(const App& app, const std::string& text, const QuantityField& field) {
@@ -81,7 +75,7 @@ std::string mistake_in(const App& app, const std::string& text, const QuantityFi
     try {
       Mechanism copy = app.document.stored();
       set_typed_expression(copy, field, text.substr(1));
-      return too_small(get_parameter(copy, field.address), field.least);
+      return too_small(expressed_value(copy, place_of(field)), field.least);
     } catch (const SceneError& error) {
       return error.expected();
     }
@@ -97,18 +91,23 @@ double rounded(double value) {
 
 // What was typed: an expression, or a number by itself.
 void take_typed(App& app, const QuantityField& field, const std::string& typed) {
-  const std::string step = "Set " + parameter_phrase(field.address);
+  const std::string step = "Set " + parameter_phrase(place_of(field));
+  const auto follow = [&](Mechanism& mechanism) {
+    if (field.follow) field.follow(app, app.document.stored(), mechanism);
+  };
   if (is_expression(field, typed))
     return edit(app, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
       set_typed_expression(mechanism, field, typed.substr(1));
+      follow(mechanism);
       std::erase_if(mechanism.sliders,
                     [&](const Slider& each) { return formula_at(mechanism, each.parameter).has_value(); });
     });
   const double value = typed_quantity(app, typed, field).value;
   if (formula_of(app, field))
     return edit(app, step, [&](Mechanism& mechanism, Selection&) {
-      set_expression(mechanism, field.address, "");
-      set_parameter(mechanism, field.address, value);
+      const std::optional<Unit> unit = parse_unit(field.unit); // SI, or degrees
+      set_by_itself(mechanism, place_of(field), unit ? times_unit(value, unit->factor) : value);
+      follow(mechanism);
     });
   if (field.set) return field.set(app, value);
   set_number(app, field.address, value);
@@ -225,52 +224,6 @@ std::string tooltip(const QuantityField& field, const ShownNumber& shown,
   if (formula) line("=" + *formula);
   if (!field.address.empty()) line(field.address);
   return text;
-}
-
-// "m" for a mass, "stiffness" for a stiffness: a name to begin with.
-std::string suggested_name(const Mechanism& mechanism, const std::string& address) {
-  std::string last = parameter_phrase(address);
-  last = last.substr(0, last.find(" of "));
-  std::string name;
-  for (const char c : last)
-    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  return free_name(mechanism, is_expression_name(name) ? name : "p");
-}
-
-// Of a number of the scene, asked for by the right button or the menu key.
-void number_menu(App& app, const QuantityField& field, const std::optional<std::string>& formula,
-                 bool asked) {
-  if (field.address.empty() || !field.various.empty() || field.name.starts_with("parameters/")) return;
-  ImGui::PushID(field.name.c_str());
-  if (asked || takes_menu_key(app, field.name)) ImGui::OpenPopup("number");
-  if (ImGui::BeginPopup("number")) {
-    const std::string phrase = parameter_phrase(field.address);
-    if (!field.address.starts_with("parameters.")) {
-      if (ImGui::Selectable("Name this number"))
-        later(app, [address = field.address, phrase](App& changed) {
-          const std::string name = suggested_name(changed.document.stored(), address);
-          edit(changed, "Name " + phrase,
-               [&](Mechanism& mechanism, Selection&) { name_number(mechanism, address, name); });
-          if (parameter_index(changed.mechanism(), name) >= 0)
-            changed.notice =
-                "The " + phrase + " is the parameter " + name +
-                " now, with a slider. It is renamed in the scene's inspector, where nothing is selected.";
-        });
-      note_widget(app.widgets, field.name + "/name it");
-    }
-    if (formula) {
-      if (ImGui::Selectable("Leave the value without its expression"))
-        later(app, [address = field.address, phrase](App& changed) {
-          edit(changed, "Take the expression off " + phrase,
-               [&](Mechanism& mechanism, Selection&) { set_expression(mechanism, address, ""); });
-        });
-      note_widget(app.widgets, field.name + "/take off");
-    }
-    if (ImGui::Selectable("Copy the address")) ImGui::SetClipboardText(field.address.c_str());
-    note_widget(app.widgets, field.name + "/copy address");
-    ImGui::EndPopup();
-  }
-  ImGui::PopID();
 }
 
 void pin_button(App& app, const QuantityField& field, bool row_hovered) {
@@ -410,7 +363,7 @@ void quantity_field(App& app, const QuantityField& field, float width) {
     if (const Quantity typed = typed_quantity(app, app.inspector.typing.text, field))
       set(app, field, typed.value);
   }
-  number_menu(app, field, formula, asked);
+  number_menu(app, field, asked);
 }
 
 void quantity_row(App& app, const std::string& label, const QuantityField& field,

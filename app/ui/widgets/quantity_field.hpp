@@ -19,12 +19,15 @@ struct QuantityField {
   std::string help; // one sentence
   Least least = Least::any;
   std::string address{};                   // "" where it has none
+  std::string expression{};                // where its expression is kept, if it has no address
   std::function<void(App&, double)> set{}; // an edit; if empty, of the number at the address
   std::string various{};                   // shown instead of the value: several parts differ
   bool standard = false;                   // the value stands for an absent one: shown faintly
   int axis = -1;                           // 0 to 2: its label ends in x, y or z
   bool framed = true;                      // or plain digits to the right until it is pointed at
-  bool at_once = false;                    // `set` is called while drawing: for a number outside the document
+  // What else follows where an expression is typed, or a number over one.
+  std::function<void(const App&, const Mechanism& before, Mechanism& next)> follow{};
+  bool at_once = false; // `set` is called while drawing: for a number outside the document
 };
 
 // Without a label.
