@@ -22,16 +22,19 @@ MapChoice of_cells(MapChoice choice) {
 MapChoice of_curves(MapChoice choice) {
   for (MapAxis& axis : choice.axes)
     axis.count = 0;
-  if (!choice.level) choice.coordinate.clear();
+  if (!choice.level) choice.shown.clear();
   return choice;
 }
 
-MapCell cell_of(const Solution& solution, const std::string& coordinate) {
-  MapCell cell{std::numeric_limits<double>::quiet_NaN(), std::nullopt};
-  if (solution.status != Status::converged) return cell;
+MapCell cell_of(const Solution& solution, const std::string& shown) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (solution.status != Status::converged) return {none, std::nullopt};
   for (const CoordinateSolution& c : solution.coordinates)
-    if (coordinate_label(c) == coordinate) cell = {c.value, solution.stable};
-  return cell;
+    if (const auto found = found_number(c); found && found->name == shown)
+      return {found->value, solution.stable};
+  for (const MeasureSolution& m : solution.measures)
+    if (m.name == shown) return {m.value.value_or(none), solution.stable};
+  return {none, std::nullopt};
 }
 
 MapCells find_cells(const Mechanism& mechanism, const MapChoice& choice,
@@ -49,7 +52,7 @@ MapCells find_cells(const Mechanism& mechanism, const MapChoice& choice,
   MapCells cells;
   cells.reserve(points.size());
   for (const SweepPoint& point : points)
-    cells.push_back(cell_of(point.solution, choice.coordinate));
+    cells.push_back(cell_of(point.solution, choice.shown));
   return cells;
 }
 
@@ -68,7 +71,7 @@ MapCurves find_curves(const Mechanism& mechanism, const MapChoice& choice,
     context.progress({now.phase, 1 - share + share * std::max(0., now.part)});
   };
   if (choice.level)
-    found.level = coordinate_curves(mechanism, axes[0], axes[1], choice.coordinate, *choice.level, options);
+    found.level = value_curves(mechanism, axes[0], axes[1], choice.shown, *choice.level, options);
   return found;
 }
 
@@ -142,14 +145,12 @@ bool choose(Session& session) {
     if (address.empty()) return false;
     choice.axes[i] = map_axis(session, address);
   }
-  if (map_coordinate(session)) return true;
-  for (const CoordinateSolution& c : session.answer.summary.coordinates)
-    if (!c.driven) {
-      choice.coordinate = coordinate_label(c);
-      choice.level.reset();
-      return true;
-    }
-  return false;
+  const std::vector<MapQuantity> all = map_quantities(session);
+  if (std::ranges::find(all, choice.shown, &MapQuantity::name) != all.end()) return true;
+  if (all.empty()) return false;
+  choice.shown = all.front().name;
+  choice.level.reset();
+  return true;
 }
 
 } // namespace
@@ -186,12 +187,26 @@ MapAxis map_axis(const Session& session, const std::string& address) {
   return axis;
 }
 
-const CoordinateSolution* map_coordinate(const Session& session) {
-  const auto& shown =
-      converged(session) ? session.answer.solution.coordinates : session.answer.summary.coordinates;
-  for (const CoordinateSolution& c : shown)
-    if (!c.driven && coordinate_label(c) == session.study.map.choice.coordinate) return &c;
-  return nullptr;
+std::vector<MapQuantity> map_quantities(const Session& session) {
+  const bool solved = converged(session);
+  std::vector<MapQuantity> all;
+  for (const CoordinateSolution& c :
+       solved ? session.answer.solution.coordinates : session.answer.summary.coordinates)
+    if (const auto found = found_number(c))
+      all.push_back({found->name, std::string(found->unit), found->value, !c.dependent});
+  for (const NamedMeasure& measure : session.mechanism().measures) {
+    MapQuantity& quantity = all.emplace_back(MapQuantity{measure.name, measure.unit, {}, true});
+    if (!solved) continue;
+    for (const MeasureSolution& m : session.answer.solution.measures)
+      if (m.name == measure.name) quantity.value = m.value;
+  }
+  return all;
+}
+
+std::optional<MapQuantity> map_quantity(const Session& session) {
+  for (MapQuantity& quantity : map_quantities(session))
+    if (quantity.name == session.study.map.choice.shown) return std::move(quantity);
+  return {};
 }
 
 void compute_map(Session& session) {
@@ -251,7 +266,8 @@ void update_map(Session& session) {
   if (session.mode != Mode::explore || !session.mistakes.empty() || !session.answer.ticket) return;
   map.refusal.clear();
   if (!choose(session)) {
-    map.refusal = "A map is over two numbers and shows a free coordinate, and there are not as many here.";
+    map.refusal =
+        "A map is over two numbers and shows a free coordinate or a measure, and there are not as many here.";
     return;
   }
   // What is shown may be over numbers that are there no more.

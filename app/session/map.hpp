@@ -1,5 +1,5 @@
-// A coordinate over the plane of two parameters, with the curves of folds in it. Nothing of it is made before
-// a person asks.
+// A coordinate or measure over the plane of two parameters, with the curves of folds in it. Nothing of it is
+// made before a person asks.
 #pragma once
 
 #include "app/session/study.hpp"
@@ -27,9 +27,9 @@ struct MapAxis {
 // What is wanted of a map.
 struct MapChoice {
   std::array<MapAxis, 2> axes;
-  std::string coordinate; // label of the coordinate that is shown
+  std::string shown; // name of the quantity
   bool folds = true;
-  std::optional<double> level{}; // rad or m: the curve on which the coordinate keeps this value
+  std::optional<double> level{}; // SI: the curve on which the quantity keeps this value
   bool operator==(const MapChoice&) const = default;
 };
 
@@ -41,7 +41,7 @@ struct MapRequest {
 };
 
 struct MapCell {
-  double value = 0; // rad or m; not a number where there is no steady state
+  double value = 0; // SI; not a number where there is no steady state, or it is undefined
   std::optional<bool> stable;
 };
 using MapCells = std::vector<MapCell>; // the first axis fastest
@@ -77,8 +77,16 @@ double map_seconds(const Session& session); // since it was begun
 std::vector<std::string> map_addresses(const Session& session);
 // An axis over the number, with the range of its slider or of one that suits it.
 MapAxis map_axis(const Session& session, const std::string& address);
-// The coordinate that is shown, with its present value; null where there is none.
-const CoordinateSolution* map_coordinate(const Session& session);
+// What can be shown: free coordinates, speeds that are found, measures.
+struct MapQuantity {
+  std::string name;            // as `design` wants it
+  std::string unit;            // SI
+  std::optional<double> value; // now
+  bool followed = false;       // there is a curve on which it keeps a value
+};
+std::vector<MapQuantity> map_quantities(const Session& session);
+// That which is; nothing where there is none.
+std::optional<MapQuantity> map_quantity(const Session& session);
 // Both parameters, as one step of the history.
 void go_to_place(Session& session, const std::array<double, 2>& place);
 

@@ -8,6 +8,7 @@
 #include "engine/search/all_equilibria.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/study/design.hpp"
+#include "engine/study/wanted.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -36,7 +37,7 @@ class Tracer {
 
   // A point of the curve near `state` with parameter `fixed` as it is. False where there is none.
   bool start(ExtendedState& state, int fixed) {
-    if (type_ != PlaneCurveType::coordinate) balance_.set_borders(state);
+    if (type_ != PlaneCurveType::value) balance_.set_borders(state);
     return balance_.correct(state, unit(fixed)).converged && intact(state);
   }
 
@@ -101,7 +102,7 @@ class Tracer {
 
   // `length` further along; the number of iterations, 0 where it fails.
   int step(const ExtendedState& from, const Eigen::VectorXd& tangent, double length, ExtendedState& to) {
-    if (type_ != PlaneCurveType::coordinate) balance_.set_borders(from);
+    if (type_ != PlaneCurveType::value) balance_.set_borders(from);
     to = from;
     balance_.move(to, length * tangent);
     balance_.set(to.parameters);
@@ -200,7 +201,7 @@ class Tracer {
       }
     }
     if (part < 1e-9) return; // stands on it
-    if (type_ != PlaneCurveType::coordinate) balance_.set_borders(state);
+    if (type_ != PlaneCurveType::value) balance_.set_borders(state);
     ExtendedState last = state;
     balance_.move(last, part * length * tangent);
     last.parameters[border] = there[border] > 1 ? high_[border] : low_[border];
@@ -345,7 +346,7 @@ class Plane {
     ResponsePoint p =
         response_point(balance.mechanism(), balance.judged(), s.z, {}, {false, false}, balance.workspace());
     PlanePoint out{s.parameters[0], s.parameters[1], std::move(p.coordinates), {}};
-    if (type == PlaneCurveType::coordinate) out.stable = p.stable;
+    if (type == PlaneCurveType::value) out.stable = p.stable;
     return out;
   }
 
@@ -367,7 +368,7 @@ std::string_view word(PlaneCurveType type) {
   switch (type) {
   case PlaneCurveType::fold: return "fold";
   case PlaneCurveType::branch_point: return "branch_point";
-  case PlaneCurveType::coordinate: return "coordinate";
+  case PlaneCurveType::value: return "value";
   }
   return "";
 }
@@ -405,11 +406,13 @@ PlaneCurves fold_curves(const Mechanism& mechanism, const PlaneAxis& x, const Pl
   return plane.finish("fold or crossing");
 }
 
-PlaneCurves coordinate_curves(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
-                              const std::string& coordinate, double value, const PlaneOptions& options) {
+PlaneCurves value_curves(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
+                         const std::string& name, double value, const PlaneOptions& options) {
   Plane plane(mechanism, x, y, options);
-  ExtendedBalance balance =
-      plane.balance({coordinate_is(free_coordinate(plane.system(), coordinate), value)});
+  const Wanted wanted = find_wanted(mechanism, plane.system(), name);
+  ExtendedBalance balance = plane.balance(
+      {wanted.coordinate ? coordinate_is(*wanted.coordinate, value)
+                         : measure_is(wanted.measure, value, value != 0 ? std::abs(value) : 1)});
   plane.for_lines([&](const Plane::Line& line) {
     const PlaneAxis& along = plane.moving(line);
     DesignOptions ask;
@@ -417,13 +420,12 @@ PlaneCurves coordinate_curves(const Mechanism& mechanism, const PlaneAxis& x, co
     ask.largest_step = options.largest_step;
     ask.cancel = options.cancel;
     ask.progress = plane.along_line();
-    const DesignAnswer answer =
-        design(plane.on(line), along.address, along.from, along.to, coordinate, value, ask);
+    const DesignAnswer answer = design(plane.on(line), along.address, along.from, along.to, name, value, ask);
     // Not reaching the value on one line is no failure.
     const bool solved = answer.lowest <= answer.highest && answer.highest != 0;
     plane.heard(solved ? Status::converged : answer.status, answer.message);
     for (const DesignSolution& s : answer.solutions)
-      plane.add(balance, PlaneCurveType::coordinate, line, s.parameter, s.at.coordinates);
+      plane.add(balance, PlaneCurveType::value, line, s.parameter, s.at.coordinates);
   });
   return plane.finish("such");
 }

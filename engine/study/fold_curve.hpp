@@ -1,7 +1,7 @@
 // Curves in the plane of two parameters: where the equilibria fold, where branches cross, and where a
-// coordinate keeps a value. Traced by pseudo-arclength continuation of the balance together with the
-// condition, minimally augmented (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, 2000,
-// chapters 3 and 4), within a box and both ways.
+// coordinate or a measure keeps a value. Traced by pseudo-arclength continuation of the balance together with
+// the condition, minimally augmented (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria,
+// 2000, chapters 3 and 4), within a box and both ways.
 #pragma once
 
 #include "engine/continuation/branches.hpp"
@@ -14,13 +14,13 @@ struct PlaneAxis {
   double from = 0, to = 1;
 };
 
-enum class PlaneCurveType { fold, branch_point, coordinate };
+enum class PlaneCurveType { fold, branch_point, value };
 std::string_view word(PlaneCurveType type);
 
 struct PlanePoint {
   double x = 0, y = 0; // the two parameters
   std::vector<CoordinateSolution> coordinates;
-  std::optional<bool> stable; // of coordinate curves; a fold is on the edge
+  std::optional<bool> stable; // of curves of a value; a fold is on the edge
 };
 
 struct PlaneCurve {
@@ -55,9 +55,9 @@ struct PlaneOptions {
 PlaneCurves fold_curves(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
                         const PlaneOptions& options = {});
 
-// Curves on which `coordinate` ("joint" or "joint.index") is `value` (rad or m). Throws SceneError for an
+// Curves on which what is wanted (see find_wanted) is `value`, in its SI unit. Throws SceneError for an
 // address or a coordinate that does not exist or is driven.
-PlaneCurves coordinate_curves(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
-                              const std::string& coordinate, double value, const PlaneOptions& options = {});
+PlaneCurves value_curves(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
+                         const std::string& name, double value, const PlaneOptions& options = {});
 
 } // namespace flyball

@@ -35,7 +35,7 @@ double solved(Mechanism m, const MapChoice& choice, double x, double y) {
   set_parameter(m, choice.axes[0].address, x);
   set_parameter(m, choice.axes[1].address, y);
   const Solution solution = Analysis(m).solve();
-  return solution.status == Status::converged ? value(solution, choice.coordinate) : NAN;
+  return solution.status == Status::converged ? value(solution, choice.shown) : NAN;
 }
 
 } // namespace
@@ -129,9 +129,9 @@ TEST_CASE("a click in the map sets both numbers as one step, and the answer is t
   REQUIRE(robot.app.plots.map.plot.marker);
   CHECK(robot.app.plots.map.plot.marker->x == place[0]);
   CHECK(robot.app.plots.map.plot.marker->y == place[1]);
-  const CoordinateSolution* shown = map_coordinate(app);
+  const std::optional<MapQuantity> shown = map_quantity(app);
   REQUIRE(shown);
-  CHECK(shown->value == Approx(solved(app.mechanism(), choice, place[0], place[1])).epsilon(1e-9));
+  CHECK(shown->value.value() == Approx(solved(app.mechanism(), choice, place[0], place[1])).epsilon(1e-9));
   // Moving in its own plane does not compute the map anew.
   CHECK_FALSE(robot.map().stale);
   undo(app);
@@ -196,7 +196,7 @@ TEST_CASE("on the curve of a constant value the coordinate has it") {
   for (const PlaneCurve& curve : robot.map().curves.found->result.level->curves)
     for (const PlanePoint& p : curve.points)
       for (const CoordinateSolution& c : p.coordinates)
-        if (c.joint == robot.map().choice.coordinate) {
+        if (c.joint == robot.map().choice.shown) {
           CHECK(c.value == Approx(level).epsilon(1e-9));
           ++points;
         }
@@ -205,6 +205,46 @@ TEST_CASE("on the curve of a constant value the coordinate has it") {
   CHECK(std::ranges::any_of(robot.app.plots.map.plot.curves,
                             [&](const PlotCurve& c) { return c.name.starts_with("arm1 = 45.012"); }));
   CHECK(app.widgets.count("map/level/value") == 1);
+}
+
+TEST_CASE("a map shows a measure, and the curve on which it keeps its value") {
+  MapRobot robot("governor_parametric");
+  MapChoice& choice = robot.map().choice;
+  choice.axes[0].count = choice.axes[1].count = 9;
+  choice.shown = "height";
+  robot.frames(2);
+  const MapQuantity now = map_quantity(robot.app).value();
+  CHECK(now.unit == "m");
+  REQUIRE(robot.map().cells.found);
+  const auto& cells = robot.map().cells.found->result;
+  std::size_t solved_cells = 0;
+  for (const MapCell& cell : cells)
+    solved_cells += std::isfinite(cell.value);
+  CHECK(solved_cells > 20);
+  robot.click("map/level");
+  robot.frames(3);
+  REQUIRE(robot.map().curves.found);
+  REQUIRE(robot.map().curves.found->result.level);
+  const double level = robot.map().choice.level.value();
+  CHECK(level == now.value);
+  std::size_t points = 0;
+  for (const PlaneCurve& curve : robot.map().curves.found->result.level->curves)
+    for (std::size_t i = 0; i < curve.points.size(); i += 10) {
+      Mechanism m = robot.app.mechanism();
+      const std::array<ParameterValue, 2> place{
+          {{choice.axes[0].address, curve.points[i].x}, {choice.axes[1].address, curve.points[i].y}}};
+      set_parameters(m, place);
+      SolveOptions options;
+      options.nearest = true;
+      for (const CoordinateSolution& c : curve.points[i].coordinates)
+        if (!c.driven && !c.dependent) options.start.emplace_back(c.joint, c.value);
+      const Solution s = Analysis(m).solve(options);
+      REQUIRE(s.status == Status::converged);
+      CHECK(s.measures.front().name == "height");
+      CHECK(s.measures.front().value.value() == Approx(level).epsilon(1e-9));
+      ++points;
+    }
+  CHECK(points > 2);
 }
 
 TEST_CASE("a map in the background tells its progress, can be stopped, and goes with its tab") {

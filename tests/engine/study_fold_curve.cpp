@@ -87,7 +87,7 @@ TEST_CASE("the branch point of the conical pendulum over gravity", "[plane]") {
 TEST_CASE("the curve of a constant coordinate", "[plane]") {
   // cos(a) = g / (w^2 L)
   const PlaneCurves plane =
-      coordinate_curves(conical(0.7, 0, 1), {speed, 1, 10}, {"gravity.1", -30, -1}, "swing", 0.8);
+      value_curves(conical(0.7, 0, 1), {speed, 1, 10}, {"gravity.1", -30, -1}, "swing", 0.8);
   INFO(plane.message);
   REQUIRE(plane.status == Status::converged);
   REQUIRE(plane.curves.size() == 1);
@@ -104,7 +104,7 @@ TEST_CASE("the curve of a constant coordinate", "[plane]") {
 TEST_CASE("the governor's collar at 0.12 m over speed and stiffness agrees with solves", "[plane]") {
   const Mechanism m = shipped("governor");
   const std::string stiffness = "joints.slide.spring.stiffness";
-  const PlaneCurves plane = coordinate_curves(m, {speed, 2, 20}, {stiffness, 200, 3000}, "slide", 0.12);
+  const PlaneCurves plane = value_curves(m, {speed, 2, 20}, {stiffness, 200, 3000}, "slide", 0.12);
   INFO(plane.message);
   REQUIRE_FALSE(plane.curves.empty());
   for (const PlaneCurve& curve : plane.curves)
@@ -131,7 +131,7 @@ TEST_CASE("no folds is an answer, mistakes are refused and cancelling ends", "[p
   CHECK(none.curves.empty());
   CHECK(none.message.find("No ") == 0);
   CHECK_THROWS_AS(fold_curves(shipped("governor"), {"no.thing", 8, 12}, {speed, 8, 15}), SceneError);
-  CHECK_THROWS_AS(coordinate_curves(shipped("governor"), {speed, 8, 12}, {"gravity.1", -9, -8}, "spin", 1),
+  CHECK_THROWS_AS(value_curves(shipped("governor"), {speed, 8, 12}, {"gravity.1", -9, -8}, "spin", 1),
                   SceneError);
   const std::atomic<bool> cancel = true;
   PlaneOptions options;

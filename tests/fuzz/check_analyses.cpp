@@ -172,7 +172,7 @@ Complaint map_curves(const Mechanism& m, const Range& x, const Range& y, const s
   if (const auto complaint = about(fold_curves(m, axis(x), axis(y), options))) return complaint;
   const std::string coordinate = a_coordinate(Analysis(m));
   if (coordinate.empty()) return std::nullopt;
-  return about(coordinate_curves(m, axis(x), axis(y), coordinate, 0.1, options));
+  return about(value_curves(m, axis(x), axis(y), coordinate, 0.1, options));
 }
 
 } // namespace

@@ -84,14 +84,14 @@ void point_counts(App& app) {
              field("map/y/count", 1));
 }
 
-void coordinate_choice(App& app) {
+void quantity_choice(App& app) {
   MapChoice& choice = app.study.map.choice;
   std::vector<std::string> names;
-  for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if (!c.driven) names.push_back(coordinate_label(c));
-  if (const auto chosen = name_choice_row(app, "map/coordinate", "Colour", names, choice.coordinate,
-                                          "The coordinate that the colours tell.")) {
-    choice.coordinate = *chosen;
+  for (const MapQuantity& quantity : map_quantities(app))
+    names.push_back(quantity.name);
+  if (const auto chosen = name_choice_row(app, "map/shown", "Colour", names, choice.shown,
+                                          "The coordinate or measure that the colours tell.")) {
+    choice.shown = *chosen;
     choice.level.reset();
   }
 }
@@ -101,19 +101,19 @@ void curve_choices(App& app) {
   if (check_row(app, "map/folds", "Folds and crossings", choice.folds,
                 "The curves on which equilibria meet and vanish, or branches cross."))
     choice.folds = !choice.folds;
-  const CoordinateSolution* shown = map_coordinate(app);
-  if (shown && shown->dependent) return; // what follows from the others cannot be asked for
+  const std::optional<MapQuantity> shown = map_quantity(app);
+  if (shown && !shown->followed) return; // what follows from the others cannot be asked for
   if (check_row(app, "map/level", "Curve of a constant value", choice.level.has_value(),
-                "The curve on which the coordinate keeps a value.")) {
+                "The curve on which it keeps a value.")) {
     if (choice.level)
       choice.level.reset();
     else
-      choice.level = shown ? shown->value : 0;
+      choice.level = shown ? shown->value.value_or(0) : 0;
   }
   if (!choice.level || !shown) return;
   double value = *choice.level;
-  if (plain_quantity_field(app, "map/level/value", "Value", shown->angle ? "rad" : "m",
-                           "What the coordinate is on the curve.", value))
+  if (plain_quantity_field(app, "map/level/value", "Value", shown->unit.c_str(), "What it is on the curve.",
+                           value))
     choice.level = value;
 }
 
@@ -162,11 +162,11 @@ void map_panel(App& app) {
   MapView& drawn = app.plots.map;
   ImGui::BeginChild("choices", {map_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-  if (!map.choice.coordinate.empty() && app.mistakes.empty()) {
+  if (!map.choice.shown.empty() && app.mistakes.empty()) {
     axis_choice(app, 0);
     axis_choice(app, 1);
     point_counts(app);
-    coordinate_choice(app);
+    quantity_choice(app);
     curve_choices(app);
   }
   map_words(app);

@@ -5,6 +5,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -53,7 +54,7 @@ void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level)
       line.name = "crossings";
       line.color = plot_color::purple;
       break;
-    case PlaneCurveType::coordinate:
+    case PlaneCurveType::value:
       line.name = level;
       line.color = plot_color::orange;
       break;
@@ -66,7 +67,7 @@ void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level)
     bool before_unstable = false;
     std::array<double, 2> last{};
     for (const PlanePoint& p : curve.points) {
-      const bool dashed = curve.type == PlaneCurveType::coordinate && p.stable == false;
+      const bool dashed = curve.type == PlaneCurveType::value && p.stable == false;
       PlotCurve& mine = dashed ? unstable : line;
       if (before && dashed != before_unstable) {
         mine.points.push_back({no_value_here, no_value_here});
@@ -120,29 +121,24 @@ void draw_map(App& app) {
   };
   plot.x = axis_for(axes[0]);
   plot.y = axis_for(axes[1]);
-  const CoordinateSolution* shown = nullptr;
-  for (const CoordinateSolution& c : app.answer.summary.coordinates)
-    if (coordinate_label(c) == choice.coordinate) shown = &c;
-  const bool angle = shown && shown->angle;
-  const std::string coordinate = angle ? "rad" : "m";
-  const ShownUnit unit = coordinate_unit(angle, app.units);
-  PlotHeat heat{.x = values_of(axes[0]),
-                .y = values_of(axes[1]),
-                .values = {},
-                .label = choice.coordinate,
-                .unit = coordinate};
+  const std::vector<MapQuantity> quantities = map_quantities(app);
+  const auto shown = std::ranges::find(quantities, choice.shown, &MapQuantity::name);
+  const std::string si = shown == quantities.end() ? "" : shown->unit;
+  const ShownUnit unit = shown_unit(si, app.units);
+  PlotHeat heat{
+      .x = values_of(axes[0]), .y = values_of(axes[1]), .values = {}, .label = choice.shown, .unit = si};
   heat.values.reserve(cells.size());
   for (const MapCell& cell : cells)
     heat.values.push_back(cell.value);
   if (PlotCurve hatch = hatching(cells, heat.x, heat.y); !hatch.points.empty())
     plot.curves.push_back(std::move(hatch));
-  show_heat(heat, coordinate, app.units);
+  show_heat(heat, si, app.units);
   plot.heat = std::move(heat);
   const auto& curves = map.curves.found;
   if (curves && curves->result.folds) add_curves(plot, *curves->result.folds, "");
   if (curves && curves->result.level && map.choice.level)
     add_curves(plot, *curves->result.level,
-               choice.coordinate + " = " + short_text(unit.shown(*map.choice.level), 5) + " " + unit.text);
+               choice.shown + " = " + short_text(unit.shown(*map.choice.level), 5) + " " + unit.text);
   show_axis(plot, 0, axis_unit(app, axes[0]), app.units);
   show_axis(plot, 1, axis_unit(app, axes[1]), app.units);
   plot.marker = drawn.plot.marker;

@@ -15,8 +15,8 @@ namespace flyball {
 
 namespace {
 
-constexpr float states_words_width = 292;    // points
-constexpr std::size_t most_coordinates = 48; // columns; Dear ImGui takes 64
+constexpr float states_words_width = 292; // points
+constexpr std::size_t most_numbers = 58;  // columns; Dear ImGui takes 64
 constexpr ImGuiTableFlags states_table_flags =
     ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
     ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;
@@ -104,19 +104,42 @@ float value_width(const App& app, const std::string& text) {
 // One equilibrium as it is written into the table.
 struct StateLine {
   std::string potential;
-  std::vector<std::string> values, details; // of the free coordinates; details: in SI with the error
+  std::vector<std::string> values, details; // of the numbers; details: in SI with the error
 };
+
+// What is told of an equilibrium: free coordinates and speeds that are found, then measures.
+struct StateNumber {
+  std::string name, unit; // SI
+  std::optional<double> value;
+  double error = 0;
+  std::string reason; // where there is no value
+};
+
+std::vector<StateNumber> numbers_of(const Solution& solution) {
+  std::vector<StateNumber> all;
+  for (const CoordinateSolution& c : solution.coordinates)
+    if (const auto found = found_number(c))
+      all.push_back({found->name, std::string(found->unit), found->value, found->error, ""});
+  for (const MeasureSolution& m : solution.measures)
+    all.push_back({m.name, m.unit, m.value, m.error.value_or(0), m.reason});
+  all.resize(std::min(all.size(), most_numbers));
+  return all;
+}
 
 StateLine line_of(const Solution& solution, const NumberStyle& numbers, const DisplayUnits& units) {
   StateLine line;
   line.potential = solution.potential ? short_text(*solution.potential, 8) : "–";
-  for (const CoordinateSolution& c : solution.coordinates) {
-    if (c.driven || line.values.size() == most_coordinates) continue;
-    const ShownUnit shown = coordinate_unit(c.angle, units);
-    line.values.push_back(value_text(shown.shown(c.value), c.error * shown.factor, numbers));
-    const std::string unit = c.angle ? " rad" : " m";
-    std::string detail = coordinate_label(c) + ": " + value_text(c.value, c.error, numbers) + unit;
-    if (c.error > 0) detail += " ± " + magnitude_text(std::max(c.error, numbers.noise), numbers) + unit;
+  for (const StateNumber& n : numbers_of(solution)) {
+    if (!n.value) {
+      line.values.push_back("–");
+      line.details.push_back(n.name + ": " + n.reason);
+      continue;
+    }
+    const ShownUnit shown = shown_unit(n.unit, units);
+    line.values.push_back(value_text(shown.shown(*n.value), n.error * shown.factor, numbers));
+    const std::string unit = n.unit.empty() ? "" : " " + n.unit;
+    std::string detail = n.name + ": " + value_text(*n.value, n.error, numbers) + unit;
+    if (n.error > 0) detail += " ± " + magnitude_text(std::max(n.error, numbers.noise), numbers) + unit;
     line.details.push_back(std::move(detail));
   }
   return line;
@@ -186,9 +209,10 @@ std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
        "The amended potential: of weight, springs and constant forces, less the kinetic "
        "energy of the drives' motion. Where it is least a state is stable.",
        0}};
-  for (const CoordinateSolution& c : all.front().coordinates)
-    if (!c.driven && columns.size() < 3 + most_coordinates)
-      columns.push_back({coordinate_label(c) + " [" + coordinate_unit(c.angle, app.units).text + "]", "", 0});
+  for (const StateNumber& n : numbers_of(all.front())) {
+    const std::string unit = shown_unit(n.unit, app.units).text;
+    columns.push_back({unit.empty() ? n.name : n.name + " [" + unit + "]", "", 0});
+  }
   for (std::size_t i = 2; i < columns.size(); ++i) {
     float& width = columns[i].width;
     width = ImGui::CalcTextSize(columns[i].title.c_str()).x;
