@@ -76,16 +76,20 @@ Plot histogram_plot(const SpreadAnswer& answer, std::size_t output) {
     (answer.fate[i] == SampleFate::elsewhere ? elsewhere : followed).push_back(value);
   }
   const SpreadStatistics &f = shown.followed, &e = shown.elsewhere;
-  const double width = bin_width(f);
-  if (f.count > 0) plot.bands.push_back(bars(followed, f.least, f.most, width, "samples", plot_color::blue));
-  if (e.count > 0) {
-    const double own = width > 0 && (e.most - e.least) / width <= 2 * most_bins ? width : bin_width(e);
-    // Whole bins of the same width, so that heights compare.
-    const double reach = own > 0 ? std::max(1., std::ceil((e.most - e.least) / own)) * own : 0;
-    plot.bands.push_back(
-        bars(elsewhere, e.least, e.least + reach, own, "in another steady state", plot_color::orange));
+  double width = bin_width(f), others = bin_width(e);
+  // Bars of one width, so that heights compare, unless the others would be very many.
+  if (others <= 0 || (width > 0 && (e.most - e.least) / width <= 2 * most_bins)) others = width;
+  if (f.most - f.least < others) width = others; // which all fit in one
+  if (f.count > 0) {
+    const double spare = std::max(0., width - (f.most - f.least)) / 2;
+    plot.bands.push_back(bars(followed, f.least - spare, f.most + spare, width, "samples", plot_color::blue));
   }
-  if (shown.linear_deviation > 0 && width > 0) plot.curves.push_back(normal_curve(shown, width));
+  if (e.count > 0) {
+    const double reach = others > 0 ? std::max(1., std::ceil((e.most - e.least) / others)) * others : 0;
+    plot.bands.push_back(
+        bars(elsewhere, e.least, e.least + reach, others, "in another steady state", plot_color::orange));
+  }
+  if (width > 0 && shown.linear_deviation > width / 4) plot.curves.push_back(normal_curve(shown, width));
   double highest = 0;
   for (const PlotBand& band : plot.bands)
     for (const auto& point : band.points)

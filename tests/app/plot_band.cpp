@@ -120,6 +120,22 @@ TEST_CASE("a histogram holds each sample once, and the normal curve as many") {
   CHECK(area / width == Approx(800).epsilon(1e-3));
   CHECK(spread_csv(answer, tolerances, 1).starts_with("a,fate,slide\n"));
 
+  SECTION("samples that are alike but for rounding have one bar as wide as those of the others") {
+    for (std::size_t i = 0; i < 1000; ++i)
+      if (answer.fate[i] == SampleFate::followed) answer.values[0][i] *= 1e-17;
+    answer.counts = {};
+    add_statistics(tolerances, 1, answer);
+    answer.outputs[0].linear_deviation = 1e-17;
+    const Plot narrow = histogram_plot(answer, 0);
+    REQUIRE(narrow.bands.size() == 2);
+    CHECK(narrow.bands[0].points.size() == 4);
+    CHECK(count(narrow.bands[0]) == 800);
+    const auto& others = narrow.bands[1].points;
+    const auto& bar = narrow.bands[0].points;
+    CHECK(bar[2][0] - bar[1][0] == Approx(others[2][0] - others[1][0]));
+    CHECK((bar[1][0] + bar[2][0]) / 2 == Approx(0).margin(1e-12));
+    CHECK(narrow.curves.empty());
+  }
   SECTION("samples that are all alike have one bar") {
     for (double& value : answer.values[0])
       value = 3;
