@@ -10,6 +10,7 @@
 #include "app/ui/panels.hpp"
 #include "app/ui/panels/context_menu.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
 
 #include <algorithm>
@@ -38,6 +39,9 @@ constexpr KeyPress ctrl_shift(int key) {
 
 bool any_selected(const App& app) {
   return !app.selection().empty();
+}
+bool can_delete(const App& app) {
+  return any_selected(app) || selected_point(app);
 }
 bool holds_parts(const App& app) {
   return !app.mechanism().bodies.empty();
@@ -194,7 +198,7 @@ const std::array all_commands{
             .key = plain(keys::del),
             .also = plain(keys::backspace),
             .run = delete_selected,
-            .enabled = any_selected},
+            .enabled = can_delete},
     Command{.id = "edit.mirror",
             .title = "Mirror…",
             .help = "Make the mirror image of the selected bodies, with what holds them.",

@@ -3,8 +3,10 @@
 #include "app/document/clipboard.hpp"
 #include "app/document/copies.hpp"
 #include "app/document/create.hpp"
+#include "app/document/formula_edits.hpp"
 #include "app/document/remove.hpp"
 #include "app/document/transform.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <imgui.h>
@@ -57,7 +59,10 @@ void remove_selected(Session& session, const std::string& step, const std::strin
 } // namespace
 
 void delete_selected(App& app) {
-  if (!app.selection().empty()) remove_selected(app, "Delete", "Deleted");
+  if (!app.selection().empty()) return remove_selected(app, "Delete", "Deleted");
+  if (const NamedPoint* point = selected_point(app))
+    edit(app, "Remove " + point->name,
+         [name = point->name](Mechanism& mechanism, Selection&) { remove_point(mechanism, name); });
 }
 
 namespace {

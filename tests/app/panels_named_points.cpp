@@ -113,6 +113,11 @@ TEST_CASE("a named point is selected by its name and dragged with all that stand
   CHECK(s.app.tool.point.empty());
   s.click("point/B");
   CHECK(s.app.tool.point == "B");
+  s.key(261); // Delete: what stood there stays
+  s.frames(2);
+  CHECK(point_index(s.m(), "B") < 0);
+  s.key('Z', true);
+  s.click("point/B");
   s.pick(the_hinge);
   CHECK(s.app.tool.point.empty());
 }
