@@ -11,9 +11,9 @@
 
 namespace flyball::test {
 
-// `work` (with the flag as const std::atomic<bool>&) runs beside this thread, and may take more threads. It is
-// asked to stop when they have used `after` seconds of the processor. Returns how much they use from then on
-// (s), or nothing where it came to its end before.
+// `work` (with the flag as const std::atomic<bool>&) runs beside this thread, and may take more threads. It
+// is asked to stop when they have used `after` seconds of the processor. Returns how much they use from then
+// on (s), or nothing where it came to its end before.
 template <class Work>
 std::optional<double> time_to_stop(double after, const Work& work) {
   const auto used = [] {

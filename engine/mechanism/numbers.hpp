@@ -24,7 +24,7 @@ std::vector<Number> numbers_of(const Mechanism& mechanism, Force& force);
 std::vector<Number> numbers_of(NamedParameter& parameter); // "value" alone
 std::vector<Number> numbers_of(NamedPoint& point);         // "0", "1", "2"
 // With those that expressions may give, though they have no address.
-std::vector<Number> all_numbers_of(Body& body); // "rotation.0"
+std::vector<Number> all_numbers_of(Body& body);                     // "rotation.0"
 std::vector<Number> all_numbers_of(Shape& shape, const Body& body); // "at.0" also where it is absent
 // The parts without a name, whose keys are whole addresses.
 std::vector<Number> numbers_of_gravity(Vec3& gravity);

@@ -19,7 +19,8 @@ GridFollower::GridFollower(const Mechanism& mechanism, std::span<const Variation
   Mechanism trial = mechanism;
   for (auto each = taken.begin(); each != taken.end(); ++each) {
     set_parameter(trial, *each, get_parameter(mechanism, *each));
-    if (std::find(taken.begin(), each, *each) != each) throw SceneError(*each, "expected another number: it is varied already");
+    if (std::find(taken.begin(), each, *each) != each)
+      throw SceneError(*each, "expected another number: it is varied already");
   }
 }
 
