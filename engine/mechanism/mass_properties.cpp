@@ -45,7 +45,7 @@ struct Solid {
       centre = N(0.5) * (from + to);
     } else {
       line.setZero();
-      centre = shape.at ? read(*shape.at) : read(mass_centre);
+      centre = read(shape.at, read(mass_centre));
     }
   }
 

@@ -10,7 +10,8 @@
 
 namespace flyball {
 
-// What a number is known by: where it is kept, or would be were it given.
+// What a number is known by: where it is kept, or would be were it given. (An optional keeps what it holds
+// where it begins, so that its number is known by one place, given or not.)
 inline const void* place_of(const double& number) {
   return &number;
 }
@@ -18,7 +19,7 @@ inline const void* place_of(const std::optional<double>& number) {
   return &number;
 }
 inline const void* place_of(const std::optional<Vec3>& vector, int i) {
-  return reinterpret_cast<const char*>(&vector) + i;
+  return reinterpret_cast<const double*>(&vector) + i;
 }
 
 class NumberRates {

@@ -159,7 +159,12 @@ struct Analysis::State {
     std::vector<std::string> addresses;
     for (const Slider& slider : mechanism->sliders)
       addresses.push_back(slider.parameter);
-    const auto rates = sensitivities(steady.factored(problem), *mechanism, addresses);
+    std::vector<Eigen::VectorXd> rates = sensitivities(steady.factored(problem), *mechanism, addresses);
+    for (std::size_t i = rates.size(); i-- > 0;)
+      if (rates[i].size() == 0) { // none that is finite
+        rates.erase(rates.begin() + static_cast<std::ptrdiff_t>(i));
+        addresses.erase(addresses.begin() + static_cast<std::ptrdiff_t>(i));
+      }
     for (std::size_t i = 0; i < rates.size(); ++i)
       out.sensitivities.push_back(name_rates(system, addresses[i], rates[i]));
     if (measures.empty() || rates.empty()) return;

@@ -1,5 +1,6 @@
 #include "engine/solve/sensitivity.hpp"
 
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
 #include "engine/system/balance_rate.hpp"
 
@@ -16,7 +17,12 @@ std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechan
   std::vector<Eigen::VectorXd> all;
   Eigen::VectorXd step, multipliers;
   for (std::size_t i = 0; i < addresses.size(); ++i) {
-    numbers.rates(i, rates);
+    try {
+      numbers.rates(i, rates);
+    } catch (const SceneError&) { // such as of a square root at zero
+      all.emplace_back();
+      continue;
+    }
     balance.evaluate(problem.system, mechanism, rates, problem.parameters, at.z.q, at.z.lambda);
     newton_step(problem, balance.force(), balance.phi(), at.w, step, multipliers);
     all.push_back(step.cwiseProduct(problem.scaling.column));

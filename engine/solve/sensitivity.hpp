@@ -12,8 +12,8 @@ namespace flyball {
 
 // By parameter: the rate of each coordinate of q_R (rad or m, as a step) per unit of the number at that
 // address, at a steady state of `mechanism`; df/dp is exact (BalanceRate). Empty at a singular state, where
-// the answer has no rate. Throws SceneError for an address that does not exist and for a number that moves
-// others at no finite rate.
+// the answer has no rate; an empty vector for a number that moves others at no finite rate. Throws SceneError
+// for an address that does not exist.
 std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
                                            std::span<const std::string> addresses);
 

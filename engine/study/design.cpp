@@ -184,7 +184,7 @@ class Designer {
                           w);
     s.at.parameter = s.parameter;
     const auto rates = sensitivities(factor_at(problem, state.z, w), balance_->mechanism(), {&address_, 1});
-    if (!rates.empty()) {
+    if (!rates.empty() && rates[0].size() == system_.nv) {
       if (wanted_.coordinate)
         s.rate = found_gradient(system_, problem.parameters, state.z.q, *wanted_.coordinate).dot(rates[0]);
       else if (const double rate =

@@ -128,7 +128,9 @@ bool SteadyMap::find_rates(const State& state) try {
   const FactoredState factored = factor_at(p, state.z, w_);
   negative_ = factored.kkt().negative_count();
   const std::vector<Eigen::VectorXd> found = sensitivities(factored, varied_, addresses_);
-  if (found.empty()) return false;
+  if (found.empty() ||
+      !std::ranges::all_of(found, [&](const Eigen::VectorXd& rate) { return rate.size() == system_.nv; }))
+    return false;
   state_rates_.resize(system_.nv, count());
   for (Eigen::Index k = 0; k < count(); ++k)
     state_rates_.col(k) = found[static_cast<std::size_t>(k)];

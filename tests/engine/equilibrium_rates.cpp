@@ -168,6 +168,14 @@ TEST_CASE("expressions, densities and drawn lengths pass rates on", "[sensitivit
   CHECK(std::abs(rates.find(place_of(ball.position[1])).value()) < 1e-16);
 }
 
+TEST_CASE("a number that may be absent is known by one place", "[sensitivity]") {
+  const std::optional<double> number = 1;
+  CHECK(place_of(number) == place_of(*number));
+  const std::optional<Vec3> vector = Vec3(1, 2, 3);
+  for (const int i : {0, 1, 2})
+    CHECK(place_of(vector, i) == place_of((*vector)[i]));
+}
+
 TEST_CASE("a number without a finite rate is named", "[sensitivity]") {
   Mechanism m = shipped("governor_parametric");
   m.parameters.push_back({"zero", "", 0, "", {}});
@@ -178,4 +186,11 @@ TEST_CASE("a number without a finite rate is named", "[sensitivity]") {
   const VariedNumbers numbers(m, {&address, 1});
   CHECK_THROWS_WITH(numbers.rates(0, rates), ContainsSubstring("rate of change is not finite") &&
                                                  ContainsSubstring("bodies." + m.bodies.back().name));
+  // The others' rates stay.
+  const std::size_t told = solve(m).sensitivities.size();
+  REQUIRE(told > 0);
+  m.sliders.push_back({address, 0, 1, SliderScale::linear, ""});
+  const Solution s = solve(m);
+  CHECK(s.status == Status::converged);
+  CHECK(s.sensitivities.size() == told);
 }
