@@ -29,11 +29,14 @@ struct Function {
 
 Dual arc_tangent(Dual y, Dual x) {
   const double square = x.value * x.value + y.value * y.value;
-  return {std::atan2(y.value, x.value), (x.value * y.rate - y.value * x.rate) / square};
+  const double turn = x.value * y.rate - y.value * x.rate;
+  const bool still = x.rate == 0 && y.rate == 0; // has no rate, even where it would have none that is finite
+  return {std::atan2(y.value, x.value), still ? 0 : turn / square};
 }
 Dual hypotenuse(Dual a, Dual b) {
   const double length = std::hypot(a.value, b.value);
-  return {length, (a.value * a.rate + b.value * b.rate) / length};
+  const bool still = a.rate == 0 && b.rate == 0;
+  return {length, still ? 0 : (a.value * a.rate + b.value * b.rate) / length};
 }
 
 constexpr std::array functions{
