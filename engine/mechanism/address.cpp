@@ -163,6 +163,15 @@ void put_number(Mechanism& mechanism, std::string_view address, double value) {
   find_number(mechanism, address).set(value);
 }
 
+bool has_number(const Mechanism& mechanism, std::string_view address) {
+  try {
+    find_number(mechanism, address);
+    return true;
+  } catch (const SceneError&) {
+    return false;
+  }
+}
+
 std::string parameter_unit(const Mechanism& mechanism, std::string_view address) {
   return find_number(mechanism, address).unit;
 }

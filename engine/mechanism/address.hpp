@@ -31,6 +31,7 @@ void set_parameter(Mechanism& mechanism, std::string_view address, double value)
 void set_parameters(Mechanism& mechanism, std::span<const ParameterValue> values);
 // Changes this number alone, even one that an expression gives; throws SceneError like get_parameter.
 void put_number(Mechanism& mechanism, std::string_view address, double value);
+bool has_number(const Mechanism& mechanism, std::string_view address);
 // Unit of the number, as shown to a person: "rad/s", "N/m", "kg", "" where it has none.
 std::string parameter_unit(const Mechanism& mechanism, std::string_view address);
 // Every address that can be set, in the scene's order: of numbers that no expression gives.

@@ -35,8 +35,8 @@ Dual arc_tangent(Dual y, Dual x) {
 }
 Dual hypotenuse(Dual a, Dual b) {
   const double length = std::hypot(a.value, b.value);
-  const bool still = a.rate == 0 && b.rate == 0;
-  return {length, still ? 0 : (a.value * a.rate + b.value * b.rate) / length};
+  // At the origin the way out of it, as of |x| at zero.
+  return {length, length == 0 ? std::hypot(a.rate, b.rate) : (a.value * a.rate + b.value * b.rate) / length};
 }
 
 constexpr std::array functions{

@@ -17,6 +17,8 @@ class VariedNumbers {
   // expression gives, and as FormulaPlan does.
   VariedNumbers(Mechanism& mechanism, std::span<const std::string> addresses);
 
+  std::size_t size() const { return places_.size(); }
+
   // Sets them all, by address, and all that expressions make of them; several of the same address one after
   // the other. Throws SceneError for a value that is not finite or of which an expression can make nothing;
   // the mechanism is then as it was. Allocates nothing else (but see FormulaPlan).

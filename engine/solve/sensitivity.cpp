@@ -1,22 +1,25 @@
 #include "engine/solve/sensitivity.hpp"
 
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/varied_numbers.hpp"
 #include "engine/system/balance_rate.hpp"
 
 namespace flyball {
 
 std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
                                            std::span<const std::string> addresses) {
+  // They are not set: rates alone are asked for.
+  return sensitivities(at, mechanism, VariedNumbers(const_cast<Mechanism&>(mechanism), addresses));
+}
+
+std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
+                                           const VariedNumbers& numbers) {
   if (at.kkt().singular()) return {};
   const Problem& problem = at.problem;
-  // They are not set: rates alone are asked for.
-  const VariedNumbers numbers(const_cast<Mechanism&>(mechanism), addresses);
   NumberRates rates;
   BalanceRate balance;
   std::vector<Eigen::VectorXd> all;
   Eigen::VectorXd step, multipliers;
-  for (std::size_t i = 0; i < addresses.size(); ++i) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
     try {
       numbers.rates(i, rates);
     } catch (const SceneError&) { // such as of a square root at zero

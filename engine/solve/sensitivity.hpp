@@ -2,7 +2,7 @@
 // -df/dp.
 #pragma once
 
-#include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
 #include "engine/solve/factored_state.hpp"
 
 #include <span>
@@ -16,5 +16,8 @@ namespace flyball {
 // for an address that does not exist.
 std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
                                            std::span<const std::string> addresses);
+// The same of all these numbers of the mechanism, which are found already.
+std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
+                                           const VariedNumbers& numbers);
 
 } // namespace flyball

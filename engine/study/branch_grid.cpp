@@ -4,8 +4,6 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/validate.hpp"
 
-#include <algorithm>
-
 namespace flyball {
 
 GridFollower::GridFollower(const Mechanism& mechanism, std::span<const Variation> over, std::string address,
@@ -16,12 +14,10 @@ GridFollower::GridFollower(const Mechanism& mechanism, std::span<const Variation
   std::vector<std::string> taken{address_};
   for (const Variation& v : over_)
     taken.push_back(v.address);
+  expect_each_once(taken);
   Mechanism trial = mechanism;
-  for (auto each = taken.begin(); each != taken.end(); ++each) {
-    set_parameter(trial, *each, get_parameter(mechanism, *each));
-    if (std::find(taken.begin(), each, *each) != each)
-      throw SceneError(*each, "expected another number: it is varied already");
-  }
+  for (const std::string& each : taken)
+    set_parameter(trial, each, get_parameter(mechanism, each));
 }
 
 GridBranches GridFollower::follow(std::size_t i) const {

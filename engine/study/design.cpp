@@ -58,12 +58,10 @@ class Designer {
 
  private:
   void prepare() {
-    const double largest = std::max({std::abs(value_), std::abs(out_.lowest), std::abs(out_.highest)});
-    if (!wanted_.coordinate && std::isfinite(largest) && largest > 0) scale_ = largest;
+    scale_ = scale_of_measure(value_, out_.lowest, out_.highest);
     balance_.emplace(system_, with_parameter(mechanism_, address_, from_), std::vector{address_},
                      Eigen::VectorXd::Constant(1, std::abs(to_ - from_)),
-                     std::vector{wanted_.coordinate ? coordinate_is(*wanted_.coordinate, value_)
-                                                    : measure_is(wanted_.measure, value_, scale_)});
+                     std::vector{wanted_is(wanted_, value_, out_.lowest, out_.highest)});
   }
 
   void solve_along() {

@@ -410,9 +410,6 @@ PlaneCurves value_curves(const Mechanism& mechanism, const PlaneAxis& x, const P
                          const std::string& name, double value, const PlaneOptions& options) {
   Plane plane(mechanism, x, y, options);
   const Wanted wanted = find_wanted(mechanism, plane.system(), name);
-  ExtendedBalance balance = plane.balance(
-      {wanted.coordinate ? coordinate_is(*wanted.coordinate, value)
-                         : measure_is(wanted.measure, value, value != 0 ? std::abs(value) : 1)});
   plane.for_lines([&](const Plane::Line& line) {
     const PlaneAxis& along = plane.moving(line);
     DesignOptions ask;
@@ -424,6 +421,7 @@ PlaneCurves value_curves(const Mechanism& mechanism, const PlaneAxis& x, const P
     // Not reaching the value on one line is no failure.
     const bool solved = answer.lowest <= answer.highest && answer.highest != 0;
     plane.heard(solved ? Status::converged : answer.status, answer.message);
+    ExtendedBalance balance = plane.balance({wanted_is(wanted, value, answer.lowest, answer.highest)});
     for (const DesignSolution& s : answer.solutions)
       plane.add(balance, PlaneCurveType::value, line, s.parameter, s.at.coordinates);
   });

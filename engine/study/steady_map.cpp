@@ -127,7 +127,7 @@ bool SteadyMap::find_rates(const State& state) try {
   const Problem p = problem();
   const FactoredState factored = factor_at(p, state.z, w_);
   negative_ = factored.kkt().negative_count();
-  const std::vector<Eigen::VectorXd> found = sensitivities(factored, varied_, addresses_);
+  const std::vector<Eigen::VectorXd> found = sensitivities(factored, varied_, *numbers_);
   if (found.empty() ||
       !std::ranges::all_of(found, [&](const Eigen::VectorXd& rate) { return rate.size() == system_.nv; }))
     return false;
@@ -147,6 +147,7 @@ bool SteadyMap::find_rates(const State& state) try {
   }
   rated_p_ = state.p;
   rated_q_ = state.z.q;
+  rated_scale_ = scaling_.column;
   return state_rates_.allFinite();
 } catch (const SceneError&) { // beside it no mechanism can be made
   return false;
@@ -154,7 +155,7 @@ bool SteadyMap::find_rates(const State& state) try {
 
 double SteadyMap::way(const Eigen::VectorXd& step) const {
   if (system_.nv == 0) return 0;
-  return (state_rates_ * step).cwiseQuotient(scaling_.column).lpNorm<Eigen::Infinity>();
+  return (state_rates_ * step).cwiseQuotient(rated_scale_).lpNorm<Eigen::Infinity>();
 }
 
 std::optional<SteadyMap::State> SteadyMap::step_to(const State& from, const Eigen::VectorXd& p) {

@@ -99,7 +99,8 @@ class SteadyMap {
   Eigen::MatrixXd state_rates_, rates_;
   std::optional<Analysis> analysis_;  // of states that are told
   int negative_ = 0;                  // eigenvalues of the balance, at the state with these rates,
-  Eigen::VectorXd rated_p_, rated_q_; // which is this one
+  Eigen::VectorXd rated_p_, rated_q_; // which is this one, and the scale of its coordinates
+  Eigen::VectorXd rated_scale_;
   Workspace w_;
 };
 

@@ -3,6 +3,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/study/work_sharing.hpp"
 
+#include <algorithm>
 #include <memory>
 
 namespace flyball {
@@ -33,12 +34,19 @@ std::vector<double> grid_values(std::span<const Variation> variations, std::size
   return values;
 }
 
+void expect_each_once(std::span<const std::string> addresses) {
+  for (auto each = addresses.begin(); each != addresses.end(); ++each)
+    if (std::find(addresses.begin(), each, *each) != each)
+      throw SceneError(*each, "expected another number: it is varied already");
+}
+
 GridSolver::GridSolver(const Mechanism& mechanism, std::span<const Variation> variations)
     : variations_(variations.begin(), variations.end()), analysis_(mechanism),
       geometry_varies_(!mechanism.parameters.empty() || !mechanism.points.empty()) {
   std::vector<std::string> addresses;
   for (const Variation& variation : variations)
     addresses.push_back(variation.address);
+  expect_each_once(addresses);
   analysis_.vary(addresses);
 }
 

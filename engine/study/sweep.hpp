@@ -28,6 +28,9 @@ struct SweepPoint {
 std::size_t grid_size(std::span<const Variation> variations);
 std::vector<double> grid_values(std::span<const Variation> variations, std::size_t i);
 
+// Throws SceneError where a number is there twice.
+void expect_each_once(std::span<const std::string> addresses);
+
 // Solves points of a grid one after the other, in any order; for one thread.
 class GridSolver {
  public:

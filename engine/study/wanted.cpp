@@ -5,6 +5,8 @@
 #include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +25,16 @@ Wanted find_wanted(const Mechanism& mechanism, const System& system, const std::
       names.push_back(each.name);
     throw SceneError(error.where(), error.expected() + "; or one of the measures " + word_list(names));
   }
+}
+
+double scale_of_measure(double value, double lowest, double highest) {
+  const double largest = std::max({std::abs(value), std::abs(lowest), std::abs(highest)});
+  return std::isfinite(largest) && largest > 0 ? largest : 1;
+}
+
+Condition wanted_is(const Wanted& wanted, double value, double lowest, double highest) {
+  return wanted.coordinate ? coordinate_is(*wanted.coordinate, value)
+                           : measure_is(wanted.measure, value, scale_of_measure(value, lowest, highest));
 }
 
 std::string unit_of(const Mechanism& mechanism, const System& system, const Wanted& wanted) {

@@ -2,7 +2,7 @@
 // measure.
 #pragma once
 
-#include "engine/kkt/problem.hpp"
+#include "engine/continuation/extended_balance.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
 #include <optional>
@@ -18,6 +18,11 @@ struct Wanted {
 
 // "joint", "joint.index", "joint.speed" or a measure's name. Throws SceneError that names what there is.
 Wanted find_wanted(const Mechanism& mechanism, const System& system, const std::string& name);
+
+// That it has a value. `lowest` and `highest`: what it covers where it is looked for, by which a measure is
+// scaled.
+Condition wanted_is(const Wanted& wanted, double value, double lowest, double highest);
+double scale_of_measure(double value, double lowest, double highest);
 
 // "rad", "m", "rad/s", "m/s" or the measure's.
 std::string unit_of(const Mechanism& mechanism, const System& system, const Wanted& wanted);
