@@ -106,15 +106,6 @@ void compute_curves(Session& session) {
       });
 }
 
-bool known(const Mechanism& mechanism, const std::string& address) {
-  try {
-    get_parameter(mechanism, address);
-    return !address.empty();
-  } catch (const SceneError&) {
-    return false;
-  }
-}
-
 // What an axis is at first: across a drive's speed; up another slider, or else gravity or a mass.
 std::string first_address(const Session& session, std::size_t axis) {
   const std::string& other = session.study.map.choice.axes[1 - axis].address;
@@ -139,7 +130,7 @@ std::string first_address(const Session& session, std::size_t axis) {
 bool choose(Session& session) {
   MapChoice& choice = session.study.map.choice;
   for (std::size_t i = 0; i < 2; ++i) {
-    if (known(session.mechanism(), choice.axes[i].address)) continue;
+    if (has_number(session.mechanism(), choice.axes[i].address)) continue;
     choice.axes[i].address.clear();
     const std::string address = first_address(session, i);
     if (address.empty()) return false;
@@ -272,7 +263,7 @@ void update_map(Session& session) {
   }
   // What is shown may be over numbers that are there no more.
   if (map.cells.found && !std::ranges::all_of(map.cells.found->of.choice.axes, [&](const MapAxis& axis) {
-        return known(session.mechanism(), axis.address);
+        return has_number(session.mechanism(), axis.address);
       }))
     map.cells.found.reset();
   if (!map.cells.asked || of_cells(map.choice) != map.cells.asked->choice) compute_cells(session);

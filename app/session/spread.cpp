@@ -34,21 +34,13 @@ SpreadRequest request_now(const Session& session) {
           start_values(session.answer.solution.coordinates)};
 }
 
-bool has_number(const Mechanism& mechanism, const std::string& address) {
-  try {
-    get_parameter(mechanism, address);
-    return true;
-  } catch (const SceneError&) {
-    return false;
-  }
-}
-
 void take_samples(Session& session) {
   SpreadState& state = session.study.spread;
   if (!state.samples.take("Making the samples was stopped.")) return;
   const auto& found = state.samples.found;
   if (!found || !state.samples.problem.empty()) return;
-  if (found->result.status != Status::converged) {
+  state.refused = found->result.status != Status::converged;
+  if (state.refused) {
     state.samples.problem = found->result.message;
     state.samples.found.reset();
     return;
@@ -148,7 +140,7 @@ void update_spread(Session& session) {
   if (!converged(session) || solving(session)) return;
   if (!state.samples.asked || state.asked != state.choice) return sample_spread(session);
   state.stale = *state.samples.asked != request_now(session);
-  if (state.stale && state.samples.quick()) sample_spread(session);
+  if (state.stale && (state.samples.quick() || state.refused)) sample_spread(session);
 }
 
 void close_spread(Session& session) {

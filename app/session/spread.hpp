@@ -44,7 +44,8 @@ struct SpreadState {
   std::string output; // that is shown: a free coordinate or measure
   SpreadChoice asked; // what the samples were last made for
   Study<SpreadRequest, SpreadAnswer> samples;
-  bool stale = false; // they are of what was before the last changes
+  bool refused = false; // the state that was shown could not scatter, as at a fold
+  bool stale = false;   // they are of what was before the last changes
 };
 
 // Takes the samples; makes them anew when something else is chosen, and after changes of the mechanism where

@@ -247,6 +247,21 @@ TEST_CASE("a map shows a measure, and the curve on which it keeps its value") {
   CHECK(points > 2);
 }
 
+TEST_CASE("a map over a number that an undo takes away is over another, while its axis is shown") {
+  MapRobot robot("governor_parametric");
+  App& app = robot.app;
+  edit(app, "Name a number", [](Mechanism& m, Selection&) {
+    m.parameters.push_back({"extra", "", 1, "", {}});
+  });
+  robot.frames(2);
+  robot.map().choice.axes[1] = {"parameters.extra", 0, 2, 5};
+  robot.frames(3);
+  CHECK(app.widgets.count("map/y/to") == 1);
+  robot.key('Z', true);
+  robot.frames(3);
+  CHECK(robot.map().choice.axes[1].address != "parameters.extra");
+}
+
 TEST_CASE("a map in the background tells its progress, can be stopped, and goes with its tab") {
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
   open_scene(app, shipped_file("governor"));

@@ -52,14 +52,6 @@ struct Sheet : Robot {
     click(ImVec2(widget(field).from.x + 10, widget(field).from.y + 8), 1);
     frames(2);
   }
-  void pull(const std::string& handle, const Vec3& by) {
-    const ImVec2 from = widget(handle).center(), to = pixel(by), zero = pixel(Vec3::Zero());
-    point(from);
-    press();
-    for (int i = 1; i <= 4; ++i)
-      point({from.x + (to.x - zero.x) * static_cast<float>(i) / 4,
-             from.y + (to.y - zero.y) * static_cast<float>(i) / 4});
-  }
   std::string at_of(const std::string& vector) const {
     return formula_at(m(), vector + ".0").value_or("") + " " + formula_at(m(), vector + ".1").value_or("") +
            " " + formula_at(m(), vector + ".2").value_or("");

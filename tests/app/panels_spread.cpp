@@ -109,6 +109,23 @@ TEST_CASE("another number gets a tolerance, another output is shown, and more sa
   CHECK(samples_in(robot.plot().bands[0]) == 500);
 }
 
+TEST_CASE("a number that an undo takes away takes its tolerance along, while its row is shown") {
+  SpreadRobot robot;
+  App& app = robot.app;
+  const std::size_t before = robot.state().choice.tolerances.size();
+  edit(app, "Name a number", [](Mechanism& m, Selection&) {
+    m.parameters.push_back({"extra", "", 1, "", {}});
+  });
+  robot.frames(2);
+  add_tolerance(app, "parameters.extra");
+  robot.frames(3);
+  CHECK(app.widgets.count("spread/parameters.extra/width") == 1);
+  robot.key('Z', true);
+  robot.frames(3);
+  CHECK(app.mechanism().parameters.back().name != "extra");
+  CHECK(robot.state().choice.tolerances.size() == before);
+}
+
 TEST_CASE("the spread is reached by keys") {
   SpreadRobot robot;
   focus_widget(robot.app, "spread/parameters.w/width");

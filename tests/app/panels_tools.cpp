@@ -39,15 +39,6 @@ struct Drawing : Robot {
     select(app, {});
     frames(1);
   }
-  // Drags a handle by so much in the picture, with the button still down.
-  void pull(const std::string& handle, const Vec3& by) {
-    const ImVec2 from = widget(handle).center(), to = pixel(by), zero = pixel(Vec3::Zero());
-    point(from);
-    press();
-    for (int i = 1; i <= 4; ++i)
-      point({from.x + (to.x - zero.x) * static_cast<float>(i) / 4,
-             from.y + (to.y - zero.y) * static_cast<float>(i) / 4});
-  }
 };
 
 Part body(const std::string& name) {

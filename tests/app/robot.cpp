@@ -91,6 +91,15 @@ void Robot::drag(ImVec2 from, ImVec2 to, int button) {
   release(button);
 }
 
+void Robot::pull(const std::string& handle, const Vec3& by) {
+  const ImVec2 from = widget(handle).center(), to = pixel(by), zero = pixel(Vec3::Zero());
+  point(from);
+  press();
+  for (int i = 1; i <= 4; ++i)
+    point({from.x + (to.x - zero.x) * static_cast<float>(i) / 4,
+           from.y + (to.y - zero.y) * static_cast<float>(i) / 4});
+}
+
 void Robot::wheel(const std::string& name, float notches) {
   point(widget(name).center());
   ImGui::GetIO().MouseWheel = notches;

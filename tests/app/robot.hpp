@@ -30,6 +30,8 @@ class Robot {
   // From one place of the widget to another, both as shares of its size.
   void drag(const std::string& name, ImVec2 from, ImVec2 to, int button = 0);
   void drag(ImVec2 from, ImVec2 to, int button = 0); // pixels of the window
+  // A handle in the view by so much of the world, with the button still down.
+  void pull(const std::string& handle, const Vec3& by);
   void wheel(const std::string& name, float notches);
   // A key by its GLFW code, which for letters is ASCII.
   void key(int code, bool ctrl = false, bool shift = false);

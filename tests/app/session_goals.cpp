@@ -1,12 +1,10 @@
 // Sliders in reverse, without a window.
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
+#include "session_wait.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
-
-#include <chrono>
-#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -98,14 +96,7 @@ TEST_CASE("Session: without a pinned slider nothing can move, which is said") {
 TEST_CASE("Session: goals of a hand that moves on are sought one after the other") {
   Session session({.mode = LiveSolver::Mode::background});
   open_scene(session, shipped_file("governor_parametric"));
-  const auto wait = [&](const auto& done) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!done() && std::chrono::steady_clock::now() < end) {
-      update(session, 0.01);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return done();
-  };
+  const auto wait = [&](const auto& done) { return wait_until(session, done); };
   REQUIRE(wait([&] { return converged(session) && !solving(session); }));
   const double collar = value(session.answer.solution, "slide");
   ++session.gesture;

@@ -1,12 +1,10 @@
 // A session without a window: this program is linked without Dear ImGui and without OpenGL.
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
+#include "session_wait.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
-
-#include <chrono>
-#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -19,17 +17,6 @@ const std::string governor = test::shipped_file("governor");
 double collar(const Session& session) {
   REQUIRE(converged(session));
   return test::value(session.answer.solution, "slide");
-}
-
-// A window's loop without the window, until `done`.
-template <class Done>
-bool run_until(Session& session, const Done& done) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (!done() && std::chrono::steady_clock::now() < end) {
-    update(session, 0.01);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return done();
 }
 
 } // namespace
@@ -55,14 +42,15 @@ TEST_CASE("Session: opens a scene, follows a slider and takes it back") {
 TEST_CASE("Session: solves and studies in the background") {
   Session session({.mode = LiveSolver::Mode::background});
   open_scene(session, governor);
-  REQUIRE(run_until(session, [&] { return converged(session) && !solving(session); }));
+  REQUIRE(test::wait_until(session, [&] { return converged(session) && !solving(session); }));
   open_study(session, StudyKind::states);
-  REQUIRE(run_until(session, [&] { return session.study.states.found && !studying(session); }));
+  REQUIRE(test::wait_until(session, [&] { return session.study.states.found && !studying(session); }));
   REQUIRE_FALSE(session.study.states.found->result.equilibria.empty());
   CHECK(states_are_current(session));
   CHECK(shown_state(session).has_value());
   open_study(session, StudyKind::response);
-  REQUIRE(run_until(session, [&] { return session.study.response.curve.found && !studying(session); }));
+  REQUIRE(
+      test::wait_until(session, [&] { return session.study.response.curve.found && !studying(session); }));
   CHECK_FALSE(session.study.response.curve.found->result.lines.empty());
   CHECK_FALSE(session.study.states.found); // gone with its tab
 }

@@ -1,14 +1,13 @@
 // The study of the spread and the band around the response curve, without a window.
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
+#include "session_wait.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -125,14 +124,7 @@ TEST_CASE("Session: a tolerance that cannot be is told") {
 
 TEST_CASE("Session: many samples are made in the background, and can be cancelled") {
   SpreadSession session("governor_parametric", LiveSolver::Mode::background);
-  const auto wait = [&](const auto& done) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!done() && std::chrono::steady_clock::now() < end) {
-      update(session, 0.01);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return done();
-  };
+  const auto wait = [&](const auto& done) { return wait_until(session, done); };
   REQUIRE(wait([&] { return converged(session) && !solving(session); }));
   session.study.spread.choice.samples = 1'000'000;
   open_study(session, StudyKind::spread);

@@ -176,6 +176,21 @@ TEST_CASE("a number that may be absent is known by one place", "[sensitivity]") 
     CHECK(place_of(vector, i) == place_of((*vector)[i]));
 }
 
+TEST_CASE("an expression at the origin of hypot and atan2 takes no other number's rate", "[sensitivity]") {
+  Mechanism m = shipped("governor_parametric");
+  m.parameters.push_back({"zero", "", 0, "m", {}});
+  m.bodies.back().formulas = {{"mass", "2 kg + 1 kg/m * hypot(zero, zero) + 1 kg * atan2(zero, zero)"}};
+  evaluate_formulas(m);
+  const auto rate_of_mass = [&](const std::string& address) {
+    NumberRates rates;
+    VariedNumbers(m, {&address, 1}).rates(0, rates);
+    return rates.find(place_of(m.bodies.back().mass)).value_or(0);
+  };
+  CHECK(rate_of_mass("parameters.w") == 0);
+  m.bodies.back().formulas = {{"mass", "2 kg + 1 kg/m * hypot(3 * zero, 4 * zero)"}};
+  CHECK(rate_of_mass("parameters.zero") == Approx(5).epsilon(1e-15)); // out of the origin
+}
+
 TEST_CASE("a number without a finite rate is named", "[sensitivity]") {
   Mechanism m = shipped("governor_parametric");
   m.parameters.push_back({"zero", "", 0, "", {}});

@@ -135,4 +135,6 @@ TEST_CASE("what a sweep cannot vary is an error, from any thread") {
     CHECK_THROWS_AS(run({"joints.spin.drive.speed", 1, std::numeric_limits<double>::infinity(), 3}),
                     SceneError);
   }
+  const std::vector<Variation> twice(2, {"joints.spin.drive.speed", 1, 2, 3});
+  CHECK_THROWS_WITH(sweep(m, twice, 1), ContainsSubstring("varied already"));
 }

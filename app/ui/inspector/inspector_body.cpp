@@ -235,8 +235,9 @@ void rotation_section(App& app, const Body& body) {
                .value = shown_turns(app, body).angles,
                .unit = "deg",
                .help =
-                   "The body is turned about the world's x, then y, then z axis. In an expression angles are "
-                   "in radians unless they have a unit: =30 deg.",
+                   "The body is turned about the world's x, then y, then z axis, and what is on it with it. "
+                   "An expression turns its axes alone, those of its inertia and boxes; in it angles are in "
+                   "radians unless they have a unit: =30 deg.",
                .expression = "bodies." + body.name + ".turn",
                .set = [name = body.name](App& changed, int axis, double angle) {
                  turn_body(changed, name, axis, angle);

@@ -110,7 +110,8 @@ float legend_top(App& app, const PanelRect& view, ImVec2 size) {
   const auto hidden = [&](float top) {
     return arrows_within(app, view, {left, top}, {left + size.x, top + size.y});
   };
-  if (!ImGui::IsAnyMouseDown()) app.panels.legend_low = lower > upper && hidden(lower) < hidden(upper);
+  if (!ImGui::IsAnyMouseDown() && app.panels.legend)
+    app.panels.legend_low = lower > upper && hidden(lower) < hidden(upper);
   return app.panels.legend_low ? lower : upper;
 }
 

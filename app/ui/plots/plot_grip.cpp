@@ -96,7 +96,7 @@ void take_plot_grip(const PlotFrame& frame) {
     view.pull_to.reset();
   }
   if (ImGui::IsItemActive() && is_pulled(frame)) follow_grip(frame);
-  if (ImGui::IsItemDeactivated() && is_pulled(frame)) view.drag = PlotView::Drag::none;
+  if (!ImGui::IsItemActive() && is_pulled(frame)) view.drag = PlotView::Drag::none;
   pull_by_keys(frame, name);
 }
 

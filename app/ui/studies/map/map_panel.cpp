@@ -51,6 +51,7 @@ void axis_choice(App& app, std::size_t which) {
       fit_plot(then.plots.map.view);
     });
   }
+  if (!has_number(app.mechanism(), axis.address)) return; // gone in this frame, by an undo
   const auto end = [&](const char* key, double value, bool upper) {
     return QuantityField{.name = name + "/" + key,
                          .value = value,

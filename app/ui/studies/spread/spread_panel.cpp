@@ -159,8 +159,9 @@ void spread_choices(App& app) {
   output_choice(app);
   samples_field(app);
   heading(app, "Tolerances");
+  // A number may be gone since the session was updated, by an undo in this frame.
   for (std::size_t i = 0; i < app.study.spread.choice.tolerances.size(); ++i)
-    tolerance_row(app, i);
+    if (has_number(app.mechanism(), app.study.spread.choice.tolerances[i].address)) tolerance_row(app, i);
   another_tolerance(app);
   spread_progress(app);
   if (!app.study.spread.samples.found) return;
