@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 namespace flyball {
 
@@ -45,6 +46,63 @@ inline Dual power(Dual a, Dual b) {
   double rate = a.rate == 0 ? 0 : b.value * std::pow(a.value, b.value - 1) * a.rate;
   if (b.rate != 0) rate += value * std::log(a.value) * b.rate;
   return {value, rate};
+}
+
+inline Dual sqrt(Dual a) {
+  const double root = std::sqrt(a.value);
+  return chained(a, root, 0.5 / root);
+}
+inline Dual sin(Dual a) {
+  return chained(a, std::sin(a.value), std::cos(a.value));
+}
+inline Dual cos(Dual a) {
+  return chained(a, std::cos(a.value), -std::sin(a.value));
+}
+inline Dual tan(Dual a) {
+  const double tangent = std::tan(a.value);
+  return chained(a, tangent, 1 + tangent * tangent);
+}
+inline Dual asin(Dual a) {
+  return chained(a, std::asin(a.value), 1 / std::sqrt(1 - a.value * a.value));
+}
+inline Dual acos(Dual a) {
+  return chained(a, std::acos(a.value), -1 / std::sqrt(1 - a.value * a.value));
+}
+inline Dual atan(Dual a) {
+  return chained(a, std::atan(a.value), 1 / (1 + a.value * a.value));
+}
+inline Dual sinh(Dual a) {
+  return chained(a, std::sinh(a.value), std::cosh(a.value));
+}
+inline Dual cosh(Dual a) {
+  return chained(a, std::cosh(a.value), std::sinh(a.value));
+}
+inline Dual tanh(Dual a) {
+  const double t = std::tanh(a.value);
+  return chained(a, t, 1 - t * t);
+}
+inline Dual exp(Dual a) {
+  return chained(a, std::exp(a.value), std::exp(a.value));
+}
+inline Dual log(Dual a) {
+  return chained(a, std::log(a.value), 1 / a.value);
+}
+inline Dual log10(Dual a) {
+  return chained(a, std::log10(a.value), 1 / (a.value * std::numbers::ln10));
+}
+inline Dual abs(Dual a) {
+  return chained(a, std::abs(a.value), a.value < 0 ? -1. : 1.);
+}
+inline Dual atan2(Dual y, Dual x) {
+  const double square = x.value * x.value + y.value * y.value;
+  const double turn = x.value * y.rate - y.value * x.rate;
+  const bool still = x.rate == 0 && y.rate == 0; // not even where it would have no finite rate
+  return {std::atan2(y.value, x.value), still ? 0 : turn / square};
+}
+inline Dual hypot(Dual a, Dual b) {
+  const double length = std::hypot(a.value, b.value);
+  // At the origin the way out of it, as of |x| at zero.
+  return {length, length == 0 ? std::hypot(a.rate, b.rate) : (a.value * a.rate + b.value * b.rate) / length};
 }
 
 } // namespace flyball

@@ -1,5 +1,6 @@
 #include "engine/mechanism/expression.hpp"
 
+#include "engine/mechanism/expression_functions.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -11,79 +12,6 @@
 
 namespace flyball {
 namespace {
-
-// How a function treats dimensions.
-enum class Kind {
-  number, // of a number, a number
-  same,   // of one or two of the same dimension, that dimension
-  root,   // half the exponents
-  ratio,  // of two of the same dimension, a number
-};
-
-struct Function {
-  std::string_view name;
-  int arguments;
-  Kind kind;
-  Dual (*evaluate)(Dual a, Dual b);
-};
-
-Dual arc_tangent(Dual y, Dual x) {
-  const double square = x.value * x.value + y.value * y.value;
-  const double turn = x.value * y.rate - y.value * x.rate;
-  const bool still = x.rate == 0 && y.rate == 0; // has no rate, even where it would have none that is finite
-  return {std::atan2(y.value, x.value), still ? 0 : turn / square};
-}
-Dual hypotenuse(Dual a, Dual b) {
-  const double length = std::hypot(a.value, b.value);
-  // At the origin the way out of it, as of |x| at zero.
-  return {length, length == 0 ? std::hypot(a.rate, b.rate) : (a.value * a.rate + b.value * b.rate) / length};
-}
-
-constexpr std::array functions{
-    Function{"sin", 1, Kind::number,
-             [](Dual a, Dual) { return chained(a, std::sin(a.value), std::cos(a.value)); }},
-    Function{"cos", 1, Kind::number,
-             [](Dual a, Dual) { return chained(a, std::cos(a.value), -std::sin(a.value)); }},
-    Function{"tan", 1, Kind::number,
-             [](Dual a, Dual) {
-               const double t = std::tan(a.value);
-               return chained(a, t, 1 + t * t);
-             }},
-    Function{
-        "asin", 1, Kind::number,
-        [](Dual a, Dual) { return chained(a, std::asin(a.value), 1 / std::sqrt(1 - a.value * a.value)); }},
-    Function{
-        "acos", 1, Kind::number,
-        [](Dual a, Dual) { return chained(a, std::acos(a.value), -1 / std::sqrt(1 - a.value * a.value)); }},
-    Function{"atan", 1, Kind::number,
-             [](Dual a, Dual) { return chained(a, std::atan(a.value), 1 / (1 + a.value * a.value)); }},
-    Function{"atan2", 2, Kind::ratio, arc_tangent},
-    Function{"sinh", 1, Kind::number,
-             [](Dual a, Dual) { return chained(a, std::sinh(a.value), std::cosh(a.value)); }},
-    Function{"cosh", 1, Kind::number,
-             [](Dual a, Dual) { return chained(a, std::cosh(a.value), std::sinh(a.value)); }},
-    Function{"tanh", 1, Kind::number,
-             [](Dual a, Dual) {
-               const double t = std::tanh(a.value);
-               return chained(a, t, 1 - t * t);
-             }},
-    Function{"exp", 1, Kind::number,
-             [](Dual a, Dual) { return chained(a, std::exp(a.value), std::exp(a.value)); }},
-    Function{"log", 1, Kind::number, [](Dual a, Dual) { return chained(a, std::log(a.value), 1 / a.value); }},
-    Function{
-        "log10", 1, Kind::number,
-        [](Dual a, Dual) { return chained(a, std::log10(a.value), 1 / (a.value * std::numbers::ln10)); }},
-    Function{"sqrt", 1, Kind::root,
-             [](Dual a, Dual) {
-               const double root = std::sqrt(a.value);
-               return chained(a, root, 1 / (2 * root));
-             }},
-    Function{"abs", 1, Kind::same,
-             [](Dual a, Dual) { return chained(a, std::abs(a.value), a.value < 0 ? -1. : 1.); }},
-    Function{"min", 2, Kind::same, [](Dual a, Dual b) { return b.value < a.value ? b : a; }},
-    Function{"max", 2, Kind::same, [](Dual a, Dual b) { return b.value > a.value ? b : a; }},
-    Function{"hypot", 2, Kind::same, hypotenuse},
-};
 
 bool begins_name(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' ||
@@ -233,7 +161,8 @@ class ExpressionParser {
     put({.operation = Operation::name, .index = static_cast<std::uint16_t>(index)}, 0);
   }
   void call(std::string_view name, std::size_t begin) {
-    const auto function = std::ranges::find(functions, name, &Function::name);
+    const std::span functions = expression_functions();
+    const auto function = std::ranges::find(functions, name, &ExpressionFunction::name);
     const auto result = std::ranges::find(result_functions(), name, &ResultFunction::name);
     if (function == functions.end() && result != result_functions().end()) {
       if (results_) return result_call(*result, begin);
@@ -245,7 +174,7 @@ class ExpressionParser {
       if (results_)
         for (const ResultFunction& each : result_functions())
           names.push_back(each.name);
-      for (const Function& each : functions)
+      for (const ExpressionFunction& each : functions)
         names.push_back(each.name);
       at_ = begin;
       fail("there is no function \"" + std::string(name) + "\"" + did_you_mean(name, names) + "; expected " +
@@ -337,6 +266,7 @@ Expression::Expression(std::string_view text, Results results) {
 Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::size_t> places,
                           std::span<const Dual> results, std::span<const std::size_t> result_places) const {
   std::array<Dual, most_values> stack;
+  const std::span functions = expression_functions();
   std::size_t top = 0; // the first free place
   for (const Step& step : steps_) {
     switch (step.operation) {
@@ -345,7 +275,7 @@ Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::siz
     case Operation::result: stack[top++] = results[result_places[step.index]]; continue;
     case Operation::negate: stack[top - 1] = -stack[top - 1]; continue;
     case Operation::call: {
-      const Function& function = functions[step.index];
+      const ExpressionFunction& function = functions[step.index];
       if (function.arguments == 2) --top;
       stack[top - 1] = function.evaluate(stack[top - 1], stack[top]);
       continue;
@@ -367,6 +297,7 @@ Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::siz
 
 ValueDimension Expression::dimension(std::span<const ValueDimension> names,
                                      std::span<const ValueDimension> results) const {
+  const std::span functions = expression_functions();
   struct Entry {
     ValueDimension dimension;
     std::optional<double> number; // where it is one by itself: an exponent
@@ -395,20 +326,20 @@ ValueDimension Expression::dimension(std::span<const ValueDimension> names,
     default: break;
     }
     if (step.operation == Operation::call) {
-      const Function& function = functions[step.index];
+      const ExpressionFunction& function = functions[step.index];
       const ValueDimension last = pop().dimension;
       const std::string name(function.name);
-      switch (function.kind) {
-      case Kind::number:
+      switch (function.rule) {
+      case DimensionRule::number:
         expect_number(last, "the argument of " + name);
         stack.push_back({{{}, last.plain}, {}});
         break;
-      case Kind::root: stack.push_back({{last.dimension * 0.5, last.plain}, {}}); break;
-      case Kind::same:
-      case Kind::ratio: {
+      case DimensionRule::root: stack.push_back({{last.dimension * 0.5, last.plain}, {}}); break;
+      case DimensionRule::same:
+      case DimensionRule::ratio: {
         const ValueDimension both =
             function.arguments == 2 ? common(name + " of", pop().dimension, last) : last;
-        stack.push_back({function.kind == Kind::ratio ? ValueDimension{{}, both.plain} : both, {}});
+        stack.push_back({function.rule == DimensionRule::ratio ? ValueDimension{{}, both.plain} : both, {}});
         break;
       }
       }
@@ -446,7 +377,8 @@ ValueDimension Expression::dimension(std::span<const ValueDimension> names,
 bool is_expression_name(std::string_view name) {
   return !name.empty() && begins_name(name.front()) && std::ranges::all_of(name, continues_name) &&
          find_invalid_utf8(name) == std::string::npos && name != "pi" &&
-         std::ranges::find(functions, name, &Function::name) == functions.end();
+         std::ranges::find(expression_functions(), name, &ExpressionFunction::name) ==
+             expression_functions().end();
 }
 
 namespace {
