@@ -25,14 +25,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json error_json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 // By name, where there are measures.
 void add_measure_errors(Json& mark, const Comparison& c, const std::vector<double>& errors) {
   for (std::size_t i = 0; i < c.measures.size(); ++i)
-    mark["measure_errors"][c.measures[i].name] = i < errors.size() ? error_json(errors[i]) : Json(nullptr);
+    mark["measure_errors"][c.measures[i].name] = i < errors.size() ? number_json(errors[i]) : Json(nullptr);
 }
 
 Json mark_json(const Comparison& c, const DirectMark& m) {
@@ -62,7 +58,7 @@ Json comparison_json(const Comparison& c) {
     Json points = Json::array();
     for (const MotionPoint& p : curve.points) {
       points.push_back({{"tolerance", p.tolerance},
-                        {"error", error_json(p.error)},
+                        {"error", number_json(p.error)},
                         {"run_time_s", p.run_time_s},
                         {"steps", p.steps},
                         {"evaluations", p.evaluations},

@@ -148,10 +148,9 @@ Json run_json(const Run& run, const std::optional<Settled>& settled) {
   out["time"] = run.time.empty() ? Json(nullptr) : Json(run.time.back());
   out["settled"] = nullptr;
   if (settled)
-    out["settled"] = {
-        {"time", settled->time ? Json(*settled->time) : Json(nullptr)},
-        {"distance", std::isfinite(settled->distance) ? Json(settled->distance) : Json(nullptr)},
-        {"message", settled->message}};
+    out["settled"] = {{"time", settled->time ? Json(*settled->time) : Json(nullptr)},
+                      {"distance", number_json(settled->distance)},
+                      {"message", settled->message}};
   out["coordinates"] = out["rates"] = Json::object();
   for (const CoordinateTrack& c : run.coordinates) {
     out["coordinates"][coordinate_label(c)] = c.value.empty() ? Json(nullptr) : Json(c.value.back());

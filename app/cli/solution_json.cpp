@@ -10,12 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json array(const Vec3& v) {
-  return {number(v.x()), number(v.y()), number(v.z())};
+  return {number_json(v.x()), number_json(v.y()), number_json(v.z())};
 }
 
 // Puts a value at its joint: the value itself where the joint has one coordinate, else into an array with
@@ -32,11 +28,15 @@ void put(Json& object, const std::string& joint, int index, int count, Json valu
 Json eigenvalues_json(const std::vector<std::complex<double>>& eigenvalues) {
   Json out = Json::array();
   for (const auto& e : eigenvalues)
-    out.push_back({number(e.real()), number(e.imag())});
+    out.push_back({number_json(e.real()), number_json(e.imag())});
   return out;
 }
 
 } // namespace
+
+Json number_json(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json with_warnings(Json answer, const Mechanism& mechanism) {
   answer["warnings"] = warnings_json(find_warnings(mechanism));
@@ -44,13 +44,13 @@ Json with_warnings(Json answer, const Mechanism& mechanism) {
 }
 
 Json floquet_json(const Floquet& f) {
-  Json out = {{"period_s", number(f.period)}, {"error", number(f.error)}};
+  Json out = {{"period_s", number_json(f.period)}, {"error", number_json(f.error)}};
   out["multipliers"] = Json::array();
   for (const auto& mu : f.multipliers)
-    out["multipliers"].push_back({number(mu.real()), number(mu.imag())});
+    out["multipliers"].push_back({number_json(mu.real()), number_json(mu.imag())});
   out["growth_rates"] = Json::array();
   for (const double growth : f.growth)
-    out["growth_rates"].push_back(number(growth));
+    out["growth_rates"].push_back(number_json(growth));
   return out;
 }
 
@@ -74,12 +74,12 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["message"] = s.message;
   for (const char* key : {"coordinates", "multipliers"})
     out[key] = converged ? Json::object() : Json(nullptr);
-  out["residual"] = number(s.residual);
+  out["residual"] = number_json(s.residual);
   out["error_estimate"] = converged ? Json::object() : Json(nullptr);
   out["iterations"] = s.iterations;
   out["history"] = Json::array();
   for (double h : s.history)
-    out["history"].push_back(number(h));
+    out["history"].push_back(number_json(h));
   out["net"] = s.fallback ? Json(word(*s.fallback)) : Json(nullptr);
   out["run_time_s"] = s.run_time_s;
   out["stable"] = s.stable ? Json(*s.stable) : Json(nullptr);
@@ -94,16 +94,16 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
     out["unheld"].push_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index));
   if (!converged) return out;
 
-  if (s.potential) out["potential"] = number(*s.potential);
+  if (s.potential) out["potential"] = number_json(*s.potential);
   out["coordinates"] = coordinates_json(s.coordinates);
   for (const CoordinateSolution& c : s.coordinates) {
     if (c.driven) continue;
-    put(out["error_estimate"], c.joint, c.index, c.count, number(c.error));
+    put(out["error_estimate"], c.joint, c.index, c.count, number_json(c.error));
   }
   for (const JointMultipliers& m : s.multipliers) {
     out["multipliers"][m.joint] = Json::array();
     for (double value : m.values)
-      out["multipliers"][m.joint].push_back(number(value));
+      out["multipliers"][m.joint].push_back(number_json(value));
   }
   if (s.eigenvalues) out["eigenvalues"] = eigenvalues_json(*s.eigenvalues);
   if (s.floquet) out["floquet"] = floquet_json(*s.floquet);
@@ -116,18 +116,19 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["speeds"] = speeds_json(s.coordinates);
   out["speed_errors"] = Json::object();
   for (const CoordinateSolution& c : s.coordinates)
-    if (c.speed) put(out["speed_errors"], c.joint, c.index, c.count, number(c.speed_error));
+    if (c.speed) put(out["speed_errors"], c.joint, c.index, c.count, number_json(c.speed_error));
   out["neutral"] = s.neutral;
   out["drive_torques"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)
-    put(out["drive_torques"], d.joint, d.index, d.count, number(d.value));
+    put(out["drive_torques"], d.joint, d.index, d.count, number_json(d.value));
   out["drive_torque_ranges"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)
     if (d.varying) {
       Json range = {{"mean", nullptr}, {"min", nullptr}, {"max", nullptr}};
       if (d.range)
-        range = {
-            {"mean", number(d.range->mean)}, {"min", number(d.range->least)}, {"max", number(d.range->most)}};
+        range = {{"mean", number_json(d.range->mean)},
+                 {"min", number_json(d.range->least)},
+                 {"max", number_json(d.range->most)}};
       put(out["drive_torque_ranges"], d.joint, d.index, d.count, std::move(range));
     }
   out["reactions"] = Json::object();
@@ -138,8 +139,10 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
     out["reactions"][r.joint] = std::move(entry);
   }
   for (const GearReaction& g : s.gears) {
-    Json entry = {
-        {"force", array(g.force)}, {"torque", array(g.torque)}, {"a", number(g.a)}, {"b", number(g.b)}};
+    Json entry = {{"force", array(g.force)},
+                  {"torque", array(g.torque)},
+                  {"a", number_json(g.a)},
+                  {"b", number_json(g.b)}};
     if (g.varying) entry["varying"] = true;
     if (g.nonunique) entry["nonunique"] = true;
     out["reactions"][g.joint] = std::move(entry);
@@ -149,7 +152,7 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
     const Quat& q = s.poses[b].rotation;
     out["poses"][mechanism.bodies[b].name] = {
         {"position", array(s.poses[b].position)},
-        {"rotation", {number(q.w()), number(q.x()), number(q.y()), number(q.z())}}};
+        {"rotation", {number_json(q.w()), number_json(q.x()), number_json(q.y()), number_json(q.z())}}};
   }
   out["points"] = Json::object();
   for (const PointSolution& p : s.points)
@@ -160,16 +163,16 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
     if (x.measures.empty()) continue;
     Json& rates = out["measure_sensitivities"][x.address] = Json::object();
     for (std::size_t i = 0; i < x.measures.size(); ++i)
-      rates[s.measures[i].name] = number(x.measures[i]);
+      rates[s.measures[i].name] = number_json(x.measures[i]);
   }
   out["sensitivities"] = Json::object();
   for (const Sensitivity& x : s.sensitivities) {
     out["sensitivities"][x.address] = Json::object();
     for (const Sensitivity::Rate& r : x.rates)
       put(out["sensitivities"][x.address], r.speed ? r.joint + ".speed" : r.joint, r.index, r.count,
-          number(r.value));
+          number_json(r.value));
   }
-  if (s.condition) out["condition"] = number(*s.condition);
+  if (s.condition) out["condition"] = number_json(*s.condition);
   return out;
 }
 
@@ -183,7 +186,7 @@ Json to_json(const Mechanism& mechanism, const AllSolutions& all) {
     put(bounds, b.speed ? b.joint + ".speed" : b.joint, b.index, b.count, {b.lower, b.upper});
   out["search"] = {{"bounds", std::move(bounds)}, {"starts", all.starts},
                    {"complete", false},           {"message", all.message},
-                   {"end", word(all.end)},        {"expected_missing", number(all.unseen)},
+                   {"end", word(all.end)},        {"expected_missing", number_json(all.unseen)},
                    {"not_steady", all.passing}};
   return out;
 }
@@ -191,9 +194,9 @@ Json to_json(const Mechanism& mechanism, const AllSolutions& all) {
 Json measures_json(const std::vector<MeasureSolution>& measures) {
   Json out = Json::object();
   for (const MeasureSolution& m : measures) {
-    Json& entry = out[m.name] = {{"value", m.value ? number(*m.value) : Json(nullptr)},
+    Json& entry = out[m.name] = {{"value", m.value ? number_json(*m.value) : Json(nullptr)},
                                  {"unit", m.unit},
-                                 {"error_estimate", m.error ? number(*m.error) : Json(nullptr)}};
+                                 {"error_estimate", m.error ? number_json(*m.error) : Json(nullptr)}};
     if (!m.value) entry["reason"] = m.reason;
     if (m.nonunique) entry["nonunique"] = true;
   }
@@ -203,14 +206,14 @@ Json measures_json(const std::vector<MeasureSolution>& measures) {
 Json speeds_json(const std::vector<CoordinateSolution>& coordinates) {
   Json out = Json::object();
   for (const CoordinateSolution& c : coordinates)
-    if (c.speed) put(out, c.joint, c.index, c.count, number(*c.speed));
+    if (c.speed) put(out, c.joint, c.index, c.count, number_json(*c.speed));
   return out;
 }
 
 Json coordinates_json(const std::vector<CoordinateSolution>& coordinates) {
   Json out = Json::object();
   for (const CoordinateSolution& c : coordinates)
-    if (!c.driven) put(out, c.joint, c.index, c.count, number(c.value));
+    if (!c.driven) put(out, c.joint, c.index, c.count, number_json(c.value));
   return out;
 }
 

@@ -9,6 +9,9 @@
 
 namespace flyball::cli {
 
+// null where it is not finite.
+nlohmann::ordered_json number_json(double value);
+
 // Every key is always there; what is not available is null. `drive_torque_ranges` has those that vary with
 // the phase of the drives: {"mean", "min", "max"}. A gear's entry in `reactions` is what it does to the child
 // of its second joint as vectors, and along the coordinates of both as "a" and "b"; the reactions of these

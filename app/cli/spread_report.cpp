@@ -18,10 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number_json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json statistics_json(const SpreadStatistics& s) {
   if (s.count == 0) return nullptr;
   return {{"count", s.count},

@@ -55,8 +55,7 @@ nlohmann::ordered_json json_of(const SweepColumns& columns, const SweepPoint& p)
                                 ? nlohmann::ordered_json(word(*p.solution.stability_reason))
                                 : nlohmann::ordered_json(nullptr);
   if (p.solution.floquet) row["floquet"] = floquet_json(*p.solution.floquet);
-  row["residual"] = std::isfinite(p.solution.residual) ? nlohmann::ordered_json(p.solution.residual)
-                                                       : nlohmann::ordered_json(nullptr);
+  row["residual"] = number_json(p.solution.residual);
   if (columns.times) row["run_time_s"] = p.solution.run_time_s;
   return row;
 }
