@@ -6,6 +6,8 @@
 #include "app/session/study.hpp"
 #include "engine/study/compare.hpp"
 
+#include <string>
+
 namespace flyball {
 
 struct Session;
@@ -18,6 +20,7 @@ struct CompareRequest {
 struct CompareState {
   Study<CompareRequest, Comparison> measured;
   int repeats = 5;
+  std::string shown; // measure whose errors are shown; empty: the coordinates
 };
 
 void begin_comparison(Session& session);

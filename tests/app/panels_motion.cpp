@@ -334,3 +334,23 @@ TEST_CASE("the comparison is measured and drawn") {
   CHECK(table.starts_with("method,duration_s,tolerance,"));
   CHECK(app.widgets.count("plot/compare/area") == 1);
 }
+
+TEST_CASE("the comparison shows the errors of a measure") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  open_scene(app, shipped_file("governor_parametric"));
+  edit(app, "Short", [](Mechanism& m, Selection&) { m.simulation.duration = 0.2; });
+  robot.frames(3);
+  open_study(app, StudyKind::compare);
+  robot.frames(2);
+  app.study.compare.repeats = 1;
+  robot.click("compare/run");
+  robot.frames(2);
+  REQUIRE(app.study.compare.measured.found);
+  CHECK(app.widgets.count("compare/shown") == 1);
+  CHECK(app.plots.compare.plot.y.label == "error |q - q*|");
+  app.study.compare.shown = "height";
+  robot.frames(2);
+  CHECK(app.plots.compare.plot.y.label == "error of height");
+  CHECK(app.plots.compare.plot.y.unit == "m");
+}

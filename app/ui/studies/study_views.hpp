@@ -20,6 +20,7 @@ struct CompareView {
   PlotView view;
   Plot plot;
   std::shared_ptr<const void> of; // the measurements that the plot is of
+  std::string shown;              // and the measure
 };
 
 // Which points of a line a plot's curve goes through.

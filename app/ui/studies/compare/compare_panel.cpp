@@ -1,10 +1,14 @@
 // Error against run time: the direct solution and the motion, measured on the scene as it is now.
 #include "app/plot/comparison_plot.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 namespace flyball {
 
@@ -36,6 +40,28 @@ void found(App& app, const Comparison& c) {
   note_widget(app.widgets, "compare/ratio");
 }
 
+constexpr const char* all_coordinates = "all coordinates";
+
+// Which errors are shown: of the coordinates, or of a measure where there are some.
+void shown_choice(App& app, const Comparison& c) {
+  if (c.measures.empty()) return;
+  std::vector<std::string> names{all_coordinates};
+  for (const MeasureSolution& measure : c.measures)
+    names.push_back(measure.name);
+  std::string& shown = app.study.compare.shown;
+  if (const auto other =
+          name_choice_row(app, "compare/shown", "Show", names, shown.empty() ? all_coordinates : shown,
+                          "The coordinates, of which the largest error counts, or a measure."))
+    shown = *other == all_coordinates ? "" : *other;
+}
+
+// The measure that is shown; nothing: the coordinates.
+std::optional<std::size_t> shown_measure(const App& app, const Comparison& c) {
+  const auto found = std::ranges::find(c.measures, app.study.compare.shown, &MeasureSolution::name);
+  if (found == c.measures.end()) return {};
+  return static_cast<std::size_t>(found - c.measures.begin());
+}
+
 void words(App& app) {
   auto& measured = app.study.compare.measured;
   const UiColors& colors = colors_of(app);
@@ -62,6 +88,7 @@ void words(App& app) {
     app.notice = "The measurements are on the clipboard, as CSV.";
   }
   if (!comparison_is_current(app)) paragraph("Measured before the last changes.", colors.warn);
+  shown_choice(app, measured.found->result);
   found(app, measured.found->result);
 }
 
@@ -76,9 +103,10 @@ void compare_panel(App& app) {
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   if (const auto& measured = app.study.compare.measured.found) {
     CompareView& drawn = app.plots.compare;
-    if (drawn.of != measured) {
+    if (drawn.of != measured || drawn.shown != app.study.compare.shown) {
       drawn.of = measured;
-      replace_plot(drawn.plot, comparison_plot("", measured->result));
+      drawn.shown = app.study.compare.shown;
+      replace_plot(drawn.plot, comparison_plot("", measured->result, shown_measure(app, measured->result)));
       fit_plot(drawn.view);
     }
     const ImVec2 room = ImGui::GetContentRegionAvail();
