@@ -227,13 +227,7 @@ struct FormulaPlan::State {
   }
 
   void differentiate(NumberRates& rates) {
-    GivenNames::take_values(mechanism, values);
-    std::size_t name = 0;
-    for (const NamedParameter& parameter : mechanism.parameters)
-      values[name++].rate = rates.find(place_of(parameter.value)).value_or(0);
-    for (const NamedPoint& point : mechanism.points)
-      for (const double& at : point.at)
-        values[name++].rate = rates.find(place_of(at)).value_or(0);
+    GivenNames::take_values(mechanism, rates, values);
     for (const Assignment& each : assignments) {
       const Dual value = at_place(each.where, each.text, [&] {
         const Dual found = each.compiled.evaluate(values);

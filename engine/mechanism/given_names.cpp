@@ -7,6 +7,19 @@
 #include <algorithm>
 
 namespace flyball {
+namespace {
+
+template <class N>
+void take_numbers(const Mechanism& mechanism, const NumberReader<N>& read, std::span<Dual> all) {
+  std::size_t at = 0;
+  for (const NamedParameter& parameter : mechanism.parameters)
+    all[at++] = read(parameter.value);
+  for (const NamedPoint& point : mechanism.points)
+    for (const double& coordinate : point.at)
+      all[at++] = read(coordinate);
+}
+
+} // namespace
 
 GivenNames::GivenNames(const Mechanism& mechanism) : mechanism_(mechanism) {
   for (const NamedParameter& parameter : mechanism.parameters) {
@@ -54,12 +67,11 @@ std::vector<Dual> GivenNames::values() const {
 }
 
 void GivenNames::take_values(const Mechanism& mechanism, std::span<Dual> all) {
-  std::size_t at = 0;
-  for (const NamedParameter& parameter : mechanism.parameters)
-    all[at++] = {parameter.value, 0};
-  for (const NamedPoint& point : mechanism.points)
-    for (const int i : {0, 1, 2})
-      all[at++] = {point.at[i], 0};
+  take_numbers(mechanism, NumberReader<double>(), all);
+}
+
+void GivenNames::take_values(const Mechanism& mechanism, const NumberRates& rates, std::span<Dual> all) {
+  take_numbers(mechanism, NumberReader<Dual>(rates), all);
 }
 
 void expect_dimension(const ValueDimension& found, std::string_view unit) {

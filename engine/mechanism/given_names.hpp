@@ -3,6 +3,7 @@
 
 #include "engine/mechanism/expression.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/number_rates.hpp"
 
 #include <span>
 #include <string>
@@ -30,6 +31,8 @@ class GivenNames {
   // `all`.
   std::vector<Dual> values() const;
   static void take_values(const Mechanism& mechanism, std::span<Dual> all);
+  // The same with their rates.
+  static void take_values(const Mechanism& mechanism, const NumberRates& rates, std::span<Dual> all);
 
  private:
   const Mechanism& mechanism_;

@@ -107,12 +107,8 @@ class Finder {
       throw ExpressionError("expected a spring; " + quoted + " is a " +
                             std::string(type_name(m_.forces[place(of.part)].type)));
     } else if (result == Result::clearance) {
-      const std::vector<Shape>& shapes = m_.bodies[place(of.part)].shapes;
-      if (shapes.empty()) throw ExpressionError(quoted + " has no shapes of its own");
-      for (const Shape& shape : shapes)
-        if (shape.type != ShapeType::sphere && shape.type != ShapeType::capsule)
-          throw ExpressionError("expected spheres and capsules, between which the clearance is known; " +
-                                quoted + " has a " + std::string(type_name(shape.type)));
+      if (m_.bodies[place(of.part)].shapes.empty())
+        throw ExpressionError(quoted + " has no shapes of its own");
     }
   }
 
@@ -305,6 +301,11 @@ bool MeasurePlan::fits(const Mechanism& mechanism) const {
 void MeasurePlan::set_numbers(const Mechanism& mechanism) {
   if (empty()) return;
   GivenNames::take_values(mechanism, values_);
+}
+
+void MeasurePlan::set_numbers(const Mechanism& mechanism, const NumberRates& rates) {
+  if (empty()) return;
+  GivenNames::take_values(mechanism, rates, values_);
 }
 
 void MeasurePlan::evaluate(std::span<const Dual> quantities, std::span<Dual> measures) {

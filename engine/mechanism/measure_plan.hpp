@@ -3,6 +3,7 @@
 
 #include "engine/mechanism/expression.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/number_rates.hpp"
 
 #include <array>
 #include <span>
@@ -46,6 +47,8 @@ class MeasurePlan {
   bool fits(const Mechanism& mechanism) const;
   // Takes the values of parameters and points.
   void set_numbers(const Mechanism& mechanism);
+  // With their rates.
+  void set_numbers(const Mechanism& mechanism, const NumberRates& rates);
   // All measures in the scene's order, of quantities in the order of quantities(); not finite where one is
   // undefined. No allocation.
   void evaluate(std::span<const Dual> quantities, std::span<Dual> measures);

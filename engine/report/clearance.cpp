@@ -1,53 +1,116 @@
 #include "engine/report/clearance.hpp"
 
-#include <algorithm>
+#include "engine/mechanism/mass_properties.hpp"
+
+#include <cmath>
 #include <limits>
 
 namespace flyball {
 namespace {
 
-// Points of two lines that are nearest to each other, as parts of the way along each (Ericson, Real-Time
-// Collision Detection, 2005, 5.1.9).
-struct Nearest {
-  double s = 0, t = 0;
-};
-Nearest nearest(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
-  const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
-  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r);
-  if (a == 0 && e == 0) return {};
-  if (a == 0) return {0, std::clamp(f / e, 0., 1.)};
-  const double c = d1.dot(r);
-  if (e == 0) return {std::clamp(-c / a, 0., 1.), 0};
-  const double b = d1.dot(d2), denominator = a * e - b * b;
-  double s = denominator > 1e-14 * a * e ? std::clamp((b * f - c * e) / denominator, 0., 1.) : 0;
-  double t = (b * s + f) / e;
-  if (t < 0) {
-    t = 0;
-    s = std::clamp(-c / a, 0., 1.);
-  } else if (t > 1) {
-    t = 1;
-    s = std::clamp((b - c) / a, 0., 1.);
+// From Parameters::origin.
+template <class N>
+BasicConvexSolid<N> placed(const Kinematics<N>& k, const BasicSolid<N>& solid) {
+  const LinkState<N>& link = k.at(solid.link);
+  BasicConvexSolid<N> out = solid.shape;
+  out.centre = link.o + link.R * solid.shape.centre;
+  for (Vec3T<N>& edge : out.half_edges)
+    edge = link.R * edge;
+  return out;
+}
+
+template <class N>
+BasicConvexSolid<N> solid_of(const Shape& shape, const Body& body, const NumberReader<N>& read) {
+  BasicConvexSolid<N> out;
+  if (is_rod(shape.type)) {
+    const Vec3T<N> from = read(shape.from), to = read(shape.to);
+    out.centre = N(0.5) * (from + to);
+    out.half_edges[0] = N(0.5) * (to - from);
+  } else {
+    out.centre = read(shape.at, read(body.position));
   }
-  return {s, t};
+  if (shape.type == ShapeType::box) {
+    const Vec3T<N> size = read(shape.size);
+    const Mat3T<N> axes = read(body.rotation).normalized().toRotationMatrix();
+    for (int i = 0; i < 3; ++i)
+      out.half_edges[static_cast<std::size_t>(i)] = N(0.5) * size[i] * axes.col(i);
+  } else {
+    (shape.type == ShapeType::cylinder ? out.disc : out.radius) = read(shape.radius);
+  }
+  return out;
+}
+
+Vec3 values(const Vec3T<Dual>& v) {
+  return {v[0].value, v[1].value, v[2].value};
+}
+Vec3 rates(const Vec3T<Dual>& v) {
+  return {v[0].rate, v[1].rate, v[2].rate};
+}
+
+// Of a point of the core that keeps its place on the half edges and, by its share of the radius, on the disc.
+Vec3 carried_rate(const BasicConvexSolid<Dual>& solid, const Vec3& point) {
+  Vec3 rest = point - values(solid.centre), out = rates(solid.centre);
+  for (const Vec3T<Dual>& dual : solid.half_edges) {
+    const Vec3 edge = values(dual);
+    if (edge.isZero(0)) continue;
+    const double part = rest.dot(edge) / edge.squaredNorm();
+    out += part * rates(dual);
+    rest -= part * edge;
+  }
+  if (solid.disc.value == 0) return out;
+  const Vec3T<Dual> axis = solid.half_edges[0].normalized();
+  return out + rest * (solid.disc.rate / solid.disc.value) - values(axis) * rest.dot(rates(axis));
 }
 
 } // namespace
 
+template <class N>
+void add_solids(const System& system, const BasicParameters<N>& p, const Mechanism& m, int body,
+                const NumberReader<N>& read, std::vector<BasicSolid<N>>& out) {
+  const Body& of = m.bodies[static_cast<std::size_t>(body)];
+  const int link = system.body_link[static_cast<std::size_t>(body)];
+  for (const Shape& shape : of.shapes) {
+    out.push_back({link, solid_of(shape, of, read)});
+    out.back().shape.centre -= p.origin + p.links[static_cast<std::size_t>(link)].origin;
+  }
+}
+template void add_solids(const System&, const Parameters&, const Mechanism&, int, const NumberReader<double>&,
+                         std::vector<Solid>&);
+template void add_solids(const System&, const BasicParameters<Dual>&, const Mechanism&, int,
+                         const NumberReader<Dual>&, std::vector<BasicSolid<Dual>>&);
+
 Clearance find_clearance(const Kinematics<double>& k, std::span<const Solid> one,
                          std::span<const Solid> other) {
-  Clearance least{std::numeric_limits<double>::infinity(), {}, {}};
-  for (const Solid& a : one)
-    for (const Solid& b : other) {
-      const Vec3 a0 = k.point(a.from.link, a.from.at), a1 = k.point(a.to.link, a.to.at),
-                 b0 = k.point(b.from.link, b.from.at), b1 = k.point(b.to.link, b.to.at);
-      const auto [s, t] = nearest(a0, a1, b0, b1);
-      const double gap = (b0 + t * (b1 - b0) - a0 - s * (a1 - a0)).norm() - a.radius - b.radius;
-      if (gap < least.gap)
-        least = {gap,
-                 {a.from.link, a.from.at + s * (a.to.at - a.from.at)},
-                 {b.from.link, b.from.at + t * (b.to.at - b.from.at)}};
+  Clearance least;
+  least.gap = std::numeric_limits<double>::infinity();
+  const auto carried = [&](int link, const Vec3& p) {
+    return TrackedPoint{link, k.at(link).R.transpose() * (p - k.at(link).o)};
+  };
+  for (std::size_t i = 0; i < one.size(); ++i)
+    for (std::size_t j = 0; j < other.size(); ++j) {
+      const ConvexDistance found = find_distance(placed(k, one[i]), placed(k, other[j]));
+      if (found.gap >= least.gap) continue;
+      least = {found.gap,
+               found.error,
+               found.normal,
+               carried(one[i].link, found.a),
+               carried(other[j].link, found.b),
+               i,
+               j};
+      if (std::isnan(found.gap)) return least;
     }
   return least;
+}
+
+double clearance_rate(const Clearance& c, const Kinematics<Dual>& k, std::span<const BasicSolid<Dual>> one,
+                      std::span<const BasicSolid<Dual>> other) {
+  const auto rate = [&](const BasicSolid<Dual>& solid, const TrackedPoint& point) {
+    const LinkState<Dual>& link = k.at(point.link);
+    const Vec3 at = values(link.o + link.R * point.at.cast<Dual>());
+    return carried_rate(placed(k, solid), at);
+  };
+  const BasicSolid<Dual>&a = one[c.one], &b = other[c.other];
+  return c.normal.dot(rate(b, c.b) - rate(a, c.a)) - a.shape.radius.rate - b.shape.radius.rate;
 }
 
 } // namespace flyball

@@ -8,6 +8,7 @@
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/residual.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -48,6 +49,7 @@ void add_coordinate_rates(const MeasuredState& s, int reported, double factor, E
 void MeasureSet::rates(const MeasuredState& s, std::size_t i, Eigen::VectorXd& out) const {
   const ResultQuantity& quantity = plan_.quantities()[i];
   const Place& place = places_[i];
+  const QuantityNumbers& numbers = numbers_[i];
   const auto along = [&](const TrackedPoint& point, const Vec3& n, Vec3 PointRates::*of) {
     visit_point_rates(s.system, s.kinematics, point,
                       [&](int v, const PointRates& rate) { out[v] += n.dot(rate.*of); });
@@ -60,7 +62,7 @@ void MeasureSet::rates(const MeasuredState& s, std::size_t i, Eigen::VectorXd& o
     along(b, n, &PointRates::position);
     along(a, -n, &PointRates::position);
   };
-  const TrackedPoint& point = place.points[0];
+  const TrackedPoint& point = numbers.points[0];
   switch (quantity.result) {
   case Result::coordinate: return add_coordinate_rates(s, place.reported, 1, out);
   case Result::x:
@@ -78,16 +80,16 @@ void MeasureSet::rates(const MeasuredState& s, std::size_t i, Eigen::VectorXd& o
   case Result::acceleration:
     return along(point, direction(point_motion(s.parameters, s.kinematics, point).acceleration),
                  &PointRates::acceleration);
-  case Result::distance: return apart(point, place.points[1], 1);
+  case Result::distance: return apart(point, numbers.points[1], 1);
   case Result::angle: {
-    const Vec3 corner = place_of(s, place.points[1]);
-    const Vec3 u = place_of(s, point) - corner, w = place_of(s, place.points[2]) - corner;
+    const Vec3 corner = place_of(s, numbers.points[1]);
+    const Vec3 u = place_of(s, point) - corner, w = place_of(s, numbers.points[2]) - corner;
     const Vec3 a = u.normalized(), b = w.normalized();
     const double sine = a.cross(b).norm(), cosine = a.dot(b); // zero: no rate, which is not a number
     const Vec3 by_u = -(b - cosine * a) / (u.norm() * sine), by_w = -(a - cosine * b) / (w.norm() * sine);
     along(point, by_u, &PointRates::position);
-    along(place.points[2], by_w, &PointRates::position);
-    return along(place.points[1], -by_u - by_w, &PointRates::position);
+    along(numbers.points[2], by_w, &PointRates::position);
+    return along(numbers.points[1], -by_u - by_w, &PointRates::position);
   }
   case Result::length:
   case Result::tension: {
@@ -95,15 +97,17 @@ void MeasureSet::rates(const MeasuredState& s, std::size_t i, Eigen::VectorXd& o
     const PointSpringParameters& p = s.parameters.springs[static_cast<std::size_t>(place.spring)];
     return apart({ends.a, p.a}, {ends.b, p.b}, quantity.result == Result::length ? 1 : p.stiffness);
   }
-  case Result::spring: return add_coordinate_rates(s, place.reported, -place.stiffness, out);
+  case Result::spring: return add_coordinate_rates(s, place.reported, -numbers.stiffness, out);
   case Result::clearance: {
-    if (!place.between_bodies) {
-      const double q = s.coordinate(place.reported);
-      return add_coordinate_rates(s, place.reported, place.below(q) < place.above(q) ? 1 : -1, out);
+    if (!is_clearance_of_bodies(quantity)) {
+      const double slope = numbers.clearance_slope(s.coordinate(place.reported));
+      return add_coordinate_rates(s, place.reported, slope, out);
     }
-    // What the nearest points do along the lines changes their distance in second order only.
-    const Clearance least = solid_clearance(s, place);
-    if (std::isfinite(least.gap)) apart(least.a, least.b, 1);
+    // What the nearest points do along the surfaces changes their distance in second order only.
+    const Clearance least = clearance_of(s.kinematics, i);
+    if (!std::isfinite(least.gap)) return;
+    along(least.b, least.normal, &PointRates::position);
+    along(least.a, -least.normal, &PointRates::position);
     return;
   }
   default: return; // constant, or by differences
@@ -170,25 +174,65 @@ const Eigen::MatrixXd& MeasureSet::gradient(const Problem& problem, const Eigen:
   return rates_;
 }
 
-Eigen::MatrixXd MeasureSet::rates_along(const Problem& problem, const Mechanism& mechanism,
-                                        std::span<const std::string> addresses, const Eigen::VectorXd& q,
-                                        std::span<const Eigen::VectorXd> rates, Workspace& w) {
-  bind(mechanism, problem.system, problem.parameters);
-  evaluate_at(problem, q, w);
-  const Eigen::MatrixXd along = gradient(problem, q, w, w.elsewhere());
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(size()), static_cast<Eigen::Index>(addresses.size()));
-  for (std::size_t k = 0; k < addresses.size(); ++k)
-    out.col(static_cast<Eigen::Index>(k)) =
-        along * rates[k] + parameter_rates(problem, mechanism, addresses[k], q, w);
+Eigen::VectorXd MeasureSet::rates_by(const Problem& problem, const Mechanism& mechanism,
+                                     const NumberRates& rates, const Eigen::VectorXd& q, const Workspace& w,
+                                     const std::vector<double>& differences) {
+  const System& system = problem.system;
+  BasicParameters<Dual> p;
+  flyball::bind(system, mechanism, rates, problem.parameters, p);
+  Kinematics<Dual> k;
+  const Configuration<Dual> at = q.cast<Dual>();
+  forward<Dual>(system, p, at, 0, k);
+  const auto coordinate = [&](const Place& place) {
+    const ReportedCoordinate& r = system.reported[static_cast<std::size_t>(place.reported)];
+    return coordinate_value<Dual>(system, p, at, system.coordinates[static_cast<std::size_t>(r.coordinate)]);
+  };
+  const auto speed = [&](const Place& place) -> Dual {
+    const ReportedCoordinate& r = system.reported[static_cast<std::size_t>(place.reported)];
+    const auto link =
+        static_cast<std::size_t>(system.coordinates[static_cast<std::size_t>(r.coordinate)].link);
+    const bool given = system.links[link].drive >= 0 && !finds_speed(system.links[link]);
+    return given ? p.links[link].speed * p.speed_scale : 0;
+  };
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const ResultQuantity& quantity = plan_.quantities()[i];
+    const Place& place = places_[i];
+    BasicQuantityNumbers<Dual>& numbers = number_rates_[i];
+    take_numbers<Dual>(quantity, system, p, mechanism, NumberReader<Dual>(rates), numbers);
+    double& rate = duals_[i].rate;
+    duals_[i].value = found_[i];
+    if (place.differenced_by_numbers) {
+      rate = differences[i];
+      continue;
+    }
+    switch (quantity.result) {
+    case Result::coordinate: rate = coordinate(place).rate; break;
+    case Result::rate: rate = speed(place).rate; break;
+    case Result::spring: rate = numbers.spring(coordinate(place)).rate; break;
+    case Result::clearance:
+      if (!is_clearance_of_bodies(quantity))
+        rate = numbers.clearance(coordinate(place)).rate;
+      else if (const Clearance least = clearance_of(w.kinematics, i); std::isfinite(least.gap))
+        rate = clearance_rate(least, k, numbers.solids[0], numbers.solids[1]);
+      break;
+    default: rate = quantity_value(quantity, numbers, place.spring, system, p, k).rate;
+    }
+  }
+  plan_.set_numbers(mechanism, rates);
+  plan_.evaluate(duals_, combined_);
+  plan_.set_numbers(mechanism);
+  Eigen::VectorXd out(static_cast<Eigen::Index>(size()));
+  std::ranges::transform(combined_, out.begin(), &Dual::rate);
   return out;
 }
 
-Eigen::VectorXd MeasureSet::parameter_rates(const Problem& problem, const Mechanism& mechanism,
-                                            const std::string& address, const Eigen::VectorXd& q,
-                                            Workspace& w) {
+std::vector<double> MeasureSet::differences_by(const Problem& problem, const Mechanism& mechanism,
+                                               const std::string& address, const Eigen::VectorXd& q,
+                                               Workspace& w) {
   const double value = get_parameter(mechanism, address);
   const double h = 1e-6 * (std::abs(value) > 1e-100 ? std::abs(value) : 1.);
-  Eigen::VectorXd sides[2];
+  const std::vector<double> here = found_;
+  std::vector<double> sides[2];
   Mechanism varied = mechanism;
   Parameters numbers;
   try {
@@ -197,15 +241,43 @@ Eigen::VectorXd MeasureSet::parameter_rates(const Problem& problem, const Mechan
       number.set(std::array{side == 0 ? value + h : value - h});
       flyball::bind(problem.system, varied, numbers);
       bind(varied, problem.system, numbers);
-      sides[side] = evaluate_at({problem.system, numbers, problem.scaling}, q, w);
+      evaluate_at({problem.system, numbers, problem.scaling}, q, w);
+      sides[side] = found_;
     }
-    bind(mechanism, problem.system, problem.parameters);
-    return (sides[0] - sides[1]) / (2 * h);
+    for (std::size_t i = 0; i < here.size(); ++i)
+      sides[0][i] = (sides[0][i] - sides[1][i]) / (2 * h);
   } catch (const SceneError&) { // expressions make no mechanism of it
-    bind(mechanism, problem.system, problem.parameters);
-    return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(size()),
-                                     std::numeric_limits<double>::quiet_NaN());
+    sides[0].assign(here.size(), std::numeric_limits<double>::quiet_NaN());
   }
+  bind(mechanism, problem.system, problem.parameters);
+  found_ = here;
+  return sides[0];
+}
+
+Eigen::MatrixXd MeasureSet::rates_along(const Problem& problem, const Mechanism& mechanism,
+                                        std::span<const std::string> addresses, const Eigen::VectorXd& q,
+                                        std::span<const Eigen::VectorXd> rates, Workspace& w) {
+  bind(mechanism, problem.system, problem.parameters);
+  evaluate_at(problem, q, w);
+  const Eigen::MatrixXd along = gradient(problem, q, w, w.elsewhere());
+  const bool differences = std::ranges::any_of(places_, &Place::differenced_by_numbers);
+  // They are not set: rates alone are asked for.
+  const VariedNumbers numbers(const_cast<Mechanism&>(mechanism), addresses);
+  NumberRates number_rates;
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(size()), static_cast<Eigen::Index>(addresses.size()));
+  for (std::size_t k = 0; k < addresses.size(); ++k) {
+    auto column = out.col(static_cast<Eigen::Index>(k));
+    try {
+      numbers.rates(k, number_rates);
+    } catch (const SceneError&) { // such as of a square root at zero
+      column.setConstant(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    std::vector<double> differenced;
+    if (differences) differenced = differences_by(problem, mechanism, addresses[k], q, w.elsewhere());
+    column = along * rates[k] + rates_by(problem, mechanism, number_rates, q, w, differenced);
+  }
+  return out;
 }
 
 } // namespace flyball

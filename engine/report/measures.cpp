@@ -16,6 +16,8 @@ std::size_t slot(int i) {
   return static_cast<std::size_t>(i);
 }
 
+constexpr double rounding = 16 * std::numeric_limits<double>::epsilon(); // of a quantity of size 1
+
 bool asks_for_forces(Result result) {
   switch (result) {
   case Result::reaction_x:
@@ -37,32 +39,9 @@ bool asks_for_acceleration(Result result) {
          result == Result::acceleration;
 }
 
-// A point of a body, or of the ground, from the link's origin.
-TrackedPoint tracked(const System& system, const Parameters& p, int body, const Vec3& drawn) {
-  if (body < 0) return {-1, drawn - p.origin};
-  const int link = system.body_link[slot(body)];
-  return {link, drawn - p.origin - p.links[slot(link)].origin};
-}
-
-Vec3 drawn_place(const Mechanism& m, const ResultQuantity::Of& of) {
-  return of.point >= 0 ? m.points[slot(of.point)].at : m.bodies[slot(of.part)].position;
-}
-
-Vec3 position(const Kinematics<double>& k, const TrackedPoint& point) {
-  return k.point(point.link, point.at);
-}
-
-PointMotion motion_of(const MeasuredState& s, const TrackedPoint& point) {
-  return point_motion(s.parameters, s.kinematics, point);
-}
-
-double angle_between(const Vec3& a, const Vec3& b) {
-  if (a.squaredNorm() == 0 || b.squaredNorm() == 0) return std::numeric_limits<double>::quiet_NaN();
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-double component(const Vec3& v, Result result, Result first) {
-  return v[static_cast<int>(result) - static_cast<int>(first)];
+// Which component it is.
+int slot_of(Result result, Result first) {
+  return static_cast<int>(result) - static_cast<int>(first);
 }
 
 } // namespace
@@ -74,45 +53,11 @@ void MeasureSet::bind(const Mechanism& m, const System& system, const Parameters
   }
   if (empty()) return;
   plan_.set_numbers(m);
-  solids_.clear();
   differenced_ = false;
-  const auto add_solids = [&](int body) {
-    for (const Shape& shape : m.bodies[slot(body)].shapes) {
-      const bool rod = shape.type == ShapeType::capsule;
-      const Vec3 centre = shape.at.value_or(m.bodies[slot(body)].position);
-      solids_.push_back({tracked(system, p, body, rod ? shape.from : centre),
-                         tracked(system, p, body, rod ? shape.to : centre), shape.radius});
-    }
-  };
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const ResultQuantity& quantity = plan_.quantities()[i];
     Place& place = places_[i];
-    const ArgumentKind kind =
-        argument_kind(result_function(quantity.result), static_cast<std::size_t>(quantity.count));
-    if (kind == ArgumentKind::point)
-      for (std::size_t n = 0; n < slot(quantity.count); ++n)
-        place.points[n] = tracked(system, p, quantity.of[n].part, drawn_place(m, quantity.of[n]));
-    if (kind == ArgumentKind::coordinate) {
-      const Coordinate& c = m.joints[slot(quantity.of[0].part)].coordinates[slot(quantity.of[0].coordinate)];
-      if (c.spring) {
-        place.stiffness = c.spring->stiffness;
-        place.free = c.spring->free;
-      }
-      place.lower = c.stop ? c.stop->lower : std::nullopt;
-      place.upper = c.stop ? c.stop->upper : std::nullopt;
-    }
-    if (place.between_bodies) {
-      place.first_solid = solids_.size();
-      add_solids(quantity.of[0].part);
-      place.second_solid = solids_.size();
-      add_solids(quantity.of[1].part);
-      place.last_solid = solids_.size();
-    }
-    if (quantity.result == Result::mass) {
-      place.mass = 0;
-      for (std::size_t b = 0; b < m.bodies.size(); ++b)
-        if (quantity.count == 0 || slot(quantity.of[0].part) == b) place.mass += m.bodies[b].mass;
-    }
+    take_numbers<double>(quantity, system, p, m, {}, numbers_[i]);
     if (quantity.result == Result::tension)
       place.differenced = !system.torques.empty() || p.springs[slot(place.spring)].damping != 0;
     differenced_ = differenced_ || place.differenced;
@@ -128,6 +73,8 @@ void MeasureSet::find_places(const Mechanism& m, const System& system) {
   }
   const std::size_t count = plan_.quantities().size();
   places_.assign(count, {});
+  numbers_.assign(count, {});
+  number_rates_.assign(count, {});
   found_.resize(count);
   duals_.resize(count);
   combined_.resize(plan_.size());
@@ -141,15 +88,17 @@ void MeasureSet::find_places(const Mechanism& m, const System& system) {
     needs_forces_ = needs_forces_ || forces;
     needs_accelerations_ = needs_accelerations_ || asks_for_acceleration(quantity.result);
     place.differenced = forces || !system.torques.empty(); // which change with the speeds found, too
+    place.differenced_by_numbers = forces;
     const ArgumentKind kind = argument_kind(result_function(quantity.result), slot(quantity.count));
-    place.between_bodies = quantity.result == Result::clearance && kind == ArgumentKind::body;
     switch (kind) {
     case ArgumentKind::coordinate:
       for (std::size_t r = 0; r < system.reported.size(); ++r)
         if (system.reported[r].joint == m.joints[slot(part)].name && system.reported[r].index == coordinate)
           place.reported = static_cast<int>(r);
-      if (quantity.result == Result::rate && system.reported[slot(place.reported)].cut >= 0)
-        place.differenced = true;
+      if (system.reported[slot(place.reported)].cut >= 0) {
+        place.differenced = place.differenced || quantity.result == Result::rate;
+        place.differenced_by_numbers = true;
+      }
       for (std::size_t d = 0; d < system.drives.size(); ++d) {
         const Link& link = system.links[slot(system.drives[d].link)];
         if (system.drives[d].motor == static_cast<int>(d) && link.coordinate == coordinate &&
@@ -198,76 +147,40 @@ double MeasuredState::rate(int listed) const {
   return system.links[link].drive >= 0 ? parameters.links[link].speed * parameters.speed_scale : 0;
 }
 
-double MeasureSet::Place::below(double q) const {
-  return lower ? q - *lower : std::numeric_limits<double>::infinity();
-}
-double MeasureSet::Place::above(double q) const {
-  return upper ? *upper - q : std::numeric_limits<double>::infinity();
-}
-
-Clearance MeasureSet::solid_clearance(const MeasuredState& s, const Place& place) const {
-  const std::span solids(solids_);
-  return find_clearance(s.kinematics,
-                        solids.subspan(place.first_solid, place.second_solid - place.first_solid),
-                        solids.subspan(place.second_solid, place.last_solid - place.second_solid));
+Clearance MeasureSet::clearance_of(const Kinematics<double>& kinematics, std::size_t i) const {
+  return find_clearance(kinematics, numbers_[i].solids[0], numbers_[i].solids[1]);
 }
 
 double MeasureSet::value(const MeasuredState& s, std::size_t i) const {
   const ResultQuantity& quantity = plan_.quantities()[i];
   const Place& place = places_[i];
-  const auto motion = [&] { return motion_of(s, place.points[0]); };
+  const QuantityNumbers& numbers = numbers_[i];
   const auto joint = [&]() -> const JointWrench& {
     return place.tree >= 0 ? s.forces->tree[slot(place.tree)] : s.forces->cuts[slot(place.cut)];
-  };
-  const auto spring = [&] {
-    return spring_state(s.system.springs[slot(place.spring)], s.parameters.springs[slot(place.spring)],
-                        s.kinematics);
   };
   const double none = std::numeric_limits<double>::quiet_NaN();
   switch (quantity.result) {
   case Result::coordinate: return s.coordinate(place.reported);
   case Result::rate: return s.rate(place.reported);
-  case Result::x:
-  case Result::y:
-  case Result::z: return component(motion().position, quantity.result, Result::x);
-  case Result::vx:
-  case Result::vy:
-  case Result::vz: return component(motion().velocity, quantity.result, Result::vx);
-  case Result::ax:
-  case Result::ay:
-  case Result::az:
-    return s.accelerated ? component(motion().acceleration, quantity.result, Result::ax) : none;
-  case Result::speed: return motion().velocity.norm();
-  case Result::acceleration: return s.accelerated ? motion().acceleration.norm() : none;
-  case Result::distance:
-    return (position(s.kinematics, place.points[1]) - position(s.kinematics, place.points[0])).norm();
-  case Result::angle: {
-    const Vec3 corner = position(s.kinematics, place.points[1]);
-    return angle_between(position(s.kinematics, place.points[0]) - corner,
-                         position(s.kinematics, place.points[2]) - corner);
-  }
-  case Result::length: return spring().length;
-  case Result::tension: return spring().tension;
-  case Result::spring: return -place.stiffness * (s.coordinate(place.reported) - place.free);
+  case Result::spring: return numbers.spring(s.coordinate(place.reported));
+  case Result::clearance:
+    return is_clearance_of_bodies(quantity) ? clearance_of(s.kinematics, i).gap
+                                            : numbers.clearance(s.coordinate(place.reported));
   case Result::reaction_x:
   case Result::reaction_y:
-  case Result::reaction_z: return component(joint().force, quantity.result, Result::reaction_x);
+  case Result::reaction_z: return joint().force[slot_of(quantity.result, Result::reaction_x)];
   case Result::reaction: return joint().force.norm();
   case Result::moment_x:
   case Result::moment_y:
-  case Result::moment_z: return component(joint().torque, quantity.result, Result::moment_x);
+  case Result::moment_z: return joint().torque[slot_of(quantity.result, Result::moment_x)];
   case Result::moment: return joint().torque.norm();
   case Result::torque: return place.drive < 0 ? none : s.forces->drives[slot(place.drive)];
   case Result::power:
     return place.drive < 0 ? none : s.forces->drives[slot(place.drive)] * s.rate(place.reported);
-  case Result::clearance: {
-    if (place.between_bodies) return solid_clearance(s, place).gap;
-    const double q = s.coordinate(place.reported);
-    return std::min(place.below(q), place.above(q));
+  default:
+    if (!s.accelerated && asks_for_acceleration(quantity.result)) return none;
+    return quantity_value(quantity, numbers, place.spring, s.system, s.parameters, s.kinematics);
   }
-  case Result::mass: break;
-  }
-  return place.mass;
 }
 
 void MeasureSet::evaluate_quantities(const MeasuredState& state) {
@@ -312,13 +225,14 @@ const Eigen::VectorXd& MeasureSet::evaluate_at(const Problem& problem, const Eig
 double MeasureSet::rounding_size(const MeasuredState& s, std::size_t i) const {
   const ResultQuantity& quantity = plan_.quantities()[i];
   const double reach = s.parameters.length, size = std::abs(found_[i]);
+  const auto motion = [&] { return motion_of(s.parameters, s.kinematics, numbers_[i].points[0]); };
   switch (quantity.result) {
   case Result::vx:
   case Result::vy:
-  case Result::vz: return motion_of(s, places_[i].points[0]).velocity.norm();
+  case Result::vz: return motion().velocity.norm();
   case Result::ax:
   case Result::ay:
-  case Result::az: return motion_of(s, places_[i].points[0]).acceleration.norm();
+  case Result::az: return motion().acceleration.norm();
   case Result::reaction_x:
   case Result::reaction_y:
   case Result::reaction_z:
@@ -334,9 +248,13 @@ double MeasureSet::rounding_size(const MeasuredState& s, std::size_t i) const {
   case Result::rate:
   case Result::angle: return size;
   case Result::coordinate: return std::max(size, quantity.angle ? 1 : reach);
-  case Result::spring: return std::abs(places_[i].stiffness) * std::max(size, quantity.angle ? 1 : reach);
+  case Result::spring: return std::abs(numbers_[i].stiffness) * std::max(size, quantity.angle ? 1 : reach);
   case Result::tension:
     return std::max(size, s.parameters.springs[slot(places_[i].spring)].stiffness * reach);
+  case Result::clearance:
+    if (is_clearance_of_bodies(quantity))
+      return size + reach + clearance_of(s.kinematics, i).error / rounding;
+    return std::max(size, quantity.angle ? 1 : reach);
   default: return size + reach;
   }
 }
@@ -355,6 +273,7 @@ std::vector<MeasureSolution> MeasureSet::solutions(const Problem& problem, const
     else
       out[i].reason = "Its value is not finite here.";
   }
+  explain_unknown_depths(out);
   if (error.size() != problem.system.nv) return out;
   gradient(problem, z.q, w, w.elsewhere());
   // Beside the coordinates' errors what rounds: positions by the mechanism's reach, all else by its own size.
@@ -365,11 +284,21 @@ std::vector<MeasureSolution> MeasureSet::solutions(const Problem& problem, const
     double estimate = rates_.row(row).cwiseAbs() * error;
     for (std::size_t k = 0; k < found_.size(); ++k) {
       const double part = std::abs(partials_(row, static_cast<Eigen::Index>(k)));
-      if (part > 0) estimate += 16 * epsilon * part * rounding_size(state, k);
+      if (part > 0) estimate += rounding * part * rounding_size(state, k);
     }
     if (out[i].value && std::isfinite(estimate)) out[i].error = estimate + epsilon * std::abs(*out[i].value);
   }
   return out;
+}
+
+void MeasureSet::explain_unknown_depths(std::vector<MeasureSolution>& out) const {
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    if (!std::isnan(found_[k]) || !is_clearance_of_bodies(plan_.quantities()[k])) continue;
+    const std::vector<bool> users = plan_.users_of(k);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (users[i] && !out[i].value)
+        out[i].reason = "A cylinder is within another shape here; how deep is known of others only.";
+  }
 }
 
 void MeasureSet::mark_nonunique(const Mechanism& m, const std::vector<Reaction>& reactions,

@@ -3,8 +3,7 @@
 #pragma once
 
 #include "engine/kkt/workspace.hpp"
-#include "engine/mechanism/measure_plan.hpp"
-#include "engine/report/clearance.hpp"
+#include "engine/report/measured_quantity.hpp"
 #include "engine/solve/solution.hpp"
 #include "engine/system/reactions.hpp"
 
@@ -57,15 +56,10 @@ class MeasureSet {
 
   // (measures, addresses): their rates along the steady states of the mechanism, per unit of the number at an
   // address, where the coordinates' are `rates` (by address, see sensitivities()). Evaluates at q. Not a
-  // number where a measure has none, or where the number cannot be moved.
+  // number where a measure has none, or where the number moves others at no finite rate.
   Eigen::MatrixXd rates_along(const Problem& problem, const Mechanism& mechanism,
                               std::span<const std::string> addresses, const Eigen::VectorXd& q,
                               std::span<const Eigen::VectorXd> rates, Workspace& w);
-
-  // Their rates by the number at an address, per its unit, while the coordinates stand: by central
-  // differences (relative error about 1e-9). Not a number where the number cannot be moved.
-  Eigen::VectorXd parameter_rates(const Problem& problem, const Mechanism& mechanism,
-                                  const std::string& address, const Eigen::VectorXd& q, Workspace& w);
 
   // By name, with the errors that errors of the coordinates (by coordinate of q_R: rad, m) make; where these
   // are empty or there are no rates errors are left out. Of a steady state that is evaluated in `w` with
@@ -80,31 +74,37 @@ class MeasureSet {
  private:
   // Where a quantity is found in the system.
   struct Place {
-    std::array<TrackedPoint, 3> points;
     int reported = -1, tree = -1, cut = -1, drive = -1, spring = -1;
-    double stiffness = 0, free = 0;     // of a coordinate's spring
-    std::optional<double> lower, upper; // stops
-    double mass = 0;
-    std::size_t first_solid = 0, second_solid = 0, last_solid = 0; // in solids_: of one body, of the other
-    bool between_bodies = false; // a clearance; else of a coordinate to its stops
-    double below(double q) const;
-    double above(double q) const;
-    bool differenced = false; // its rates are found by differences
+    bool differenced = false; // its rates along coordinates are found by differences
+    // Those by numbers, too: of forces, whose multipliers follow, and of joints that close loops.
+    bool differenced_by_numbers = false;
   };
   void find_places(const Mechanism& mechanism, const System& system);
   double value(const MeasuredState& state, std::size_t quantity) const;
   void evaluate_quantities(const MeasuredState& state);
-  Clearance solid_clearance(const MeasuredState& state, const Place& place) const;
+  Clearance clearance_of(const Kinematics<double>& kinematics, std::size_t quantity) const;
   // Adds the rates of a quantity to a row of quantity_rates_.
   void rates(const MeasuredState& state, std::size_t quantity, Eigen::VectorXd& out) const;
+  // Says why a clearance has no value.
+  void explain_unknown_depths(std::vector<MeasureSolution>& out) const;
   // By how much of it a quantity may be wrong by rounding alone, in parts of 1e-16.
   double rounding_size(const MeasuredState& state, std::size_t quantity) const;
   void difference(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
   const Eigen::VectorXd& combine();
+  // Their rates by a number whose rates are given, and all others with it, while the coordinates stand: exact
+  // but for those quantities that take `differences`. After evaluate_at().
+  Eigen::VectorXd rates_by(const Problem& problem, const Mechanism& mechanism, const NumberRates& rates,
+                           const Eigen::VectorXd& q, const Workspace& w,
+                           const std::vector<double>& differences);
+  // Of the quantities by the number at an address: central ones, relative error about 1e-9.
+  std::vector<double> differences_by(const Problem& problem, const Mechanism& mechanism,
+                                     const std::string& address, const Eigen::VectorXd& q, Workspace& w);
 
   MeasurePlan plan_;
-  std::vector<Place> places_; // by quantity
-  std::vector<Solid> solids_;
+  // By quantity.
+  std::vector<Place> places_;
+  std::vector<QuantityNumbers> numbers_;
+  std::vector<BasicQuantityNumbers<Dual>> number_rates_; // workspace
   std::vector<std::string> names_, units_;
   bool needs_forces_ = false, needs_accelerations_ = false, differenced_ = false;
   // Of the last state.

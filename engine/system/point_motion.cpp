@@ -22,12 +22,23 @@ TrackedPoint find_point(const System& system, const Mechanism& mechanism, const 
                     p.links[static_cast<std::size_t>(link)].origin};
 }
 
-PointMotion point_motion(const Parameters& p, const Kinematics<double>& k, const TrackedPoint& point) {
-  const LinkState<double>& x = k.at(point.link);
-  const Vec3 arm = x.R * point.at;
+template <class N>
+BasicPointMotion<N> motion_of(const BasicParameters<N>& p, const Kinematics<N>& k,
+                              const BasicTrackedPoint<N>& point) {
+  const LinkState<N>& x = k.at(point.link);
+  const Vec3T<N> arm = x.R * point.at;
   // The ground carries gravity as a fictitious acceleration.
   return {p.origin + x.o + arm, x.v + x.w.cross(arm),
           x.dv - k.ground.dv + x.dw.cross(arm) + x.w.cross(x.w.cross(arm))};
+}
+template BasicPointMotion<double> motion_of(const Parameters&, const Kinematics<double>&,
+                                            const TrackedPoint&);
+template BasicPointMotion<Dual> motion_of(const BasicParameters<Dual>&, const Kinematics<Dual>&,
+                                          const BasicTrackedPoint<Dual>&);
+
+PointMotion point_motion(const Parameters& p, const Kinematics<double>& k, const TrackedPoint& point) {
+  const BasicPointMotion<double> motion = motion_of(p, k, point);
+  return {motion.position, motion.velocity, motion.acceleration};
 }
 
 namespace {

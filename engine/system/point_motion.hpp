@@ -9,10 +9,12 @@
 namespace flyball {
 
 // A point of a body as the passes see it.
-struct TrackedPoint {
+template <class N>
+struct BasicTrackedPoint {
   int link = -1;
-  Offset at = Offset::Zero();
+  BasicOffset<N> at = BasicOffset<N>::Zero();
 };
+using TrackedPoint = BasicTrackedPoint<double>;
 
 // Throws SceneError where there is no such body; "ground" is none.
 TrackedPoint find_point(const System& system, const Mechanism& mechanism, const Parameters& parameters,
@@ -22,6 +24,16 @@ TrackedPoint find_point(const System& system, const Mechanism& mechanism, const 
 // does.
 PointMotion point_motion(const Parameters& parameters, const Kinematics<double>& kinematics,
                          const TrackedPoint& point);
+
+// World frame: m, m/s, m/s^2.
+template <class N>
+struct BasicPointMotion {
+  Vec3T<N> position, velocity, acceleration;
+};
+// The same, instantiated for double and Dual.
+template <class N>
+BasicPointMotion<N> motion_of(const BasicParameters<N>& parameters, const Kinematics<N>& kinematics,
+                              const BasicTrackedPoint<N>& point);
 
 // How a point changes as one coordinate of q_R moves at unit rate, in the field of motion that the drives
 // make (q_R' = 0). What lies beyond the coordinate is displaced as a rigid body in the carrier's frame P, and

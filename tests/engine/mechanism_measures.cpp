@@ -84,7 +84,6 @@ TEST_CASE("Mistakes of measures are told with their place", "[measures]") {
            {"torque(hinge)", "N m", "\"hinge\" has no drive"},
            {"clearance(slide)", "m", "\"slide\" has no stop"},
            {"spring(slide)", "m", "\"slide\" has no spring"},
-           {"clearance(table, arm)", "m", "\"table\" has a box"},
            {"clearance(arm, table)", "m", "\"arm\" has no shapes"},
            {"x(ground)", "m", "expected a named point of the ground"},
            {"x(arm)", "N", "expected N, found m"},

@@ -1,0 +1,128 @@
+#include "engine/report/measured_quantity.hpp"
+
+#include "engine/system/residual.hpp"
+
+#include <limits>
+
+namespace flyball {
+namespace {
+
+ArgumentKind kind_of(const ResultQuantity& quantity) {
+  return argument_kind(result_function(quantity.result), static_cast<std::size_t>(quantity.count));
+}
+
+// A point of a body, or of the ground, from the link's origin.
+template <class N>
+BasicTrackedPoint<N> tracked(const System& system, const BasicParameters<N>& p, const Mechanism& m,
+                             const ResultQuantity::Of& of, const NumberReader<N>& read) {
+  const Vec3T<N> drawn = read(of.point >= 0 ? m.points[static_cast<std::size_t>(of.point)].at
+                                            : m.bodies[static_cast<std::size_t>(of.part)].position);
+  if (of.part < 0) return {-1, drawn - p.origin};
+  const int link = system.body_link[static_cast<std::size_t>(of.part)];
+  return {link, drawn - p.origin - p.links[static_cast<std::size_t>(link)].origin};
+}
+
+template <class N>
+N angle_between(const Vec3T<N>& a, const Vec3T<N>& b) {
+  using std::atan2;
+  if (a.squaredNorm() == N(0) || b.squaredNorm() == N(0)) return std::numeric_limits<double>::quiet_NaN();
+  return atan2(N(a.cross(b).norm()), N(a.dot(b)));
+}
+
+template <class N>
+N component(const Vec3T<N>& v, Result result, Result first) {
+  return v[static_cast<int>(result) - static_cast<int>(first)];
+}
+
+} // namespace
+
+bool is_clearance_of_bodies(const ResultQuantity& quantity) {
+  return quantity.result == Result::clearance && kind_of(quantity) == ArgumentKind::body;
+}
+
+template <class N>
+N BasicQuantityNumbers<N>::clearance(N q) const {
+  const N none = std::numeric_limits<double>::infinity();
+  const N below = lower ? q - *lower : none, above = upper ? *upper - q : none;
+  return above < below ? above : below;
+}
+
+template <class N>
+double BasicQuantityNumbers<N>::clearance_slope(double q) const {
+  if (!lower || !upper) return lower ? 1 : -1;
+  return static_cast<double>(*upper) - q > q - static_cast<double>(*lower) ? 1 : -1;
+}
+
+template <class N>
+void take_numbers(const ResultQuantity& quantity, const System& system, const BasicParameters<N>& p,
+                  const Mechanism& m, const NumberReader<N>& read, BasicQuantityNumbers<N>& out) {
+  const ArgumentKind kind = kind_of(quantity);
+  if (kind == ArgumentKind::point)
+    for (std::size_t n = 0; n < static_cast<std::size_t>(quantity.count); ++n)
+      out.points[n] = tracked(system, p, m, quantity.of[n], read);
+  if (kind == ArgumentKind::coordinate) {
+    const Coordinate& c = m.joints[static_cast<std::size_t>(quantity.of[0].part)]
+                              .coordinates[static_cast<std::size_t>(quantity.of[0].coordinate)];
+    if (c.spring) {
+      out.stiffness = read(c.spring->stiffness);
+      out.free = read(c.spring->free);
+    }
+    out.lower = out.upper = std::nullopt;
+    if (c.stop && c.stop->lower) out.lower = read(*c.stop->lower);
+    if (c.stop && c.stop->upper) out.upper = read(*c.stop->upper);
+  }
+  if (is_clearance_of_bodies(quantity))
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      out.solids[i].clear();
+      add_solids(system, p, m, quantity.of[i].part, read, out.solids[i]);
+    }
+  if (quantity.result == Result::mass) {
+    out.mass = 0;
+    for (std::size_t b = 0; b < m.bodies.size(); ++b)
+      if (quantity.count == 0 || static_cast<std::size_t>(quantity.of[0].part) == b)
+        out.mass += read(m.bodies[b].mass);
+  }
+}
+
+template <class N>
+N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& numbers, int spring,
+                 const System& system, const BasicParameters<N>& p, const Kinematics<N>& k) {
+  const auto motion = [&] { return motion_of(p, k, numbers.points[0]); };
+  const auto place = [&](std::size_t i) { return k.point(numbers.points[i].link, numbers.points[i].at); };
+  const auto state = [&] {
+    const auto s = static_cast<std::size_t>(spring);
+    return spring_state<N>(system.springs[s], p.springs[s], k);
+  };
+  switch (quantity.result) {
+  case Result::x:
+  case Result::y:
+  case Result::z: return component<N>(motion().position, quantity.result, Result::x);
+  case Result::vx:
+  case Result::vy:
+  case Result::vz: return component<N>(motion().velocity, quantity.result, Result::vx);
+  case Result::ax:
+  case Result::ay:
+  case Result::az: return component<N>(motion().acceleration, quantity.result, Result::ax);
+  case Result::speed: return motion().velocity.norm();
+  case Result::acceleration: return motion().acceleration.norm();
+  case Result::distance: return (place(1) - place(0)).norm();
+  case Result::angle: return angle_between<N>(place(0) - place(1), place(2) - place(1));
+  case Result::length: return state().length;
+  case Result::tension: return state().tension;
+  case Result::mass: return numbers.mass;
+  default: return std::numeric_limits<double>::quiet_NaN(); // asked of other things
+  }
+}
+
+template struct BasicQuantityNumbers<double>;
+template struct BasicQuantityNumbers<Dual>;
+template void take_numbers(const ResultQuantity&, const System&, const Parameters&, const Mechanism&,
+                           const NumberReader<double>&, QuantityNumbers&);
+template void take_numbers(const ResultQuantity&, const System&, const BasicParameters<Dual>&,
+                           const Mechanism&, const NumberReader<Dual>&, BasicQuantityNumbers<Dual>&);
+template double quantity_value(const ResultQuantity&, const QuantityNumbers&, int, const System&,
+                               const Parameters&, const Kinematics<double>&);
+template Dual quantity_value(const ResultQuantity&, const BasicQuantityNumbers<Dual>&, int, const System&,
+                             const BasicParameters<Dual>&, const Kinematics<Dual>&);
+
+} // namespace flyball

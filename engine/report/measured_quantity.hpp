@@ -1,0 +1,38 @@
+// The quantities that measures ask of results, as far as positions and motions tell them. N: double, or Dual
+// for the numbers with their rates.
+#pragma once
+
+#include "engine/mechanism/measure_plan.hpp"
+#include "engine/report/clearance.hpp"
+
+namespace flyball {
+
+// The numbers of the mechanism that a quantity rests on.
+template <class N>
+struct BasicQuantityNumbers {
+  std::array<BasicTrackedPoint<N>, 3> points;
+  N stiffness = 0, free = 0;                        // of a coordinate's spring
+  std::optional<N> lower, upper;                    // of a coordinate's stops
+  N mass = 0;                                       // kg
+  std::array<std::vector<BasicSolid<N>>, 2> solids; // of the two bodies of a clearance
+
+  // Of the coordinate's spring, along it, and to the nearer of its stops.
+  N spring(N q) const { return -stiffness * (q - free); }
+  N clearance(N q) const;
+  double clearance_slope(double q) const; // 1 or -1
+};
+using QuantityNumbers = BasicQuantityNumbers<double>;
+
+template <class N>
+void take_numbers(const ResultQuantity& quantity, const System& system, const BasicParameters<N>& parameters,
+                  const Mechanism& mechanism, const NumberReader<N>& read, BasicQuantityNumbers<N>& out);
+
+// A position, velocity or acceleration, a distance or angle, mass. Throws nothing; not finite where it is
+// undefined. `spring`: in the system, of length and tension.
+template <class N>
+N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& numbers, int spring,
+                 const System& system, const BasicParameters<N>& parameters, const Kinematics<N>& kinematics);
+
+bool is_clearance_of_bodies(const ResultQuantity& quantity);
+
+} // namespace flyball
