@@ -36,6 +36,7 @@ void add_merge(CLI::App& app, Ending& ending);
 void add_branch(CLI::App& app, Ending& ending);
 void add_design(CLI::App& app, Ending& ending);
 void add_spread(CLI::App& app, Ending& ending);
+void add_linearize(CLI::App& app, Ending& ending);
 void add_simulate(CLI::App& app, Ending& ending);
 void add_compare(CLI::App& app, Ending& ending);
 void add_render(CLI::App& app, Ending& ending);

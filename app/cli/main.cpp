@@ -53,6 +53,7 @@ int run(int argc, char** argv) {
   add_branch(app, ending);
   add_design(app, ending);
   add_spread(app, ending);
+  add_linearize(app, ending);
   add_simulate(app, ending);
   add_compare(app, ending);
   add_render(app, ending);

@@ -1,9 +1,8 @@
-// Columns of numbers for NumPy: a ZIP archive of one array a column (numpy.lib.format, version 1.0), stored
-// as they are, so that `numpy.load(file)["slide"]` has them.
+// Columns of numbers for NumPy (npz_archive.hpp), so that `numpy.load(file)["slide"]` has them.
 //
 // An archive of a known number of rows is laid out beforehand and its columns are written side by side as the
 // rows come, so that no row is kept; that is why no library of archives, all of which write one member after
-// the other, is used. Sizes and places have 64 bits (PKWARE, .ZIP File Format Specification 6.3, 4.5.3).
+// the other, is used.
 #pragma once
 
 #include "app/cli/row_output.hpp"

@@ -116,45 +116,46 @@ class Finder {
 };
 
 Dimension dimension_of(const ResultQuantity& quantity) {
-  constexpr Dimension number{}, length{.length = 1}, rate{.time = -1}, velocity{.length = 1, .time = -1},
-      acceleration{.length = 1, .time = -2}, force{.length = 1, .mass = 1, .time = -2},
-      moment{.length = 2, .mass = 1, .time = -2}, power{.length = 2, .mass = 1, .time = -3}, mass{.mass = 1};
+  return parse_unit(result_unit(quantity)).value_or(Unit{}).dimension.without_angle();
+}
+
+} // namespace
+
+std::string_view result_unit(const ResultQuantity& quantity) {
   switch (quantity.result) {
-  case Result::coordinate: return quantity.angle ? number : length;
-  case Result::rate: return quantity.angle ? rate : velocity;
+  case Result::clearance:
+  case Result::coordinate: return quantity.angle ? "rad" : "m";
+  case Result::rate: return quantity.angle ? "rad/s" : "m/s";
   case Result::x:
   case Result::y:
   case Result::z:
   case Result::distance:
-  case Result::length: return length;
+  case Result::length: return "m";
   case Result::vx:
   case Result::vy:
   case Result::vz:
-  case Result::speed: return velocity;
+  case Result::speed: return "m/s";
   case Result::ax:
   case Result::ay:
   case Result::az:
-  case Result::acceleration: return acceleration;
-  case Result::angle: return number;
+  case Result::acceleration: return "m/s^2";
+  case Result::angle: return "rad";
   case Result::tension:
   case Result::reaction_x:
   case Result::reaction_y:
   case Result::reaction_z:
-  case Result::reaction: return force;
+  case Result::reaction: return "N";
   case Result::moment_x:
   case Result::moment_y:
   case Result::moment_z:
-  case Result::moment: return moment;
+  case Result::moment: return "N m";
   case Result::spring:
-  case Result::torque: return quantity.angle ? moment : force;
-  case Result::power: return power;
-  case Result::clearance: return quantity.angle ? number : length;
+  case Result::torque: return quantity.angle ? "N m" : "N";
+  case Result::power: return "W";
   case Result::mass: break;
   }
-  return mass;
+  return "kg";
 }
-
-} // namespace
 
 class MeasureCompiler {
  public:
@@ -329,6 +330,13 @@ std::vector<bool> MeasurePlan::users_of(std::size_t quantity) const {
 
 void find_measure_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
   MeasureCompiler(mechanism, mistakes).run();
+}
+
+std::string_view result_unit(const Mechanism& mechanism, std::string_view expression) {
+  const Expression read(expression, Expression::Results::allowed);
+  if (read.results().empty())
+    throw ExpressionError("it asks for no result, as coordinate(slide) or x(ball) do");
+  return result_unit(Finder(mechanism).find(read.results().front()));
 }
 
 int measure_index(const Mechanism& mechanism, std::string_view name) {

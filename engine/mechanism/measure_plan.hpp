@@ -29,6 +29,9 @@ struct ResultQuantity {
   bool operator==(const ResultQuantity&) const = default;
 };
 
+// SI: "N m" of the torque of an angle's drive.
+std::string_view result_unit(const ResultQuantity& quantity);
+
 class MeasurePlan {
  public:
   MeasurePlan() = default;
@@ -72,6 +75,10 @@ class MeasurePlan {
 // be read, unknown names and parts, quantities that a part has not, dimensions that do not fit the unit,
 // circles.
 void find_measure_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
+
+// The unit of the first result that an expression asks for: that of "torque(spin)". Throws ExpressionError
+// for what is no expression, asks for nothing, or for what is not there.
+std::string_view result_unit(const Mechanism& mechanism, std::string_view expression);
 
 int measure_index(const Mechanism& mechanism, std::string_view name); // -1: none
 

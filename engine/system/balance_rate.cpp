@@ -4,11 +4,15 @@ namespace flyball {
 
 void BalanceRate::evaluate(const System& system, const Mechanism& mechanism, const NumberRates& rates,
                            const Parameters& parameters, const Eigen::VectorXd& q,
-                           const Eigen::VectorXd& lambda) {
+                           const Eigen::VectorXd& lambda, double t) {
   bind(system, mechanism, rates, parameters, parameters_);
+  for (const DrivenCoordinate& drive : system.drives) {
+    BasicLinkParameters<Dual>& link = parameters_.links[static_cast<std::size_t>(drive.link)];
+    link.start.rate -= link.speed.rate * t;
+  }
   q_ = q.cast<Dual>();
   lambda_ = lambda.cast<Dual>();
-  forward<Dual>(system, parameters_, q_, 0, kinematics_);
+  forward<Dual>(system, parameters_, q_, t, kinematics_);
   evaluate_residual<Dual>(system, parameters_, q_, lambda_, kinematics_, residual_);
   const auto take_rates = [](const Configuration<Dual>& from, Eigen::VectorXd& to) {
     to = from.unaryExpr([](const Dual& x) { return x.rate; });

@@ -9,13 +9,17 @@ namespace flyball {
 
 class BalanceRate {
  public:
-  // At phase zero of the drives. `parameters`: those of the mechanism, whose numbers have these rates.
+  // `t` s after phase zero of the drives, which stand where they are while their speeds change. `parameters`:
+  // those of the mechanism, whose numbers have these rates.
   void evaluate(const System& system, const Mechanism& mechanism, const NumberRates& rates,
-                const Parameters& parameters, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda);
+                const Parameters& parameters, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda,
+                double t = 0);
 
   // Of forces by coordinate of q_R (N m or N) and of loops by row (m or 1; gears rad or m), per unit.
   const Eigen::VectorXd& force() const { return force_; }
   const Eigen::VectorXd& phi() const { return phi_; }
+  // The mechanism's, with their rates.
+  const BasicParameters<Dual>& parameters() const { return parameters_; }
 
  private:
   BasicParameters<Dual> parameters_;

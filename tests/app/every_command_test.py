@@ -76,6 +76,8 @@ def commands(path):
         yield ["report", "--size", "160x120", "-o", "OUT"]
     wanted = first_coordinate(scene)
     if wanted:
+        yield ["linearize", "--inputs", address, f"torque({wanted})", "--outputs", wanted, "--frequencies",
+               "0.01:100:20", "--json"]
         yield ["design", "--connected", *vary, "--want", f"{wanted}=0.1", "--json"]
     yield ["solve", "--all", "--json"]
     yield ["branch", "--all", *vary, "--json"]

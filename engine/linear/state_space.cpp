@@ -1,0 +1,159 @@
+#include "engine/linear/state_space.hpp"
+
+#include "engine/linear/spectral.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+namespace {
+
+using Poles = std::optional<std::vector<std::complex<double>>>;
+
+double power_of_two_near(double x) {
+  return std::exp2(std::round(std::log2(x)));
+}
+
+void sort_by_frequency(std::vector<std::complex<double>>& s) {
+  for (std::complex<double>& x : s)
+    x += std::complex<double>(0, 0); // no negative zeros
+  std::ranges::sort(s, [](std::complex<double> a, std::complex<double> b) {
+    if (std::abs(a.imag()) != std::abs(b.imag())) return std::abs(a.imag()) < std::abs(b.imag());
+    return a.real() != b.real() ? a.real() > b.real() : a.imag() > b.imag();
+  });
+}
+
+// Rows and columns of A + rate E brought to a like size, by turns (Ruiz, A scaling algorithm to equilibrate
+// both rows and columns norms in matrices, 2001). Eigenvalues stay.
+void equilibrate(Eigen::MatrixXd& a, Eigen::MatrixXd& e) {
+  for (int turn = 0; turn < 8; ++turn)
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      const double row = std::max(a.row(i).cwiseAbs().maxCoeff(), e.row(i).cwiseAbs().maxCoeff());
+      if (row > 0) {
+        const double factor = power_of_two_near(1 / std::sqrt(row));
+        a.row(i) *= factor;
+        e.row(i) *= factor;
+      }
+      const double column = std::max(a.col(i).cwiseAbs().maxCoeff(), e.col(i).cwiseAbs().maxCoeff());
+      if (column > 0) {
+        const double factor = power_of_two_near(1 / std::sqrt(column));
+        a.col(i) *= factor;
+        e.col(i) *= factor;
+      }
+    }
+}
+
+} // namespace
+
+StateSpace balanced(StateSpace x) {
+  for (int turn = 0; turn < 100; ++turn) {
+    bool changed = false;
+    for (Eigen::Index i = 0; i < x.a.rows(); ++i) {
+      const double own = std::abs(x.a(i, i));
+      const double row = x.a.row(i).lpNorm<1>() - own, column = x.a.col(i).lpNorm<1>() - own;
+      if (!(row > 0) || !(column > 0) || !std::isfinite(row + column)) continue;
+      const double factor = power_of_two_near(std::sqrt(row / column));
+      if (!(factor * column + row / factor < 0.95 * (row + column))) continue;
+      x.a.col(i) *= factor;
+      x.c.col(i) *= factor;
+      x.a.row(i) /= factor;
+      x.b.row(i) /= factor;
+      changed = true;
+    }
+    if (!changed) break;
+  }
+  return x;
+}
+
+Poles poles(const StateSpace& system) {
+  Poles found;
+  if (system.e.size() == 0) {
+    found = eigenvalues(balanced(system).a);
+  } else {
+    const double a = system.a.norm(), e = system.e.norm(),
+                 rate = a > 0 && e > 0 ? power_of_two_near(a / e) : 1;
+    Eigen::MatrixXd scaled_a = system.a / rate, scaled_e = system.e;
+    equilibrate(scaled_a, scaled_e);
+    found = generalized_eigenvalues(scaled_a, scaled_e);
+    for (std::size_t i = 0; found && i < found->size(); ++i)
+      (*found)[i] *= rate;
+  }
+  if (found) sort_by_frequency(*found);
+  return found;
+}
+
+// While the output does not feel the input at once, turn the states so that it is the last one alone: it must
+// vanish, and so must its rate, which is the output of what is left.
+Poles zeros(const StateSpace& system, Eigen::Index input, Eigen::Index output) {
+  if (system.e.size() > 0) return {};
+  const StateSpace x = balanced(system);
+  Eigen::MatrixXd a = x.a;
+  Eigen::VectorXd b = x.b.col(input), c = x.c.row(output).transpose();
+  double d = x.d(output, input);
+  constexpr double none = 1e-11; // of what it stands beside: rounding, and what differences left of zero
+  // Sizes of what c, d and b are made of, for telling them from nothing.
+  const double size_b = b.norm(), size_a = std::max(a.norm(), 1e-300);
+  if (size_b == 0 && d == 0) return {};
+  double size_c = c.norm();
+  if (size_c == 0 && d == 0) return {};
+  // d and c A^-1 b are alike in unit.
+  while (!(std::abs(d) * size_a > none * size_c * size_b)) {
+    const Eigen::Index n = a.rows();
+    const double length = c.norm();
+    if (n == 0 || !(length > none * size_c)) return {};
+    HouseholderQr qr;
+    if (!qr.compute(c)) return {};
+    const Eigen::MatrixXd q = qr.q(); // the first column along c
+    Eigen::MatrixXd turned(n, n);
+    turned << q.rightCols(n - 1), q.col(0);
+    a = (turned.transpose() * a * turned).eval();
+    b = (turned.transpose() * b).eval();
+    c = a.row(n - 1).head(n - 1).transpose();
+    d = b[n - 1];
+    a = a.topLeftCorner(n - 1, n - 1).eval();
+    b = b.head(n - 1).eval();
+    size_c = size_a;
+  }
+  if (a.rows() == 0) return std::vector<std::complex<double>>();
+  StateSpace left;
+  left.a = a - b * c.transpose() / d;
+  left.b = b;
+  left.c = c.transpose();
+  left.d.setConstant(1, 1, d);
+  Poles found = eigenvalues(balanced(std::move(left)).a);
+  if (found) sort_by_frequency(*found);
+  return found;
+}
+
+std::optional<Eigen::MatrixXcd> transfer(const StateSpace& system, std::complex<double> s) {
+  interruption_point();
+  if (system.a.rows() == 0) return Eigen::MatrixXcd(system.d.cast<std::complex<double>>());
+  Eigen::MatrixXcd matrix = -system.a.cast<std::complex<double>>();
+  if (system.e.size() > 0)
+    matrix += s * system.e;
+  else
+    matrix.diagonal().array() += s;
+  ComplexLu lu;
+  if (!lu.compute(matrix)) return {};
+  Eigen::MatrixXcd out = system.c * lu.solve(system.b.cast<std::complex<double>>());
+  out += system.d;
+  if (!out.allFinite()) return {};
+  return out;
+}
+
+std::optional<Eigen::MatrixXd> static_gain(const StateSpace& system) {
+  if (system.a.rows() == 0) return system.d;
+  Eigen::MatrixXd a = system.a, none = Eigen::MatrixXd::Zero(a.rows(), a.cols());
+  equilibrate(a, none);
+  const auto sizes = singular_values(a);
+  if (!sizes || !((*sizes)[sizes->size() - 1] > 1e-13 * (*sizes)[0])) return {};
+  Lu lu;
+  if (!lu.compute(system.a)) return {};
+  Eigen::MatrixXd out = system.d;
+  for (Eigen::Index i = 0; i < system.b.cols(); ++i)
+    out.col(i) -= system.c * lu.solve(system.b.col(i));
+  if (!out.allFinite()) return {};
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,112 @@
+#include "engine/study/input_effect.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+constexpr double massless = 1e-13;    // beside the largest inertia
+constexpr double consistent = 1e-9;   // what an equation may leave of what it is made of
+constexpr double same_balance = 1e-8; // a balance at another angle of a drive, likewise
+
+} // namespace
+
+MotionAt::MotionAt(const MotionModel& model, const MotionOfAll& state)
+    : at(state), model_(model), n_(model.system.nv), drives_(static_cast<int>(model.system.drives.size())) {
+  const System& released = model.released;
+  const Parameters& p = model.parameters;
+  column_.resize(released.nv);
+  column_.head(n_) = model.scaling.column;
+  for (int d = 0; d < drives_; ++d) {
+    const int link = model.system.drives[static_cast<std::size_t>(d)].link;
+    column_[n_ + d] =
+        released.links[static_cast<std::size_t>(link)].type == LinkType::prismatic ? p.length : 1;
+  }
+  std::vector<LinkRates> none;
+  move(released, p, {at.q, at.u}, kinematics_, none);
+  find_multipliers();
+  evaluate_residual<double>(released, p, at.q, at.lambda, kinematics_, residual_);
+  linearize(released, p, at.q, at.lambda, kinematics_, residual_, l_);
+  linearize_motion(released, p, at.q, kinematics_, l_);
+  add_coordinate_damping_stiffness(released, p, at.q, at.u, l_.stiffness);
+  for (Eigen::MatrixXd* m : {&l_.mass, &l_.velocity, &l_.stiffness})
+    *m = (column_.asDiagonal() * *m * column_.asDiagonal()).eval();
+  mass = reduced(l_.mass);
+  velocity = reduced(l_.velocity);
+  stiffness = reduced(l_.stiffness);
+  const Eigen::Index k = mass.rows();
+  if (k == 0) return;
+  if (!shape_.compute((mass + mass.transpose()) / 2)) throw Refusal{"The inertias overflow."};
+  while (without_mass < k && !(shape_.values()[without_mass] > massless * shape_.values()[k - 1]))
+    ++without_mass;
+}
+
+Eigen::VectorXd MotionAt::accelerate(const Eigen::VectorXd& rhs) const {
+  if (rhs.size() == 0) return rhs;
+  const auto vectors = shape_.vectors().rightCols(mass.rows() - without_mass);
+  const auto values = shape_.values().tail(mass.rows() - without_mass);
+  return vectors * (vectors.transpose() * rhs).cwiseQuotient(values);
+}
+
+InputEffect MotionAt::effect(const Eigen::VectorXd& force, const Eigen::VectorXd& rows,
+                             const Eigen::VectorXd& drive_rates) const {
+  const Eigen::MatrixXd& basis = space_.basis();
+  InputEffect out;
+  out.force = force.cwiseProduct(column_.head(n_));
+  out.drive_rates = drive_rates.cwiseQuotient(column_.tail(drives_));
+  out.closing.setZero(n_);
+  if (rows.size() > 0 && !rows.isZero(0)) {
+    const Eigen::VectorXd scaled = rows.cwiseProduct(model_.scaling.row);
+    space_.solve(-scaled, out.closing);
+    if (!((constraint_.leftCols(n_) * out.closing + scaled).norm() <= consistent * scaled.norm()))
+      throw Refusal{"the loops do not let it change alone"};
+    const Eigen::VectorXd along = basis.transpose() * l_.mass.topLeftCorner(n_, n_) * out.closing;
+    out.closing -= basis * accelerate(along);
+  }
+  if (const double turned = out.drive_rates.norm(); turned > 0) {
+    const Eigen::VectorXd phase = l_.stiffness.topRightCorner(n_, drives_) * out.drive_rates;
+    if ((constraint_.rightCols(drives_) * out.drive_rates).norm() > consistent * turned ||
+        (basis.transpose() * phase).norm() >
+            same_balance * phase.norm() + massless * l_.stiffness.norm() * turned)
+      throw Refusal{"the balance depends on the angle that the speed adds up to"};
+  }
+  out.b0 = -(basis.transpose() * (out.force + l_.stiffness.topLeftCorner(n_, n_) * out.closing));
+  out.b1 = -(basis.transpose() * (l_.mass.topRightCorner(n_, drives_) * out.drive_rates +
+                                  l_.velocity.topLeftCorner(n_, n_) * out.closing));
+  out.shift = accelerate(out.b1);
+  if (!((mass * out.shift - out.b1).norm() <= consistent * out.b1.norm()))
+    throw Refusal{"its rate moves dampers of parts without mass"};
+  return out;
+}
+
+MotionDirection MotionAt::direction(const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                                    const Eigen::VectorXd& a, const Eigen::VectorXd* force) const {
+  MotionDirection out{column_.cwiseProduct(q), column_.cwiseProduct(u), column_.cwiseProduct(a),
+                      Eigen::VectorXd::Zero(model_.system.rows)};
+  if (model_.system.rows == 0) return out;
+  Eigen::VectorXd left =
+      l_.mass.topRows(n_) * a + l_.stiffness.topRows(n_) * q + l_.velocity.topLeftCorner(n_, n_) * u.head(n_);
+  if (force) left += *force;
+  out.lambda = space_.least_norm_multipliers(-left).cwiseProduct(model_.scaling.row);
+  return out;
+}
+
+Eigen::MatrixXd MotionAt::reduced(const Eigen::MatrixXd& m) const {
+  return space_.basis().transpose() * m.topLeftCorner(n_, n_) * space_.basis();
+}
+
+void MotionAt::find_multipliers() {
+  const System& released = model_.released;
+  linearize_constraints(released, model_.parameters, kinematics_, l_);
+  constraint_ = model_.scaling.row.asDiagonal() * l_.constraint * column_.asDiagonal();
+  space_.factor(constraint_.leftCols(n_), consistent);
+  at.lambda.setZero(released.rows);
+  if (released.rows == 0) return;
+  evaluate_residual<double>(released, model_.parameters, at.q, at.lambda, kinematics_, residual_);
+  Eigen::VectorXd force = residual_.f;
+  add_coordinate_damping(released, model_.parameters, at.q, at.u, force);
+  at.lambda = space_.least_norm_multipliers(-force.head(n_).cwiseProduct(column_.head(n_)))
+                  .cwiseProduct(model_.scaling.row);
+}
+
+} // namespace flyball

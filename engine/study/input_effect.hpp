@@ -1,0 +1,67 @@
+// The linearised motion of a mechanism with its drives as coordinates, at one phase of these, and what an
+// input does to it.
+#pragma once
+
+#include "engine/kkt/constraint_space.hpp"
+#include "engine/study/motion_outputs.hpp"
+
+#include <string>
+
+namespace flyball {
+
+// Thrown where there is no linear model, with the reason.
+struct Refusal {
+  std::string why;
+};
+
+// What an input does, scaled: by coordinate of q_R or of the null space.
+struct InputEffect {
+  Eigen::VectorXd force;       // (n) df/du at standing coordinates, speeds of drives included
+  Eigen::VectorXd drive_rates; // (drives) of their speeds
+  Eigen::VectorXd closing;     // (n) G
+  Eigen::VectorXd b0, b1;      // (k)
+  Eigen::VectorXd shift;       // (k) M^-1 b1
+};
+
+// In scaled coordinates: radians and parts of the reach.
+class MotionAt {
+ public:
+  // About `state`, whose multipliers are found.
+  MotionAt(const MotionModel& model, const MotionOfAll& state);
+
+  const Eigen::VectorXd& column() const { return column_; } // rad or m per scaled unit, of all coordinates
+  const Eigen::MatrixXd& basis() const { return space_.basis(); } // (n, k), orthonormal
+
+  // x with M x = rhs, of least size where parts have no mass.
+  Eigen::VectorXd accelerate(const Eigen::VectorXd& rhs) const;
+
+  // Of an input by one unit: of the balance (N m or N, by coordinate of q_R), of the loops' rows (m, rad) and
+  // of the drives' speeds. Throws Refusal, a clause, for what has no place in a linear model.
+  InputEffect effect(const Eigen::VectorXd& force, const Eigen::VectorXd& rows,
+                     const Eigen::VectorXd& drive_rates) const;
+
+  // Changes of all coordinates, scaled, with the multipliers that go with them; `force`, of an input (null:
+  // none), has what speeds of drives do.
+  MotionDirection direction(const Eigen::VectorXd& q, const Eigen::VectorXd& u, const Eigen::VectorXd& a,
+                            const Eigen::VectorXd* force) const;
+
+  Eigen::MatrixXd mass, velocity, stiffness; // (k, k), on the basis
+  Eigen::Index without_mass = 0;             // directions of these
+  MotionOfAll at;
+
+ private:
+  Eigen::MatrixXd reduced(const Eigen::MatrixXd& m) const;
+  void find_multipliers();
+
+  const MotionModel& model_;
+  int n_ = 0, drives_ = 0;
+  Eigen::VectorXd column_;
+  Kinematics<double> kinematics_;
+  Residual<double> residual_;
+  Linearization l_;            // scaled
+  Eigen::MatrixXd constraint_; // scaled, (rows, all)
+  ConstraintSpace space_;
+  SymmetricEigen shape_; // of the mass
+};
+
+} // namespace flyball

@@ -1,0 +1,576 @@
+#include "engine/study/linear_model.hpp"
+
+#include "engine/dynamics/start.hpp"
+#include "engine/kkt/coordinate_gradient.hpp"
+#include "engine/linear/pencil.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/stability/stability.hpp"
+#include "engine/study/input_effect.hpp"
+#include "engine/study/motion_outputs.hpp"
+#include "engine/system/balance_rate.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+namespace flyball {
+namespace {
+
+constexpr double nothing = 1e-9;    // of what a signal feels, beside the most that it feels
+constexpr double rounding = 1e-11;  // the same: what differences leave of nothing
+constexpr double same_phase = 1e-7; // the same, of two phases
+
+template <class... Numbers>
+bool moves(const Numbers&... numbers) {
+  const auto any = [](const auto& x) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(x)>, Dual>)
+      return x.rate != 0;
+    else
+      return std::ranges::any_of(x, [](const Dual& each) { return each.rate != 0; });
+  };
+  return (any(numbers) || ...);
+}
+
+// Whether a number that moves places parts, so that its own rates move mass or work dampers.
+bool places_parts(const BasicParameters<Dual>& p) {
+  const auto link = [](const BasicLinkParameters<Dual>& l) {
+    return moves(l.offset, l.axis, l.drawn, l.com, l.start, l.drawn_rotation.coeffs());
+  };
+  const auto spring = [](const BasicPointSpringParameters<Dual>& s) {
+    return s.damping.value != 0 && moves(s.a, s.b);
+  };
+  const auto damper = [](const BasicCutDamperParameters<Dual>& d) { return moves(d.a, d.b, d.axis); };
+  const auto cut = [](const BasicCutParameters<Dual>& c) {
+    return moves(c.a, c.b, c.drawn, c.constant, c.ratio) ||
+           std::ranges::any_of(c.frame, [](const Vec3T<Dual>& x) { return moves(x); });
+  };
+  return std::ranges::any_of(p.links, link) || std::ranges::any_of(p.springs, spring) ||
+         std::ranges::any_of(p.cut_dampers, damper) || std::ranges::any_of(p.cuts, cut);
+}
+
+// What is the same at every phase: which coordinates are the model's, and names.
+struct Chosen {
+  std::vector<int> coordinates; // entries of q_R, ascending
+  std::vector<bool> phase;      // of these: a torque drives it, and it is no state
+};
+
+std::vector<bool> torque_driven(const System& system) {
+  std::vector<bool> out(static_cast<std::size_t>(system.nv), false);
+  for (const DriveTorqueElement& torque : system.torques)
+    out[static_cast<std::size_t>(system.links[static_cast<std::size_t>(torque.link)].v)] = true;
+  return out;
+}
+
+// Independent coordinates: phases first, then by pivots of the rest (Golub and Van Loan, Matrix Computations,
+// section 5.4).
+Chosen choose_coordinates(const System& system, const Eigen::MatrixXd& basis, bool phases) {
+  Chosen out;
+  const std::vector<bool> driven = torque_driven(system);
+  const Eigen::Index k = basis.cols();
+  Eigen::MatrixXd rest = basis.transpose();
+  for (int v = 0; v < system.nv; ++v) {
+    if (!driven[static_cast<std::size_t>(v)]) continue;
+    out.coordinates.push_back(v);
+    const Eigen::VectorXd along = basis.row(v);
+    rest -= along * (along.transpose() * rest);
+  }
+  if (const auto left = k - static_cast<Eigen::Index>(out.coordinates.size()); left > 0) {
+    PivotedQr qr;
+    if (!qr.compute(rest)) throw Refusal{"The loops' equations overflow."};
+    for (Eigen::Index i = 0; i < left; ++i)
+      out.coordinates.push_back(static_cast<int>(qr.permutation()[i]));
+  }
+  std::ranges::sort(out.coordinates);
+  for (const int v : out.coordinates)
+    out.phase.push_back(!phases && driven[static_cast<std::size_t>(v)]);
+  return out;
+}
+
+LinearModel::State name_state(const MotionModel& model, int v, bool rate) {
+  for (const CoordinateInfo& c : model.system.coordinates) {
+    const Link& link = model.system.links[static_cast<std::size_t>(c.link)];
+    const bool ball = link.type == LinkType::spherical;
+    if (link.v < 0 || (ball ? link.v + c.index - link.coordinate : link.v) != v) continue;
+    LinearModel::State out;
+    const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+    out.name = ball ? joint.name + ".turn." + "xyz"[c.index - link.coordinate]
+                    : coordinate_label(joint.name, c.index, coordinate_count(joint.type));
+    out.unit = c.angle ? "rad" : "m";
+    if (rate) {
+      out.name += ".rate";
+      out.unit += "/s";
+    }
+    return out;
+  }
+  return {};
+}
+
+class Builder {
+ public:
+  Builder(const Mechanism& mechanism, std::span<const std::string> inputs,
+          std::span<const std::string> outputs, const LinearModelOptions& options)
+      : signals_(read_signals(mechanism, inputs, outputs)), options_(options),
+        mechanism_(signals_.mechanism) {
+    for (const LinearInput& input : signals_.inputs)
+      if (!input.address.empty()) {
+        numbers_.push_back(static_cast<int>(addresses_.size()));
+        addresses_.push_back(input.address);
+      } else {
+        numbers_.push_back(-1);
+      }
+    // Throws for numbers that are none.
+    const VariedNumbers known(mechanism_, addresses_);
+  }
+
+  void run(LinearModel& out) {
+    SolveOptions solve;
+    solve.start = options_.start;
+    solve.nearest = options_.nearest;
+    solve.cancel = options_.cancel;
+    out.steady = Analysis(signals_.mechanism).solve(solve);
+    const auto begin = std::chrono::steady_clock::now();
+    const Interruptible scope(options_.cancel);
+    check(out.steady);
+    model_ = make_motion_model(signals_.mechanism, true);
+    steady_system_ = compile_for_drives(signals_.mechanism);
+    bind(steady_system_, signals_.mechanism, steady_parameters_);
+    place(out.steady);
+    const MotionAt drawn(model_, at_phase(0));
+    chosen_ = choose_coordinates(model_.system, drawn.basis(), options_.phases);
+    Matrices here = matrices(drawn, 0);
+    for (std::size_t i = 0; i < signals_.outputs.size(); ++i)
+      signals_.outputs[i].value = here.values[static_cast<Eigen::Index>(i)];
+    for (const double t : phases())
+      compare(here, matrices(MotionAt(model_, at_phase(t)), t));
+    fill(drawn, here, out);
+    out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+ private:
+  // In the units of the model.
+  struct Matrices {
+    Eigen::MatrixXd mass, velocity, stiffness; // (k, k)
+    Eigen::MatrixXd b0, shift;                 // (k, m): b0 - (C + G) M^-1 b1, and M^-1 b1
+    Eigen::MatrixXd explicit_velocity, explicit_stiffness, explicit_b; // the same times M^-1
+    Eigen::MatrixXd c_position, c_rate, d;                             // (p, k), (p, m)
+    Eigen::VectorXd values, error, most;       // (p), see LinearModel::output_error; the most an output feels
+    Eigen::MatrixXd normalised;                // (p, 2k + m), of what directions are measured by
+    Eigen::MatrixXd scaled_b0, scaled_shift;   // (k, m), of radians and parts of the reach
+    double stiffness_size = 0, speed_size = 0; // scaled
+  };
+
+  void check(const Solution& steady) const {
+    if (steady.status != Status::converged) throw Refusal{steady.message};
+    if (model_coordinates(steady) > largest_for_eigenvalues)
+      throw Refusal{"Linear models are made of at most " + std::to_string(largest_for_eigenvalues) +
+                    " coordinates."};
+    if (steady.floquet || steady.stability_reason == StabilityReason::varying)
+      throw Refusal{"The linearised motion turns with the drives: no constant matrices tell of it."};
+  }
+
+  static int model_coordinates(const Solution& steady) {
+    return static_cast<int>(std::ranges::count_if(
+        steady.coordinates, [](const CoordinateSolution& c) { return is_found(c) && !c.dependent; }));
+  }
+
+  // The steady state in the motion's coordinates.
+  void place(const Solution& steady) {
+    SimulationOptions start;
+    start.start = Start::state;
+    for (const CoordinateSolution& c : steady.coordinates)
+      if (!c.dependent) start.state.coordinates.push_back({c.joint, c.index, c.value, c.speed.value_or(0)});
+    find_start(start, model_, q_, u_);
+    // What the balance takes: speeds in the place of angles.
+    balance_q_ = q_;
+    for (const DriveTorqueElement& torque : model_.system.torques) {
+      const Link& link = model_.system.links[static_cast<std::size_t>(torque.link)];
+      balance_q_[link.q] = u_[link.v];
+    }
+  }
+
+  // All at time t (s) after the drawn phase.
+  MotionOfAll at_phase(double t) const {
+    const System& released = model_.released;
+    MotionOfAll out;
+    out.q.setZero(released.nq);
+    out.u.setZero(released.nv);
+    out.a.setZero(released.nv);
+    out.q.head(model_.system.nq) = q_;
+    out.u.head(model_.system.nv) = u_;
+    set_drives(model_.system, model_.parameters, t, out.q, out.u);
+    for (const DriveTorqueElement& torque : model_.system.torques) {
+      const Link& link = model_.system.links[static_cast<std::size_t>(torque.link)];
+      out.q[link.q] += u_[link.v] * t;
+    }
+    return out;
+  }
+
+  // Times at which inputs and outputs are looked at again: a few radians on, of the fastest drive.
+  std::vector<double> phases() const {
+    const MotionOfAll drawn = at_phase(0);
+    const double fastest = drawn.u.size() > 0 ? drawn.u.lpNorm<Eigen::Infinity>() : 0;
+    if (!(fastest > 0)) return {};
+    return {0.83 / fastest, 2.31 / fastest, 4.17 / fastest};
+  }
+
+  InputEffect effect(const MotionAt& motion, std::size_t i, double t) {
+    const LinearInput& input = signals_.inputs[i];
+    Eigen::VectorXd none = Eigen::VectorXd::Zero(model_.system.rows),
+                    still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model_.system.drives.size()));
+    try {
+      if (input.address.empty()) return motion.effect(-torque_direction(input, motion), none, still);
+      NumberRates rates;
+      const VariedNumbers numbers(mechanism_, addresses_);
+      numbers.rates(static_cast<std::size_t>(numbers_[i]), rates);
+      BalanceRate balance;
+      balance.evaluate(steady_system_, mechanism_, rates, steady_parameters_, balance_q_, motion.at.lambda,
+                       t);
+      if (t == 0 && places_parts(balance.parameters()))
+        throw Refusal{
+            "it places parts, and as it changes its rates move mass, which a number alone does not tell. "
+            "Inputs are torques, forces, speeds, stiffnesses, dampings, masses, free lengths, lengths of "
+            "distance joints, offsets of gears, gravity, and parameters of these"};
+      for (std::size_t d = 0; d < model_.system.drives.size(); ++d)
+        still[static_cast<Eigen::Index>(d)] =
+            balance.parameters().links[static_cast<std::size_t>(model_.system.drives[d].link)].speed.rate;
+      return motion.effect(balance.force(), balance.phi(), still);
+    } catch (const Refusal& refusal) {
+      throw Refusal{"The input " + input.name + " has no place in a linear model: " + refusal.why + "."};
+    }
+  }
+
+  // The generalised force of a unit torque or force along the input's coordinate (N m or N).
+  Eigen::VectorXd torque_direction(const LinearInput& input, const MotionAt& motion) const {
+    const System& system = model_.system;
+    for (const CoordinateInfo& c : system.coordinates) {
+      if (system.tree_joints[static_cast<std::size_t>(c.tree_joint)].joint != input.joint ||
+          c.index != input.coordinate)
+        continue;
+      const Link& link = system.links[static_cast<std::size_t>(c.link)];
+      if (link.v < 0) throw Refusal{"the speed there is prescribed, whatever torque acts"};
+      if (link.drive >= 0) return Eigen::VectorXd::Unit(system.nv, link.v);
+      return coordinate_gradient(system, model_.parameters, motion.at.q.head(system.nq), c);
+    }
+    throw Refusal{
+        "its joint closes a loop; \"cut\" at another joint of the loop makes it a coordinate of the tree"};
+  }
+
+  // By which a direction is measured, so that differences of it are about as large as the rest: radians,
+  // parts of the reach, their rates by the speeds there are.
+  static double size_of(const MotionAt& motion, const MotionDirection& d, double rate) {
+    const auto scaled = [&](const Eigen::VectorXd& x) {
+      return x.size() > 0 ? x.cwiseQuotient(motion.column()).lpNorm<Eigen::Infinity>() : 0;
+    };
+    return std::max({scaled(d.q), scaled(d.u) / rate, scaled(d.a) / (rate * rate)});
+  }
+
+  double speed_scale(const MotionAt& motion) const {
+    const double m = motion.mass.norm(), k = motion.stiffness.norm();
+    const double natural = m > 0 && k > 0 ? std::sqrt(k / m) : 0;
+    const double turning =
+        motion.at.u.size() > 0 ? motion.at.u.cwiseQuotient(motion.column()).lpNorm<Eigen::Infinity>() : 0;
+    const double rate = std::max(natural, turning);
+    return rate > 0 ? rate : 1;
+  }
+
+  Matrices matrices(const MotionAt& motion, double t) {
+    interruption_point();
+    const Eigen::MatrixXd& basis = motion.basis();
+    const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
+    const auto inputs = static_cast<Eigen::Index>(signals_.inputs.size()),
+               outputs = static_cast<Eigen::Index>(signals_.outputs.size());
+    const int n = model_.system.nv;
+    const auto all = static_cast<Eigen::Index>(model_.released.nv);
+    // Coordinates of the model from those on the basis, and back.
+    Eigen::MatrixXd to(k, k);
+    for (Eigen::Index i = 0; i < k; ++i) {
+      const int v = chosen_.coordinates[static_cast<std::size_t>(i)];
+      to.row(i) = motion.column()[v] * basis.row(v);
+    }
+    Lu lu;
+    Eigen::MatrixXd from = Eigen::MatrixXd::Identity(k, k);
+    if (k > 0 && !lu.compute(to)) throw Refusal{"The loops' equations overflow."};
+    for (Eigen::Index i = 0; i < k; ++i)
+      from.col(i) = lu.solve(Eigen::VectorXd::Unit(k, i));
+
+    Matrices out;
+    out.mass = from.transpose() * motion.mass * from;
+    out.velocity = from.transpose() * motion.velocity * from;
+    out.stiffness = from.transpose() * motion.stiffness * from;
+    std::vector<InputEffect> effects;
+    out.b0.resize(k, inputs);
+    out.shift.resize(k, inputs);
+    Eigen::MatrixXd fed(k, inputs); // on the basis
+    for (Eigen::Index j = 0; j < inputs; ++j) {
+      effects.push_back(effect(motion, static_cast<std::size_t>(j), t));
+      fed.col(j) = effects.back().b0 - motion.velocity * effects.back().shift;
+      out.b0.col(j) = from.transpose() * fed.col(j);
+      out.shift.col(j) = to * effects.back().shift;
+    }
+    Eigen::VectorXd column(k);
+    for (Eigen::Index i = 0; i < k; ++i)
+      column[i] = motion.column()[chosen_.coordinates[static_cast<std::size_t>(i)]];
+    out.scaled_b0 = column.asDiagonal() * out.b0;
+    out.scaled_shift = column.cwiseInverse().asDiagonal() * out.shift;
+    out.stiffness_size = motion.stiffness.norm();
+    out.speed_size = speed_scale(motion);
+    const auto accelerated = [&](const Eigen::MatrixXd& rhs) {
+      Eigen::MatrixXd x(rhs.rows(), rhs.cols());
+      for (Eigen::Index i = 0; i < rhs.cols(); ++i)
+        x.col(i) = motion.accelerate(rhs.col(i));
+      return x;
+    };
+    const Eigen::MatrixXd by_position = accelerated(-motion.stiffness * from),
+                          by_rate = accelerated(-motion.velocity * from), by_input = accelerated(fed);
+    out.explicit_stiffness = to * by_position;
+    out.explicit_velocity = to * by_rate;
+    out.explicit_b = to * by_input;
+
+    MotionOutputs h(model_, addresses_, static_cast<std::size_t>(outputs), motion.without_mass == 0);
+    out.values = h.values(motion.at);
+    for (Eigen::Index i = 0; i < outputs; ++i)
+      if (!std::isfinite(out.values[i]))
+        throw Refusal{"The output " + output(i) +
+                      (motion.without_mass > 0 ? " is not known: bodies without mass have no acceleration."
+                                               : " has no value in the steady state.")};
+    const double rate = out.speed_size;
+    // Rates per unit, and in units of what a direction is measured by.
+    Eigen::MatrixXd normalised(outputs, 2 * k + inputs), error = normalised;
+    Eigen::VectorXd sizes(2 * k + inputs);
+    const auto take = [&](Eigen::Index i, MotionDirection d, double least) {
+      const double size = std::max(size_of(motion, d, rate), least);
+      sizes[i] = size;
+      if (!(size > 0)) { // nothing moves
+        normalised.col(i).setZero();
+        error.col(i).setZero();
+        return;
+      }
+      for (Eigen::VectorXd* x : {&d.q, &d.u, &d.a, &d.lambda})
+        *x /= size;
+      d.change /= size;
+      const MotionOutputs::Rates rates = h.along(motion.at, d);
+      normalised.col(i) = rates.value;
+      error.col(i) = rates.error;
+    };
+    const auto zero = [&] { return Eigen::VectorXd(Eigen::VectorXd::Zero(all)); };
+    const auto free = [&](const Eigen::VectorXd& x) {
+      Eigen::VectorXd y = zero();
+      y.head(n) = x;
+      return y;
+    };
+    for (Eigen::Index i = 0; i < k; ++i) {
+      take(i, motion.direction(free(basis * from.col(i)), zero(), free(basis * by_position.col(i)), nullptr),
+           0);
+      take(k + i, motion.direction(zero(), free(basis * from.col(i)), free(basis * by_rate.col(i)), nullptr),
+           0);
+    }
+    for (Eigen::Index j = 0; j < inputs; ++j) {
+      const InputEffect& e = effects[static_cast<std::size_t>(j)];
+      Eigen::VectorXd u = free(basis * e.shift);
+      u.tail(e.drive_rates.size()) = e.drive_rates;
+      MotionDirection d = motion.direction(free(e.closing), u, free(basis * by_input.col(j)), &e.force);
+      d.number = numbers_[static_cast<std::size_t>(j)];
+      d.change = 1;
+      const double value = d.number < 0 ? 0 : std::abs(signals_.inputs[static_cast<std::size_t>(j)].value);
+      take(2 * k + j, std::move(d), value > 0 ? 1 / value : 0);
+      if (!(sizes[2 * k + j] > 0)) sizes[2 * k + j] = 1;
+    }
+    out.most = normalised.cwiseAbs().rowwise().maxCoeff();
+    if (normalised.cols() == 0) out.most.setZero(outputs);
+    out.error.setZero(outputs);
+    for (Eigen::Index i = 0; i < outputs; ++i)
+      for (Eigen::Index s = 0; s < normalised.cols(); ++s)
+        if (std::abs(normalised(i, s)) <= std::max(rounding * out.most[i], 8 * error(i, s)))
+          normalised(i, s) = 0;
+        else
+          out.error[i] = std::max(out.error[i], error(i, s) / out.most[i]);
+    refuse_rates(motion, effects, h, rate, out.most);
+    out.normalised = normalised;
+    const Eigen::MatrixXd per_unit = normalised * sizes.asDiagonal();
+    out.c_position = per_unit.leftCols(k);
+    out.c_rate = per_unit.middleCols(k, k);
+    out.d = per_unit.rightCols(inputs);
+    return out;
+  }
+
+  std::string output(Eigen::Index i) const { return signals_.outputs[static_cast<std::size_t>(i)].name; }
+
+  // What an output may not feel: the rates of inputs, and angles that speeds add up to.
+  void refuse_rates(const MotionAt& motion, const std::vector<InputEffect>& effects, MotionOutputs& h,
+                    double rate, const Eigen::VectorXd& most) {
+    const int n = model_.system.nv;
+    const auto zero = [&] { return Eigen::VectorXd(Eigen::VectorXd::Zero(model_.released.nv)); };
+    const auto refuse = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& u, const Eigen::VectorXd& a,
+                            const auto& why) {
+      MotionDirection d = motion.direction(q, u, a, nullptr);
+      const double size = size_of(motion, d, rate);
+      if (!(size > 0)) return;
+      for (Eigen::VectorXd* x : {&d.q, &d.u, &d.a, &d.lambda})
+        *x /= size;
+      const MotionOutputs::Rates rates = h.along(motion.at, d);
+      for (Eigen::Index i = 0; i < rates.value.size(); ++i)
+        if (std::abs(rates.value[i]) > std::max(nothing * most[i], 8 * rates.error[i]))
+          throw Refusal{why(output(i))};
+    };
+    for (std::size_t j = 0; j < effects.size(); ++j) {
+      const InputEffect& e = effects[j];
+      const auto feels = [&](const std::string& name) {
+        return "The output " + name + " feels the rate of the input " + signals_.inputs[j].name +
+               " at once, so that no state form has both: take a position for a velocity, a torque for a "
+               "speed, or the "
+               "other way round.";
+      };
+      Eigen::VectorXd u = zero(), a = zero();
+      u.head(n) = e.closing;
+      a.head(n) = motion.basis() * e.shift;
+      a.tail(e.drive_rates.size()) = e.drive_rates;
+      refuse(zero(), u, a, feels);
+      a.setZero();
+      a.head(n) = e.closing;
+      refuse(zero(), zero(), a, feels);
+      Eigen::VectorXd q = zero();
+      q.tail(e.drive_rates.size()) = e.drive_rates;
+      refuse(q, zero(), zero(), [&](const std::string& name) {
+        return "The output " + name + " depends on the angle that the speed " + signals_.inputs[j].name +
+               " adds up to.";
+      });
+    }
+    for (std::size_t i = 0; i < chosen_.coordinates.size(); ++i) {
+      if (!chosen_.phase[i]) continue;
+      Eigen::VectorXd q = zero();
+      q[chosen_.coordinates[i]] = 1;
+      refuse(q, zero(), zero(), [&](const std::string& name) {
+        return "The output " + name + " depends on the angle of " +
+               name_state(model_, chosen_.coordinates[i], false).name +
+               ", which a torque drives: it grows without end.";
+      });
+    }
+  }
+
+  // That inputs and outputs are the same at another phase. What is nothing beside the stiffness, or the
+  // speeds, is rounding.
+  void compare(const Matrices& a, const Matrices& b) const {
+    for (Eigen::Index j = 0; j < a.b0.cols() && a.b0.rows() > 0; ++j) {
+      const auto differs = [&](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, double size) {
+        const double value = std::abs(signals_.inputs[static_cast<std::size_t>(j)].value);
+        const double floor = value > 0 ? rounding * size / value : 0;
+        return (x.col(j) - y.col(j)).lpNorm<Eigen::Infinity>() >
+               std::max(same_phase * x.col(j).lpNorm<Eigen::Infinity>(), floor);
+      };
+      if (differs(a.scaled_b0, b.scaled_b0, a.stiffness_size) ||
+          differs(a.scaled_shift, b.scaled_shift, a.speed_size))
+        throw Refusal{"The input " + signals_.inputs[static_cast<std::size_t>(j)].name +
+                      " acts otherwise at every phase of the drives: no constant matrices tell of it."};
+    }
+    const bool turn = options_.phases && !model_.system.torques.empty(); // the angles themselves are states
+    for (Eigen::Index i = 0; i < a.values.size(); ++i) {
+      const double size = same_phase * a.most[i];
+      bool same =
+          turn || std::abs(a.values[i] - b.values[i]) <= std::max(size, same_phase * std::abs(a.values[i]));
+      for (Eigen::Index s = 0; s < a.normalised.cols(); ++s)
+        same = same && std::abs(a.normalised(i, s) - b.normalised(i, s)) <= size;
+      if (!same)
+        throw Refusal{"The output " + output(i) +
+                      " is another at every phase of the drives: no constant matrices tell of it."};
+    }
+  }
+
+  void fill(const MotionAt& motion, const Matrices& m, LinearModel& out) const {
+    const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
+    std::vector<Eigen::Index> positions;
+    for (Eigen::Index i = 0; i < k; ++i)
+      if (!chosen_.phase[static_cast<std::size_t>(i)]) positions.push_back(i);
+    const auto np = static_cast<Eigen::Index>(positions.size());
+    const Eigen::Index inputs = m.d.cols(), outputs = m.d.rows(), n = np + k;
+    StateSpace& x = out.descriptor;
+    x.e.setIdentity(n, n);
+    x.e.bottomRightCorner(k, k) = m.mass;
+    x.a.setZero(n, n);
+    x.a.bottomRightCorner(k, k) = -m.velocity;
+    x.b.setZero(n, inputs);
+    x.b.bottomRows(k) = m.b0;
+    x.c.setZero(outputs, n);
+    x.c.rightCols(k) = m.c_rate;
+    x.d = m.d;
+    StateSpace direct{{}, x.a, x.b, x.c, x.d};
+    direct.a.bottomRightCorner(k, k) = m.explicit_velocity;
+    direct.b.bottomRows(k) = m.explicit_b;
+    const std::vector<bool> turned = torque_driven(model_.system);
+    for (Eigen::Index i = 0; i < np; ++i) {
+      const Eigen::Index p = positions[static_cast<std::size_t>(i)];
+      const auto v = static_cast<std::size_t>(chosen_.coordinates[static_cast<std::size_t>(p)]);
+      x.a(i, np + p) = direct.a(i, np + p) = 1;
+      if (!turned[v]) { // nothing depends on the angle of a shaft, but rounding
+        x.a.col(i).tail(k) = -m.stiffness.col(p);
+        direct.a.col(i).tail(k) = m.explicit_stiffness.col(p);
+      }
+      x.b.row(i) = m.shift.row(p);
+      direct.b.row(i) = m.shift.row(p);
+      x.c.col(i) = m.c_position.col(p);
+    }
+    direct.c = x.c;
+    if (motion.without_mass == 0) out.explicit_form = std::move(direct);
+    for (const bool rate : {false, true})
+      for (Eigen::Index i = 0; i < k; ++i) {
+        const int v = chosen_.coordinates[static_cast<std::size_t>(i)];
+        if (!rate && chosen_.phase[static_cast<std::size_t>(i)]) continue;
+        LinearModel::State state = name_state(model_, v, rate);
+        // Of a ball small turns count, from where it is.
+        const Link* ball = nullptr;
+        for (const Link& link : model_.system.links)
+          if (link.type == LinkType::spherical && link.v >= 0 && v >= link.v && v < link.v + 3) ball = &link;
+        if (rate)
+          state.value = u_[v];
+        else if (!ball)
+          for (const Link& link : model_.system.links)
+            if (link.v == v) state.value = q_[link.q];
+        state.less_input = rate && inputs > 0 && !m.shift.row(i).isZero(0);
+        out.states.push_back(std::move(state));
+      }
+    out.inputs.assign(signals_.inputs.begin(), signals_.inputs.end());
+    out.outputs = signals_.outputs;
+    out.output_error = m.error;
+    const auto found = out.explicit_form
+                           ? poles(*out.explicit_form)
+                           : pencil_eigenvalues(m.mass, m.velocity, m.stiffness, options_.cancel);
+    if (!found) throw Refusal{"The poles are not found: the numbers are too far apart."};
+    out.poles = *found;
+    out.gain = static_gain(best_form(out));
+  }
+
+  LinearSignals signals_;
+  const LinearModelOptions& options_;
+  Mechanism mechanism_; // whose numbers have rates
+  std::vector<std::string> addresses_;
+  std::vector<int> numbers_; // by input, in addresses_; -1: none
+  MotionModel model_;
+  System steady_system_; // what torques drive turns steadily
+  Parameters steady_parameters_;
+  Eigen::VectorXd q_, u_, balance_q_;
+  Chosen chosen_;
+};
+
+} // namespace
+
+LinearModel linearize(const Mechanism& mechanism, std::span<const std::string> inputs,
+                      std::span<const std::string> outputs, const LinearModelOptions& options) {
+  LinearModel out;
+  Builder builder(mechanism, inputs, outputs, options);
+  try {
+    builder.run(out);
+  } catch (const Refusal& refusal) {
+    out.refusal = refusal.why;
+  } catch (const Interrupted&) {
+    out.refusal = "The computation was cancelled.";
+  }
+  return out;
+}
+
+const StateSpace& best_form(const LinearModel& model) {
+  return model.explicit_form ? *model.explicit_form : model.descriptor;
+}
+
+} // namespace flyball

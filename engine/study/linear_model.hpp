@@ -1,0 +1,63 @@
+// The linear model of a mechanism about its steady state, for control engineers: E x' = A x + B u, y = C x +
+// D u in small changes of named inputs and outputs.
+//
+// Derivation. On the null space N of the constraints, q = N p + G u, and the linearised motion is
+//     M p'' + (C + G) p' + K p = b0 u + b1 u',
+// b0 = -df/du (balance_rate.hpp). Where u is the speed of a drive its rate enters by the inertia of what the
+// drive carries, b1 = -N^T M_FD. Where it is the length of a distance joint or the offset of a gear, G moves
+// the coordinates so that the loops stay closed; of all that do G is chosen with N^T M G = 0, so that u''
+// does not enter, and b1 = -N^T (C + G) G. With w = p' - M^-1 b1 u no derivative is left (the generalised
+// state of Kailath, Linear Systems, 1980, section 1.2):
+//     p' = w + M^-1 b1 u,   M w' = -K p - (C + G) w + (b0 - (C + G) M^-1 b1) u.
+// The coordinates p are coordinates of joints, as many as are independent. What torques drive has a rate, and
+// no angle unless asked for: nothing depends on it.
+#pragma once
+
+#include "engine/linear/state_space.hpp"
+#include "engine/solve/solution.hpp"
+#include "engine/study/linear_signals.hpp"
+
+#include <atomic>
+
+namespace flyball {
+
+struct LinearModelOptions {
+  bool phases = false; // angles of shafts that torques drive are states, too: they integrate
+  std::vector<std::pair<std::string, double>> start{}; // as of SolveOptions
+  bool nearest = false;
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+struct LinearModel {
+  // Why there is no model, a sentence; empty where there is one. Then the rest means nothing but `steady`.
+  std::string refusal;
+  Solution steady; // with eigenvalues, of the mechanism that has the model
+  // "slide" (m) and "slide.rate" (m/s); of a ball "ball.turn.x" (rad), about its parent's axes. The rate of
+  // what an input's rate enters is less M^-1 b1 u: `less_input`.
+  struct State : LinearSignal {
+    bool less_input = false;
+  };
+  std::vector<State> states;
+  std::vector<LinearSignal> inputs, outputs;
+  StateSpace descriptor; // with E; always there
+  // Without E: nothing where bodies without mass follow the others at once.
+  std::optional<StateSpace> explicit_form;
+  std::vector<std::complex<double>> poles; // 1/s, finite ones
+  std::optional<Eigen::MatrixXd> gain;     // (outputs, inputs), static; nothing where something integrates
+  // (outputs): estimated error of the entries of C and D in a row, relative to its largest by what they are
+  // measured by. A and B are exact to rounding.
+  Eigen::VectorXd output_error;
+  double run_time_s = 0; // after the steady state
+};
+
+// Of at most 200 coordinates. Throws SceneError for names that are wrong; refuses with the reason where there
+// is no steady state or none that stays the same as the drives turn, inputs that move parts by themselves,
+// inputs and outputs that turn with the drives, and outputs that feel the rate of an input: no state form has
+// these.
+LinearModel linearize(const Mechanism& mechanism, std::span<const std::string> inputs,
+                      std::span<const std::string> outputs, const LinearModelOptions& options = {});
+
+// The form to compute with: without E where there is one.
+const StateSpace& best_form(const LinearModel& model);
+
+} // namespace flyball

@@ -1,0 +1,113 @@
+#include "engine/study/motion_outputs.hpp"
+
+#include "engine/mechanism/address.hpp"
+#include "engine/system/joint_coordinates.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace flyball {
+
+MotionOutputs::MotionOutputs(const MotionModel& model, std::span<const std::string> addresses,
+                             std::size_t count, bool accelerated)
+    : model_(model), count_(count), accelerated_(accelerated), varied_(model.mechanism),
+      numbers_(varied_, addresses) {
+  for (const std::string& address : addresses)
+    set_.push_back(get_parameter(varied_, address));
+  coordinates_.resize(model.system.reported.size());
+  rates_.resize(coordinates_.size());
+  measures_.bind(varied_, model.system, model.parameters);
+}
+
+Eigen::VectorXd MotionOutputs::evaluate(const MotionOfAll& at, const Parameters& p) {
+  const System& system = model_.system;
+  move(model_.released, p, {at.q, at.u, nullptr, &at.a}, kinematics_, carried_);
+  for (std::size_t i = 0; i < system.reported.size(); ++i) {
+    const ReportedCoordinate& r = system.reported[i];
+    if (r.cut >= 0) {
+      const CutJoint& cut = system.cuts[static_cast<std::size_t>(r.cut)];
+      const CutParameters& numbers = p.cuts[static_cast<std::size_t>(r.cut)];
+      const JointCoordinates joint = joint_coordinates(cut, numbers, kinematics_);
+      coordinates_[i] = joint.value[static_cast<std::size_t>(r.index)];
+      rates_[i] = joint.rate.row(r.index) * relative_velocity(cut, numbers, kinematics_);
+      if (i < near_.size() && r.angle && !is_rotation_vector(cut.type, r.index))
+        coordinates_[i] = near_[i] + std::remainder(coordinates_[i] - near_[i], 2 * std::numbers::pi);
+      continue;
+    }
+    const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(r.coordinate)];
+    const Link& link = model_.released.links[static_cast<std::size_t>(c.link)];
+    const LinkParameters& l = p.links[static_cast<std::size_t>(c.link)];
+    if (link.type == LinkType::spherical) {
+      const int k = c.index - link.coordinate;
+      coordinates_[i] = rotation_vector<double>(link, l, at.q)[k];
+      rates_[i] = rotation_vector_rate(link, l, at.q).row(k) * at.u.segment<3>(link.v);
+    } else {
+      coordinates_[i] = at.q[link.q];
+      rates_[i] = at.u[link.v];
+    }
+  }
+  TransmittedForces forces;
+  if (measures_.needs_forces()) {
+    const Eigen::VectorXd q = at.q.head(system.nq);
+    evaluate_residual<double>(system, p, q, at.lambda, kinematics_, residual_);
+    forces = transmitted_forces(system, p, at.lambda, kinematics_, residual_);
+  }
+  const MeasuredState state{system, p, at.q, kinematics_, &forces, accelerated_, coordinates_, rates_};
+  return measures_.evaluate(state).tail(static_cast<Eigen::Index>(count_));
+}
+
+Eigen::VectorXd MotionOutputs::values(const MotionOfAll& at) {
+  near_.clear();
+  Eigen::VectorXd out = evaluate(at, model_.parameters);
+  near_ = coordinates_;
+  return out;
+}
+
+MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDirection& direction) {
+  values(at); // for whole turns
+  MotionOfAll moved;
+  const auto beside = [&](double step) {
+    moved.q = at.q;
+    retract<double>(model_.released, Eigen::VectorXd(step * direction.q), moved.q);
+    moved.u = at.u + step * direction.u;
+    moved.a = at.a + step * direction.a;
+    moved.lambda = at.lambda + step * direction.lambda;
+    if (direction.number < 0) return evaluate(moved, model_.parameters);
+    double& number = set_[static_cast<std::size_t>(direction.number)];
+    const double before = number;
+    number += step * direction.change;
+    numbers_.set(set_);
+    bind(model_.system, varied_, parameters_);
+    measures_.bind(varied_, model_.system, parameters_);
+    Eigen::VectorXd out = evaluate(moved, parameters_);
+    number = before;
+    numbers_.set(set_);
+    measures_.bind(varied_, model_.system, model_.parameters);
+    return out;
+  };
+  const auto difference = [&](double step) {
+    const Eigen::VectorXd forth = beside(step);
+    return Eigen::VectorXd((forth - beside(-step)) / (2 * step));
+  };
+  // Smaller ones where a curve is sharp, as the size of a vector that nearly vanishes.
+  constexpr double good = 1e-10;
+  Rates out;
+  for (const double h : {4e-3, 4e-4, 4e-5}) {
+    const Eigen::VectorXd d1 = difference(h), d2 = difference(h / 2), d3 = difference(h / 4);
+    const Eigen::VectorXd once = (4 * d2 - d1) / 3, twice = (4 * d3 - d2) / 3,
+                          last = twice + (twice - once) / 15, changed = (last - twice).cwiseAbs();
+    if (out.value.size() == 0) {
+      out = {last, changed};
+    } else {
+      for (Eigen::Index i = 0; i < last.size(); ++i)
+        if (changed[i] < out.error[i]) {
+          out.value[i] = last[i];
+          out.error[i] = changed[i];
+        }
+    }
+    if ((out.error.array() <= good * out.value.array().abs()).all()) break;
+  }
+  return out;
+}
+
+} // namespace flyball
