@@ -7,6 +7,7 @@
 #include "app/cli/solution_json.hpp"
 #include "app/cli/study_part.hpp"
 #include "app/plot/branch_plot.hpp"
+#include "app/plot/ribbon_plot.hpp"
 #include "app/plot/svg.hpp"
 #include "app/render/offscreen.hpp"
 #include "app/ui/plots/plot_picture.hpp"
@@ -37,6 +38,21 @@ PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, c
   const std::string known = plotted_names(m, all);
   throw SceneError("--plot " + name,
                    known.empty() ? "there is no free coordinate to draw" : "expected one of " + known);
+}
+
+// Of each branch the bands at all its points.
+Ribbons follow_ribbons(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,
+                       const ReportProgress& progress) {
+  Ribbons out;
+  for (const ResponseBranch& branch : diagram.branches) {
+    std::vector<RibbonPlace> places;
+    for (const ResponsePoint& point : branch.points)
+      places.push_back({point.parameter, start_values(point.coordinates)});
+    out.push_back(friction_ribbon(mechanism, address, places, nullptr, [&](std::size_t done) {
+      report_progress(progress, "friction", static_cast<double>(done) / static_cast<double>(places.size()));
+    }));
+  }
+  return out;
 }
 
 std::string diagram_text(const Mechanism& m, const std::string& address, const ResponseDiagram& d) {
@@ -110,19 +126,24 @@ void add_branch(CLI::App& app, Ending& ending) {
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
     ResponseDiagram diagram;
+    Ribbons ribbons;
     try {
       BranchOptions follow;
       follow.all = options->all;
       follow.progress = progress->reporter();
       diagram = follow_branches(mechanism, range.address, range.from, range.to, follow);
+      if (has_friction(mechanism))
+        ribbons = follow_ribbons(mechanism, range.address, diagram, follow.progress);
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
     progress.reset();
     const bool any = diagram.status == Status::converged && !diagram.branches.empty();
     if ((!options->svg.empty() || !options->png.empty()) && any) {
-      const Plot plot =
-          branch_plot(mechanism, range.address, diagram, plotted_quantity(mechanism, diagram, options->plot));
+      const PlottedQuantity shown = plotted_quantity(mechanism, diagram, options->plot);
+      Plot plot = branch_plot(mechanism, range.address, diagram, shown);
+      for (const std::vector<RibbonPoint>& ribbon : ribbons)
+        add_ribbon(plot, ribbon, plotted_name(diagram.branches.front().points.front(), shown));
       if (!options->svg.empty()) write_bytes(options->svg, to_svg(plot));
       if (!options->png.empty()) {
         const OffscreenContext context;
@@ -131,9 +152,9 @@ void add_branch(CLI::App& app, Ending& ending) {
     }
     // Files of earlier runs are not replaced by empty ones.
     if (!options->csv.empty() && !diagram.branches.empty())
-      write_bytes(options->csv, diagram_csv(mechanism, range.address, diagram));
+      write_bytes(options->csv, diagram_csv(mechanism, range.address, diagram, ribbons));
     if (options->json) {
-      nlohmann::ordered_json told = diagram_json(diagram);
+      nlohmann::ordered_json told = diagram_json(diagram, ribbons);
       told["run_time_s"] = diagram.run_time_s;
       print_json(with_warnings(std::move(told), mechanism));
     } else if (options->csv.empty() && options->svg != "-" && options->png != "-") // else it is theirs

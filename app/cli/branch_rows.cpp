@@ -43,6 +43,16 @@ std::string point_cells(std::span<const ValueColumn> values, int branch, const R
   return out + fmt::format(",{},{}", p.stable ? (*p.stable ? "true" : "false") : "", special);
 }
 
+// The band at a point, or nothing where there is none.
+std::string band_cells(std::span<const ValueColumn> values, const RibbonPoint& point) {
+  std::string out;
+  for (const ValueColumn& value : values) {
+    const BandExtent* extent = find_extent(point, value.name);
+    out += extent ? "," + csv_number(extent->low) + "," + csv_number(extent->high) : ",,";
+  }
+  return out;
+}
+
 // Why a branch begins or ends at this point of it.
 std::string note(const ResponseBranch& branch, std::size_t point) {
   std::string out;
@@ -53,15 +63,21 @@ std::string note(const ResponseBranch& branch, std::size_t point) {
 
 } // namespace
 
-Json diagram_json(const ResponseDiagram& d) {
+Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons) {
   Json out = {{"status", word(d.status)},
               {"message", d.message},
               {"branches", Json::array()},
               {"special", Json::array()}};
-  for (const ResponseBranch& b : d.branches) {
+  for (std::size_t k = 0; k < d.branches.size(); ++k) {
+    const ResponseBranch& b = d.branches[k];
     Json points = Json::array();
     for (const ResponsePoint& p : b.points)
       points.push_back(point_json(p));
+    for (std::size_t i = 0; k < ribbons.size() && i < ribbons[k].size(); ++i) {
+      Json& band = points[i]["band"] = Json::object();
+      for (const BandExtent& extent : ribbons[k][i].extents)
+        band[extent.name] = {number_json(extent.low), number_json(extent.high)};
+    }
     out["branches"].push_back(
         {{"points", std::move(points)}, {"connected", b.connected}, {"begin", b.begin}, {"end", b.end}});
   }
@@ -75,17 +91,26 @@ Json diagram_json(const ResponseDiagram& d) {
   return out;
 }
 
-std::string diagram_csv(const Mechanism& m, const std::string& address, const ResponseDiagram& d) {
+std::string diagram_csv(const Mechanism& m, const std::string& address, const ResponseDiagram& d,
+                        const Ribbons& ribbons) {
   const std::vector<ValueColumn> values = value_columns(m);
   std::string out = "branch," + csv_field(address);
   for (const ValueColumn& value : values)
     out += "," + csv_field(value.name);
-  out += ",stable,special\n";
+  out += ",stable,special";
+  if (!ribbons.empty())
+    for (const ValueColumn& value : values)
+      out += "," + csv_field(value.name + ".low") + "," + csv_field(value.name + ".high");
+  out += "\n";
+  const auto bands = [&](const RibbonPoint& point) {
+    return (ribbons.empty() ? "" : band_cells(values, point)) + "\n";
+  };
   for (std::size_t b = 0; b < d.branches.size(); ++b)
-    for (const ResponsePoint& p : d.branches[b].points)
-      out += point_cells(values, static_cast<int>(b), p, "") + "\n";
+    for (std::size_t i = 0; i < d.branches[b].points.size(); ++i)
+      out += point_cells(values, static_cast<int>(b), d.branches[b].points[i], "") +
+             bands(ribbons.empty() ? RibbonPoint{} : ribbons[b][i]);
   for (const SpecialPoint& s : d.special)
-    out += point_cells(values, s.branch, s.at, word(s.type)) + "\n";
+    out += point_cells(values, s.branch, s.at, word(s.type)) + bands({});
   return out;
 }
 

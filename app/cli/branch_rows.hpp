@@ -4,6 +4,7 @@
 #include "app/cli/row_output.hpp"
 #include "app/cli/value_columns.hpp"
 #include "engine/study/branch_grid.hpp"
+#include "engine/study/friction_ribbon.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -12,11 +13,15 @@
 
 namespace flyball::cli {
 
-// Without its run time.
-nlohmann::ordered_json diagram_json(const ResponseDiagram& diagram);
-// All of a table: branch, parameter, values, `stable`, `special`.
+// Of each branch, where there is friction.
+using Ribbons = std::vector<std::vector<RibbonPoint>>;
+
+// Without its run time. With ribbons points have a "band": {name: [low, high]}.
+nlohmann::ordered_json diagram_json(const ResponseDiagram& diagram, const Ribbons& ribbons = {});
+// All of a table: branch, parameter, values, `stable`, `special`; with ribbons then `NAME.low` and
+// `NAME.high` of each value.
 std::string diagram_csv(const Mechanism& mechanism, const std::string& address,
-                        const ResponseDiagram& diagram);
+                        const ResponseDiagram& diagram, const Ribbons& ribbons = {});
 
 struct BranchColumns {
   std::vector<Variation> over;

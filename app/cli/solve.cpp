@@ -1,4 +1,5 @@
 #include "app/cli/command.hpp"
+#include "app/cli/friction_told.hpp"
 #include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
@@ -70,6 +71,7 @@ void add_solve(CLI::App& app, Ending& ending) {
     for (const std::string& text : options->points)
       solve.points.push_back(parse_point("--point", text));
     Solution solution;
+    std::optional<FrictionReport> friction;
     try {
       if (options->all) {
         const AllSolutions all = Analysis(mechanism).solve_all(solve);
@@ -82,14 +84,21 @@ void add_solve(CLI::App& app, Ending& ending) {
         return;
       }
       solution = Analysis(mechanism).solve(solve);
+      if (has_friction(mechanism)) {
+        report_progress(solve.progress, "friction");
+        friction = report_friction(mechanism, solution);
+      }
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
     progress.reset();
-    if (options->json)
-      print_json(with_warnings(to_json(mechanism, solution), mechanism));
-    else
-      print_text(to_text(mechanism, solution));
+    if (options->json) {
+      nlohmann::ordered_json told = to_json(mechanism, solution);
+      if (friction) told["friction"] = to_json(*friction);
+      print_json(with_warnings(std::move(told), mechanism));
+    } else {
+      print_text(to_text(mechanism, solution) + (friction ? to_text(*friction) : ""));
+    }
     ending = end_with(solution.status == Status::converged, options->scene.file, solution.message);
   });
 }

@@ -48,6 +48,7 @@ Coordinate with_sign(Coordinate c, double sign) {
   if (sign > 0) return c;
   c.drawn = 0.0 - c.drawn;
   if (c.spring) c.spring->free = 0.0 - c.spring->free;
+  if (c.friction) c.friction->share = 0.0 - c.friction->share;
   if (c.drive) {
     c.drive->speed = 0.0 - c.drive->speed;
     if (c.drive->torque) c.drive->torque = 0.0 - *c.drive->torque;

@@ -77,6 +77,12 @@ std::string plotted_names(const Mechanism& m, const std::vector<CoordinateSoluti
   return known;
 }
 
+std::string plotted_name(const ResponsePoint& point, const PlottedQuantity& quantity) {
+  if (quantity.measure) return point.measures[quantity.index].name;
+  const auto found = found_number(point.coordinates[quantity.index]);
+  return found ? found->name : std::string();
+}
+
 double plotted_value(const ResponsePoint& point, const PlottedQuantity& quantity) {
   if (!quantity.measure) {
     const CoordinateSolution& c = point.coordinates[quantity.index];

@@ -23,6 +23,8 @@ std::optional<PlottedQuantity> find_plotted(const Mechanism& mechanism,
                                             const std::string& name);
 // What can be plotted, as find_plotted takes it: "slide, height".
 std::string plotted_names(const Mechanism& mechanism, const std::vector<CoordinateSolution>& coordinates);
+// As that takes it.
+std::string plotted_name(const ResponsePoint& point, const PlottedQuantity& quantity);
 // Not a number where a measure is undefined.
 double plotted_value(const ResponsePoint& point, const PlottedQuantity& quantity);
 

@@ -24,6 +24,7 @@ void update_studies(Session& session) {
   update_map(session);
   update_response(session);
   update_band(session);
+  update_friction(session);
   update_spread(session);
   update_comparison(session);
 }
@@ -32,7 +33,8 @@ bool studying(const Session& session) {
   const StudyState& study = session.study;
   return computing_motion(session) || computing_response(session) || comparing(session) ||
          study.states.running() || finding_modes(session) || computing_map(session) ||
-         study.spread.samples.running() || study.band.computed.running();
+         study.spread.samples.running() || study.band.computed.running() || study.friction.report.running() ||
+         study.friction.ribbon.running();
 }
 
 } // namespace flyball

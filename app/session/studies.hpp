@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/session/compare.hpp"
+#include "app/session/friction.hpp"
 #include "app/session/map.hpp"
 #include "app/session/modes.hpp"
 #include "app/session/response.hpp"
@@ -24,6 +25,7 @@ struct StudyState {
   MapState map;
   SpreadState spread;
   BandState band; // around the response curve
+  FrictionState friction;
 };
 
 // Shows a study, in the explore mode; the same again, or none, closes it.

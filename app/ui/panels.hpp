@@ -34,6 +34,7 @@ void file_banner(App& app, const PanelRect& view); // over the view: what happen
 // Sections of the results.
 void coordinate_results(App& app);
 void measure_results(App& app);
+void friction_results(App& app); // of a mechanism with friction: its band, and what holding takes
 void solver_results(App& app);
 void pull_results(App& app); // while a hand pulls
 void body_results(App& app); // position, speed and acceleration of the selected bodies

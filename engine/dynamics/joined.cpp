@@ -110,6 +110,8 @@ Run joined(const Run& before, std::size_t last, const Run& after) {
   append(out.time, count, after.time);
   std::erase_if(out.stops, [&](const StopEvent& stop) { return stop.time > before.time[last]; });
   out.stops.insert(out.stops.end(), after.stops.begin(), after.stops.end());
+  std::erase_if(out.frictions, [&](const FrictionEvent& event) { return event.time > before.time[last]; });
+  out.frictions.insert(out.frictions.end(), after.frictions.begin(), after.frictions.end());
   add(out.statistics, after.statistics);
 
   // A sample's state has the same length in both: the coordinates are the same.

@@ -2,10 +2,13 @@
 
 namespace flyball {
 
+// By how much more than its limits what sticks is torn off: enough for slipping_by to see it.
+constexpr double off_by = 1 + 2 * (slipping_by - 1);
+
 MotionOde::MotionOde(Equations& equations, const Watch& watch, double tolerance, double rate_scale,
                      double energy_scale)
     : equations_(equations), watch_(watch), model_(equations.model()), nq_(model_.system.nq),
-      nv_(model_.system.nv), tolerance_(tolerance), energy_scale_(energy_scale) {
+      nv_(model_.system.nv), tolerance_(tolerance), energy_scale_(energy_scale), rate_scale_(rate_scale) {
   q_.resize(nq_);
   s_.resize(nv_);
   scale_.setOnes(nq_ + nv_);
@@ -25,6 +28,15 @@ void MotionOde::set_events(std::vector<StopElement> stops, std::vector<FlipEleme
   stops_ = std::move(stops);
   touching_.assign(stops_.size(), false);
   flips_ = std::move(flips);
+}
+
+void MotionOde::set_frictions(const std::vector<FrictionElement>& frictions, const std::vector<int>& slips,
+                              const std::vector<FrictionHold>& holds) {
+  slips_.clear();
+  for (std::size_t i = 0; i < frictions.size(); ++i)
+    if (slips[i] != 0)
+      slips_.push_back({model_.system.links[static_cast<std::size_t>(frictions[i].link)].v, slips[i]});
+  holds_ = holds;
 }
 
 void MotionOde::pack(const Eigen::VectorXd& q, const Eigen::VectorXd& s, const Eigen::Vector3d& energies,
@@ -103,7 +115,7 @@ double value_at_stop(const MotionModel& model, const StopElement& stop, const Ei
   return rotation_vector(link, model.parameters.links[l], q)[stop.component] - stop.limit;
 }
 
-void MotionOde::event_values(double, const double* y, double* out) {
+void MotionOde::event_values(double t, const double* y, double* out) {
   q_ = Eigen::Map<const Eigen::VectorXd>(y, nq_);
   for (std::size_t i = 0; i < stops_.size(); ++i) {
     const Link& link = model_.system.links[static_cast<std::size_t>(stops_[i].link)];
@@ -113,6 +125,19 @@ void MotionOde::event_values(double, const double* y, double* out) {
   for (std::size_t i = 0; i < flips_.size(); ++i) {
     const auto l = static_cast<std::size_t>(flips_[i].link);
     out[stops_.size() + i] = joint_rotation(model_.system.links[l], model_.parameters.links[l], q_).w();
+  }
+  if (slips_.empty() && holds_.empty()) return;
+  double* next = out + stops_.size() + flips_.size();
+  unpack(y, q_, s_);
+  const bool known = equations_.evaluate(t, q_, s_); // else the step fails, too
+  for (const Slip& slip : slips_) {
+    const double hair = 1e-11 * model_.scaling.column[slip.v] * rate_scale_;
+    *next++ = known ? slip.way * equations_.velocity()[slip.v] + hair : hair;
+  }
+  for (const FrictionHold& hold : holds_) {
+    const double force = known ? -equations_.multipliers()[hold.row] : 0;
+    *next++ = hold.most * off_by - force;
+    *next++ = force - hold.least * off_by;
   }
 }
 

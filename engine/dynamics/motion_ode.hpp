@@ -2,6 +2,7 @@
 // its quaternions, the velocity that carries the momentum, and three energies that are integrated along.
 #pragma once
 
+#include "engine/dynamics/friction_modes.hpp"
 #include "engine/dynamics/newton_matrix.hpp"
 #include "engine/dynamics/stepper.hpp"
 
@@ -19,6 +20,9 @@ class MotionOde : public Ode {
 
   // What ends steps: stops reached or left, rotation vectors that turn over.
   void set_events(std::vector<StopElement> stops, std::vector<FlipElement> flips);
+  // Those that slip come to a stop, or what sticks takes all that friction gives; see FrictionModes.
+  void set_frictions(const std::vector<FrictionElement>& frictions, const std::vector<int>& slips,
+                     const std::vector<FrictionHold>& holds);
   // Which stops are touched. They are left, or reached again, a hair beyond their limit, so that no step
   // begins right at an event: SUNDIALS does not see that one.
   void set_touching(const std::vector<bool>& touching) { touching_ = touching; }
@@ -39,7 +43,9 @@ class MotionOde : public Ode {
   bool wanted() const override { return !watch_.over(); }
   bool has_manifold() const override { return rotations_ || equations_.needs_projection(); }
   bool project(double t, double* y) override;
-  int events() const override { return static_cast<int>(stops_.size() + flips_.size()); }
+  int events() const override {
+    return static_cast<int>(stops_.size() + flips_.size() + slips_.size() + 2 * holds_.size());
+  }
   void event_values(double t, const double* y, double* out) override;
 
  private:
@@ -52,6 +58,12 @@ class MotionOde : public Ode {
   std::vector<StopElement> stops_;
   std::vector<bool> touching_;
   std::vector<FlipElement> flips_;
+  struct Slip {
+    int v = 0, way = 1;
+  };
+  std::vector<Slip> slips_;
+  std::vector<FrictionHold> holds_;
+  double rate_scale_;
   Eigen::VectorXd q_, s_, scale_;
   NewtonMatrix matrix_;
 };

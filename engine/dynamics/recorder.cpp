@@ -35,6 +35,12 @@ void Recorder::use(std::shared_ptr<const MotionModel> model, Equations& equation
   if (measured_) measures_.bind(model_->mechanism, model_->system, model_->parameters);
 }
 
+void Recorder::follow(std::shared_ptr<const MotionModel> model, Equations& equations) {
+  model_ = std::move(model);
+  equations_ = &equations;
+  if (measured_) measures_.bind(model_->mechanism, model_->system, model_->parameters);
+}
+
 void Recorder::lay_out() {
   const System& system = model_->system;
   for (const ReportedCoordinate& r : system.reported) {
@@ -84,6 +90,12 @@ void Recorder::name(const StopElement& stop, StopEvent& event) const {
   const Link& link = model_->system.links[index(stop.link)];
   event.joint = model_->system.tree_joints[index(link.tree_joint)].name;
   event.index = link.coordinate + stop.component;
+}
+
+void Recorder::name(const FrictionElement& friction, FrictionEvent& event) const {
+  const Link& link = model_->system.links[index(friction.link)];
+  event.joint = model_->system.tree_joints[index(link.tree_joint)].name;
+  event.index = link.coordinate;
 }
 
 void Recorder::record_coordinates(double t) {
@@ -157,7 +169,7 @@ bool Recorder::has_jacobi() {
     const Force& f = model_->mechanism.forces[index(e.force)];
     if (e.link >= 0 && (f.type != ForceType::force || f.frame != ForceFrame::world)) return false;
   }
-  if (!system.torques.empty()) return false;
+  if (!system.torques.empty() || !list_frictions(*model_).empty()) return false;
   if (system.drives.empty() || p.phase_free) return true;
   Eigen::VectorXd q, all_q(model_->released.nq), all_u(model_->released.nv), step(system.nv);
   drawn_configuration(system, p, q);

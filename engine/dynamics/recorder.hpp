@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/equations.hpp"
+#include "engine/dynamics/friction_modes.hpp"
 #include "engine/report/measures.hpp"
 #include "engine/system/point_motion.hpp"
 
@@ -18,6 +19,9 @@ class Recorder {
   // What the next samples are of; tracks are laid out at first. Throws SceneError for points of no body.
   void use(std::shared_ptr<const MotionModel> model, Equations& equations);
 
+  // The same model with friction sticking or slipping otherwise.
+  void follow(std::shared_ptr<const MotionModel> model, Equations& equations);
+
   // The evaluated state at t, with the integrated energies. `shift`: how far it was put back on the manifold.
   void record(double t, const Eigen::Vector3d& energies, double shift);
 
@@ -31,6 +35,7 @@ class Recorder {
   Eigen::Vector3d energies() const;
 
   void name(const StopElement& stop, StopEvent& event) const;
+  void name(const FrictionElement& friction, FrictionEvent& event) const;
 
  private:
   void lay_out();

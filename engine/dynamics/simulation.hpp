@@ -131,6 +131,14 @@ struct StopEvent {
   bool touching = false;
 };
 
+// A joint with dry friction came to stand still, or began to slip.
+struct FrictionEvent {
+  double time = 0; // s
+  std::string joint;
+  int index = 0;
+  int slips = 0; // 1: the coordinate begins to grow, -1: to fall, 0: it sticks
+};
+
 struct RunStatistics {
   long steps = 0, evaluations = 0, jacobians = 0, rejected = 0, restarts = 0;
   long singular_positions = 0; // passed, where a linkage could part into branches
@@ -165,6 +173,7 @@ struct Run {
   std::vector<MeasureTrack> measures;
   EnergyTracks energy;
   std::vector<StopEvent> stops;
+  std::vector<FrictionEvent> frictions; // those that already stick or slip at the start are not among them
   RunStatistics statistics;
 
   // What was compiled, from each of these samples on, and the configuration and velocity of every sample:

@@ -1,6 +1,7 @@
 #include "engine/dynamics/simulator.hpp"
 
 #include "engine/dynamics/choose_method.hpp"
+#include "engine/dynamics/friction_modes.hpp"
 #include "engine/dynamics/motion_ode.hpp"
 #include "engine/dynamics/recorder.hpp"
 #include "engine/dynamics/singular_position.hpp"
@@ -29,6 +30,9 @@ constexpr double hopeless = 100;
 // Explicit steps after which the choice of a method is thought over for the first time.
 constexpr long first_review = 500;
 
+// A coordinate with friction stands still where its rate is this part of a usual one.
+constexpr double still = 1e-9;
+
 const std::string locked = "the loops have come to a position that they cannot pass";
 
 std::string at_time(double t) {
@@ -50,6 +54,10 @@ struct Simulator::State {
   std::vector<StopElement> stops;
   std::vector<bool> touching; // by stop
   std::vector<FlipElement> flips;
+  std::shared_ptr<const MotionModel> free; // without what friction adds; null where there is none
+  std::vector<FrictionElement> frictions;
+  std::vector<int> slips; // by friction, see with_modes()
+  std::vector<FrictionHold> holds;
   double rate_scale = 1, energy_scale = 1;
   double fastest = 0; // 1/s, of the linearised motion where the method was chosen; 0: not known
   Integrator method = Integrator::automatic;
@@ -73,8 +81,17 @@ struct Simulator::State {
     auto made = std::make_shared<MotionModel>(make_motion_model(mechanism, damped));
     Eigen::VectorXd u;
     find_start(how, *made, q, u);
-    model = std::move(made);
+    take(std::move(made));
     begin_motion(how.start == Start::state ? how.state.time : 0, u, Eigen::Vector3d::Zero());
+  }
+
+  // A model with all of its friction slipping nowhere, which gives nothing.
+  void take(std::shared_ptr<MotionModel> made) {
+    frictions = list_frictions(*made);
+    for (const FrictionElement& friction : frictions)
+      made->parameters.links[static_cast<std::size_t>(friction.link)].force.hold(0).friction = 0;
+    model = std::move(made);
+    free = frictions.empty() ? nullptr : model;
   }
 
   // From q and a velocity u that keep the loops closed.
@@ -98,15 +115,81 @@ struct Simulator::State {
     if (options.fixed_step > 0) choice = {Integrator::runge_kutta, "Steps of a fixed size."};
     run.method_reason = choice.reason;
     stepped_to = t;
+    slips.clear();
+    if (free) settle_frictions(t, equations->velocity().head(model->system.nv));
     use_method(choice.method);
     ode->pack(q, s, energies, y);
     start_stepper(t);
   }
 
+  // Which joints with friction stick and which way others slip, from q and u on: those that stand still
+  // stick, unless that takes more than their limits. The one that it takes most of gives way, with what loops
+  // tie to it, again and again. Leaves model, equations and s.
+  void settle_frictions(double t, Eigen::VectorXd u) {
+    best_independence = 0;
+    const std::vector<int> before = std::exchange(slips, std::vector<int>(frictions.size(), 0));
+    for (std::size_t i = 0; i < frictions.size(); ++i) {
+      const int v = v_of(frictions[i]);
+      const double usual = model->scaling.column[v] * rate_scale;
+      // One that slipped the other way has come to a stop.
+      const bool turned = !before.empty() && before[i] * u[v] < 0;
+      if (std::abs(u[v]) > still * usual && !turned)
+        slips[i] = u[v] > 0 ? 1 : -1;
+      else
+        u[v] = 0;
+    }
+    for (std::size_t tries = 0; tries <= 2 * frictions.size(); ++tries) {
+      FrictionModes modes = with_modes(*free, frictions, slips, q);
+      bool passes = false; // a dead point, from which its coordinate goes back as the others go on
+      for (const std::size_t i : modes.at_dead_points)
+        if (!before.empty() && before[i] != 0) {
+          slips[i] = -before[i];
+          passes = true;
+        }
+      if (passes) continue;
+      equations.reset();
+      model = std::move(modes.model);
+      holds = std::move(modes.holds);
+      equations = std::make_unique<Equations>(*model, watch);
+      restructure(t, u);
+      if (!equations->evaluate(t, q, s))
+        throw SceneError("", "the equations of motion have no solution where friction sticks: " +
+                                 equations->unsolved());
+      const FrictionHold* worst = nullptr;
+      double most = slipping_by;
+      for (const FrictionHold& hold : holds) {
+        const double force = force_of(hold);
+        const double part = force > 0 ? force / hold.most : force < 0 ? force / hold.least : 0;
+        if (part > most || std::isinf(part)) {
+          most = part;
+          worst = &hold;
+        }
+      }
+      if (!worst) break;
+      const int way = force_of(*worst) > 0 ? -1 : 1;
+      slips[worst->element] = way;
+      for (const FrictionHold::Tied& tied : worst->tied)
+        slips[tied.element] = tied.rate > 0 ? way : -way;
+    }
+    for (std::size_t i = 0; i < frictions.size() && !before.empty(); ++i)
+      if (slips[i] != before[i]) {
+        run.frictions.push_back({t, "", 0, slips[i]});
+        recorder->name(frictions[i], run.frictions.back());
+      }
+    if (recorder) recorder->follow(model, *equations);
+  }
+
+  int v_of(const FrictionElement& friction) const {
+    return model->system.links[static_cast<std::size_t>(friction.link)].v;
+  }
+  // N m or N, of friction on the coordinate that is held, at the evaluated state.
+  double force_of(const FrictionHold& hold) const { return -equations->multipliers()[hold.row]; }
+
   void use_method(Integrator chosen) {
     run.method = method = chosen;
     ode = std::make_unique<MotionOde>(*equations, watch, options.tolerance, rate_scale, energy_scale);
     ode->set_events(stops, flips);
+    if (free) ode->set_frictions(frictions, slips, holds);
     ode->set_touching(touching);
     ode->set_inner_projection(method == Integrator::adams && equations->needs_projection());
     stepper = method == Integrator::runge_kutta ? make_runge_kutta_stepper(*ode, options.fixed_step)
@@ -199,11 +282,15 @@ struct Simulator::State {
     const double t = outcome.time;
     if (!settle(t, nullptr)) return; // the next step says what is wrong
     const Eigen::VectorXd u = equations->velocity().head(model->system.nv);
-    bool changed = false;
+    bool changed = false, frictions_change = false;
     std::vector<int> flipped; // links
     for (int e : outcome.events) {
       const auto i = static_cast<std::size_t>(e);
       if (i < stops.size()) continue;
+      if (i >= stops.size() + flips.size()) {
+        frictions_change = true;
+        continue;
+      }
       // A rotation vector turned over, and with it the forces of its springs.
       FlipElement& flip = flips[i - stops.size()];
       flipped.push_back(flip.link);
@@ -229,10 +316,16 @@ struct Simulator::State {
       set_stop(i, touches, t);
       changed = true;
     }
-    if (!changed) return;
+    if (!changed && !frictions_change) return;
     equations->latch(stops, touching, flips);
     ode->set_touching(touching);
-    ode->pack(q, s, ode->energies(y), y);
+    const Eigen::Vector3d energies = ode->energies(y);
+    if (frictions_change) {
+      settle_frictions(t, u);
+      stepper->count(run.statistics);
+      use_method(method);
+    }
+    ode->pack(q, s, energies, y);
     start_stepper(t);
   }
 
@@ -345,7 +438,11 @@ struct Simulator::State {
     const StepOutcome outcome = *std::exchange(pending, {});
     stepper->state_at(outcome.time, y);
     if (outcome.kind != StepOutcome::event) return check_step(outcome.time);
-    handle_event(outcome);
+    try {
+      handle_event(outcome);
+    } catch (const SceneError& error) {
+      return diverge(outcome.time, error.what());
+    }
     return true;
   }
 
@@ -528,7 +625,7 @@ void Simulator::change(const Mechanism& mechanism, bool damped) {
   const Eigen::Vector3d energies = x.recorder->energies();
   x.stepper->count(x.run.statistics);
   x.damped = damped;
-  x.model = std::move(made);
+  x.take(std::move(made));
   x.q = q;
   x.begin_motion(now.time, u, energies);
   x.run.damped = damped;

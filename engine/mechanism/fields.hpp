@@ -150,6 +150,16 @@ void visit_fields(Visitor& v, Part& stop, bool angle = true) {
   v.field({"stiffness", expected::number, fields::stiffness_unit(angle), fields::required}, stop.stiffness);
 }
 
+template <class Visitor, PartOf<Friction> Part>
+void visit_fields(Visitor& v, Part& friction, bool angle = true) {
+  v.describe(friction.description);
+  v.field({"limit", expected::number, fields::force_unit(angle)}, friction.limit);
+  v.field({"mu", expected::number}, friction.mu);
+  v.field({"preload", expected::number, "N"}, friction.preload);
+  v.field({"radius", expected::number, "m"}, friction.radius);
+  v.field({"share", expected::number}, friction.share, 0);
+}
+
 template <class Visitor, PartOf<Drive> Part>
 void visit_fields(Visitor& v, Part& drive, bool angle = true) {
   v.describe(drive.description);
@@ -164,6 +174,7 @@ void visit_fields(Visitor& v, Part& coordinate, bool angle = true) {
   v.field({"spring", expected::object}, coordinate.spring);
   v.field({"damping", expected::number, fields::damping_unit(angle)}, coordinate.damping, 0);
   v.field({"stop", expected::object}, coordinate.stop);
+  v.field({"friction", expected::object}, coordinate.friction);
   v.field({"drive", expected::object}, coordinate.drive);
 }
 

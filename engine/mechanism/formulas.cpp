@@ -448,8 +448,10 @@ std::string used_of_version_2(const Mechanism& mechanism) {
   }
   for (const Joint& joint : mechanism.joints) {
     if (!joint.formulas.empty()) return first(joint, "joints." + joint.name);
-    for (const Coordinate& c : joint.coordinates)
+    for (const Coordinate& c : joint.coordinates) {
       if (c.drive && (c.drive->torque || c.drive->load)) return "joints." + joint.name + ".drive.torque";
+      if (c.friction) return "joints." + joint.name + ".friction";
+    }
   }
   for (const Force& force : mechanism.forces)
     if (!force.formulas.empty()) return first(force, "forces." + force.name);

@@ -133,12 +133,26 @@ struct Drive {
   bool operator==(const Drive&) const = default;
 };
 
+// Dry friction of one coordinate (Coulomb's): what holds it at rest, up to a limit, and opposes its rate with
+// this limit where it slips. The limit is given, or that of a preload: mu times preload, along an angle times
+// the radius at which it acts. At rest any force up to it holds, so steady states are many: `share` says at
+// which of them the solution stands.
+struct Friction {
+  std::optional<double> limit{};         // N m or N
+  std::optional<double> mu{}, preload{}; // a number; N
+  std::optional<double> radius{};        // m
+  double share = 0;                      // of the limit, -1 to 1, positive along the coordinate
+  std::string description{};
+  bool operator==(const Friction&) const = default;
+};
+
 // What is known of one coordinate of a joint.
 struct Coordinate {
   double drawn = 0; // rad or m: the label of the drawn pose; moves nothing
   std::optional<CoordinateSpring> spring;
   double damping = 0; // N m s/rad or N s/m
   std::optional<Stop> stop;
+  std::optional<Friction> friction{};
   std::optional<Drive> drive;
   bool operator==(const Coordinate&) const = default;
 };
@@ -255,6 +269,10 @@ bool is_rotation_vector(JointType type, int i);
 bool has_at(JointType type);
 bool has_axis(JointType type);
 bool has_axis2(JointType type);
+
+// The most that friction holds, N m or N.
+double friction_limit(const Friction& friction);
+bool has_friction(const Mechanism& mechanism);
 
 // Whether a body, joint or force may be called so: not empty, not "ground", without dots (addresses) and
 // control characters.

@@ -70,6 +70,7 @@ class Collector {
 
   void field(const Field& field, std::optional<CoordinateSpring>& spring) { inside(field, spring); }
   void field(const Field& field, std::optional<Stop>& stop) { inside(field, stop); }
+  void field(const Field& field, std::optional<Friction>& friction) { inside(field, friction); }
   void field(const Field& field, std::optional<Drive>& drive) { inside(field, drive); }
 
   void coordinates(Joint& joint) {

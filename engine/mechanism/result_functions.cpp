@@ -10,7 +10,7 @@ namespace {
 using enum ArgumentKind;
 
 // In the order of Result.
-constexpr std::array list{
+constexpr std::array result_list{
     ResultFunction{"coordinate", Result::coordinate, coordinate, 1, 1, "coordinate(slide)"},
     ResultFunction{"rate", Result::rate, coordinate, 1, 1, "rate(spin)"},
     ResultFunction{"x", Result::x, point, 1, 1, "x(ball)"},
@@ -42,17 +42,17 @@ constexpr std::array list{
     ResultFunction{"clearance", Result::clearance, coordinate, 1, 2, "clearance(slide)"},
     ResultFunction{"mass", Result::mass, body, 0, 1, "mass(ball)"},
 };
-static_assert(list.back().result == Result::mass &&
-              list.size() == static_cast<std::size_t>(Result::mass) + 1);
+static_assert(result_list.back().result == Result::mass &&
+              result_list.size() == static_cast<std::size_t>(Result::mass) + 1);
 
 } // namespace
 
 std::span<const ResultFunction> result_functions() {
-  return list;
+  return result_list;
 }
 
 const ResultFunction& result_function(Result result) {
-  return list[static_cast<std::size_t>(result)];
+  return result_list[static_cast<std::size_t>(result)];
 }
 
 ArgumentKind argument_kind(const ResultFunction& function, std::size_t arguments) {

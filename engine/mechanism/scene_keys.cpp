@@ -100,6 +100,9 @@ Keys of(const CoordinateSpring&) {
 Keys of(const Stop&) {
   return of_only_type<Stop>();
 }
+Keys of(const Friction&) {
+  return of_only_type<Friction>();
+}
 Keys of(const Drive&) {
   return of_only_type<Drive>();
 }

@@ -24,6 +24,7 @@ Keys of(const Joint& joint);
 Keys of(const Coordinate& coordinate);
 Keys of(const CoordinateSpring& spring);
 Keys of(const Stop& stop);
+Keys of(const Friction& friction);
 Keys of(const Drive& drive);
 Keys of(const Force& force);
 Keys of(const Slider& slider);

@@ -53,6 +53,9 @@ std::string noun(const CoordinateSpring&) {
 std::string noun(const Stop&) {
   return "a stop";
 }
+std::string noun(const Friction&) {
+  return "a friction";
+}
 std::string noun(const Drive&) {
   return "a drive";
 }

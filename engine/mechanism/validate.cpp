@@ -103,6 +103,7 @@ class NumberCheck {
   }
   void check(const CoordinateSpring& spring) { visit_fields(*this, spring); }
   void check(const Stop& stop) { visit_fields(*this, stop); }
+  void check(const Friction& friction) { visit_fields(*this, friction); }
   void check(const Drive& drive) { visit_fields(*this, drive); }
   template <class Value>
   void check(const std::optional<Value>& value) {

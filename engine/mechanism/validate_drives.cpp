@@ -114,6 +114,10 @@ void find_springs_on_driven(const Mechanism& mechanism, const DrivenCoordinates&
         mistakes.add(coordinate_path(mechanism, j, "spring", i), "expected no spring" + reason);
       if (coordinate.stop)
         mistakes.add(coordinate_path(mechanism, j, "stop", i), "expected no stop" + reason);
+      if (coordinate.friction)
+        mistakes.add(coordinate_path(mechanism, j, "friction", i),
+                     "expected no friction on this coordinate, which is driven" + by +
+                         ": it holds nothing there, and only the drive would feel it");
     }
 }
 

@@ -59,6 +59,39 @@ void find_torque_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t
   }
 }
 
+// Each coordinate holds by itself, so it must be one that slips by itself.
+void find_friction_mistakes(const Joint& joint, std::size_t i, const std::string& path, Mistakes& mistakes) {
+  const Friction& friction = *joint.coordinates[i].friction;
+  const bool angle = is_angle(joint.type, static_cast<int>(i));
+  if (is_rotation_vector(joint.type, static_cast<int>(i)) || joint.type == JointType::free)
+    return mistakes.add(path, "expected no friction: the components of a " +
+                                  std::string(type_name(joint.type)) +
+                                  " joint do not slip one by one; use revolute and prismatic joints");
+  if (joint.type == JointType::planar && !angle)
+    return mistakes.add(path, "expected no friction: in a plane it acts against the direction of slip, not "
+                              "along x and y each; use prismatic joints");
+  if (friction.limit)
+    mistakes.expect(!friction.mu && !friction.preload && !friction.radius, path,
+                    "expected `limit` alone, or `mu` and `preload` in its place");
+  else if (!friction.mu || !friction.preload)
+    mistakes.add(path, "expected `limit`, or `mu` and `preload`");
+  else if (angle != friction.radius.has_value())
+    mistakes.add(path + ".radius", angle ? "missing; expected the radius at which friction acts, as it is to "
+                                           "give a moment"
+                                         : "expected none: along a slide mu times the preload is the force");
+  const auto not_negative = [&](const std::optional<double>& value, const char* key) {
+    if (value && *value < 0)
+      mistakes.add(path + "." + key, "expected zero or more, found " + number_text(*value));
+  };
+  not_negative(friction.limit, "limit");
+  not_negative(friction.mu, "mu");
+  not_negative(friction.preload, "preload");
+  not_negative(friction.radius, "radius");
+  if (std::abs(friction.share) > 1)
+    mistakes.add(path + ".share",
+                 "expected a part of the limit, -1 to 1, found " + number_text(friction.share));
+}
+
 void find_coordinate_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t i, Mistakes& mistakes) {
   const Joint& joint = mechanism.joints[j];
   const Coordinate& coordinate = joint.coordinates[i];
@@ -74,6 +107,7 @@ void find_coordinate_mistakes(const Mechanism& mechanism, std::size_t j, std::si
       mistakes.add(path("stop") + ".stiffness",
                    "expected a number above zero, found " + number_text(stop.stiffness));
   }
+  if (coordinate.friction) find_friction_mistakes(joint, i, path("friction"), mistakes);
   if (!coordinate.drive) return;
   find_torque_mistakes(mechanism, j, i, mistakes);
   if (is_rotation_vector(joint.type, static_cast<int>(i)))

@@ -55,7 +55,8 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
     for (std::size_t k = 0; k < x.coordinates.size(); ++k) {
       const Coordinate &c = x.coordinates[k], &d = y.coordinates[k];
       if (c.spring.has_value() != d.spring.has_value() || c.stop.has_value() != d.stop.has_value() ||
-          !same_kind(x, y, static_cast<int>(k)) || (c.damping != 0) != (d.damping != 0))
+          c.friction.has_value() != d.friction.has_value() || !same_kind(x, y, static_cast<int>(k)) ||
+          (c.damping != 0) != (d.damping != 0))
         return false;
     }
   }

@@ -41,7 +41,11 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   say(p.moving, "motion of the drives: centrifugal and gyroscopic forces");
   if (!system.torques.empty()) out.in.emplace_back("torques of drives: their speeds are among the unknowns");
   say(!p.gravity.isZero(0), "gravity");
-  say(std::ranges::any_of(p.links, &LinkParameters::elastic), "springs and stops in joints");
+  const auto has_elastic = [](const LinkParameters& l) {
+    return std::ranges::any_of(l.force, [](const CoordinateForce& f) { return f.elastic(); });
+  };
+  say(std::ranges::any_of(p.links, has_elastic), "springs and stops in joints");
+  if (has_friction(mechanism)) out.in.emplace_back("dry friction in joints: the steady state is a band");
   say(!system.springs.empty(), "springs between points");
   say(!system.body_forces.empty(), "forces, torques and drag");
   const bool damped =

@@ -41,8 +41,8 @@ std::string bytes_of(std::string message) {
   return std::move(message.erase(0, 1 + sizeof(IndexBlock)));
 }
 
-std::exception_ptr failure_of(std::string message) {
-  const std::string bytes = bytes_of(std::move(message));
+std::exception_ptr failure_of(const std::string& message) {
+  const std::string bytes = message.substr(1 + sizeof(IndexBlock));
   const std::size_t zero = bytes.find('\0');
   return std::make_exception_ptr(SceneError(bytes.substr(0, zero), bytes.substr(zero + 1)));
 }
@@ -76,7 +76,7 @@ void MessageSharing::serve(const SharedWork& work) {
   int answers = in_hand * others;
   const auto handle = [&](MessagePassing::Message m) {
     const Kind kind = kind_of(m.bytes);
-    if (kind == Kind::failure) return queue.stop(failure_of(std::move(m.bytes)));
+    if (kind == Kind::failure) return queue.stop(failure_of(m.bytes));
     ready.push_back(m.from);
     if (kind != Kind::block) return;
     const IndexBlock block = block_of(m.bytes);

@@ -123,7 +123,7 @@ class Compiler {
     needs_coordinate_.assign(m_.joints.size(), false);
     for (int j = 0; j < joint_count(); ++j) {
       for (const Coordinate& c : joint(j).coordinates)
-        if (c.spring || c.stop) needs_coordinate_[static_cast<std::size_t>(j)] = true;
+        if (c.spring || c.stop || c.friction) needs_coordinate_[static_cast<std::size_t>(j)] = true;
       if (joint(j).type == JointType::gear)
         for (int end : {0, 1})
           needs_coordinate_[static_cast<std::size_t>(gear_end(j, end).joint)] = true;

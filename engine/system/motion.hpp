@@ -61,7 +61,8 @@ void add_coordinate_damping_stiffness(const System& system, const Parameters& pa
                                       const Eigen::VectorXd& q, const Eigen::VectorXd& u,
                                       Eigen::MatrixXd& stiffness);
 
-// W: taken by dampers and drag; given by torques and forces fixed in bodies, which have no potential.
+// W: taken by dampers, friction and drag; given by torques and forces fixed in bodies, which have no
+// potential.
 struct ForcePowers {
   double dissipated = 0, applied = 0;
 };

@@ -61,12 +61,13 @@ ForcePowers force_powers(const System& system, const Parameters& p, const Eigen:
   ForcePowers out;
   for (std::size_t i = 0; i < system.links.size(); ++i) {
     const Link& link = system.links[i];
-    if (link.v < 0 || !damped(p.links[i])) continue;
+    if (link.v < 0 || (!damped(p.links[i]) && p.links[i].force[0].friction == 0)) continue;
     if (link.type == LinkType::spherical) {
       const Vec3 rate = rotation_vector_rate(link, p.links[i], q) * u.segment<3>(link.v);
       out.dissipated += dampings(p.links[i]).dot(rate.cwiseAbs2());
     } else {
-      out.dissipated += p.links[i].force[0].damping * u[link.v] * u[link.v];
+      const CoordinateForce& f = p.links[i].force[0];
+      out.dissipated += (f.damping * u[link.v] - f.friction) * u[link.v];
     }
   }
   for (std::size_t i = 0; i < system.springs.size(); ++i) {
@@ -114,7 +115,7 @@ double potential_energy(const System& system, const Parameters& p, const Eigen::
       for (int j = 0; j < 3; ++j)
         energy += lp.force[static_cast<std::size_t>(j)].energy(r[j]);
     } else {
-      energy += lp.force[0].energy(q[link.q]);
+      energy += lp.force[0].energy(q[link.q]) + lp.force[0].friction * q[link.q]; // which is dissipated
     }
   }
   for (std::size_t i = 0; i < system.springs.size(); ++i) {

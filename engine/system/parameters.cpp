@@ -97,9 +97,10 @@ class Binder {
 
   void bind_coordinate(const Coordinate& c, BasicLinkParameters<N>& out, int k) const {
     const N damping = read_(c.damping);
-    if (!c.spring && !c.stop && damping == N(0)) return;
+    if (!c.spring && !c.stop && !c.friction && damping == N(0)) return;
     BasicCoordinateForce<N>& f = out.force.hold(static_cast<std::size_t>(k));
     f.damping = damping;
+    if (c.friction) f.friction = read_(c.friction->share) * limit_of(*c.friction);
     if (c.spring) {
       f.stiffness = read_(c.spring->stiffness);
       f.free = read_(c.spring->free);
@@ -111,7 +112,15 @@ class Binder {
       if (c.stop->lower) f.lower = read_(*c.stop->lower);
       if (c.stop->upper) f.upper = read_(*c.stop->upper);
     }
-    out.elastic = out.elastic || f.elastic();
+    out.elastic = out.elastic || c.friction || f.elastic();
+  }
+
+  N limit_of(const Friction& x) const { // see friction_limit
+    if (x.limit) return read_(*x.limit);
+    N limit = 1;
+    for (const std::optional<double>* factor : {&x.mu, &x.preload, &x.radius})
+      if (*factor) limit *= read_(**factor);
+    return limit;
   }
 
   N gear_offset(const Joint& g) const {

@@ -8,18 +8,20 @@
 
 namespace flyball {
 
-// Spring, damper and stop of one coordinate.
+// Spring, damper, stop and friction of one coordinate. In a steady state friction is a constant force, with
+// the potential of one.
 template <class N>
 struct BasicCoordinateForce {
   N stiffness = 0, free = 0, damping = 0;
   N lower = 0, upper = 0, stop_stiffness = 0; // stop_stiffness 0: no stop
   bool has_lower = false, has_upper = false;
+  N friction = 0; // what friction gives, N m or N, positive along the coordinate
   bool elastic() const { return stiffness != 0 || stop_stiffness != 0; }
 
-  // Torque or force of the spring and stop on the coordinate's own side: dV/dq at q.
+  // Torque or force of the spring, stop and friction on the coordinate's own side: dV/dq at q.
   template <class S>
   S gradient(S q) const {
-    S g = S(stiffness) * (q - S(free));
+    S g = S(stiffness) * (q - S(free)) - S(friction);
     if (has_lower && q < S(lower)) g += S(stop_stiffness) * (q - S(lower));
     if (has_upper && q > S(upper)) g += S(stop_stiffness) * (q - S(upper));
     return g;
@@ -32,7 +34,7 @@ struct BasicCoordinateForce {
     S v = S(stiffness) * (q - S(free)) * (q - S(free));
     if (has_lower && q < S(lower)) v += S(stop_stiffness) * (q - S(lower)) * (q - S(lower));
     if (has_upper && q > S(upper)) v += S(stop_stiffness) * (q - S(upper)) * (q - S(upper));
-    return v / 2;
+    return v / 2 - S(friction) * q;
   }
 };
 
@@ -65,7 +67,7 @@ struct BasicLinkParameters {
   N drawn = 0;                        // label of the drawn pose
   N mass = 0;                         // kg
   bool has_inertia = false;
-  bool elastic = false;                // any of `force` is a spring or stop
+  bool elastic = false;                // any of `force` is a spring, stop or friction
   Vec3T<N> com = Vec3T<N>::Zero();     // m, mass centre from the link's origin, drawn pose
   Mat3T<N> inertia = Mat3T<N>::Zero(); // kg m^2, about the mass centre, drawn-pose world axes
   N speed = 0;      // driven: rad/s or m/s, before Parameters::speed_scale; by a torque: at first

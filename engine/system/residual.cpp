@@ -264,7 +264,8 @@ struct MagnitudesPass {
           out.force[link.v] = link.type == LinkType::revolute ? out.link_moment[i] : out.link_force[i];
         if (lp.elastic && link.type != LinkType::spherical) {
           const CoordinateForce& c = lp.force[0];
-          out.force[link.v] += std::abs(c.stiffness) * (std::abs(q[link.q]) + std::abs(c.free)) +
+          out.force[link.v] += std::abs(c.friction) +
+                               std::abs(c.stiffness) * (std::abs(q[link.q]) + std::abs(c.free)) +
                                (c.curvature(q[link.q]) - c.stiffness) *
                                    (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
         } else if (lp.elastic) {

@@ -68,6 +68,7 @@ TEST_CASE("Every key is read into its field") {
   CHECK(hinge.spring == CoordinateSpring{300, 0.1, "coil"});
   CHECK(hinge.damping == 4);
   CHECK(hinge.stop == Stop{-1.0, 1.25, 900, "rubber"});
+  CHECK(hinge.friction == Friction{{}, 0.125, 44.0, 0.0625, -0.375, "dry"});
   CHECK(m.joints.at(2).cut == false);
   CHECK_FALSE(m.joints.at(1).cut.has_value());
   const std::vector<Coordinate>& thread = m.joints.at(3).coordinates;
@@ -109,7 +110,7 @@ TEST_CASE("What is read is written back, descriptions too") {
   const std::string text = write_scene(m);
   CHECK(read_scene(text) == m);
   for (const char* description : {"all kinds of parts", "turns", "knob", "motor", "sprung", "coil", "rubber",
-                                  "holds", "main", "long", "side", "near"})
+                                  "dry", "holds", "main", "long", "side", "near"})
     CHECK_THAT(text, ContainsSubstring("\"description\": \"" + std::string(description) + "\""));
 }
 

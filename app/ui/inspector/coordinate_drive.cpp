@@ -10,6 +10,7 @@ const char* drive_refused(const Joint& joint, int coordinate) {
     return "A component of a rotation vector cannot be driven; use revolute joints.";
   if (joint.cut == true) return "A joint that is cut has no coordinate to drive.";
   if (c.spring || c.stop) return "Not beside a spring or stop, which would never settle; take it away first.";
+  if (c.friction) return "Not beside friction, which would hold nothing there; take it away first.";
   return nullptr;
 }
 

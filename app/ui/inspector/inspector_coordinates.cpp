@@ -1,4 +1,4 @@
-// What acts on each coordinate of a joint: drive, spring, damper, stop; and where it settles.
+// What acts on each coordinate of a joint: drive, spring, damper, stop, friction; and where it settles.
 #include "app/session/units.hpp"
 #include "app/ui/assembly_edits.hpp"
 #include "app/ui/inspector/coordinate_drive.hpp"
@@ -12,11 +12,12 @@ namespace flyball {
 
 namespace {
 
-// What a new spring, damper or stop begins with, to be changed at once.
+// What a new spring, damper, stop or friction begins with, to be changed at once.
 struct Beginning {
-  double stiffness, damping, stop_reach, stop_stiffness;
+  double stiffness, damping, stop_reach, stop_stiffness, friction;
 };
-constexpr Beginning of_angle{10, 1, 0.5, 1000}, of_length{1000, 10, 0.1, 1e5};
+constexpr Beginning of_angle{10, 1, 0.5, 1000, 0.1}, of_length{1000, 10, 0.1, 1e5, 1};
+constexpr double usual_mu = 0.1, usual_radius = 0.01; // m
 
 // One coordinate and how it is called in addresses and widgets.
 struct CoordinateRows {
@@ -259,6 +260,67 @@ struct CoordinateRows {
            "How hard the stop pushes back beyond its limits.", Least::above_zero);
   }
 
+  // Why this coordinate can have none; null where it may.
+  const char* friction_refused() const {
+    if (const char* why = driven()) return why;
+    if (is_rotation_vector(joint.type, i) || joint.type == JointType::free)
+      return "Its coordinates do not slip one by one; use revolute and prismatic joints.";
+    if (joint.type == JointType::planar && !angle())
+      return "In a plane friction acts against the direction of slip, not along x and y each.";
+    return nullptr;
+  }
+
+  void friction() const {
+    tick(
+        "friction", "Friction", "friction", coordinate().friction.has_value(),
+        "Dry friction: holds the coordinate at rest up to a limit, so that the steady state is a band.",
+        friction_refused(), [](Coordinate& c) { c.friction.reset(); },
+        [limit = beginning().friction](Coordinate& c) { c.friction.emplace().limit = limit; });
+  }
+
+  // Whether the limit is that of a preload.
+  void by_preload(bool on) const {
+    if (!check_row(app, widget(key("friction") + ".by_preload"), "By preload", on,
+                   "The limit is a coefficient of friction times what presses the parts together.", nullptr))
+      return;
+    change((on ? "Give the friction of " : "Find the friction by preload of ") + joint.name,
+           [on, turns = angle()](Coordinate& c) {
+             if (!c.friction) return;
+             Friction& f = *c.friction;
+             const double limit = friction_limit(f);
+             f.limit = f.mu = f.preload = f.radius = std::nullopt;
+             if (on) {
+               f.limit = limit;
+               return;
+             }
+             f.mu = usual_mu;
+             if (turns) f.radius = usual_radius;
+             f.preload = limit / (usual_mu * f.radius.value_or(1));
+           });
+  }
+
+  void friction_numbers() const {
+    if (!coordinate().friction) return;
+    const Friction& f = *coordinate().friction;
+    by_preload(!f.limit);
+    const std::string address = key("friction") + ".";
+    if (f.limit) {
+      number("Friction", address + "limit", *f.limit, angle() ? "N m" : "N",
+             "The most that it holds, and what opposes the motion where it slips.", Least::zero);
+    } else {
+      number("Coefficient", address + "mu", f.mu.value_or(0), "", "Of friction, as it slips and at rest.",
+             Least::zero);
+      number("Preload", address + "preload", f.preload.value_or(0), "N", "What presses the parts together.",
+             Least::zero);
+      if (f.radius)
+        number("Radius", address + "radius", *f.radius, "m", "At which it acts, for a moment.", Least::zero);
+    }
+    number(
+        "Share", address + "share", f.share, "",
+        "Of its limit, -1 to 1, positive along the coordinate: what friction gives in the steady state that "
+        "is shown, one of the band.");
+  }
+
   void all() const {
     settled();
     number("Drawn as", key("coordinate"), coordinate().drawn, value_unit(),
@@ -272,15 +334,18 @@ struct CoordinateRows {
     damper();
     beside_last("Stop");
     stop();
+    beside_last("Friction");
+    friction();
     drive_numbers();
     spring_numbers();
     damper_numbers();
     stop_numbers();
+    friction_numbers();
   }
 
   bool acted_on() const {
     const Coordinate& c = coordinate();
-    return c.drive || c.spring || c.stop || c.damping != 0;
+    return c.drive || c.spring || c.stop || c.friction || c.damping != 0;
   }
 };
 

@@ -33,7 +33,7 @@ struct ResponseView {
   Plot plot;                         // of the result, with the answer's marker
   std::vector<ResponsePiece> pieces; // by curve of the plot
   struct Of {
-    std::shared_ptr<const void> curve, design, band; // what was found
+    std::shared_ptr<const void> curve, design, band, ribbon; // what was found
     std::string quantity;
     DisplayUnits units;
     bool pulled = false; // the marker, in this moment

@@ -130,6 +130,17 @@ void band_choice(App& app) {
   note_widget(app.widgets, "response/band/words");
 }
 
+void ribbon_choice(App& app) {
+  if (!has_friction(app.mechanism())) return;
+  bool& wanted = app.study.friction.ribbon_wanted;
+  if (check_row(
+          app, "response/ribbon", "Band of friction", wanted,
+          "Where friction lets it stand: along the lower edge as it rises, along the upper as it falls."))
+    wanted = !wanted;
+  if (const std::string& problem = app.study.friction.ribbon.problem; wanted && !problem.empty())
+    paragraph(problem, colors_of(app).bad);
+}
+
 // A bar for what takes long.
 void progress(App& app) {
   ResponseState& state = app.study.response;
@@ -329,6 +340,7 @@ void response_choices(App& app) {
           "ends and at the present value, which takes longer."))
     app.study.response.choice.all = !app.study.response.choice.all;
   band_choice(app);
+  ribbon_choice(app);
   progress(app);
   found(app);
   branch_note(app);

@@ -1,6 +1,7 @@
 #include "app/ui/studies/response/response_plot.hpp"
 
 #include "app/plot/axis.hpp"
+#include "app/plot/ribbon_plot.hpp"
 #include "app/session/number_text.hpp"
 #include "app/session/response_pull.hpp"
 #include "app/ui/plots/shown_plot.hpp"
@@ -167,6 +168,20 @@ void add_band(const App& app, Plot& plot) {
                                 [](const PlotBand& band) { return band.color == plot_color::sky_blue; });
 }
 
+// Where friction lets coordinates and measures stand; in SI units.
+void add_friction(const App& app, Plot& plot) {
+  const auto ribbon = shown_ribbon(app);
+  if (!ribbon) return;
+  const std::string& key = app.study.response.choice.quantity;
+  const std::size_t blank = key.find(' ');
+  if (!key.starts_with("value ") && !key.starts_with("measure ")) return;
+  const std::span<const RibbonPoint> all = ribbon->result.points;
+  for (const BandStretch& stretch : ribbon->result.stretches)
+    if (stretch.first < all.size())
+      add_ribbon(plot, all.subspan(stretch.first, std::min(stretch.count, all.size() - stretch.first)),
+                 key.substr(blank + 1));
+}
+
 } // namespace
 
 Plot response_plot(const ResponseCurve::Found& found, const ResponseQuantity& quantity,
@@ -207,7 +222,8 @@ void draw_response(App& app) {
   // Until a curve with reactions is there the one before stays.
   const bool told = curve && (curve->of.reactions || !needs_reactions(state.choice.quantity));
   const bool pulled = drawn.view.drag == PlotView::Drag::pull;
-  const ResponseView::Of of{curve, design, shown_band(app), state.choice.quantity, app.units, pulled};
+  const ResponseView::Of of{curve,     design, shown_band(app), shown_ribbon(app), state.choice.quantity,
+                            app.units, pulled};
   if (drawn.of != of && told) {
     const std::optional<PlotRange> before = drawn.plot.y.range;
     const bool same = drawn.plot.y.label == quantity.title;
@@ -223,6 +239,7 @@ void draw_response(App& app) {
                               .color = plot_color::green});
     }
     add_band(app, plot);
+    add_friction(app, plot);
     show_axis(plot, 0, plot.x.unit, app.units);
     show_axis(plot, 1, quantity.unit, app.units);
     // While one slider is dragged the axis only grows: a curve that moves is seen against it.

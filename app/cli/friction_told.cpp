@@ -1,0 +1,90 @@
+#include "app/cli/friction_told.hpp"
+
+#include "app/cli/output.hpp"
+#include "app/cli/solution_json.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace flyball::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json or_null(const std::optional<double>& value) {
+  return value ? number_json(*value) : Json(nullptr);
+}
+
+std::string percent(double part) {
+  return fmt::format("{:.4g} %", 100 * part);
+}
+
+} // namespace
+
+Json to_json(const FrictionReport& f) {
+  Json out;
+  out["band"] = f.band.found ? Json::object() : Json(nullptr);
+  for (const BandExtent& extent : f.band.extents)
+    out["band"][extent.name] = {number_json(extent.low), number_json(extent.high)};
+  out["band_whole"] = f.band.whole;
+  out["band_folds"] = f.band.folds;
+  out["band_message"] = f.band.message;
+  Json& holding = out["holding"] = {{"takes", or_null(f.drawn.takes)},
+                                    {"at_least", number_json(f.drawn.at_least)},
+                                    {"first", f.drawn.first.empty() ? Json(nullptr) : Json(f.drawn.first)},
+                                    {"joints", Json::object()},
+                                    {"message", f.drawn.message}};
+  for (const HeldJoint& joint : f.drawn.joints)
+    holding["joints"][coordinate_label(joint)] = {{"limit", number_json(joint.limit)},
+                                                  {"force", or_null(joint.force)}};
+  out["held_speeds"] = Json::object();
+  for (const HeldSpeeds& held : f.speeds)
+    out["held_speeds"][coordinate_label(held)] = {{"speed", number_json(held.speed)},
+                                                  {"lower", or_null(held.lower)},
+                                                  {"upper", or_null(held.upper)},
+                                                  {"insensitivity", or_null(held.insensitivity())}};
+  return out;
+}
+
+std::string to_text(const FrictionReport& f) {
+  std::size_t width = 0;
+  for (const BandExtent& extent : f.band.extents)
+    width = std::max(width, extent.name.size());
+  for (const HeldJoint& joint : f.drawn.joints)
+    width = std::max(width, coordinate_label(joint).size());
+  std::string out = "\nband within which friction holds it\n";
+  for (const BandExtent& extent : f.band.extents)
+    out += fmt::format("  {:{}}  {:>18.12g} to {:<18.12g} {}\n", printable(extent.name), width, extent.low,
+                       extent.high, extent.unit);
+  if (!f.band.message.empty()) out += "  " + printable(f.band.message) + "\n";
+  if (f.band.found)
+    out += "  Within it the joints with friction stand still until something pushes them beyond their "
+           "limits; stability is\n  told of the motion once they slip.\n";
+  out += "\nin the drawn pose\n  " + printable(f.drawn.message) + "\n";
+  for (const HeldJoint& joint : f.drawn.joints) {
+    const char* unit = joint.angle ? "N m" : "N";
+    out +=
+        fmt::format("  {:{}}  limit {:.9g} {}", printable(coordinate_label(joint)), width, joint.limit, unit);
+    if (joint.force)
+      out += fmt::format(", needed {:.9g} {}{}", *joint.force, unit,
+                         joint.limit > 0 ? " (" + percent(std::abs(*joint.force) / joint.limit) + ")" : "");
+    out += "\n";
+  }
+  if (!f.speeds.empty()) out += "\nspeeds at which friction holds the steady state where it stands\n";
+  for (const HeldSpeeds& held : f.speeds) {
+    const char* unit = held.angle ? "rad/s" : "m/s";
+    const auto text = [&](const std::optional<double>& speed, const char* none) {
+      return speed ? fmt::format("{:.12g} {}", *speed, unit) : std::string(none);
+    };
+    out += fmt::format("  {:{}}  {} to {}", printable(coordinate_label(held)), width,
+                       text(held.lower, "rest"), text(held.upper, "any"));
+    if (const auto part = held.insensitivity()) out += ", insensitivity " + percent(*part);
+    out += "\n";
+  }
+  return out;
+}
+
+} // namespace flyball::cli

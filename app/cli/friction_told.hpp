@@ -1,0 +1,18 @@
+// What friction makes of a steady state, as `flyball solve` tells it.
+#pragma once
+
+#include "engine/study/friction_report.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+namespace flyball::cli {
+
+// {"band": {name: [low, high]}, "band_whole", "band_folds", "band_message", "holding": {"takes", "at_least",
+// "first", "joints": {joint: {"limit", "force"}}, "message"}, "held_speeds": {drive: {"speed", "lower",
+// "upper", "insensitivity"}}}; what is not available is null.
+nlohmann::ordered_json to_json(const FrictionReport& friction);
+std::string to_text(const FrictionReport& friction);
+
+} // namespace flyball::cli

@@ -1,0 +1,76 @@
+#include "app/session/friction.hpp"
+
+#include "app/session/session.hpp"
+
+namespace flyball {
+namespace {
+
+FrictionReport find_friction(const FrictionRequest& request, const TaskContext<FrictionReport>& context) {
+  return report_friction(*request.mechanism, request.steady, &context.cancel);
+}
+
+FoundRibbon find_ribbon(const RibbonRequest& request, const TaskContext<FoundRibbon>& context) {
+  const ResponseRequest& of = request.curve->of;
+  FoundRibbon found;
+  std::vector<RibbonPlace> places;
+  for (BandPlace& place : band_places(*request.curve, found.stretches))
+    places.push_back({place.number, std::move(place.start)});
+  found.points = friction_ribbon(*of.mechanism, of.address, places, &context.cancel);
+  return found;
+}
+
+std::optional<FrictionRequest> request_of(const Session& session) {
+  const LiveAnswer& answer = session.answer;
+  if (!answer.mechanism || answer.error || !has_friction(*answer.mechanism)) return std::nullopt;
+  FrictionRequest request{{answer.mechanism}, {}};
+  if (answer.solution.status == Status::converged) request.steady = start_values(answer.solution.coordinates);
+  return request;
+}
+
+void update_ribbon(Session& session) {
+  auto& ribbon = session.study.friction.ribbon;
+  const auto& curve = session.study.response.curve.found;
+  if (!session.study.friction.ribbon_wanted || session.study.open != StudyKind::response || !curve ||
+      !has_friction(*curve->of.mechanism)) {
+    if (ribbon.asked) ribbon = {};
+    return;
+  }
+  ribbon.take("Making the band of friction was stopped.");
+  if (session.study.response.curve.running()) return;
+  RibbonRequest wanted{curve};
+  if (ribbon.asked == wanted) return;
+  ribbon.ask(session.options, std::move(wanted), find_ribbon, BackgroundWorker::Running::finished);
+  ribbon.take();
+}
+
+} // namespace
+
+void update_friction(Session& session) {
+  update_ribbon(session);
+  auto& report = session.study.friction.report;
+  const auto wanted = request_of(session);
+  if (!wanted) {
+    if (report.asked) report = {};
+    return;
+  }
+  report.take();
+  if (report.asked == *wanted) return;
+  report.ask(session.options, *wanted, find_friction, BackgroundWorker::Running::finished);
+  report.take();
+}
+
+const FrictionReport* friction_report(const Session& session) {
+  const auto& report = session.study.friction.report;
+  const auto wanted = request_of(session);
+  return wanted && report.is_of(*wanted) ? &report.found->result : nullptr;
+}
+
+std::shared_ptr<const Study<RibbonRequest, FoundRibbon>::Found> shown_ribbon(const Session& session) {
+  const FrictionState& state = session.study.friction;
+  if (!state.ribbon_wanted || !state.ribbon.found) return nullptr;
+  const bool fits =
+      state.ribbon.found->of.curve == session.study.response.curve.found || state.ribbon.running();
+  return fits ? state.ribbon.found : nullptr;
+}
+
+} // namespace flyball

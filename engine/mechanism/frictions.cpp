@@ -1,0 +1,26 @@
+#include "engine/mechanism/frictions.hpp"
+
+namespace flyball {
+
+std::vector<CoordinateReference> find_frictions(const Mechanism& mechanism) {
+  std::vector<CoordinateReference> all;
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
+    for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i)
+      if (mechanism.joints[j].coordinates[i].friction)
+        all.push_back({static_cast<int>(j), static_cast<int>(i)});
+  return all;
+}
+
+const Friction& friction_at(const Mechanism& mechanism, CoordinateReference at) {
+  return *mechanism.joints[static_cast<std::size_t>(at.joint)]
+              .coordinates[static_cast<std::size_t>(at.coordinate)]
+              .friction;
+}
+
+std::string share_address(const Mechanism& mechanism, CoordinateReference at) {
+  const Joint& joint = mechanism.joints[static_cast<std::size_t>(at.joint)];
+  const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(at.coordinate) : "";
+  return "joints." + joint.name + ".friction" + index + ".share";
+}
+
+} // namespace flyball

@@ -1,0 +1,242 @@
+#include "engine/study/friction_band.hpp"
+
+#include "engine/continuation/branches.hpp"
+#include "engine/linear/interruption.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int parts = 4;        // of a way to a corner, looked at on the way
+constexpr int most_sweeps = 12; // of all shares, one after the other
+constexpr int most_bisections = 60;
+constexpr std::size_t most_outputs = 128;
+
+std::vector<FreeNumber> all_shares(const Mechanism& mechanism) {
+  std::vector<FreeNumber> free;
+  for (const CoordinateReference& at : find_frictions(mechanism))
+    free.push_back({share_address(mechanism, at), -1, 1});
+  return free;
+}
+
+// Names of what is told of a solution: numbers that are found, then measures.
+std::vector<std::string> told(const Mechanism& mechanism, const Solution& solution) {
+  std::vector<std::string> names;
+  for (const CoordinateSolution& c : solution.coordinates)
+    if (const auto number = found_number(c); number && !c.dependent) names.push_back(number->name);
+  for (const NamedMeasure& measure : mechanism.measures)
+    names.push_back(measure.name);
+  return names;
+}
+
+// States over the box of shares, by what was found on the ways there.
+class Box {
+ public:
+  Box(const Mechanism& mechanism, std::span<const FreeNumber> free, std::vector<std::string> names,
+      const std::atomic<bool>* cancel)
+      : map_(mechanism, free, std::move(names), cancel) {}
+
+  struct Place {
+    SteadyMap::State state;
+    MatrixXd rates; // of the outputs with the shares
+  };
+
+  // False where there is no state to begin with, or nothing has a rate there.
+  bool begin(const std::vector<std::pair<std::string, double>>& start) {
+    Solution first;
+    std::optional<SteadyMap::State> state = map_.begin(start, first);
+    if (!state || !map_.find_rates(*state)) return false;
+    add(*state);
+    return true;
+  }
+
+  const Place& first() const { return places_.front(); }
+  const std::vector<Place>& places() const { return places_; }
+  bool lost() const { return lost_; }
+  std::string unit(Index output) const { return map_.unit(static_cast<std::size_t>(output)); }
+
+  // The place at the shares p, or the last on the straight way there. Whether it is there.
+  std::pair<Place, bool> go(const Place& from, const VectorXd& p) {
+    const auto known = std::ranges::find_if(places_, [&](const Place& place) { return place.state.p == p; });
+    if (known != places_.end()) return {*known, true};
+    SteadyMap::State state = from.state;
+    bool there = true;
+    for (int part = 1; part <= parts && there; ++part) {
+      const VectorXd to = part == parts ? p : VectorXd(from.state.p + part * (p - from.state.p) / parts);
+      there = map_.walk_to(state, to);
+      if (map_.find_rates(state)) add(state);
+    }
+    if (!there) lost_ = true;
+    return {places_.back(), there && places_.back().state.p == p};
+  }
+
+  // The place beyond which no rate of the output, times `sense`, leads up.
+  Place climb(Index output, double sense) {
+    Place at = places_.front();
+    for (const Place& place : places_)
+      if (sense * (place.state.values[output] - at.state.values[output]) > 0) at = place;
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+      bool moved = false;
+      for (Index j = 0; j < at.state.p.size(); ++j)
+        moved = climb_along(output, sense, j, at) || moved;
+      if (!moved) break;
+    }
+    return at;
+  }
+
+  // To the corner to which the rates at the first place point.
+  void go_to_corner(Index output, double sense) {
+    const Place from = places_.front();
+    VectorXd p = from.state.p;
+    for (Index j = 0; j < p.size(); ++j)
+      if (const double rate = sense * from.rates(output, j); rate != 0) p[j] = rate > 0 ? 1 : -1;
+    go(from, p);
+  }
+
+ private:
+  void add(const SteadyMap::State& state) { places_.push_back({state, map_.rates()}); }
+
+  // Along one share, as far as the output grows. Whether that is anywhere.
+  bool climb_along(Index output, double sense, Index j, Place& at) {
+    const double rate = sense * at.rates(output, j);
+    const double size = std::abs(at.state.values[output]) + at.rates.row(output).lpNorm<Eigen::Infinity>();
+    VectorXd end = at.state.p;
+    end[j] = rate > 0 ? 1 : -1;
+    if (!(std::abs(rate) > 1e-9 * size) || end == at.state.p) return false;
+    const auto [beyond, there] = go(at, end);
+    if (beyond.state.p == at.state.p) return false;
+    if (sense * beyond.rates(output, j) * rate >= 0) {
+      at = beyond;
+      return there;
+    }
+    // The rate has a root between.
+    Place low = at, high = beyond;
+    for (int i = 0; i < most_bisections && std::abs(high.state.p[j] - low.state.p[j]) > 1e-10; ++i) {
+      interruption_point();
+      VectorXd middle = low.state.p;
+      middle[j] = (low.state.p[j] + high.state.p[j]) / 2;
+      const auto [place, reached] = go(low, middle);
+      if (!reached) break;
+      (sense * place.rates(output, j) * rate > 0 ? low : high) = place;
+    }
+    const bool moved = std::abs(low.state.p[j] - at.state.p[j]) > 1e-9;
+    at = low;
+    return moved;
+  }
+
+  SteadyMap map_;
+  std::vector<Place> places_;
+  bool lost_ = false;
+};
+
+double value_of(const ResponsePoint& point, const std::string& name) {
+  for (const CoordinateSolution& c : point.coordinates)
+    if (const auto number = found_number(c); number && number->name == name) return number->value;
+  for (const MeasureSolution& m : point.measures)
+    if (m.name == name) return m.value.value_or(std::nan(""));
+  return std::nan("");
+}
+
+// The extents over all that hangs together along one share, folds included.
+bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution& state,
+            const std::atomic<bool>* cancel, FrictionBand& band) {
+  BranchOptions options;
+  options.eigenvalues = false;
+  options.cancel = cancel;
+  ResponsePoint point;
+  point.parameter = get_parameter(mechanism, share.address);
+  point.coordinates = state.coordinates;
+  const auto diagram =
+      follow_branches_through(mechanism, share.address, share.from, share.to, point, options);
+  if (!diagram || diagram->branches.empty()) return false;
+  for (BandExtent& extent : band.extents) {
+    extent.low = extent.high = extent.value;
+    extent.shares_low.clear();
+    extent.shares_high.clear();
+    const auto take = [&](const ResponsePoint& at) {
+      const double value = value_of(at, extent.name);
+      if (!std::isfinite(value)) return;
+      extent.low = std::min(extent.low, value);
+      extent.high = std::max(extent.high, value);
+    };
+    for (const ResponseBranch& branch : diagram->branches)
+      std::ranges::for_each(branch.points, take);
+    for (const SpecialPoint& special : diagram->special)
+      take(special.at);
+  }
+  return true;
+}
+
+} // namespace
+
+FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOptions& options) {
+  FrictionBand band;
+  const std::vector<FreeNumber> free = all_shares(mechanism);
+  const Interruptible scope(options.cancel);
+  try {
+    SolveOptions solve;
+    solve.start = options.start;
+    solve.nearest = !options.start.empty();
+    solve.details = false;
+    solve.cancel = options.cancel;
+    const Solution state = Analysis(mechanism).solve(solve);
+    if (state.status != Status::converged) {
+      band.message = state.message;
+      return band;
+    }
+    const std::vector<std::string> names = told(mechanism, state);
+    if (names.empty() || names.size() > most_outputs) {
+      band.message = names.empty() ? "There is nothing that could move."
+                                   : "Bands of more than " + std::to_string(most_outputs) +
+                                         " coordinates and measures are not looked for.";
+      return band;
+    }
+    Box box(mechanism, free, names, options.cancel);
+    if (!box.begin(start_values(state.coordinates))) {
+      band.message = "The state is singular, so that nothing tells how far friction would let it be moved.";
+      return band;
+    }
+    const auto count = static_cast<Index>(names.size());
+    const auto measured = [&](Index i) {
+      return std::isfinite(box.first().state.values[i]) && box.first().rates.row(i).allFinite();
+    };
+    for (Index i = 0; i < count; ++i)
+      for (const double sense : {1., -1.})
+        if (measured(i)) box.go_to_corner(i, sense);
+    const auto shares = [](const VectorXd& p) { return std::vector<double>(p.begin(), p.end()); };
+    for (Index i = 0; i < count; ++i) {
+      if (!measured(i)) continue;
+      const Box::Place low = box.climb(i, -1), high = box.climb(i, 1);
+      band.extents.push_back({names[static_cast<std::size_t>(i)], box.unit(i), box.first().state.values[i],
+                              low.state.values[i], high.state.values[i], shares(low.state.p),
+                              shares(high.state.p)});
+    }
+    band.found = true;
+    band.whole = !box.lost();
+    if (band.whole) {
+      band.message = free.size() > 1 ? "Each extent is an extremum nearby: rates tell of none beyond." : "";
+    } else if (free.size() == 1 && options.through_folds &&
+               follow(mechanism, free.front(), state, options.cancel, band)) {
+      band.folds = true;
+      band.message = "The band passes a fold, beyond which friction alone holds.";
+    } else {
+      band.message = "Within the limits of friction the balance folds: the band is told up to there, and a "
+                     "push may make it jump.";
+    }
+  } catch (const Interrupted&) {
+    band = {};
+    band.message = "Cancelled.";
+  }
+  return band;
+}
+
+} // namespace flyball

@@ -1,0 +1,39 @@
+// Dry friction makes of a steady state a band: at rest every force up to its limit holds. With each joint's
+// part of its limit, the share, anywhere from -1 to 1 the balance is solved as ever, so the band is the image
+// of a box of shares, and its extent in a coordinate or a measure is the least and the largest value over the
+// box: at a corner where every rate points outwards, or within at a root of a rate.
+#pragma once
+
+#include "engine/study/steady_map.hpp"
+
+namespace flyball {
+
+struct BandExtent {
+  std::string name, unit;         // of a found number or a measure; "rad", "m", or the measure's
+  double value = 0;               // of the state it is about
+  double low = 0, high = 0;       // over the band
+  std::vector<double> shares_low, // of the joints with friction there; empty where the curve was followed
+      shares_high;                // through folds
+};
+
+struct FrictionBand {
+  bool found = false;
+  std::vector<BandExtent> extents; // free coordinates, speeds that are found, then measures
+  bool whole = true;               // reached all corners of the box that were asked for
+  bool folds = false;              // followed through folds, where the balance without friction is unstable
+  std::string message;             // a sentence or more
+};
+
+struct FrictionBandOptions {
+  // The state that it is about, as of SolveOptions; empty: what a solve answers.
+  std::vector<std::pair<std::string, double>> start{};
+  // Of a single joint with friction: to be followed through folds.
+  bool through_folds = true;
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+// The band that is connected with a steady state. With several joints each extent is a local extremum: rates
+// tell of no other beyond. Throws SceneError as SteadyMap does.
+FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOptions& options = {});
+
+} // namespace flyball

@@ -1,0 +1,24 @@
+// What dry friction makes of a steady state, in one: the band, whether the drawn pose holds, and between
+// which speeds of its drives the state does.
+#pragma once
+
+#include "engine/study/friction_band.hpp"
+#include "engine/study/holding.hpp"
+
+namespace flyball {
+
+struct FrictionReport {
+  FrictionBand band;              // connected with the solution; not found where there is none
+  Holding drawn;                  // at the drawn pose
+  std::vector<HeldSpeeds> speeds; // where the solution stands
+};
+
+// Of a mechanism with friction. `steady`: its steady state as of SolveOptions::start, where there is one.
+// Throws SceneError as the two do.
+FrictionReport report_friction(const Mechanism& mechanism,
+                               const std::optional<std::vector<std::pair<std::string, double>>>& steady,
+                               const std::atomic<bool>* cancel = nullptr);
+// The same of what a solve answered.
+FrictionReport report_friction(const Mechanism& mechanism, const Solution& solution);
+
+} // namespace flyball

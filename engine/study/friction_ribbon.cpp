@@ -1,0 +1,34 @@
+#include "engine/study/friction_ribbon.hpp"
+
+#include "engine/continuation/branch_follower.hpp"
+#include "engine/linear/interruption.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::string& address,
+                                         std::span<const RibbonPlace> places, const std::atomic<bool>* cancel,
+                                         const std::function<void(std::size_t)>& progress) {
+  std::vector<RibbonPoint> out;
+  for (const RibbonPlace& place : places) {
+    if (is_cancelled(cancel)) break;
+    FrictionBandOptions options;
+    options.start = place.start;
+    options.through_folds = false;
+    options.cancel = cancel;
+    RibbonPoint point{place.number, {}};
+    FrictionBand band = find_friction_band(with_parameter(mechanism, address, place.number), options);
+    if (band.found && band.whole) point.extents = std::move(band.extents);
+    out.push_back(std::move(point));
+    if (progress) progress(out.size());
+  }
+  return out;
+}
+
+const BandExtent* find_extent(const RibbonPoint& point, std::string_view name) {
+  const auto found = std::ranges::find(point.extents, name, &BandExtent::name);
+  return found == point.extents.end() ? nullptr : &*found;
+}
+
+} // namespace flyball

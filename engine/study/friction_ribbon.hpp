@@ -1,0 +1,32 @@
+// The bands of dry friction along a response curve: between which values each coordinate and measure may
+// stand at every value of the varied number. As the quantity rises it goes along the lower edge, as it falls
+// along the upper.
+#pragma once
+
+#include "engine/study/friction_band.hpp"
+
+#include <functional>
+
+namespace flyball {
+
+struct RibbonPlace {
+  double number = 0;                                 // value of the varied number, in its unit
+  std::vector<std::pair<std::string, double>> start; // the state there, as of SolveOptions
+};
+
+struct RibbonPoint {
+  double number = 0;
+  std::vector<BandExtent> extents; // empty where there is no band, as at a fold
+};
+
+// `progress`: places done. Cancelled, points are missing at the end. Throws SceneError for a number that the
+// mechanism does not take.
+std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::string& address,
+                                         std::span<const RibbonPlace> places,
+                                         const std::atomic<bool>* cancel = nullptr,
+                                         const std::function<void(std::size_t done)>& progress = {});
+
+// Null where it has none of this name.
+const BandExtent* find_extent(const RibbonPoint& point, std::string_view name);
+
+} // namespace flyball

@@ -1,0 +1,277 @@
+#include "engine/study/holding.hpp"
+
+#include "engine/linear/interruption.hpp"
+#include "engine/linear/spectral.hpp"
+#include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/report/report.hpp"
+#include "engine/report/report_forces.hpp"
+#include "engine/search/steady_state.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/solve/tied_motions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flyball {
+namespace {
+
+using Start = std::vector<std::pair<std::string, double>>;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr int most_held = 400; // by matrices
+
+// What solving takes of a mechanism at coordinates.
+struct Compiled {
+  System system;
+  Parameters parameters;
+  Scaling scaling;
+  VectorXd q;
+
+  explicit Compiled(const Mechanism& mechanism) : system(compile_for_drives(mechanism)) {
+    bind(system, mechanism, parameters);
+    set_scaling(system, parameters, scaling);
+    drawn_configuration(system, parameters, q);
+  }
+  // The number of a coordinate in the system's list, or -1.
+  int find(const Mechanism& mechanism, CoordinateReference at) const {
+    for (std::size_t c = 0; c < system.coordinates.size(); ++c) {
+      const CoordinateInfo& x = system.coordinates[c];
+      if (system.tree_joints[static_cast<std::size_t>(x.tree_joint)].joint == at.joint &&
+          x.index == at.coordinate && at.joint < static_cast<int>(mechanism.joints.size()))
+        return static_cast<int>(c);
+    }
+    return -1;
+  }
+  const Link& link(int coordinate) const {
+    return system
+        .links[static_cast<std::size_t>(system.coordinates[static_cast<std::size_t>(coordinate)].link)];
+  }
+  LinkParameters& numbers(int coordinate) {
+    return parameters
+        .links[static_cast<std::size_t>(system.coordinates[static_cast<std::size_t>(coordinate)].link)];
+  }
+  Problem problem(const std::atomic<bool>* cancel) const { return {system, parameters, scaling, cancel}; }
+};
+
+// Least squares of least norm; numbers that are not finite have none.
+VectorXd fit(const MatrixXd& a, const VectorXd& b) {
+  return least_squares(a, b).value_or(VectorXd::Zero(a.cols()));
+}
+
+Coordinate& coordinate_at(Mechanism& mechanism, CoordinateReference at) {
+  return mechanism.joints[static_cast<std::size_t>(at.joint)]
+      .coordinates[static_cast<std::size_t>(at.coordinate)];
+}
+
+std::string label(const HeldJoint& joint) {
+  return coordinate_label(joint);
+}
+
+// What friction gives where each of the joints moves by itself.
+void tell_each(const std::vector<double>& needed, Holding& out) {
+  double most = -1;
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    HeldJoint& joint = out.joints[i];
+    joint.force = needed[i];
+    const double share = joint.limit > 0 ? std::abs(needed[i]) / joint.limit : needed[i] != 0 ? infinite : 0;
+    if (share > most) {
+      most = share;
+      out.first = label(joint);
+    }
+  }
+  out.takes = out.at_least = std::max(most, 0.);
+}
+
+// The least largest share t with |force_i| <= t limit_i and G force = needed; G [I, follow^T]. With one
+// independent motion all limits are used alike. With several, between the share of the least-squares forces
+// and the work that any one motion takes.
+void tell_shared(const TiedMotions& which, const std::vector<double>& needed, Holding& out) {
+  const auto n = static_cast<Index>(which.independent.size()), m = static_cast<Index>(which.others.size());
+  MatrixXd g(n, n + m);
+  g << MatrixXd::Identity(n, n), which.follow.transpose();
+  VectorXd limits(n + m), d(n);
+  for (Index i = 0; i < n; ++i) {
+    limits[i] = out.joints[which.independent[static_cast<std::size_t>(i)]].limit;
+    d[i] = needed[static_cast<std::size_t>(i)];
+  }
+  for (Index i = 0; i < m; ++i)
+    limits[n + i] = out.joints[which.others[static_cast<std::size_t>(i)]].limit;
+  const MatrixXd scaled = g * limits.asDiagonal();
+  const auto work_share = [&](const VectorXd& motion) { // no forces within t do more work than t this
+    const double most = (scaled.transpose() * motion).lpNorm<1>(), work = std::abs(d.dot(motion));
+    return most > 0 ? work / most : work > 0 ? infinite : 0;
+  };
+  for (Index i = 0; i < n; ++i)
+    out.at_least = std::max(out.at_least, work_share(VectorXd::Unit(n, i)));
+  if (n == 1) {
+    out.takes = out.at_least;
+    return;
+  }
+  const VectorXd shares = fit(scaled, d);
+  const bool balances = (scaled * shares - d).norm() <= 1e-9 * d.norm();
+  out.takes = balances ? shares.lpNorm<Eigen::Infinity>() : infinite;
+  // The motion that goes with them does work, too.
+  const VectorXd motion = fit(scaled * scaled.transpose(), d);
+  out.at_least = std::min(*out.takes, std::max(out.at_least, work_share(motion)));
+}
+
+Holding hold(const Mechanism& mechanism, const Start& at, const std::atomic<bool>* cancel) {
+  Holding out;
+  const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
+  for (const CoordinateReference& f : frictions) {
+    const Joint& joint = mechanism.joints[static_cast<std::size_t>(f.joint)];
+    out.joints.push_back({joint.name,
+                          f.coordinate,
+                          coordinate_count(joint.type),
+                          is_angle(joint.type, f.coordinate),
+                          friction_limit(friction_at(mechanism, f)),
+                          {}});
+  }
+  Compiled free(mechanism);
+  if (free.system.nv > most_held) {
+    out.message = "The margin of holding is not looked for in mechanisms of more than " +
+                  std::to_string(most_held) + " coordinates.";
+    return out;
+  }
+  set_start(free.system, free.parameters, at, free.q);
+
+  Workspace w;
+  std::vector<int> entries;
+  for (const CoordinateReference& f : frictions)
+    entries.push_back(free.link(free.find(mechanism, f)).v);
+  const TiedMotions which = find_tied_motions(free.problem(cancel), free.q, entries, w);
+
+  Mechanism locked = mechanism;
+  locked.sliders.clear();
+  locked.measures.clear();
+  for (const CoordinateReference& f : frictions) {
+    Coordinate& c = coordinate_at(locked, f);
+    c.friction.reset();
+  }
+  for (const std::size_t i : which.independent) {
+    Coordinate& c = coordinate_at(locked, frictions[i]);
+    c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
+  }
+  Compiled held(locked);
+  Start rest;
+  for (const auto& [name, value] : at) {
+    const CoordinateReference c = find_coordinate(mechanism, name);
+    const bool is_held = std::ranges::any_of(which.independent, [&](std::size_t i) {
+      return frictions[i].joint == c.joint && frictions[i].coordinate == c.coordinate;
+    });
+    if (!is_held) rest.emplace_back(name, value);
+  }
+  for (const std::size_t i : which.independent) {
+    const int to = held.find(locked, frictions[i]), from = free.find(mechanism, frictions[i]);
+    LinkParameters& p = held.numbers(to);
+    p.start = free.q[free.link(from).q] - p.drawn;
+  }
+  set_start(held.system, held.parameters, rest, held.q);
+  const Problem problem = held.problem(cancel);
+  SteadyState steady;
+  steady.find(problem, held.q, held.q, {.nearest = !at.empty()});
+  if (!steady.holds) {
+    out.message = "With the joints that have friction standing still, the others find no steady state.";
+    return out;
+  }
+  const Unknowns z = evaluate_reported(problem, steady.found.z.q, w);
+  const ReportedForces forces = report_forces(locked, problem, z, w);
+  std::vector<double> needed;
+  for (const std::size_t i : which.independent) {
+    const auto torque = std::ranges::find_if(forces.drive_torques, [&](const DriveTorque& d) {
+      return d.joint == out.joints[i].joint && d.index == out.joints[i].index;
+    });
+    double value = torque == forces.drive_torques.end() ? 0 : torque->value;
+    if (torque != forces.drive_torques.end() && torque->range)
+      value = std::abs(torque->range->most) > std::abs(torque->range->least) ? torque->range->most
+                                                                             : torque->range->least;
+    const int c = free.find(mechanism, frictions[i]);
+    CoordinateForce spring = free.numbers(c).force[0];
+    spring.friction = 0;
+    needed.push_back(value + spring.gradient(free.q[free.link(c).q]));
+  }
+  if (which.others.empty())
+    tell_each(needed, out);
+  else
+    tell_shared(which, needed, out);
+  out.message = *out.takes <= 1 ? "Friction holds it there: that takes " + rounded_text(100 * *out.takes, 3) +
+                                      " % of what it can give."
+                : out.at_least > 1
+                    ? "Friction does not hold it there" +
+                          (out.first.empty() ? std::string(".") : ": " + out.first + " slips.")
+                    : std::string("Whether friction holds it there depends on how the joints in loops share "
+                                  "the load, which is not determined.");
+  return out;
+}
+
+// Where the share that holding takes passes 1, between a speed at which it is below and one at which it is
+// above.
+double find_slip(const auto& takes, double below, double above) {
+  double low = takes(below) - 1, high = takes(above) - 1;
+  for (int i = 0; i < 100 && std::abs(above - below) > 1e-14 * std::abs(above); ++i) {
+    double middle = i % 3 == 2 || !std::isfinite(high) ? (below + above) / 2
+                                                       : below - low * (above - below) / (high - low);
+    if (middle == below || middle == above) middle = (below + above) / 2;
+    const double value = takes(middle) - 1;
+    if (value == 0) return middle;
+    if (value < 0)
+      below = middle, low = value;
+    else
+      above = middle, high = value;
+  }
+  return above;
+}
+
+} // namespace
+
+Holding find_holding(const Mechanism& mechanism, const Start& at, const std::atomic<bool>* cancel) {
+  const Interruptible scope(cancel);
+  try {
+    return hold(mechanism, at, cancel);
+  } catch (const Interrupted&) {
+    Holding out;
+    out.message = "Cancelled.";
+    return out;
+  }
+}
+
+std::vector<HeldSpeeds> find_held_speeds(const Mechanism& mechanism, const Start& at,
+                                         const std::atomic<bool>* cancel) {
+  std::vector<HeldSpeeds> out;
+  const Holding now = find_holding(mechanism, at, cancel);
+  if (!now.takes || !(*now.takes < 1)) return out;
+  Mechanism varied = mechanism;
+  for (Joint& joint : varied.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      std::optional<Drive>& drive = joint.coordinates[i].drive;
+      if (!drive || drive->torque || drive->speed == 0) continue;
+      const double speed = drive->speed;
+      HeldSpeeds held{joint.name,
+                      static_cast<int>(i),
+                      coordinate_count(joint.type),
+                      is_angle(joint.type, static_cast<int>(i)),
+                      speed,
+                      {},
+                      {}};
+      const auto takes = [&](double part) { // at a part of the speed
+        drive->speed = part * speed;
+        return find_holding(varied, at, cancel).takes.value_or(infinite);
+      };
+      if (takes(0) > 1) held.lower = speed * find_slip(takes, 1, 0);
+      for (double part = 1.125; part < 1000; part = 1 + 2 * (part - 1)) {
+        if (!(takes(part) > 1)) continue;
+        held.upper = speed * find_slip(takes, 1, part);
+        break;
+      }
+      drive->speed = speed;
+      out.push_back(std::move(held));
+    }
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,113 @@
+// Stick and slip in the motion, against closed forms.
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+#include "tests/engine/friction_scenes.hpp"
+#include "tests/support/scenes.hpp"
+
+#include <cmath>
+#include <numbers>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+Run run_of(const Mechanism& m, SimulationOptions options) {
+  const Run run = simulate(m, options);
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  return run;
+}
+
+double energy_error(const Run& run) {
+  double most = 0;
+  for (const double error : run.energy.balance)
+    most = std::max(most, std::abs(error));
+  return most;
+}
+
+} // namespace
+
+TEST_CASE("a block on a spring loses 2 F / k a half swing and stops at once") {
+  const double k = 50, f = 4, half = std::numbers::pi / std::sqrt(k / 2);
+  for (const Integrator method : {Integrator::bdf, Integrator::adams, Integrator::runge_kutta}) {
+    for (const double start : {0.5, -0.37, 0.31}) {
+      CAPTURE(word(method), start);
+      SimulationOptions options;
+      options.duration = 8;
+      options.method = method;
+      options.at = {{"slide", start}};
+      const Run run = run_of(block_on_spring(), options);
+      double x = start;
+      std::size_t turns = 0;
+      while (std::abs(x) > f / k) {
+        x = -x + (x > 0 ? 2 : -2) * f / k;
+        ++turns;
+        REQUIRE(run.frictions.size() >= turns);
+        CHECK_THAT(run.frictions[turns - 1].time, WithinRel(static_cast<double>(turns) * half, 1e-7));
+      }
+      CHECK(run.frictions.size() == turns);
+      CHECK(run.frictions.back().slips == 0);
+      CHECK_THAT(run.coordinates[0].value.back(), WithinAbs(x, 1e-8));
+      CHECK(run.coordinates[0].rate.back() == 0);
+      CHECK(energy_error(run) < 1e-6);
+      CHECK_THAT(run.energy.dissipated.back(), WithinRel(k / 2 * (start * start - x * x), 1e-7));
+    }
+  }
+}
+
+TEST_CASE("what is held stays where it is, exactly") {
+  SimulationOptions options;
+  options.duration = 3;
+  const Run run = run_of(rubbing_pendulum(1.5, 0.1), options);
+  CHECK(run.frictions.empty());
+  for (const double value : run.coordinates[0].value)
+    CHECK(value == 0.1);
+}
+
+TEST_CASE("a pendulum comes to rest within the band of steady states") {
+  SimulationOptions options;
+  options.duration = 20;
+  options.at = {{"hinge", 1.2}};
+  const Run run = run_of(rubbing_pendulum(1.5), options);
+  CHECK(std::abs(run.coordinates[0].value.back()) <= std::asin(0.15));
+  CHECK(run.coordinates[0].rate.back() == 0);
+  CHECK(energy_error(run) < 1e-6);
+}
+
+TEST_CASE("a block on a rod that tilts begins to slide when its weight along it passes friction") {
+  const double n = 0.3, m = 0.5, r = 0.4, f = 2, g = 9.80665;
+  const Mechanism tilting = read_scene(R"({"flyball": 1, "name": "Tilting", "gravity": [0, -9.80665, 0],
+    "bodies": [{"name": "rod", "mass": 1, "position": [0, 0, 0], "inertia": [1, 1, 1]},
+      {"name": "block", "mass": 0.5, "position": [0.4, 0, 0]}],
+    "joints": [{"name": "tilt", "type": "revolute", "bodies": ["ground", "rod"], "at": [0, 0, 0],
+      "axis": [0, 0, 1], "drive": {"speed": 0.3}},
+      {"name": "slide", "type": "prismatic", "bodies": ["rod", "block"], "at": [0.4, 0, 0],
+      "axis": [1, 0, 0], "coordinate": 0.4, "friction": {"limit": 2}}]})");
+  SimulationOptions options;
+  options.duration = 2;
+  const Run run = run_of(tilting, options);
+  REQUIRE(run.frictions.size() == 1);
+  CHECK(run.frictions[0].joint == "slide");
+  CHECK(run.frictions[0].slips == -1);
+  CHECK_THAT(run.frictions[0].time, WithinRel(std::asin((f + m * r * n * n) / (m * g)) / n, 1e-7));
+  CHECK(energy_error(run) < 1e-6);
+}
+
+TEST_CASE("friction in a governor's loops stops its collar within what it holds") {
+  Mechanism m = shipped("governor");
+  for (Joint& joint : m.joints)
+    if (joint.name == "slide" || joint.name == "arm1" || joint.name == "arm2")
+      joint.coordinates[0].friction.emplace().limit = joint.name == "slide" ? 5 : 0.2;
+  SimulationOptions options;
+  options.duration = 10;
+  const Run run = run_of(m, options);
+  REQUIRE_FALSE(run.frictions.empty());
+  CHECK(run.frictions.back().slips == 0);
+  for (const CoordinateTrack& track : run.coordinates)
+    if (!track.driven) CHECK_THAT(track.rate.back(), WithinAbs(0, 1e-12));
+  CHECK(energy_error(run) < 1e-6);
+}

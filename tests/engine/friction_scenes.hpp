@@ -1,0 +1,43 @@
+// Mechanisms with dry friction whose closed forms are known.
+#pragma once
+
+#include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <string>
+
+namespace flyball::test {
+
+// A mass of 2 kg at 0.5 m on a hinge with friction (N m), drawn at an angle from hanging straight down.
+inline Mechanism rubbing_pendulum(double limit, double angle = 0) {
+  const double x = 0.5 * std::sin(angle), y = -0.5 * std::cos(angle);
+  return read_scene(R"({"flyball": 1, "name": "Pendulum", "gravity": [0, -10, 0],
+    "bodies": [{"name": "bob", "mass": 2, "position": [)" +
+                    number_text(x) + ", " + number_text(y) + R"(, 0]}],
+    "joints": [{"name": "hinge", "type": "revolute", "bodies": ["ground", "bob"], "at": [0, 0, 0],
+      "axis": [0, 0, 1], "coordinate": )" +
+                    number_text(angle) + R"(, "friction": {"limit": )" + number_text(limit) + "}}]}");
+}
+
+// A bead of 0.5 kg on a rod that turns about y, held by a spring (400 N/m, slack at 0.2 m) and by friction.
+inline Mechanism bead_on_rod(double speed, double limit) {
+  return read_scene(R"({"flyball": 1, "name": "Bead", "gravity": [0, -9.80665, 0],
+    "bodies": [{"name": "rod", "mass": 1, "position": [0, 0, 0], "inertia": [1, 1, 1]},
+      {"name": "bead", "mass": 0.5, "position": [0.25, 0, 0]}],
+    "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "rod"], "at": [0, 0, 0],
+      "axis": [0, 1, 0], "drive": {"speed": )" +
+                    number_text(speed) + R"(}},
+      {"name": "slide", "type": "prismatic", "bodies": ["rod", "bead"], "at": [0.25, 0, 0], "axis": [1, 0, 0],
+      "coordinate": 0.25, "spring": {"stiffness": 400, "free": 0.2}, "friction": {"limit": )" +
+                    number_text(limit) + "}}]}");
+}
+
+// A block of 2 kg on a spring of 50 N/m, slack at zero, with friction of 4 N: it rests within 0.08 m.
+inline Mechanism block_on_spring() {
+  return read_scene(R"({"flyball": 1, "name": "Block",
+    "bodies": [{"name": "block", "mass": 2, "position": [0, 0, 0]}],
+    "joints": [{"name": "slide", "type": "prismatic", "bodies": ["ground", "block"], "at": [0, 0, 0],
+      "axis": [1, 0, 0], "spring": {"stiffness": 50}, "friction": {"mu": 0.2, "preload": 20}}]})");
+}
+
+} // namespace flyball::test

@@ -1,0 +1,174 @@
+// The band that dry friction makes of a steady state, and what holding takes: against closed forms, and
+// against each other.
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/study/friction_report.hpp"
+#include "tests/catch.hpp"
+#include "tests/engine/friction_scenes.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <cmath>
+#include <numbers>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+const BandExtent& extent(const FrictionBand& band, std::string_view name) {
+  INFO(band.message);
+  REQUIRE(band.found);
+  const auto found = std::ranges::find(band.extents, name, &BandExtent::name);
+  REQUIRE(found != band.extents.end());
+  return *found;
+}
+
+// The shipped governor with friction in its collar (N) and in the hinges of its arms (N m).
+Mechanism rubbing_governor(double collar, double hinges) {
+  Mechanism m = shipped("governor");
+  for (Joint& joint : m.joints) {
+    if (joint.name == "slide") joint.coordinates[0].friction.emplace().limit = collar;
+    if (hinges > 0 && (joint.name == "arm1" || joint.name == "arm2"))
+      joint.coordinates[0].friction.emplace().limit = hinges;
+  }
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("friction holds a pendulum within sin theta = T / m g l") {
+  const double limit = 1.5, most = std::asin(limit / (2 * 10 * 0.5));
+  const FrictionBand band = find_friction_band(rubbing_pendulum(limit));
+  const BandExtent& hinge = extent(band, "hinge");
+  CHECK_THAT(hinge.low, WithinRel(-most, 1e-12));
+  CHECK_THAT(hinge.high, WithinRel(most, 1e-12));
+  CHECK(hinge.unit == "rad");
+  CHECK(band.whole);
+  CHECK(hinge.shares_high == std::vector<double>{1});
+}
+
+TEST_CASE("more friction than weight holds a pendulum all round, through the folds") {
+  const FrictionBand band = find_friction_band(rubbing_pendulum(12));
+  CHECK_FALSE(band.whole);
+  CHECK(band.folds);
+  CHECK(extent(band, "hinge").high - extent(band, "hinge").low > 6);
+}
+
+TEST_CASE("holding a pendulum as drawn takes its moment") {
+  const Holding holding = find_holding(rubbing_pendulum(1.5, 0.1), {});
+  REQUIRE(holding.takes);
+  CHECK_THAT(*holding.takes, WithinRel(10 * std::sin(0.1) / 1.5, 1e-12));
+  REQUIRE(holding.joints.size() == 1);
+  CHECK_THAT(holding.joints[0].force.value(), WithinRel(10 * std::sin(0.1), 1e-12));
+  CHECK_THAT(holding.message, ContainsSubstring("holds it"));
+  const Holding beyond = find_holding(rubbing_pendulum(1.5), {{"hinge", -0.4}});
+  CHECK_THAT(beyond.takes.value(), WithinRel(10 * std::sin(0.4) / 1.5, 1e-12));
+  CHECK_THAT(beyond.message, ContainsSubstring("hinge slips"));
+  CHECK(find_holding(rubbing_pendulum(0, 0.1), {}).takes == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("a share of the limit moves the steady state within the band") {
+  Mechanism m = rubbing_pendulum(1.5);
+  set_parameter(m, "joints.hinge.friction.share", -0.4);
+  const Solution solution = Analysis(m).solve();
+  CHECK_THAT(value(solution, "hinge"), WithinRel(-std::asin(0.4 * 0.15), 1e-13));
+  const BandExtent hinge = extent(find_friction_band(m), "hinge");
+  CHECK_THAT(hinge.high, WithinRel(std::asin(0.15), 1e-12));
+}
+
+TEST_CASE("insensitivity of a bead on a turning rod") {
+  const double n = 12, m = 0.5, k = 400, r0 = 0.2, limit = 1.25, r = k * r0 / (k - m * n * n);
+  const Mechanism bead = bead_on_rod(n, limit);
+  const FrictionReport report = report_friction(bead, Analysis(bead).solve());
+  const BandExtent& slide = extent(report.band, "slide");
+  CHECK_THAT(slide.value, WithinRel(r, 1e-13));
+  CHECK_THAT(slide.low, WithinRel((k * r0 - limit) / (k - m * n * n), 1e-12));
+  CHECK_THAT(slide.high, WithinRel((k * r0 + limit) / (k - m * n * n), 1e-12));
+  REQUIRE(report.speeds.size() == 1);
+  const double n1 = std::sqrt((k * (r - r0) - limit) / (m * r)),
+               n2 = std::sqrt((k * (r - r0) + limit) / (m * r));
+  CHECK_THAT(report.speeds[0].lower.value(), WithinRel(n1, 1e-10));
+  CHECK_THAT(report.speeds[0].upper.value(), WithinRel(n2, 1e-10));
+  CHECK_THAT(report.speeds[0].insensitivity().value(), WithinRel(2 * (n2 - n1) / (n1 + n2), 1e-9));
+  CHECK_FALSE(find_held_speeds(bead_on_rod(2, 30), {})[0].lower);
+}
+
+TEST_CASE("two hinges with friction: each coordinate has corners of its own") {
+  Mechanism m = read_scene(R"json({"flyball": 2, "name": "Double pendulum", "gravity": [0, -10, 0],
+    "bodies": [{"name": "upper", "mass": 2, "position": [0, -0.5, 0]},
+               {"name": "lower", "mass": 1, "position": [0, -1.25, 0]}],
+    "joints": [
+      {"name": "a", "type": "revolute", "bodies": ["ground", "upper"], "at": [0, 0, 0], "axis": [0, 0, 1],
+       "friction": {"limit": 1.5}},
+      {"name": "b", "type": "revolute", "bodies": ["upper", "lower"], "at": [0, -1, 0], "axis": [0, 0, 1],
+       "friction": {"mu": 0.3, "preload": 100, "radius": 0.01}}],
+    "measures": {"height": {"value": "=y(lower)", "unit": "m"}}})json");
+  const double upper = std::asin((1.5 + 0.3) / 20), lower = std::asin(0.3 / 2.5);
+  const FrictionBand band = find_friction_band(m);
+  CHECK_THAT(extent(band, "a").high, WithinRel(upper, 1e-12));
+  CHECK_THAT(extent(band, "b").high, WithinRel(lower + upper, 1e-12));
+  CHECK_THAT(extent(band, "b").low, WithinRel(-lower - upper, 1e-12));
+  // Highest at a corner; lowest hanging straight down, inside.
+  CHECK_THAT(extent(band, "height").high, WithinRel(-std::cos(upper) - 0.25 * std::cos(lower), 1e-9));
+  CHECK_THAT(extent(band, "height").low, WithinAbs(-1.25, 1e-9));
+}
+
+TEST_CASE("band and holding agree, in loops where joints share the load") {
+  for (const double hinges : {0., 0.4}) {
+    CAPTURE(hinges);
+    const Mechanism m = rubbing_governor(15, hinges);
+    const FrictionBand band = find_friction_band(m);
+    const BandExtent& slide = extent(band, "slide");
+    CHECK(slide.low < slide.value);
+    CHECK(slide.high > slide.value);
+    // The pose at an end of the band takes all that friction gives.
+    for (const std::vector<double>& shares : {slide.shares_low, slide.shares_high}) {
+      Mechanism at = m;
+      std::size_t i = 0;
+      for (Joint& joint : at.joints)
+        for (Coordinate& c : joint.coordinates)
+          if (c.friction) c.friction->share = shares.at(i++);
+      const Holding holding = find_holding(m, start_values(Analysis(at).solve().coordinates));
+      CHECK_THAT(holding.takes.value(), WithinRel(1., 1e-9));
+      CHECK_THAT(holding.at_least, WithinRel(1., 1e-9));
+    }
+    const std::vector<HeldSpeeds> speeds = find_held_speeds(m, start_values(Analysis(m).solve().coordinates));
+    REQUIRE(speeds.size() == 1);
+    CHECK(speeds[0].insensitivity().value() > 0);
+  }
+}
+
+TEST_CASE("friction that cannot be is refused") {
+  const auto mistake = [](const std::string& friction, const std::string& extra = "") {
+    try {
+      read_scene(R"({"flyball": 1, "name": "M", "bodies": [{"name": "b", "mass": 1, "position": [1, 0, 0]}],
+        "joints": [{"name": "j", "type": "revolute", "bodies": ["ground", "b"], "at": [0, 0, 0],
+        "axis": [0, 0, 1], "friction": )" +
+                 friction + extra + "}]}");
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(mistake(R"({"limit": 1})").empty());
+  CHECK(mistake(R"({"mu": 0.1, "preload": 20, "radius": 0.01})").empty());
+  CHECK_THAT(mistake(R"({})"), ContainsSubstring("expected `limit`, or `mu` and `preload`"));
+  CHECK_THAT(mistake(R"({"limit": 1, "mu": 0.1})"), ContainsSubstring("expected `limit` alone"));
+  CHECK_THAT(mistake(R"({"mu": 0.1, "preload": 2})"), ContainsSubstring("radius: missing"));
+  CHECK_THAT(mistake(R"({"limit": -1})"), ContainsSubstring("expected zero or more, found -1"));
+  CHECK_THAT(mistake(R"({"limit": 1, "share": 1.5})"), ContainsSubstring("-1 to 1, found 1.5"));
+  CHECK_THAT(mistake(R"({"limit": 1})", R"(, "drive": {"speed": 3})"), ContainsSubstring("which is driven"));
+}
+
+TEST_CASE("a block that friction alone holds") {
+  const Mechanism m = read_scene(R"({"flyball": 1, "name": "Slope", "gravity": [0, -10, 0],
+    "bodies": [{"name": "block", "mass": 3, "position": [0, 0, 0]}],
+    "joints": [{"name": "slope", "type": "prismatic", "bodies": ["ground", "block"], "at": [0, 0, 0],
+      "axis": [0.8, 0.6, 0], "friction": {"mu": 0.9, "preload": 24}}]})");
+  const FrictionReport report = report_friction(m, Analysis(m).solve());
+  CHECK_THAT(report.drawn.takes.value(), WithinRel(3 * 10 * 0.6 / (0.9 * 24), 1e-12));
+  CHECK_FALSE(report.band.found);
+}
