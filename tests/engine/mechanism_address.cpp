@@ -138,7 +138,7 @@ TEST_CASE("An address that names nothing is answered with what exists") {
   check("joints", "joints", "expected one of spin, hinge");
   check("joints.spn.drive.speed", "joints.spn", "did you mean \"spin\"?");
   check("joints.hinge.drive.speed", "joints.hinge.drive",
-        "there is no \"drive\" here; what exists: at, axis, coordinate, spring, damping and stop");
+        "there is no \"drive\" here; what exists: at, axis, coordinate, spring, damping, stop and friction");
   check("joints.hinge.spring.stifness", "joints.hinge.spring.stifness", "did you mean \"stiffness\"?");
   check("joints.hinge.spring", "joints.hinge.spring", "names no number yet; what exists: stiffness and free");
   check("joints.hinge", "joints.hinge", "names no number yet; what exists: at, axis");
