@@ -34,14 +34,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Column {
+struct RunColumn {
   std::string name;
   std::function<double(std::size_t sample)> value;
 };
 
 // Time, coordinates (driven ones too), their rates, drive torques, energies, measures and points.
-std::vector<Column> columns_of(const Run& run) {
-  std::vector<Column> columns;
+std::vector<RunColumn> columns_of(const Run& run) {
+  std::vector<RunColumn> columns;
   const auto add = [&](std::string name, const std::vector<double>& values) {
     columns.push_back({std::move(name), [&values](std::size_t i) { return values[i]; }});
   };
@@ -74,7 +74,7 @@ std::vector<Column> columns_of(const Run& run) {
 }
 
 std::string to_csv(const Run& run) {
-  const std::vector<Column> columns = columns_of(run);
+  const std::vector<RunColumn> columns = columns_of(run);
   std::string out;
   for (std::size_t c = 0; c < columns.size(); ++c)
     out += (c ? "," : "") + csv_field(columns[c].name);
@@ -139,7 +139,7 @@ SimulationState read_state(const std::filesystem::path& file) {
   }
 }
 
-Json run_json(const Run& run, const std::optional<Settled>& settled) {
+Json run_json(const Mechanism& mechanism, const Run& run, const std::optional<Settled>& settled) {
   Json out = {{"status", word(run.status)},
               {"message", run.message},
               {"method", word(run.method)},
@@ -186,6 +186,12 @@ Json run_json(const Run& run, const std::optional<Settled>& settled) {
                             {"index", stop.index},
                             {"upper", stop.upper},
                             {"touching", stop.touching}});
+  if (has_friction(mechanism)) {
+    out["frictions"] = Json::array();
+    for (const FrictionEvent& event : run.frictions)
+      out["frictions"].push_back(
+          {{"time", event.time}, {"joint", event.joint}, {"index", event.index}, {"slips", event.slips}});
+  }
   out["notes"] = run.notes;
   out["run_time_s"] = s.run_time_s;
   return out;
@@ -225,6 +231,12 @@ std::string run_text(const Mechanism& mechanism, const Run& run, const std::opti
     out += fmt::format("\nloops open by at most {:.1e}, opening at most at {:.1e} 1/s (scaled)",
                        s.position_drift, s.velocity_drift);
   if (!run.stops.empty()) out += fmt::format("\n{} times at a stop or off it", run.stops.size());
+  if (!run.frictions.empty()) {
+    const FrictionEvent& last = run.frictions.back();
+    out += fmt::format("\n{} times friction came to hold or gave way, last at {:.9g} s: {} {}",
+                       run.frictions.size(), last.time, printable(last.joint),
+                       last.slips == 0 ? "sticks" : "slips");
+  }
   return out +
          fmt::format("\n{} steps, {} evaluations, {:.1f} ms\n", s.steps, s.evaluations, s.run_time_s * 1e3);
 }
@@ -340,7 +352,7 @@ Ending run_simulate(const SimulateCommand& options) {
   if (any && !options.csv.empty()) write_bytes(options.csv, to_csv(run));
   if (any && !movie.file.empty()) draw_movie(mechanism, std::make_shared<const Run>(run), steady, movie);
   if (options.json)
-    print_json(with_warnings(run_json(run, settled), mechanism));
+    print_json(with_warnings(run_json(mechanism, run, settled), mechanism));
   else if (any && options.csv != "-") // then standard output is the table's
     print_text(run_text(mechanism, run, settled));
   std::string message = run.message;

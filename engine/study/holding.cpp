@@ -17,7 +17,7 @@
 namespace flyball {
 namespace {
 
-using Start = std::vector<std::pair<std::string, double>>;
+using Coordinates = std::vector<std::pair<std::string, double>>;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -120,7 +120,7 @@ void tell_shared(const TiedMotions& which, const std::vector<double>& needed, Ho
   out.at_least = std::min(*out.takes, std::max(out.at_least, work_share(motion)));
 }
 
-Holding hold(const Mechanism& mechanism, const Start& at, const std::atomic<bool>* cancel) {
+Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel) {
   Holding out;
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
   for (const CoordinateReference& f : frictions) {
@@ -158,7 +158,7 @@ Holding hold(const Mechanism& mechanism, const Start& at, const std::atomic<bool
     c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
   }
   Compiled held(locked);
-  Start rest;
+  Coordinates rest;
   for (const auto& [name, value] : at) {
     const CoordinateReference c = find_coordinate(mechanism, name);
     const bool is_held = std::ranges::any_of(which.independent, [&](std::size_t i) {
@@ -229,7 +229,7 @@ double find_slip(const auto& takes, double below, double above) {
 
 } // namespace
 
-Holding find_holding(const Mechanism& mechanism, const Start& at, const std::atomic<bool>* cancel) {
+Holding find_holding(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel) {
   const Interruptible scope(cancel);
   try {
     return hold(mechanism, at, cancel);
@@ -240,7 +240,7 @@ Holding find_holding(const Mechanism& mechanism, const Start& at, const std::ato
   }
 }
 
-std::vector<HeldSpeeds> find_held_speeds(const Mechanism& mechanism, const Start& at,
+std::vector<HeldSpeeds> find_held_speeds(const Mechanism& mechanism, const Coordinates& at,
                                          const std::atomic<bool>* cancel) {
   std::vector<HeldSpeeds> out;
   const Holding now = find_holding(mechanism, at, cancel);
