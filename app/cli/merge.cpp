@@ -6,6 +6,7 @@
 #include "app/cli/study_part.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/study/spread_tally.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -149,12 +150,17 @@ void merge(OpenParts& parts, const std::filesystem::path& file, const TakeRow& l
 // Samples have statistics besides.
 void merge_spread(OpenParts& parts, const std::filesystem::path& file, bool json) {
   SpreadReport report = read_spread(parts.front()->file, parts.front()->part);
+  SpreadTally tally(report.tolerances, report.seed, report.answer);
   std::vector<std::string_view> cells;
+  std::vector<double> values;
+  std::size_t i = 0;
   merge(parts, file, [&](OpenPart& from, const std::string& row) {
-    if (!split_row(std::string_view(row).substr(0, row.size() - 1), cells) || !add_sample(cells, report))
-      throw damaged(from);
+    if (!split_row(std::string_view(row).substr(0, row.size() - 1), cells)) throw damaged(from);
+    const std::optional<SampleFate> fate = read_sample(cells, report, values);
+    if (!fate) throw damaged(from);
+    tally.add(i++, *fate, values);
   });
-  add_statistics(report.tolerances, report.seed, report.answer);
+  tally.tell(report.answer);
   if (file == "-") return;
   if (json)
     print_json(to_json(report));

@@ -12,6 +12,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/study/spread_tally.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -105,13 +106,11 @@ class SampleFiles {
   std::size_t waiting_ = 0, done_ = 0; // samples
 };
 
-// Makes samples and puts them out; keeps what they tell where that is asked for.
-void make(const Mechanism& mechanism, const SpreadArguments& arguments, const StudyPart& part, bool keep,
-          WorkSharing& sharing, SpreadReport& report) {
-  SpreadAnswer& answer = report.answer;
+// Makes samples and puts them out; what they tell goes to the tally.
+void make(const Mechanism& mechanism, const SpreadArguments& arguments, const StudyPart& part,
+          WorkSharing& sharing, const SpreadReport& report, SpreadTally& tally) {
   std::optional<SampleFiles> files;
   if (sharing.takes()) files.emplace(arguments, part);
-  answer.values.resize(answer.outputs.size());
   SpreadOptions options;
   options.seed = arguments.seed;
   ProgressBar progress("solving");
@@ -119,10 +118,7 @@ void make(const Mechanism& mechanism, const SpreadArguments& arguments, const St
   make_samples(mechanism, report.tolerances, options, part.begin(), part.end() - part.begin(), sharing,
                [&](std::size_t i, SampleFate fate, std::span<const double> values) {
                  files->add(report, i, fate, values);
-                 if (!keep) return;
-                 answer.fate.push_back(fate);
-                 for (std::size_t k = 0; k < values.size(); ++k)
-                   answer.values[k].push_back(values[k]);
+                 tally.add(i, fate, values);
                });
   if (files) files->finish();
 }
@@ -146,10 +142,11 @@ void run(const SpreadArguments& arguments, Ending& ending) {
   if (any) {
     StudyPart part = sample_part(mechanism, report, arguments.samples);
     part.shard = shard.value_or(Shard{});
-    make(mechanism, arguments, part, !shard, *sharing, report);
+    SpreadTally tally(report.tolerances, arguments.seed, report.answer);
+    make(mechanism, arguments, part, *sharing, report, tally);
+    if (sharing->takes() && !shard) tally.tell(report.answer);
   }
   if (!sharing->takes()) return;
-  if (any && !shard) add_statistics(report.tolerances, arguments.seed, report.answer);
   ending = end_with(any, arguments.scene.file, report.answer.message);
   if (arguments.csv == "-" || (any && shard)) return;
   report.answer.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

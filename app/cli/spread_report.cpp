@@ -171,7 +171,6 @@ SpreadReport read_spread(const std::filesystem::path& file, const StudyPart& par
       o.at(4).get_to(output.linear_shares);
       report.answer.outputs.push_back(std::move(output));
     }
-    report.answer.values.resize(report.answer.outputs.size());
     if (report.answer.nominal.size() != report.tolerances.size()) throw std::runtime_error("");
     return report;
   } catch (const std::exception&) {
@@ -179,23 +178,22 @@ SpreadReport read_spread(const std::filesystem::path& file, const StudyPart& par
   }
 }
 
-bool add_sample(std::span<const std::string_view> cells, SpreadReport& report) {
+std::optional<SampleFate> read_sample(std::span<const std::string_view> cells, const SpreadReport& report,
+                                      std::vector<double>& values) {
   const std::size_t before = report.tolerances.size();
-  SpreadAnswer& answer = report.answer;
-  if (cells.size() != before + 1 + answer.values.size()) return false;
+  if (cells.size() != before + 1 + report.answer.outputs.size()) return {};
   int fate = 0;
   while (fate < fates && word(static_cast<SampleFate>(fate)) != cells[before])
     ++fate;
-  if (fate == fates) return false;
-  answer.fate.push_back(static_cast<SampleFate>(fate));
-  for (std::size_t k = 0; k < answer.values.size(); ++k) {
-    const std::string_view text = cells[before + 1 + k];
+  if (fate == fates) return {};
+  values.clear();
+  for (const std::string_view text : cells.subspan(before + 1)) {
     double value = std::nan("");
     const char* end = text.data() + text.size();
-    if (!text.empty() && std::from_chars(text.data(), end, value).ptr != end) return false;
-    answer.values[k].push_back(value);
+    if (!text.empty() && std::from_chars(text.data(), end, value).ptr != end) return {};
+    values.push_back(value);
   }
-  return true;
+  return static_cast<SampleFate>(fate);
 }
 
 } // namespace flyball::cli

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,7 +33,8 @@ std::string sample_row(const SpreadReport& report, std::size_t i, SampleFate fat
 
 // The same back. Throws SceneError that names the file where the part is none of a spread.
 SpreadReport read_spread(const std::filesystem::path& file, const StudyPart& part);
-// Adds a row to the answer's samples; false where it is none.
-bool add_sample(std::span<const std::string_view> cells, SpreadReport& report);
+// What became of the sample that a row tells of, and its values; nothing where it is none.
+std::optional<SampleFate> read_sample(std::span<const std::string_view> cells, const SpreadReport& report,
+                                      std::vector<double>& values);
 
 } // namespace flyball::cli

@@ -2,6 +2,7 @@
 
 #include "app/document/coordinate_image.hpp"
 #include "app/document/image.hpp"
+#include "engine/mechanism/mass_properties.hpp"
 
 #include <algorithm>
 #include <unordered_set>
@@ -115,6 +116,19 @@ std::optional<Vec3> default_point(const Mechanism& mechanism, const PointId& poi
   return mechanism.bodies[static_cast<std::size_t>(body)].position;
 }
 
+bool has_place(const Shape& shape) {
+  return is_rod(shape.type) || shape.at;
+}
+
+// The vector that all of a body follows: its mass centre, unless shapes have places of their own; or that of
+// its one shape, of which the mass centre follows.
+std::string place_address(const Body& body) {
+  const std::string path = "bodies." + body.name;
+  if (body.density)
+    return body.shapes.size() == 1 && !is_rod(body.shapes[0].type) ? path + ".shapes.0.at" : "";
+  return std::ranges::none_of(body.shapes, has_place) ? path + ".position" : "";
+}
+
 } // namespace
 
 void move_parts(Mechanism& mechanism, const Selection& selection, const Vec3& by, OuterJoints joints) {
@@ -155,7 +169,7 @@ std::string point_address(const Mechanism& mechanism, const PointId& point) {
            (mechanism.joints[i].type == JointType::distance ? ends : "at");
   if (id.kind == PartKind::force)
     return "forces." + point.part.name + "." + (mechanism.forces[i].type == ForceType::spring ? ends : "at");
-  return {};
+  return id.kind == PartKind::body && point.end == 0 ? place_address(mechanism.bodies[i]) : "";
 }
 
 void set_point(Mechanism& mechanism, const PointId& point, const Vec3& position, OuterJoints joints) {

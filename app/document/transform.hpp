@@ -39,7 +39,8 @@ struct PointId {
 };
 // Nothing where the part has no such point.
 std::optional<Vec3> point_position(const Mechanism& mechanism, const PointId& point);
-// The address of its three numbers, "joints.arm.at"; empty for a body, which takes along what is on it.
+// The address of its three numbers, "joints.arm.at"; of a body the one that all of it follows,
+// "bodies.ball.position"; empty where its shapes have places of their own.
 std::string point_address(const Mechanism& mechanism, const PointId& point);
 // Moves this point alone (for a body: the whole body). A spring's free length and a distance joint's length
 // that are given stay as they are.

@@ -2,7 +2,7 @@
 
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/infinite_rate.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/report_forces.hpp"
 #include "engine/search/all_equilibria.hpp"
@@ -15,6 +15,10 @@
 
 namespace flyball {
 namespace {
+
+// Of the range: how far from where a number's rate is infinite a branch begins, and how near it comes to a
+// border beyond which there is no mechanism.
+constexpr double beside_infinite_rate = 1e-9, at_border = 1e-9;
 
 bool turns_with_drives(const ResponsePoint& point) {
   return point.stability_reason == StabilityReason::floquet;
@@ -30,6 +34,10 @@ Mechanism with_parameter(const Mechanism& mechanism, const std::string& address,
 }
 
 namespace {
+
+std::string infinite_rate_text(const InfiniteRate& error) {
+  return std::string("a number changes at an infinite rate there: ") + error.what();
+}
 
 // At the beginning of the range, or, where no mechanism can be made there, as it is.
 Mechanism begun(const Mechanism& mechanism, const std::string& address, double from) {
@@ -97,7 +105,13 @@ Problem BranchFollower::problem_at(double parameter) {
 
 std::optional<BranchState> BranchFollower::begin(Unknowns z, double parameter, bool forth) {
   BranchState state{std::move(z), parameter, {}, 0, 0};
-  if (!continuation_.start(state, (to_ > from_) == forth ? 1 : -1)) return {};
+  const double way = (to_ > from_) == forth ? 1 : -1;
+  try {
+    if (!continuation_.start(state, way)) return {};
+  } catch (const InfiniteRate&) { // such as of a square root at zero: it begins beside
+    state.parameter += way * beside_infinite_rate * family_.scale();
+    if (!continuation_.land(state) || !continuation_.start(state, way)) return {};
+  }
   return state;
 }
 
@@ -260,8 +274,10 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     std::string impossible; // of what the parameter would make
     try {
       stepped = continuation_.step(state, length, next, iterations);
+    } catch (const InfiniteRate& error) {
+      impossible = infinite_rate_text(error);
     } catch (const SceneError& error) {
-      impossible = error.what();
+      impossible = std::string("beyond it no mechanism can be made: ") + error.what();
     }
     const bool straight = stepped && next.tangent.dot(state.tangent) >= 0.97;
     const bool corner =
@@ -269,9 +285,16 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     if (!straight && !corner) {
       length /= 2;
       if (length > tolerance::least_branch_step) continue;
-      out.end = impossible.empty()
-                    ? "the corrector fails: the loops lock or a part of the mechanism becomes singular"
-                    : "beyond it no mechanism can be made: " + impossible;
+      const bool ends = position(state.parameter) > 0.5;
+      const double border = ends ? to_ : from_;
+      if (impossible.empty()) {
+        out.end = "the corrector fails: the loops lock or a part of the mechanism becomes singular";
+      } else if (std::abs(state.parameter - border) < at_border * family_.scale()) {
+        land_on_border(state, border, out);
+        out.end = ends ? "the end of the range" : "the beginning of the range";
+      } else {
+        out.end = impossible;
+      }
       break;
     }
     const double p = position(next.parameter);
@@ -285,9 +308,14 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
       break;
     }
     Described then = describe(next);
-    find_specials(state, next, length, now, then, out);
-    if (turns_with_drives(now.point) && turns_with_drives(then.point))
-      find_multiplier_crossing(state, next, length, out);
+    try {
+      find_specials(state, next, length, now, then, out);
+      if (turns_with_drives(now.point) && turns_with_drives(then.point))
+        find_multiplier_crossing(state, next, length, out);
+    } catch (const InfiniteRate& error) { // at a place between them
+      out.end = infinite_rate_text(error);
+      break;
+    }
     out.points.push_back(then.point);
     out.states.push_back(next);
     report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);

@@ -121,9 +121,17 @@ class Diagram {
     }
     out_.status = Status::converged;
     if (!find_stability(factor_at(problem, found.z, w), false).neutral.empty()) follower_.expect_families();
-    if (const auto first = follower_.begin(found.z, from_, true))
-      add(follower_.follow(*first, true), true);
-    else
+    if (const auto first = follower_.begin(found.z, from_, true)) {
+      FollowedBranch branch = follower_.follow(*first, true);
+      if (first->parameter != from_) { // it could not begin there itself
+        BranchState border = *first;
+        border.z = found.z;
+        border.parameter = from_;
+        branch.points.insert(branch.points.begin(), follower_.point(border));
+        branch.states.insert(branch.states.begin(), std::move(border));
+      }
+      add(std::move(branch), true);
+    } else
       out_.message = "The start is a singular state; begin beside it.";
     if (out_.branches.empty() || out_.branches[0].points.front().stable != true) from_answer(start);
   }

@@ -4,6 +4,7 @@
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/formula_plan.hpp"
 #include "engine/mechanism/given_names.hpp"
+#include "engine/mechanism/infinite_rate.hpp"
 #include "engine/mechanism/mass_properties.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
@@ -47,15 +48,18 @@ struct Compiled {
   }
 };
 
+std::string quoted_expression(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  return "\"=" + std::string(text.substr(0, longest)) + (text.size() > longest ? "..." : "") + "\"";
+}
+
 // Says at which place an expression is wrong.
 template <class Do>
 auto at_place(const std::string& where, std::string_view text, const Do& act) {
   try {
     return act();
   } catch (const ExpressionError& error) {
-    constexpr std::size_t longest = 60;
-    const std::string quoted(text.substr(0, longest));
-    throw SceneError(where, "\"=" + quoted + (text.size() > longest ? "..." : "") + "\": " + error.what());
+    throw SceneError(where, quoted_expression(text) + ": " + error.what());
   }
 }
 
@@ -229,11 +233,9 @@ struct FormulaPlan::State {
   void differentiate(NumberRates& rates) {
     GivenNames::take_values(mechanism, rates, values);
     for (const Assignment& each : assignments) {
-      const Dual value = at_place(each.where, each.text, [&] {
-        const Dual found = each.compiled.evaluate(values);
-        if (!std::isfinite(found.rate)) throw ExpressionError("the rate of change is not finite");
-        return found;
-      });
+      const Dual value = at_place(each.where, each.text, [&] { return each.compiled.evaluate(values); });
+      if (!std::isfinite(value.rate))
+        throw InfiniteRate(each.where, quoted_expression(each.text) + ": the rate of change is not finite");
       if (each.name) values[*each.name] = value;
       if (value.rate != 0) rates.set(each.place, value.rate);
     }

@@ -2,10 +2,9 @@
 
 #include "engine/linear/interruption.hpp"
 #include "engine/study/spread_sampler.hpp"
+#include "engine/study/spread_tally.hpp"
 
 #include <Random123/philox.h>
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <chrono>
@@ -14,51 +13,6 @@
 #include <numbers>
 
 namespace flyball {
-namespace {
-
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const double part = at - static_cast<double>(below);
-  return below + 1 < sorted.size() ? sorted[below] + part * (sorted[below + 1] - sorted[below])
-                                   : sorted[below];
-}
-
-// Squares of the standardised coefficients of a linear regression over the samples that followed.
-std::vector<double> regression_shares(const std::vector<double>& nominal,
-                                      std::span<const Tolerance> tolerances, std::uint64_t seed,
-                                      const std::vector<SampleFate>& fate, const std::vector<double>& values,
-                                      double middle) {
-  const auto n = static_cast<Eigen::Index>(tolerances.size());
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(n + 1), x(n + 1);
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(n + 1, n + 1);
-  double count = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (fate[i] != SampleFate::followed && fate[i] != SampleFate::unstable) continue;
-    if (!std::isfinite(values[i])) continue;
-    const std::vector<double> numbers = sampled_numbers(nominal, tolerances, seed, i);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      x[k] = (numbers[at] - nominal[at]) / tolerances[at].deviation();
-    }
-    x[n] = values[i] - middle;
-    mean += x;
-    products += x * x.transpose();
-    ++count;
-  }
-  if (count < static_cast<double>(n) + 2) return {};
-  mean /= count;
-  const Eigen::MatrixXd covariance = products / count - mean * mean.transpose();
-  if (!(covariance(n, n) > 0)) return std::vector<double>(tolerances.size(), 0.);
-  const Eigen::VectorXd slopes =
-      covariance.topLeftCorner(n, n).colPivHouseholderQr().solve(covariance.col(n).head(n));
-  std::vector<double> shares;
-  for (Eigen::Index k = 0; k < n; ++k)
-    shares.push_back(slopes[k] * slopes[k] * covariance(k, k) / covariance(n, n));
-  return shares;
-}
-
-} // namespace
 
 std::string_view word(Distribution distribution) {
   switch (distribution) {
@@ -110,39 +64,6 @@ std::vector<double> sampled_numbers(std::span<const double> nominal, std::span<c
     numbers.push_back(nominal[k] + at * tolerances[k].width);
   }
   return numbers;
-}
-
-SpreadStatistics spread_statistics(std::vector<double> values) {
-  SpreadStatistics out;
-  out.count = values.size();
-  if (values.empty()) return out;
-  std::ranges::sort(values);
-  const auto n = static_cast<double>(values.size());
-  // By differences from the middle one, so that a small scatter about a large number keeps its digits.
-  const double middle = values[values.size() / 2];
-  double sum = 0, squares = 0, fourth = 0;
-  for (const double value : values) {
-    sum += value - middle;
-    squares += (value - middle) * (value - middle);
-  }
-  out.mean = middle + sum / n;
-  if (values.size() > 1) out.deviation = std::sqrt(std::max(0., (squares - sum * sum / n) / (n - 1)));
-  for (const double value : values) {
-    const double square = (value - out.mean) * (value - out.mean);
-    fourth += square * square / n;
-  }
-  const double variance = out.deviation * out.deviation;
-  out.mean_error = out.deviation / std::sqrt(n);
-  if (variance > 0)
-    out.deviation_error = std::sqrt(std::max(0., fourth - variance * variance) / n) / (2 * out.deviation);
-  out.least = values.front();
-  out.most = values.back();
-  out.lowest = quantile(values, 0.025);
-  out.low = quantile(values, 0.05);
-  out.median = quantile(values, 0.5);
-  out.high = quantile(values, 0.95);
-  out.highest = quantile(values, 0.975);
-  return out;
 }
 
 SpreadAnswer spread_by_rates(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
@@ -224,32 +145,14 @@ void make_samples(const Mechanism& mechanism, std::span<const Tolerance> toleran
 }
 
 void add_statistics(std::span<const Tolerance> tolerances, std::uint64_t seed, SpreadAnswer& answer) {
-  answer.samples = answer.fate.size();
-  for (const SampleFate fate : answer.fate)
-    ++answer.counts[static_cast<std::size_t>(fate)];
-  for (std::size_t k = 0; k < answer.outputs.size(); ++k) {
-    SpreadOutput& output = answer.outputs[k];
-    std::vector<double> followed, elsewhere;
-    for (std::size_t i = 0; i < answer.samples; ++i) {
-      if (!std::isfinite(answer.values[k][i])) continue;
-      (answer.fate[i] == SampleFate::elsewhere ? elsewhere : followed).push_back(answer.values[k][i]);
-    }
-    output.followed = spread_statistics(std::move(followed));
-    output.elsewhere = spread_statistics(std::move(elsewhere));
-    output.sampled_shares =
-        regression_shares(answer.nominal, tolerances, seed, answer.fate, answer.values[k], output.nominal);
+  SpreadTally tally(tolerances, seed, answer);
+  std::vector<double> values(answer.outputs.size());
+  for (std::size_t i = 0; i < answer.fate.size(); ++i) {
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] = answer.values[k][i];
+    tally.add(i, answer.fate[i], values);
   }
-  answer.message = std::to_string(answer.samples) + " samples: " + std::to_string(answer.counts[0]) +
-                   " followed the nominal state";
-  const auto also = [&](SampleFate fate, const char* words) {
-    if (const std::size_t count = answer.counts[static_cast<std::size_t>(fate)])
-      answer.message += ", " + std::to_string(count) + " " + words;
-  };
-  also(SampleFate::elsewhere, "are in another, which its branch does not lead to");
-  also(SampleFate::unstable, "followed to an unstable one");
-  also(SampleFate::none, "have no steady state");
-  also(SampleFate::no_mechanism, "make no mechanism");
-  answer.message += ".";
+  tally.tell(answer);
 }
 
 SpreadAnswer spread(const Mechanism& mechanism, std::span<const Tolerance> tolerances,

@@ -54,7 +54,7 @@ struct SpreadStatistics {
   // Standard errors of mean and deviation: how far as many other samples would put them.
   double mean_error = 0, deviation_error = 0;
 };
-SpreadStatistics spread_statistics(std::vector<double> values);
+SpreadStatistics spread_statistics(std::span<const double> values);
 
 struct SpreadOutput {
   std::string name, unit; // a free coordinate's label (rad, m), or a measure
@@ -101,7 +101,7 @@ using TakeSample = std::function<void(std::size_t i, SampleFate fate, std::span<
 void make_samples(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
                   const SpreadOptions& options, std::size_t first, std::size_t count, WorkSharing& sharing,
                   const TakeSample& take);
-// At last what they tell: of the answer's `values` and `fate`.
+// At last what they tell: of the answer's `values` and `fate`. SpreadTally does it without keeping them.
 void add_statistics(std::span<const Tolerance> tolerances, std::uint64_t seed, SpreadAnswer& answer);
 
 } // namespace flyball

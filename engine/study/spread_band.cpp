@@ -38,7 +38,7 @@ BandPoint samples_at(const Mechanism& mechanism, const std::string& address, con
       if (std::isfinite(values[k])) followed[k].push_back(values[k]);
   }
   for (std::vector<double>& each : followed)
-    point.outputs.push_back(spread_statistics(std::move(each)));
+    point.outputs.push_back(spread_statistics(each));
   return point;
 }
 

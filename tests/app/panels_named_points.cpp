@@ -6,6 +6,7 @@
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
@@ -274,6 +275,103 @@ TEST_CASE("what is dragged onto a named point stands there, in the same step") {
     s.release();
     s.hold(false, false);
     CHECK(s.at_of(vector) == "  ");
+  }
+}
+
+TEST_CASE("a body that is placed on a named point stands there with all of it") {
+  Sheet s;
+  const bool freely = GENERATE(false, true);
+  const Mechanism begun = s.m();
+  const auto moved = [&] {
+    s.change("Move A", [](Mechanism& next) {
+      next.points[0].at += Vec3(0.1, 0.05, 0.02);
+      evaluate_formulas(next);
+    });
+    return s.m().bodies.back();
+  };
+  SECTION("a ball, a block, a plate") {
+    for (const char* tool : {"ball", "block", "plate"}) {
+      CAPTURE(tool, freely);
+      s.click(std::string("tools/") + tool);
+      s.hold(freely, false);
+      s.point_at(place_a);
+      s.frames(1);
+      CHECK((tool_hint(s.app).find("It stands at A then") != std::string::npos) == !freely);
+      s.click_at(place_a);
+      s.hold(false, false);
+      s.frames(2);
+      REQUIRE(s.m().bodies.size() == 2);
+      const Body placed = s.m().bodies.back();
+      CHECK((s.at_of("bodies." + placed.name + ".position") == "A.x A.y A.z") == !freely);
+      CHECK((placed.position == place_a || freely));
+      const Body after = moved();
+      const Vec3 by = freely ? Vec3(0, 0, 0) : Vec3(0.1, 0.05, 0.02);
+      CHECK((after.position - placed.position - by).norm() < 1e-15);
+      s.key('Z', true);
+      s.key('Z', true);
+      CHECK(s.m() == begun);
+    }
+  }
+  SECTION("a rod goes from point to point and weighs what its length makes of it") {
+    s.click("tools/rod");
+    s.hold(freely, false);
+    s.click_at(place_b);
+    s.click_at(place_a);
+    s.hold(false, false);
+    s.frames(2);
+    REQUIRE(s.m().bodies.size() == 2);
+    const Body placed = s.m().bodies.back();
+    const std::string shape = "bodies." + placed.name + ".shapes.0.";
+    CHECK((s.at_of(shape + "from") == "B.x B.y B.z") == !freely);
+    CHECK((s.at_of(shape + "to") == "A.x A.y A.z") == !freely);
+    CHECK(placed.density.has_value() == !freely);
+    const double before = (placed.shapes[0].to - placed.shapes[0].from).norm();
+    const Body after = moved();
+    const double length = (after.shapes[0].to - after.shapes[0].from).norm();
+    CHECK(after.mass == Approx(placed.mass * length / before).epsilon(1e-12));
+    CHECK((after.position - 0.5 * (after.shapes[0].to + after.shapes[0].from)).norm() < 1e-15);
+    CHECK((after.shapes[0].to != placed.shapes[0].to) == !freely);
+    s.key('Z', true);
+    s.key('Z', true);
+    CHECK(s.m() == begun);
+  }
+}
+
+TEST_CASE("a body that is dragged onto a named point by its middle stands there") {
+  Sheet s;
+  const Part ball{PartKind::body, "ball1"};
+  SECTION("all of it") {
+    s.pick(ball);
+    s.pull("gizmo/centre", place_b - s.m().bodies[0].position + Vec3(0.004, -0.003, 0));
+    REQUIRE(s.app.tool.grab);
+    CHECK(s.app.tool.grab->stands == "B");
+    s.release();
+    CHECK(s.at_of("bodies.ball1.position") == "B.x B.y B.z");
+    // From there it takes the point along.
+    s.frames(60);
+    s.pull("gizmo/centre", Vec3(0.1, 0.2, 0));
+    s.release();
+    INFO(s.app.notice);
+    CHECK(s.m().points[1].at == s.m().bodies[0].position);
+    CHECK((s.m().points[1].at - place_b).norm() > 0.1);
+  }
+  SECTION("its shape, of which mass and mass centre follow") {
+    s.change("By density", [](Mechanism& next) { next.bodies[0].density = 7850; });
+    s.pick(ball);
+    s.pull("gizmo/centre", place_b - s.m().bodies[0].position);
+    s.release();
+    CHECK(s.at_of("bodies.ball1.shapes.0.at") == "B.x B.y B.z");
+    CHECK((s.m().bodies[0].position - place_b).norm() < 1e-15);
+  }
+  SECTION("but not where shapes have places of their own") {
+    s.change("Rod", [](Mechanism& next) { next.bodies[0].shapes[0].at = next.bodies[0].position; });
+    s.pick(ball);
+    s.pull("gizmo/centre", place_b - s.m().bodies[0].position);
+    REQUIRE(s.app.tool.grab);
+    CHECK(s.app.tool.grab->stands.empty());
+    s.release();
+    CHECK(s.at_of("bodies.ball1.position") == "  ");
+    CHECK((s.m().bodies[0].position - place_b).norm() < 1e-15);
   }
 }
 

@@ -244,6 +244,38 @@ TEST_CASE("a turn takes an expression, which is kept as one of the quaternion") 
   }
 }
 
+TEST_CASE("what is on a body turns with it, whether a number or an expression is typed") {
+  TallDesk d;
+  d.build();
+  d.pick(PartKind::body, "ball1");
+  d.click("inspector/rotation section");
+  d.frames(2);
+  const std::string z = "inspector/rotation/z";
+  const Mechanism begun = d.m();
+  d.enter(z, "30");
+  const Mechanism by_number = d.m();
+  d.key('Z', true);
+  d.enter(z, "=20 deg + 10 deg");
+  CHECK(expression_at(d.m(), "bodies.ball1.turn.2") == "20 deg + 10 deg");
+  const auto apart = [&](const Mechanism& other) {
+    double most = 0;
+    for (std::size_t i = 0; i < other.bodies.size(); ++i)
+      for (std::size_t k = 0; k < other.bodies[i].shapes.size(); ++k) {
+        const Shape &a = d.m().bodies[i].shapes[k], &b = other.bodies[i].shapes[k];
+        most = std::max({most, (a.from - b.from).norm(), (a.to - b.to).norm()});
+      }
+    for (std::size_t i = 0; i < other.joints.size(); ++i)
+      for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
+        most = std::max({most, (d.m().joints[i].at - other.joints[i].at).norm(),
+                         (d.m().joints[i].points[end] - other.joints[i].points[end]).norm()});
+    return most;
+  };
+  CHECK(apart(by_number) < 1e-14);
+  CHECK(apart(begun) > 0.01);
+  d.key('Z', true);
+  CHECK(d.m() == begun);
+}
+
 TEST_CASE("a quaternion given otherwise is shown, and a turn that is typed takes its place") {
   TallDesk d;
   d.build();

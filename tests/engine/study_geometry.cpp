@@ -2,9 +2,11 @@
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/sweep.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/parts.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
@@ -95,4 +97,54 @@ TEST_CASE("a branch over a length ends where no mechanism can be made, and says 
   REQUIRE(through);
   CHECK_THAT(through->branches.front().begin, ContainsSubstring("no mechanism can be made"));
   CHECK(through->branches.front().points.back().parameter == 0.1);
+}
+
+namespace {
+
+// A ball on a sprung lever, whose length is a root of the parameter's distance from `at`.
+Mechanism with_root(const std::string& distance) {
+  Mechanism m;
+  m.name = "root";
+  m.gravity = Vec3(0, -10, 0);
+  m.parameters = {{"p", "", 0.2, "m", std::nullopt, {}}};
+  m.bodies = {body("ball", 1, Vec3(0.5, 0, 0), Vec3::Constant(0.1))};
+  m.bodies[0].formulas = {{"position.0", "0.3 m + sqrt(" + distance + " * 1 m)"}};
+  m.joints = {sprung(revolute("hinge", "ground", "ball", Vec3::Zero()), 50)};
+  evaluate_formulas(m);
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("a branch begins and ends where a number's rate is infinite") {
+  const Mechanism m = with_root("p");
+  const auto check = [&](const ResponsePoint& point) {
+    Mechanism there = m;
+    set_parameter(there, "parameters.p", point.parameter);
+    CHECK(std::abs(value(point.coordinates, "hinge") - value(Analysis(there).solve({}), "hinge")) < 1e-9);
+  };
+  for (const bool forth : {true, false}) {
+    const ResponseDiagram diagram = follow_branches(m, "parameters.p", forth ? 0 : 1, forth ? 1 : 0, {});
+    REQUIRE(diagram.status == Status::converged);
+    REQUIRE(diagram.branches.size() == 1);
+    const std::vector<ResponsePoint>& points = diagram.branches[0].points;
+    CHECK(points.front().parameter == (forth ? 0 : 1));
+    CHECK(std::abs(points.back().parameter - (forth ? 1 : 0)) < 1e-12);
+    CHECK(diagram.branches[0].end == "the end of the range");
+    for (const ResponsePoint& point : points)
+      check(point);
+  }
+  // Beyond it there is nothing.
+  const ResponseDiagram beyond = follow_branches(m, "parameters.p", 0.5, -0.5, {});
+  REQUIRE_FALSE(beyond.branches.empty());
+  CHECK_THAT(beyond.branches[0].end, ContainsSubstring("bodies.ball.position.0"));
+  CHECK(beyond.branches[0].points.back().parameter < 1e-6);
+  // A number that has a corner on the way ends it there, and says where.
+  const ResponseDiagram corner = follow_branches(with_root("abs(p - 0.5 m)"), "parameters.p", 0, 1, {});
+  REQUIRE(corner.status == Status::converged);
+  REQUIRE_FALSE(corner.branches.empty());
+  INFO(corner.branches[0].end);
+  CHECK(std::abs(corner.branches[0].points.back().parameter - 0.5) < 1e-3);
+  CHECK_THAT(corner.branches[0].end,
+             ContainsSubstring("infinite rate") || ContainsSubstring("the corrector fails"));
 }

@@ -235,6 +235,85 @@ TEST_CASE("measures move with the sliders as their closed form does", "[measures
   CHECK(rate(1, "depth") == Approx(-1 / (w * w)).epsilon(1e-7)); // gravity is along -y
 }
 
+TEST_CASE("rates of measures with numbers agree with differences", "[measures]") {
+  int compared = 0;
+  for (std::uint32_t seed = 1; seed <= 24; ++seed) {
+    reference::RandomOptions options;
+    options.bodies = 3;
+    options.loops = seed % 3 == 0 ? 1 : 0;
+    options.drives = seed % 2 ? reference::RandomDrives::several : reference::RandomDrives::root;
+    options.steady = false;
+    Mechanism m = reference::random_mechanism(seed, options);
+    m.points = {{"A", Vec3(0.3, -0.2, 0.5), {}}};
+    m.measures.clear();
+    const auto add = [&](const std::string& text, const std::string& unit) {
+      m.measures.push_back({"m" + std::to_string(m.measures.size()), "", text, unit});
+    };
+    for (const Body& each : m.bodies) {
+      const std::string name = argument_text(each.name);
+      add("x(" + name + "@A) + A.y", "m");
+      add("vy(" + name + ")", "m/s");
+      add("az(" + name + "@A)", "m/s^2");
+      add("distance(" + name + ", ground@A) * mass(" + name + ")", "kg m");
+      add("angle(" + name + ", ground@A, " + argument_text(m.bodies.front().name) + "@A)", "rad");
+    }
+    for (const Joint& each : m.joints)
+      for (int i = 0; i < coordinate_count(each.type); ++i) {
+        const std::string name =
+            argument_text(each.name) + (coordinate_count(each.type) > 1 ? "." + std::to_string(i) : "");
+        const bool angle = is_angle(each.type, i);
+        add("coordinate(" + name + ")", angle ? "rad" : "m");
+        add("rate(" + name + ")", angle ? "rad/s" : "m/s");
+        const Coordinate& c = each.coordinates[static_cast<std::size_t>(i)];
+        if (c.spring) add("spring(" + name + ")", angle ? "N m" : "N");
+        if (c.stop) add("clearance(" + name + ")", angle ? "rad" : "m");
+      }
+    for (const Force& each : m.forces)
+      if (each.type == ForceType::spring) add("tension(" + argument_text(each.name) + ")", "N");
+    const System system = compile(m);
+    if (system.nv == 0) continue;
+    Parameters p;
+    Scaling scaling;
+    bind(system, m, p);
+    set_scaling(system, p, scaling);
+    const Problem problem{system, p, scaling};
+    Eigen::VectorXd q;
+    drawn_configuration(system, p, q);
+    MeasureSet measures;
+    measures.bind(m, system, p);
+    Workspace w, beside;
+    const std::vector<std::string> addresses = parameter_addresses(m);
+    const std::vector<Eigen::VectorXd> still(addresses.size(), Eigen::VectorXd::Zero(system.nv));
+    const Eigen::MatrixXd rates = measures.rates_along(problem, m, addresses, q, still, w);
+    for (std::size_t a = 0; a < addresses.size(); ++a) {
+      const double value = get_parameter(m, addresses[a]), h = 1e-4 * (std::abs(value) + 0.1);
+      std::array<Eigen::VectorXd, 4> at; // the error of the combination is of order h^4
+      for (std::size_t i = 0; i < 4; ++i) {
+        Mechanism there = m;
+        set_parameter(there, addresses[a], value + h * std::array{1., -1., 2., -2.}[i]);
+        Parameters numbers;
+        bind(system, there, numbers);
+        MeasureSet set;
+        set.bind(there, system, numbers);
+        at[i] = set.evaluate_at({system, numbers, scaling}, q, beside);
+      }
+      const Eigen::VectorXd difference = (8 * (at[0] - at[1]) - (at[2] - at[3])) / (12 * h);
+      for (std::size_t i = 0; i < measures.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        const double found = rates(k, static_cast<Eigen::Index>(a)), expected = difference[k];
+        if (!std::isfinite(expected) || !std::isfinite(found)) continue;
+        // An angle of joints may jump by a turn.
+        if (std::abs(at[2][k] - at[3][k]) > 1 && m.measures[i].unit == "rad") continue;
+        INFO("seed " << seed << " " << m.measures[i].text << " with " << addresses[a]);
+        CHECK(std::abs(found - expected) <
+              2e-7 * (1 + std::abs(expected)) + 1e-11 * (1 + std::abs(at[0][k])) / h);
+        ++compared;
+      }
+    }
+  }
+  CHECK(compared > 10000);
+}
+
 TEST_CASE("a number is found at which a measure is as wanted", "[measures]") {
   const double length = 0.7, mass = 1.7;
   const Mechanism m = measured_pendulum(length, 6);

@@ -3,6 +3,7 @@
 
 #include "engine/mechanism/error.hpp"
 #include "engine/study/spread_band.hpp"
+#include "engine/study/spread_tally.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -210,6 +211,38 @@ TEST_CASE("standard errors of mean and deviation are those of many repetitions")
   CHECK(std::sqrt(squares - deviations * deviations) == Approx(told_deviation).epsilon(0.15));
   // Of a normal distribution it would be 1.6 times as much.
   CHECK(told_deviation == Approx(std::sqrt(1 / 3. * 0.8 / (4. * n))).epsilon(0.03));
+}
+
+TEST_CASE("of more values than are kept quantiles come from bins that are finer than chance") {
+  const std::vector<double> nominal{0};
+  const std::vector<Tolerance> tolerances{{"a", Distribution::normal, 1}};
+  for (const double offset : {0., 1e6}) {
+    constexpr std::size_t n = 3 * ValueTally::kept;
+    constexpr double size = 1e-3;
+    std::vector<double> values;
+    long double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      values.push_back(offset + size * sampled_numbers(nominal, tolerances, 7, i)[0]);
+      sum += values.back() - static_cast<long double>(offset);
+    }
+    const SpreadStatistics s = spread_statistics(values);
+    for (const double value : values) {
+      const long double difference = value - static_cast<long double>(offset) - sum / n;
+      squares += difference * difference;
+    }
+    std::ranges::sort(values);
+    const auto at = [&](double share) { return values[static_cast<std::size_t>(share * (n - 1))]; };
+    CAPTURE(offset);
+    CHECK(s.count == n);
+    CHECK(s.least == values.front());
+    CHECK(s.most == values.back());
+    CHECK(std::abs(s.mean - offset - static_cast<double>(sum / n)) < 1e-9 * size + 2e-16 * offset);
+    CHECK(s.deviation == Approx(static_cast<double>(std::sqrt(squares / (n - 1)))).epsilon(1e-9));
+    for (const auto& [share, found] :
+         {std::pair(0.025, s.lowest), std::pair(0.05, s.low), std::pair(0.5, s.median),
+          std::pair(0.95, s.high), std::pair(0.975, s.highest)})
+      CHECK(std::abs(found - at(share)) < 3e-4 * size); // chance: 2e-3 of it and more
+  }
 }
 
 TEST_CASE("a band has at each place the spread there, to the bit") {

@@ -57,6 +57,20 @@ void turn_body(App& app, const std::string& name, int axis, double angle) {
   app.inspector.turns = turns.angles;
 }
 
+// What is on the body turns with it when an expression is typed, as when a number is.
+void turn_along(const App& app, const std::string& name, const Mechanism& before, Mechanism& next) {
+  const int index = body_index(next, name);
+  if (index < 0 || app.inspector.mass_alone) return;
+  const auto i = static_cast<std::size_t>(index);
+  const Body given = next.bodies[i];
+  const Quat from = before.bodies[i].rotation;
+  next.bodies[i].rotation = from;
+  rotate_parts(next, only(given), given.position, given.rotation.normalized() * from.normalized().conjugate(),
+               joints_of_moved(app, false));
+  next.bodies[i].rotation = given.rotation;
+  next.bodies[i].formulas = given.formulas;
+}
+
 void move_body(App& app, const std::string& name, int axis, double to) {
   const int index = body_index(app.mechanism(), name);
   if (index < 0) return;
@@ -236,12 +250,14 @@ void rotation_section(App& app, const Body& body) {
                .unit = "deg",
                .help =
                    "The body is turned about the world's x, then y, then z axis, and what is on it with it. "
-                   "An expression turns its axes alone, those of its inertia and boxes; in it angles are in "
-                   "radians unless they have a unit: =30 deg.",
+                   "Where an expression gives a turn, a change of what this rests on turns the axes alone, "
+                   "those of its inertia and boxes; in it angles are in radians unless they have a unit: "
+                   "=30 deg.",
                .expression = "bodies." + body.name + ".turn",
-               .set = [name = body.name](App& changed, int axis, double angle) {
-                 turn_body(changed, name, axis, angle);
-               }});
+               .set = [name = body.name](App& changed, int axis,
+                                         double angle) { turn_body(changed, name, axis, angle); },
+               .follow = [name = body.name](const App& changed, const Mechanism& before,
+                                            Mechanism& next) { turn_along(changed, name, before, next); }});
   if (is_rotation_given(body) && !given_turns(app.mechanism(), body)) quaternion_rows(app, body);
 }
 

@@ -163,9 +163,8 @@ namespace {
 std::string standing_hint(const App& app) {
   const ToolState& tool = app.tool;
   const std::string& name = tool.grab ? tool.grab->stands : tool.caches.aim.named;
-  const bool takes = tool.grab || (tool.tool == Tool::joint && !tool.joint) || tool.tool == Tool::distance ||
-                     tool.tool == Tool::spring || tool.tool == Tool::damper || tool.tool == Tool::force ||
-                     tool.tool == Tool::torque || tool.tool == Tool::drag;
+  const bool takes = tool.grab || (places(tool.tool) && tool.tool != Tool::point &&
+                                   !(tool.tool == Tool::joint && tool.joint));
   return takes && !name.empty() ? "It stands at " + name + " then, and moves with it. " : "";
 }
 

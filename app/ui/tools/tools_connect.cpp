@@ -39,13 +39,22 @@ NewBody rod_between(const ViewInput& input, const Vec3& from, const Vec3& to) {
   return rod;
 }
 
+// From a named point it goes as that is moved, and weighs what its length makes of it.
+void add_rod(Mechanism& mechanism, Selection& selection, const NewBody& rod, const Aim& from, const Aim& to) {
+  const std::string name = add_body(mechanism, rod), shape = "bodies." + name + ".shapes.0.";
+  if (!from.named.empty() || !to.named.empty()) mechanism.bodies.back().density = rod.density;
+  stand_at(mechanism, shape + "from", from.named);
+  stand_at(mechanism, shape + "to", to.named);
+  selection.set({PartKind::body, name});
+}
+
 void add(App& app, const ViewInput& input, const Aim& from, const Aim& to) {
   const std::array<std::string, 2> bodies{from.body, to.body};
   const std::array<Vec3, 2> points{from.point, to.point};
   const Tool tool = app.tool.tool;
   edit(app, "Add " + word_of(tool), [&](Mechanism& mechanism, Selection& selection) {
     if (tool == Tool::rod)
-      return selection.set({PartKind::body, add_body(mechanism, rod_between(input, points[0], points[1]))});
+      return add_rod(mechanism, selection, rod_between(input, points[0], points[1]), from, to);
     Part part;
     if (tool == Tool::distance)
       part = {PartKind::joint, add_distance(mechanism, bodies, points)};

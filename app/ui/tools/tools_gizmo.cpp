@@ -33,6 +33,12 @@ std::optional<PointId> point_of(const Mechanism& mechanism, const Grab& grab) {
   return grab.point ? grab.point : only_point(mechanism, grab.selection);
 }
 
+// Of what then stands at a named point; empty: it does not.
+std::string address_of(const Mechanism& mechanism, const Grab& grab) {
+  const auto point = point_of(mechanism, grab);
+  return point ? point_address(mechanism, *point) : "";
+}
+
 void move_grabbed(Mechanism& mechanism, const Grab& grab, const Vec3& target, OuterJoints joints) {
   if (const int named = point_index(mechanism, grab.named); named >= 0)
     mechanism.points[static_cast<std::size_t>(named)].at = target;
@@ -144,7 +150,7 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
       grab.what = point->what;
       for (int i = 0; i < 3; ++i)
         if (free[static_cast<std::size_t>(i)]) target[i] = point->point[i];
-      if (target == point->point && point_of(*grab.before, grab)) grab.stands = point->named;
+      if (target == point->point && !address_of(*grab.before, grab).empty()) grab.stands = point->named;
     }
   } else if (!input.moved) {
     return; // a press does not move anything
@@ -155,8 +161,7 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
   grab.shift = input.shift;
   edit_grabbed(app, [&](Mechanism& mechanism) {
     move_grabbed(mechanism, grab, target, joints_of_moved(app, input.shift));
-    if (const auto point = point_of(mechanism, grab))
-      stand_at(mechanism, point_address(mechanism, *point), grab.stands);
+    stand_at(mechanism, address_of(mechanism, grab), grab.stands);
   });
   tell_joints(app, grab.selection, input.shift);
 }

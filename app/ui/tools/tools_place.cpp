@@ -2,6 +2,7 @@
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/tools/typed_size.hpp"
 #include "app/viewport/snapping.hpp"
@@ -114,7 +115,9 @@ void use_placing(App& app, const ViewInput& input) {
     return;
   }
   edit(app, "Add " + form_name(form), [&](Mechanism& mechanism, Selection& selection) {
-    selection.set({PartKind::body, add_body(mechanism, body)});
+    const Part part{PartKind::body, add_body(mechanism, body)};
+    stand_at(mechanism, point_address(mechanism, {part, 0}), from.named);
+    selection.set(part);
   });
   tool.last_point = from.point;
   tool.spent = input.held; // Enter, while the button is down
