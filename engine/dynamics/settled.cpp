@@ -19,6 +19,14 @@ double largest_rate(const CoordinateTrack& track) {
   return largest;
 }
 
+// Whether at the last sample nothing moves that no drive does, and friction may be what holds it.
+bool is_held(const Run& run) {
+  if (run.segments.empty() || !has_friction(run.segments.back().model->mechanism)) return false;
+  return std::ranges::all_of(run.coordinates, [](const CoordinateTrack& track) {
+    return track.driven || std::abs(track.rate.back()) <= 1e-9 * largest_rate(track);
+  });
+}
+
 } // namespace
 
 double distance_from(const Run& run, std::size_t sample, const Solution& steady) {
@@ -70,6 +78,10 @@ Settled find_settled(const Run& run, const Solution& steady, double within) {
     --first;
   }
   const std::string distance = rounded_text(out.distance, 2) + " from the direct solution";
+  if (first == run.time.size() && is_held(run)) {
+    out.message = "Friction holds it " + distance + ", within the band of steady states.";
+    return out;
+  }
   if (first == run.time.size()) {
     out.message =
         "Not settled after " + rounded_text(run.time.back() - run.time.front(), 4) + " s: " + distance + ".";
