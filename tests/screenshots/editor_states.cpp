@@ -238,6 +238,17 @@ TEST_CASE("how the governor scatters is drawn below the view, and around its res
   }
 }
 
+TEST_CASE("what friction holds is told, and drawn around the response") {
+  Hand hand("governor_friction.json");
+  set_mode(hand.app, Mode::explore);
+  open_study(hand.app, StudyKind::response);
+  hand.frames(2);
+  choose_response_end(hand.app, &ResponseChoice::from, 14);
+  choose_response_end(hand.app, &ResponseChoice::to, 20);
+  hand.app.study.response.choice.quantity = "value lift";
+  hand.check("study-friction");
+}
+
 TEST_CASE("the tutorial's pictures are what its steps lead to") {
   Robot robot(building_size, steady_options().numbers);
   robot.app.view.samples = 4;

@@ -133,8 +133,8 @@ void results_panel(App& app, const PanelRect& rect) {
     pull_results(app);
     neutral_joints(app);
     coordinate_results(app);
-    measure_results(app);
     friction_results(app);
+    measure_results(app);
     body_results(app);
     // What runs away leaves a residual that says nothing: it is small because everything else is large.
     if (app.answer.solution.unheld.empty()) solver_results(app);
