@@ -65,7 +65,7 @@ std::string model_text(const Mechanism& mechanism, const LinearModel& model) {
         const LinearSignal &y = model.outputs[i], &u = model.inputs[j];
         const double gain = (*model.gain)(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
         rows.push_back({printable(y.name) + " by " + printable(u.name), fmt::format("{:.12g}", gain),
-                        y.unit + (u.unit.empty() ? "" : "/(" + u.unit + ")")});
+                        transfer_unit(y, u)});
       }
     out += "  static gain:\n" + aligned(rows, true);
   } else {
@@ -110,7 +110,7 @@ void run(const LinearizeArguments& arguments, Ending& ending) {
     nlohmann::ordered_json told = linear_model_json(mechanism, model);
     if (table) {
       told["frequencies_hz"] = frequencies;
-      const auto curves = bode(model, frequencies);
+      const auto curves = frequency_response(model, frequencies);
       for (std::size_t i = 0; i < model.outputs.size(); ++i)
         for (std::size_t j = 0; j < model.inputs.size(); ++j) {
           nlohmann::ordered_json magnitude = nlohmann::ordered_json::array(), phase = magnitude;

@@ -8,8 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace flyball {
 namespace {
@@ -295,44 +293,13 @@ std::string linear_model_file(const Mechanism& mechanism, const LinearModel& mod
   return linear_model_json(mechanism, model).dump(2) + "\n";
 }
 
-std::vector<double> log_spaced(double from, double to, int count) {
-  std::vector<double> out{from};
-  for (int i = 1; i < count; ++i)
-    out.push_back(i + 1 == count ? to : from * std::pow(to / from, i / static_cast<double>(count - 1)));
-  return out;
-}
-
-std::vector<std::vector<BodePoint>> bode(const LinearModel& model, const std::vector<double>& frequencies) {
-  const std::size_t inputs = model.inputs.size(), outputs = model.outputs.size();
-  std::vector<std::vector<BodePoint>> out(inputs * outputs);
-  std::vector<double> before(out.size(), 0);
-  const double none = std::numeric_limits<double>::quiet_NaN(), degrees = 180 / std::numbers::pi;
-  for (const double f : frequencies) {
-    const auto h = transfer(best_form(model), {0, 2 * std::numbers::pi * f});
-    for (std::size_t i = 0; i < outputs; ++i)
-      for (std::size_t j = 0; j < inputs; ++j) {
-        const std::size_t pair = i * inputs + j;
-        if (!h) {
-          out[pair].push_back({f, none, none});
-          continue;
-        }
-        const std::complex<double> value = (*h)(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-        double phase = std::arg(value) * degrees;
-        phase = out[pair].empty() ? phase : before[pair] + std::remainder(phase - before[pair], 360);
-        before[pair] = phase;
-        out[pair].push_back({f, std::abs(value), phase});
-      }
-  }
-  return out;
-}
-
 std::string bode_csv(const LinearModel& model, const std::vector<double>& frequencies) {
-  const auto curves = bode(model, frequencies);
+  const auto curves = frequency_response(model, frequencies);
   std::string out = "frequency (Hz)";
   for (const LinearSignal& output : model.outputs)
     for (const LinearSignal& input : model.inputs) {
       const std::string pair = output.name + " by " + input.name;
-      const std::string unit = output.unit + (input.unit.empty() ? "" : "/(" + input.unit + ")");
+      const std::string unit = transfer_unit(output, input);
       out += "," + csv_field(pair + (unit.empty() ? "" : " (" + unit + ")"));
       out += "," + csv_field(pair + ", phase (deg)");
     }

@@ -14,6 +14,7 @@ void open_study(Session& session, StudyKind study) {
   if (study != StudyKind::map) close_map(session);
   if (study != StudyKind::response) close_response(session);
   if (study != StudyKind::spread) close_spread(session);
+  if (study != StudyKind::transfer) close_transfer(session);
   session.study.open = study;
   if (study == StudyKind::motion) show_motion(session, true);
 }
@@ -26,6 +27,7 @@ void update_studies(Session& session) {
   update_band(session);
   update_friction(session);
   update_spread(session);
+  update_transfer(session);
   update_comparison(session);
 }
 
@@ -33,8 +35,8 @@ bool studying(const Session& session) {
   const StudyState& study = session.study;
   return computing_motion(session) || computing_response(session) || comparing(session) ||
          study.states.running() || finding_modes(session) || computing_map(session) ||
-         study.spread.samples.running() || study.band.computed.running() || study.friction.report.running() ||
-         study.friction.ribbon.running();
+         study.spread.samples.running() || study.transfer.found.running() || study.band.computed.running() ||
+         study.friction.report.running() || study.friction.ribbon.running();
 }
 
 } // namespace flyball

@@ -9,12 +9,13 @@
 #include "app/session/spread.hpp"
 #include "app/session/spread_band.hpp"
 #include "app/session/states.hpp"
+#include "app/session/transfer.hpp"
 
 namespace flyball {
 
 struct Session;
 
-enum class StudyKind { none, motion, compare, response, states, modes, map, spread };
+enum class StudyKind { none, motion, compare, response, states, modes, map, spread, transfer };
 
 struct StudyState {
   StudyKind open = StudyKind::none;
@@ -24,6 +25,7 @@ struct StudyState {
   ModesState modes;
   MapState map;
   SpreadState spread;
+  TransferState transfer;
   BandState band; // around the response curve
   FrictionState friction;
 };

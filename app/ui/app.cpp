@@ -83,6 +83,11 @@ void update(App& app, double seconds, ViewSize view) {
   if (app.study.open != StudyKind::response) app.plots.response = {};
   if (app.study.open != StudyKind::map) app.plots.map = {};
   if (app.study.open != StudyKind::spread) app.plots.spread = {};
+  if (app.study.open != StudyKind::transfer) {
+    const bool hertz = app.plots.transfer.hertz;
+    app.plots.transfer = {};
+    app.plots.transfer.hertz = hertz;
+  }
   if (app.study.open != StudyKind::modes) {
     const bool hertz = app.plots.campbell.hertz;
     app.plots.campbell = {};

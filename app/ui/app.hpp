@@ -106,6 +106,7 @@ enum class Dialog {
   recover,
   export_picture,
   export_report,
+  export_model,
   save_plot,
   export_run,
   mirror,

@@ -63,6 +63,7 @@ void build_gui(App& app) {
   gallery_dialog(app);
   export_dialog(app);
   report_dialog(app);
+  model_dialog(app);
   movie_dialog(app);
   plot_dialog(app);
   mirror_dialog(app);

@@ -28,6 +28,7 @@ void recovery_dialog(App& app);
 void gallery_dialog(App& app);
 void export_dialog(App& app);
 void report_dialog(App& app);
+void model_dialog(App& app);
 void movie_dialog(App& app);
 void file_banner(App& app, const PanelRect& view); // over the view: what happened to the file on disk
 

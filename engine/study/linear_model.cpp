@@ -282,6 +282,9 @@ class Builder {
     const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
     const auto inputs = static_cast<Eigen::Index>(signals_.inputs.size()),
                outputs = static_cast<Eigen::Index>(signals_.outputs.size());
+    if (basis.cols() != k)
+      throw Refusal{
+          "The loops hold other directions at another phase of the drives: no constant matrices tell of it."};
     const int n = model_.system.nv;
     const auto all = static_cast<Eigen::Index>(model_.released.nv);
     // Coordinates of the model from those on the basis, and back.

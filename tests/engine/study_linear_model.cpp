@@ -511,3 +511,12 @@ TEST_CASE("bodies without mass leave E singular", "[linear-model]") {
   CHECK(model.poles.size() == 3);
   CHECK_THAT(refusal(m, {"torque(x2)"}, {"ax(light)"}), ContainsSubstring("without mass"));
 }
+
+TEST_CASE("loops that hold nothing leave the coordinates free", "[linear-model]") {
+  // A door on two hinges of one axis: every row of the second says what the first says.
+  const LinearModel model = made(stored_case("reactions_nonunique_by_joint"), {"torque(p1)"}, {"p1", "p2"});
+  CHECK(model.states.size() == 4);
+  REQUIRE(model.gain);
+  CHECK((*model.gain)(0, 0) > 0);
+  CHECK((*model.gain)(1, 0) == Approx((*model.gain)(0, 0)).epsilon(1e-11));
+}

@@ -285,3 +285,11 @@ TEST_CASE("the context menu of a body") {
   hand.frames(2);
   hand.check("context-menu");
 }
+
+TEST_CASE("the governor's transfer function is drawn below the view") {
+  Hand hand("governor.json");
+  set_mode(hand.app, Mode::explore);
+  hand.app.study.transfer.choice = {"torque(slide)", "slide"};
+  open_study(hand.app, StudyKind::transfer);
+  hand.check("study-transfer");
+}

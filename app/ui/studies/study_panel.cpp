@@ -25,6 +25,8 @@ constexpr std::array tabs{
     Tab{StudyKind::map, "study/map", "Map", "A coordinate over the plane of two parameters, with its folds"},
     Tab{StudyKind::spread, "study/spread", "Spread",
         "How the steady state scatters with tolerances of numbers"},
+    Tab{StudyKind::transfer, "study/transfer", "Transfer",
+        "The linear model about the steady state: transfer function, poles and zeros"},
     Tab{StudyKind::compare, "study/compare", "Compare", "Error against run time: direct solution and motion"},
 };
 
@@ -81,6 +83,7 @@ void study_panel(App& app, const PanelRect& rect) {
   case StudyKind::modes: modes_panel(app); break;
   case StudyKind::map: map_panel(app); break;
   case StudyKind::spread: spread_panel(app); break;
+  case StudyKind::transfer: transfer_panel(app); break;
   }
   ImGui::End();
   if (closed) open_study(app, StudyKind::none);

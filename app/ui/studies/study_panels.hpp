@@ -15,6 +15,7 @@ void states_panel(App& app);
 void modes_panel(App& app);
 void map_panel(App& app);
 void spread_panel(App& app);
+void transfer_panel(App& app);
 
 // The name and the unit of what a plot over time can show.
 struct MotionQuantity {

@@ -66,6 +66,18 @@ struct SpreadView {
   } of;
 };
 
+struct TransferView {
+  bool hertz = true; // or rad/s
+  PlotView magnitude_view, phase_view, roots_view;
+  Plot magnitude, phase, roots;
+  struct Of {
+    std::shared_ptr<const void> model; // what was found
+    bool hertz = true;
+    bool operator==(const Of&) const = default;
+  } of;
+  TransferChoice fitted; // what was chosen when all of the plots was last in view
+};
+
 struct CampbellView {
   bool hertz = true; // or rad/s
   PlotView view;
@@ -99,6 +111,7 @@ struct StudyViews {
   ResponseView response;
   MapView map;
   SpreadView spread;
+  TransferView transfer;
   CampbellView campbell;
   std::array<MotionPlot, 2> motion;
 };

@@ -1,0 +1,59 @@
+#include "app/report/linear_model_file.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/dialog.hpp"
+#include "app/ui/widgets/file_list.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/file.hpp"
+
+namespace flyball {
+
+void show_model_dialog(App& app) {
+  app.dialog.wanted = Dialog::export_model;
+  show_folder(app, usual_folder(app));
+  app.file_dialogs.replacing.clear();
+  const std::filesystem::path& file = app.document.file();
+  app.dialog.path = (file.empty() ? file_stem(app.mechanism().name) : file.stem().string()) + "-model.m";
+}
+
+void model_dialog(App& app) {
+  if (!begin_dialog(app, Dialog::export_model, "Export the linear model", 520)) return;
+  bool accepted = path_field(app, "model", "Name");
+  folder_line(app, "model");
+  const auto& found = app.study.transfer.found.found;
+  const std::string ending = typed_path(app).extension().string();
+  const std::filesystem::path file = typed_file(app, linear_model_format(ending) ? ending : ".m");
+  const auto format = linear_model_format(file.extension().string());
+  paragraph(
+      "The ending decides: .m for MATLAB and Octave, .py for Python, .npz for NumPy, .json for all of it.",
+      format ? colors_of(app).dim : colors_of(app).bad);
+  const bool replaces = file == app.file_dialogs.replacing;
+  if (replaces)
+    paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+  else if (!app.file_dialogs.message.empty())
+    paragraph(app.file_dialogs.message, colors_of(app).bad);
+  ImGui::Dummy({0, 2 * app.scale});
+  const bool usable = has_transfer(app) && format && !app.dialog.path.empty();
+  ImGui::BeginDisabled(!usable);
+  accepted = text_button(app, "model/save", replaces ? "Replace" : "Export", true) || accepted;
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  std::error_code ignored;
+  if (text_button(app, "model/cancel", "Cancel") || escape_pressed()) {
+    close_dialog();
+  } else if (accepted && usable && std::filesystem::is_directory(typed_path(app), ignored)) {
+    entered_file(app, false); // goes there
+  } else if (accepted && usable && may_replace(app, file)) {
+    try {
+      replace_file(file, linear_model_file(*found->of.mechanism, found->result.model, *format));
+      app.notice = "Saved " + file.string();
+      close_dialog();
+    } catch (const SceneError& error) {
+      app.file_dialogs.message = error.what();
+      app.file_dialogs.replacing.clear();
+    }
+  }
+  end_dialog();
+}
+
+} // namespace flyball

@@ -1,0 +1,164 @@
+// The transfer function of one input and one output: what is chosen, what it says, Bode's plots, poles and
+// zeros.
+#include "app/plot/transfer_plot.hpp"
+#include "app/ui/file_commands.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/plots/shown_plot.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/task_bar.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace flyball {
+
+namespace {
+
+constexpr float transfer_words_width = 330; // points
+constexpr double transfer_patience = 0.25;  // s: a shorter wait is not worth a bar
+
+// Addresses as phrases, each once; what is no address stays as it is written.
+std::vector<std::string> signal_phrases(const App& app, const std::vector<std::string>& signals) {
+  std::vector<std::string> phrases;
+  std::set<std::string> taken;
+  for (const std::string& signal : signals) {
+    std::string phrase = has_number(app.mechanism(), signal) ? parameter_phrase(signal) : signal;
+    phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : signal);
+  }
+  return phrases;
+}
+
+void signal_row(App& app, const char* name, const char* label, const std::vector<std::string>& signals,
+                std::string& chosen, const char* help) {
+  const std::vector<std::string> phrases = signal_phrases(app, signals);
+  const auto at = std::ranges::find(signals, chosen);
+  const std::string shown =
+      at == signals.end() ? chosen : phrases[static_cast<std::size_t>(at - signals.begin())];
+  if (const auto other = name_choice_row(app, name, label, phrases, shown, help))
+    chosen = signals[static_cast<std::size_t>(std::ranges::find(phrases, *other) - phrases.begin())];
+}
+
+std::string root_text(std::complex<double> s) {
+  if (std::abs(s.imag()) <= 1e-9 * std::abs(s)) return short_text(s.real(), 5);
+  return short_text(s.real(), 5) + " ± " + short_text(std::abs(s.imag()), 5) + " i";
+}
+
+void root_rows(App& app, const char* title, const char* name, const std::vector<std::complex<double>>& roots,
+               const char* help) {
+  heading(app, title);
+  help_on_hover(help);
+  std::size_t number = 0;
+  for (const std::complex<double> s : roots) {
+    if (s.imag() < 0) continue;
+    row(app, std::to_string(++number), root_text(s), "1/s");
+  }
+  note_widget(app.widgets, name);
+  if (number == 0) paragraph("None.", colors_of(app).dim);
+}
+
+void transfer_words(App& app) {
+  TransferState& state = app.study.transfer;
+  const UiColors& colors = colors_of(app);
+  signal_row(app, "transfer/input", "Input", transfer_inputs(app), state.choice.input,
+             "What acts: a number, or a torque or force that is added.");
+  signal_row(app, "transfer/output", "Output", transfer_outputs(app), state.choice.output,
+             "What is looked at.");
+  bool hertz = app.plots.transfer.hertz;
+  if (text_button(app, "transfer/hertz", hertz ? "in rad/s" : "in Hz")) app.plots.transfer.hertz = !hertz;
+  help_on_hover("The unit of frequencies.");
+  ImGui::SameLine();
+  const bool any = has_transfer(app);
+  ImGui::BeginDisabled(!any);
+  if (text_button(app, "transfer/save", "Export the model…")) show_model_dialog(app);
+  ImGui::EndDisabled();
+  help_on_hover("A, B, C, D for MATLAB, Python or NumPy, or as JSON.");
+  if (state.found.running() && state.found.seconds() > transfer_patience) {
+    if (text_button(app, "transfer/cancel", "Cancel")) state.found.stop();
+    ImGui::SameLine();
+    task_bar(app, "transfer/progress", state.found.progress(), state.found.seconds(),
+             std::max(ImGui::GetContentRegionAvail().x - margin_width(app), 20 * app.scale));
+  }
+  if (!state.found.problem.empty()) {
+    paragraph(state.found.problem, colors.warn);
+    note_widget(app.widgets, "transfer/problem");
+  } else if (!app.mistakes.empty())
+    paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
+  else if (!converged(app) && !solving(app))
+    paragraph("There is no steady state to make a model about.", colors.warn);
+  if (!any) return;
+  const FoundTransfer& found = state.found.found->result;
+  const LinearModel& model = found.model;
+  const NumberStyle& numbers = app.options.numbers;
+  const std::string unit = written_unit(transfer_unit(model.outputs[0], model.inputs[0]));
+  heading(app, "Transfer function");
+  if (model.gain) {
+    const double gain = (*model.gain)(0, 0);
+    row(app, "Static gain", value_text(gain, std::abs(gain) * 1e-6, numbers), unit.c_str(),
+        "What a lasting change of the input by one unit comes to in the end, where the state is stable.");
+    note_widget(app.widgets, "transfer/gain");
+  } else {
+    paragraph("Something integrates: there is no static gain.", colors.dim);
+  }
+  row(app, "0 dB stands for", "1", unit.c_str(),
+      "Of the magnitude: one SI unit of the output by one of the input.");
+  note_widget(app.widgets, "transfer/reference");
+  row(app, "States", std::to_string(model.states.size()), "", "Coordinates and their rates.");
+  if (model.output_error[0] > 0)
+    row(app, "Relative error", magnitude_text(model.output_error[0], numbers), "",
+        "Estimated, of the output's rows C and D; A and B are exact to rounding.");
+  if (numbers.run_times)
+    row(app, "Run time", duration_text(model.steady.run_time_s + model.run_time_s, numbers), "");
+  root_rows(app, "Poles", "transfer/poles", model.poles, "Of the whole mechanism: its eigenvalues.");
+  if (found.has_zeros)
+    root_rows(app, "Zeros", "transfer/zeros", found.zeros,
+              "Where the output does not feel the input; one that a pole equals cancels it.");
+}
+
+void draw_transfer(App& app) {
+  const TransferState& state = app.study.transfer;
+  TransferView& drawn = app.plots.transfer;
+  if (!has_transfer(app)) return;
+  const FoundTransfer& found = state.found.found->result;
+  if (drawn.of != TransferView::Of{state.found.found, drawn.hertz}) {
+    const bool other = drawn.fitted != state.found.found->of.choice || drawn.of.hertz != drawn.hertz;
+    drawn.of = {state.found.found, drawn.hertz};
+    drawn.fitted = state.found.found->of.choice;
+    replace_plot(drawn.magnitude, magnitude_plot(found.response, drawn.hertz));
+    replace_plot(drawn.phase, phase_plot(found.response, drawn.hertz));
+    replace_plot(drawn.roots, pole_zero_plot(found.model.poles, found.zeros));
+    if (other)
+      for (PlotView* view : {&drawn.magnitude_view, &drawn.phase_view, &drawn.roots_view})
+        fit_plot(*view);
+  }
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const float gap = 8 * app.scale, left = std::max(0.62f * (room.x - gap), 40.f),
+              right = std::max(room.x - gap - left, 40.f), high = std::max((room.y - gap) / 2, 40.f);
+  ImGui::BeginGroup();
+  plot_view(app, "transfer magnitude", drawn.magnitude_view, drawn.magnitude, {left, high});
+  plot_view(app, "transfer phase", drawn.phase_view, drawn.phase, {left, high});
+  ImGui::EndGroup();
+  ImGui::SameLine(0, gap);
+  plot_view(app, "poles and zeros", drawn.roots_view, drawn.roots, {right, std::max(room.y, 40.f)});
+}
+
+} // namespace
+
+void transfer_panel(App& app) {
+  const float s = app.scale;
+  ImGui::BeginChild("words", {transfer_words_width * s, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
+  transfer_words(app);
+  ImGui::PopStyleVar();
+  ImGui::EndChild();
+  ImGui::SameLine(0, 14 * s);
+  ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  draw_transfer(app);
+  ImGui::EndChild();
+}
+
+} // namespace flyball

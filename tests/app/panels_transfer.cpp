@@ -1,0 +1,180 @@
+// The linear model as a person uses it: an input and an output, Bode's plots, poles and zeros, and the file.
+#include "app/ui/commands.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/file.hpp"
+#include "robot.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+struct TransferRobot : Robot {
+  explicit TransferRobot(const std::string& scene = "governor") : Robot({1400, 1000}) {
+    open_scene(app, shipped_file(scene));
+    frames(3);
+    open_study(app, StudyKind::motion);
+    frames(2);
+    click("study/transfer");
+    frames(3);
+  }
+  TransferState& state() { return app.study.transfer; }
+  const FoundTransfer& found() {
+    INFO(state().found.problem);
+    REQUIRE(state().found.found);
+    return state().found.found->result;
+  }
+  const TransferView& view() { return app.plots.transfer; }
+};
+
+// What stands at a frequency of a plot's only curve, between its points.
+double read(const Plot& plot, double frequency) {
+  const auto& points = plot.curves.at(0).points;
+  const auto after = std::ranges::find_if(points, [&](const auto& p) { return p[0] >= frequency; });
+  REQUIRE(after != points.begin());
+  REQUIRE(after != points.end());
+  const auto& [x, y] = *(after - 1);
+  return y + (frequency - x) / ((*after)[0] - x) * ((*after)[1] - y);
+}
+
+} // namespace
+
+TEST_CASE("without being asked for there is no linear model") {
+  Robot robot;
+  CHECK_FALSE(robot.app.study.transfer.found.asked);
+  CHECK(robot.app.widgets.count("plot/transfer magnitude/area") == 0);
+}
+
+TEST_CASE("the transfer function of what the response shows is drawn, with its poles") {
+  TransferRobot robot;
+  CHECK(robot.state().choice.input == "joints.spin.drive.speed");
+  CHECK(robot.state().choice.output == "slide");
+  const FoundTransfer& found = robot.found();
+  for (const char* name :
+       {"plot/transfer magnitude/area", "plot/transfer phase/area", "plot/poles and zeros/area",
+        "transfer/gain", "transfer/reference", "transfer/poles", "transfer/save"})
+    CHECK(robot.app.widgets.count(name) == 1);
+  const Solution& solution = robot.app.answer.solution;
+  REQUIRE(solution.eigenvalues);
+  REQUIRE(found.model.poles.size() == solution.eigenvalues->size());
+  for (std::size_t i = 0; i < found.model.poles.size(); ++i)
+    CHECK(std::abs(found.model.poles[i] - (*solution.eigenvalues)[i]) < 1e-9);
+  // At low frequencies the static gain, at the natural one the peak.
+  const double low = read(robot.view().magnitude, 0.15);
+  CHECK(low == Approx(20 * std::log10(std::abs((*found.model.gain)(0, 0)))).margin(0.3));
+  const double natural = std::abs(found.model.poles.front()) / 6.283185307179586;
+  CHECK(read(robot.view().magnitude, natural) > low + 15);
+  CHECK(read(robot.view().magnitude, natural) > read(robot.view().magnitude, 1.5 * natural) + 10);
+  // The collar falls behind by a quarter turn there.
+  CHECK(std::abs(read(robot.view().phase, 0.15) - read(robot.view().phase, natural)) == Approx(90).margin(6));
+  CHECK(robot.view().roots.curves.at(0).points.size() == 2);
+}
+
+TEST_CASE("the plots are over hertz or radians a second") {
+  TransferRobot robot;
+  const double hertz = robot.view().magnitude.curves.at(0).points.front()[0];
+  CHECK(robot.view().magnitude.x.unit == "Hz");
+  robot.click("transfer/hertz");
+  robot.frames(2);
+  CHECK(robot.view().magnitude.x.unit == "rad/s");
+  CHECK(robot.view().phase.x.unit == "rad/s");
+  CHECK(robot.view().magnitude.curves.at(0).points.front()[0] == Approx(6.283185307179586 * hertz));
+}
+
+TEST_CASE("another input and another output are chosen, and what has no model says why") {
+  TransferRobot robot;
+  robot.click("transfer/input"); // of many
+  robot.frames(2);
+  robot.type("torque(slide)");
+  robot.frames(2);
+  robot.click("transfer/input/torque(slide)");
+  robot.frames(3);
+  CHECK(robot.state().choice.input == "torque(slide)");
+  const double compliance = (*robot.found().model.gain)(0, 0);
+  CHECK(compliance > 0);
+  robot.click("transfer/output");
+  robot.click("transfer/output/rate(slide)");
+  robot.frames(3);
+  CHECK((*robot.found().model.gain)(0, 0) == Approx(0).margin(1e-12));
+  REQUIRE(robot.found().has_zeros);
+  REQUIRE(robot.found().zeros.size() == 1);
+  CHECK(std::abs(robot.found().zeros[0]) < 1e-9);
+  CHECK(robot.view().roots.curves.size() == 2);
+  robot.click("transfer/output");
+  robot.click("transfer/output/torque(spin)");
+  robot.frames(3);
+  CHECK(robot.found().model.outputs[0].unit == "N m");
+  robot.state().choice.input = "joints.spin.drive.speed";
+  robot.frames(3);
+  CHECK_FALSE(robot.state().found.found);
+  CHECK(robot.app.widgets.count("transfer/problem") == 1);
+  CHECK(robot.state().found.problem.find("feels the rate") != std::string::npos);
+  CHECK(robot.app.widgets.count("plot/transfer magnitude/area") == 0);
+  robot.state().choice.output = "slide";
+  robot.frames(3);
+  CHECK(robot.found().model.refusal.empty());
+}
+
+TEST_CASE("the model follows a number that a hand moves") {
+  TransferRobot robot;
+  const auto before = robot.found().model.poles.front();
+  change_parameter(robot.app, "joints.slide.damping", 60);
+  robot.frames(4);
+  CHECK(robot.found().model.poles.front().real() < 1.8 * before.real());
+  // Without a steady state there is none to be made; what was chosen stays.
+  robot.app.study.transfer.choice.output = "rate(slide)";
+  robot.click("study/close");
+  robot.frames(2);
+  CHECK_FALSE(robot.state().found.found);
+  open_study(robot.app, StudyKind::transfer);
+  robot.frames(3);
+  CHECK(robot.state().choice.output == "rate(slide)");
+  CHECK(robot.found().model.outputs[0].name == "rate(slide)");
+}
+
+TEST_CASE("an engine's governor has its shaft among the states") {
+  TransferRobot robot("governor_engine");
+  robot.state().choice = {"torque(spin)", "rate(spin)"};
+  robot.frames(3);
+  CHECK(robot.found().model.states.size() == 3);
+  CHECK(robot.found().zeros.size() == 2);
+}
+
+TEST_CASE("the model is exported, by the ending of its name") {
+  TransferRobot robot;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path();
+  for (const char* name :
+       {"flyball_model.m", "flyball_model.py", "flyball_model.json", "flyball_model.npz"}) {
+    const std::filesystem::path file = folder / name;
+    std::filesystem::remove(file);
+    CHECK(is_enabled(robot.app, command("file.model")));
+    run_command(robot.app, "file.model");
+    robot.app.dialog.path = file.string(); // before the field has it
+    robot.frames(3);
+    robot.click("model/save");
+    robot.frames(2);
+    CHECK(robot.app.notice == "Saved " + file.string());
+    CHECK(std::filesystem::file_size(file) > 200);
+    std::filesystem::remove(file);
+  }
+  // Another ending gets MATLAB's.
+  const std::filesystem::path file = folder / "flyball_model.x";
+  robot.click("transfer/save");
+  robot.click("model/cancel");
+  robot.frames(2);
+  run_command(robot.app, "file.model");
+  robot.app.dialog.path = file.string();
+  robot.frames(3);
+  robot.click("model/save");
+  robot.frames(2);
+  const std::string script = read_bytes(file.string() + ".m");
+  CHECK(script.find("input_names = {'joints.spin.drive.speed'};") != std::string::npos);
+  std::filesystem::remove(file.string() + ".m");
+}
