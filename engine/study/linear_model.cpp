@@ -164,6 +164,9 @@ class Builder {
 
   void check(const Solution& steady) const {
     if (steady.status != Status::converged) throw Refusal{steady.message};
+    if (has_friction(mechanism_))
+      throw Refusal{
+          "Dry friction holds, or jumps with the direction of a motion: nothing linear tells of it."};
     if (model_coordinates(steady) > largest_for_eigenvalues)
       throw Refusal{"Linear models are made of at most " + std::to_string(largest_for_eigenvalues) +
                     " coordinates."};
@@ -536,6 +539,9 @@ class Builder {
     out.inputs.assign(signals_.inputs.begin(), signals_.inputs.end());
     out.outputs = signals_.outputs;
     out.output_error = m.error;
+    for (const StateSpace* form : {&out.descriptor, &best_form(out)})
+      for (const Eigen::MatrixXd* matrix : {&form->e, &form->a, &form->b, &form->c, &form->d})
+        if (!matrix->allFinite()) throw Refusal{"The numbers are too far apart for a linear model."};
     const auto found = out.explicit_form
                            ? poles(*out.explicit_form)
                            : pencil_eigenvalues(m.mass, m.velocity, m.stiffness, options_.cancel);

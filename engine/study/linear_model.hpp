@@ -6,8 +6,8 @@
 // b0 = -df/du (balance_rate.hpp). Where u is the speed of a drive its rate enters by the inertia of what the
 // drive carries, b1 = -N^T M_FD. Where it is the length of a distance joint or the offset of a gear, G moves
 // the coordinates so that the loops stay closed; of all that do G is chosen with N^T M G = 0, so that u''
-// does not enter, and b1 = -N^T (C + G) G. With w = p' - M^-1 b1 u no derivative is left (the generalised
-// state of Kailath, Linear Systems, 1980, section 1.2):
+// does not enter, and b1 = -N^T (C + G) G. With w = p' - M^-1 b1 u no derivative is left (as in Ogata,
+// Modern Control Engineering, 5th ed., section 2-5):
 //     p' = w + M^-1 b1 u,   M w' = -K p - (C + G) w + (b0 - (C + G) M^-1 b1) u.
 // The coordinates p are coordinates of joints, as many as are independent. What torques drive has a rate, and
 // no angle unless asked for: nothing depends on it.

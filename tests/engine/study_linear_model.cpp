@@ -488,6 +488,7 @@ TEST_CASE("what has no linear model is refused with the reason", "[linear-model]
   CHECK_THROWS_AS(refusal(governor, {"torque(slide)"}, {"nothing"}), SceneError);
   CHECK_THROWS_AS(refusal(governor, {"torque(slide)", "torque(slide)"}, {"slide"}), SceneError);
   CHECK_THAT(refusal(stored_case("no_equilibrium"), {"gravity.1"}, {"h"}), !ContainsSubstring("phase of"));
+  CHECK_THAT(refusal(shipped("governor_friction"), {"gravity.1"}, {"lift"}), ContainsSubstring("friction"));
   CHECK_THAT(refusal(stored_case("parametric_rotor"), {"gravity.1"}, {"mass()"}),
              ContainsSubstring("turns with the drives"));
 }

@@ -13,6 +13,7 @@
 #include "engine/study/compare.hpp"
 #include "engine/study/design.hpp"
 #include "engine/study/fold_curve.hpp"
+#include "engine/study/frequency_response.hpp"
 #include "engine/study/sweep.hpp"
 
 #include <algorithm>
@@ -175,6 +176,28 @@ Complaint map_curves(const Mechanism& m, const Range& x, const Range& y, const s
   return about(value_curves(m, axis(x), axis(y), coordinate, 0.1, options));
 }
 
+Complaint linear_models(const Mechanism& m, const Range& x, const std::atomic<bool>* cancel) {
+  const std::string coordinate = a_coordinate(Analysis(m));
+  std::vector<std::string> outputs{"mass()"};
+  for (const NamedMeasure& measure : m.measures)
+    outputs.push_back(measure.name);
+  if (!coordinate.empty()) outputs.push_back(coordinate);
+  LinearModelOptions options;
+  options.cancel = cancel;
+  const LinearModel model = linearize(m, std::vector{x.address}, outputs, options);
+  if (!model.refusal.empty()) return std::nullopt;
+  for (const StateSpace* form : {&model.descriptor, &best_form(model)})
+    for (const Eigen::MatrixXd* matrix : {&form->e, &form->a, &form->b, &form->c, &form->d})
+      if (!matrix->allFinite()) return "a number that is none in a linear model";
+  if (model.gain && !model.gain->allFinite()) return "a number that is none in a static gain";
+  for (const std::complex<double> pole : model.poles)
+    if (!std::isfinite(pole.real()) || !std::isfinite(pole.imag())) return "a number that is none in a pole";
+  for (const double frequency : telling_frequencies(model, 10))
+    if (!(frequency > 0) || !std::isfinite(frequency)) return "a frequency that is none";
+  frequency_response(model, telling_frequencies(model, 10));
+  return std::nullopt;
+}
+
 } // namespace
 
 std::optional<std::string> check_analysis(std::string_view bytes, int which, unsigned seed,
@@ -201,6 +224,7 @@ std::optional<std::string> check_analysis(std::string_view bytes, int which, uns
     case 5: complaint = motion(m, seed, cancel); break;
     case 6: complaint = comparison(m, cancel); break;
     case 7: complaint = sweeps(m, x, cancel); break;
+    case 8: complaint = linear_models(m, x, cancel); break;
     default: complaint = map_curves(m, x, y, cancel);
     }
   } catch (const SceneError& error) {

@@ -9,11 +9,11 @@
 
 namespace flyball::fuzz {
 
-inline constexpr int analysis_count = 9;
+inline constexpr int analysis_count = 10;
 
 // What does not hold, in words. `which` is below analysis_count and chooses among all equilibria, modes,
-// branches, all branches, design, motion, comparison, sweep and the map's curves; what they vary is chosen by
-// `seed`. Bytes that are no valid small mechanism are passed over. Cancelled after `limit`.
+// branches, all branches, design, motion, comparison, sweep, linear models and the map's curves; what they
+// vary is chosen by `seed`. Bytes that are no valid small mechanism are passed over. Cancelled after `limit`.
 std::optional<std::string> check_analysis(std::string_view bytes, int which, unsigned seed,
                                           std::chrono::milliseconds limit);
 

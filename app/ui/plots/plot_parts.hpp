@@ -3,6 +3,7 @@
 
 #include "app/ui/plots/plot_draw.hpp"
 #include "app/ui/plots/plot_view.hpp"
+#include "app/ui/widgets/widget_map.hpp"
 
 namespace flyball {
 
