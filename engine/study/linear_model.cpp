@@ -539,8 +539,8 @@ class Builder {
     out.inputs.assign(signals_.inputs.begin(), signals_.inputs.end());
     out.outputs = signals_.outputs;
     out.output_error = m.error;
-    for (const StateSpace* form : {&out.descriptor, &best_form(out)})
-      for (const Eigen::MatrixXd* matrix : {&form->e, &form->a, &form->b, &form->c, &form->d})
+    for (const StateSpace& form : {out.descriptor, best_form(out)})
+      for (const Eigen::MatrixXd* matrix : {&form.e, &form.a, &form.b, &form.c, &form.d})
         if (!matrix->allFinite()) throw Refusal{"The numbers are too far apart for a linear model."};
     const auto found = out.explicit_form
                            ? poles(*out.explicit_form)

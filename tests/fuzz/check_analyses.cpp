@@ -186,8 +186,8 @@ Complaint linear_models(const Mechanism& m, const Range& x, const std::atomic<bo
   options.cancel = cancel;
   const LinearModel model = linearize(m, std::vector{x.address}, outputs, options);
   if (!model.refusal.empty()) return std::nullopt;
-  for (const StateSpace* form : {&model.descriptor, &best_form(model)})
-    for (const Eigen::MatrixXd* matrix : {&form->e, &form->a, &form->b, &form->c, &form->d})
+  for (const StateSpace& form : {model.descriptor, best_form(model)})
+    for (const Eigen::MatrixXd* matrix : {&form.e, &form.a, &form.b, &form.c, &form.d})
       if (!matrix->allFinite()) return "a number that is none in a linear model";
   if (model.gain && !model.gain->allFinite()) return "a number that is none in a static gain";
   for (const std::complex<double> pole : model.poles)
