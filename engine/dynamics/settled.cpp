@@ -23,7 +23,7 @@ double largest_rate(const CoordinateTrack& track) {
 bool is_held(const Run& run) {
   if (run.segments.empty() || !has_friction(run.segments.back().model->mechanism)) return false;
   return std::ranges::all_of(run.coordinates, [](const CoordinateTrack& track) {
-    return track.driven || std::abs(track.rate.back()) <= 1e-9 * largest_rate(track);
+    return track.driven || std::abs(track.rate.back()) <= 1e-9 * std::max(largest_rate(track), 1e-3);
   });
 }
 

@@ -164,7 +164,9 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     const bool is_held = std::ranges::any_of(which.independent, [&](std::size_t i) {
       return frictions[i].joint == c.joint && frictions[i].coordinate == c.coordinate;
     });
-    if (!is_held) rest.emplace_back(name, value);
+    // Without friction of its own a joint may close a loop, and then follows.
+    const bool follows = c.joint >= 0 && held.find(locked, c) < 0;
+    if (!is_held && !follows) rest.emplace_back(name, value);
   }
   for (const std::size_t i : which.independent) {
     const int to = held.find(locked, frictions[i]), from = free.find(mechanism, frictions[i]);

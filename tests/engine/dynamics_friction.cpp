@@ -1,6 +1,7 @@
 // Stick and slip in the motion, against closed forms.
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/study/holding.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/friction_scenes.hpp"
 #include "tests/support/scenes.hpp"
@@ -95,6 +96,27 @@ TEST_CASE("a block on a rod that tilts begins to slide when its weight along it 
   CHECK(run.frictions[0].slips == -1);
   CHECK_THAT(run.frictions[0].time, WithinRel(std::asin((f + m * r * n * n) / (m * g)) / n, 1e-7));
   CHECK(energy_error(run) < 1e-6);
+}
+
+TEST_CASE("a linkage that comes to rest is held by the friction of all its joints") {
+  Mechanism m = shipped("watt_governor");
+  for (Joint& joint : m.joints)
+    for (Coordinate& c : joint.coordinates)
+      if (!c.drive) c.friction.emplace().limit = joint.type == JointType::prismatic ? 1.5 : 0.05;
+  SimulationOptions options;
+  options.duration = 5;
+  const Run run = run_of(m, options);
+  REQUIRE_FALSE(run.frictions.empty());
+  std::vector<std::pair<std::string, double>> at;
+  for (const CoordinateTrack& track : run.coordinates) {
+    CHECK((track.driven || track.rate.back() == 0));
+    if (!track.driven) at.emplace_back(track.joint, track.value.back());
+  }
+  const Holding holding = find_holding(m, at);
+  INFO(holding.message);
+  CHECK(holding.takes.value() < 1);
+  CHECK(holding.takes.value() > 1e-6);
+  CHECK(energy_error(run) < 1e-7);
 }
 
 TEST_CASE("friction in a governor's loops stops its collar within what it holds") {

@@ -3,6 +3,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/study/friction_report.hpp"
+#include "engine/study/friction_ribbon.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/friction_scenes.hpp"
 #include "tests/support/scenes.hpp"
@@ -138,6 +139,62 @@ TEST_CASE("band and holding agree, in loops where joints share the load") {
     const std::vector<HeldSpeeds> speeds = find_held_speeds(m, start_values(Analysis(m).solve().coordinates));
     REQUIRE(speeds.size() == 1);
     CHECK(speeds[0].insensitivity().value() > 0);
+  }
+}
+
+TEST_CASE("friction in every joint of loops, those that close them included") {
+  for (const char* name : {"watt_governor", "fourbar_turntable"}) {
+    CAPTURE(name);
+    Mechanism m = shipped(name);
+    for (Joint& joint : m.joints)
+      for (Coordinate& c : joint.coordinates)
+        if (!c.drive) c.friction.emplace().limit = joint.type == JointType::prismatic ? 1.5 : 0.05;
+    const FrictionReport report = report_friction(m, Analysis(m).solve());
+    INFO(report.band.message << report.drawn.message);
+    REQUIRE(report.band.found);
+    REQUIRE(report.speeds.size() == 1);
+    const BandExtent& first = report.band.extents.front();
+    CHECK(first.low < first.value);
+    CHECK(first.high > first.value);
+    Mechanism at = m;
+    std::size_t i = 0;
+    for (Joint& joint : at.joints)
+      for (Coordinate& c : joint.coordinates)
+        if (c.friction) c.friction->share = first.shares_high.at(i++);
+    const Solution there = Analysis(at).solve();
+    CHECK_THAT(value(there, first.name), WithinRel(first.high, 1e-10));
+    const Holding holding = find_holding(m, start_values(there.coordinates));
+    INFO(holding.message);
+    CHECK_THAT(holding.takes.value(), WithinRel(1., 1e-8));
+    CHECK(find_holding(m, start_values(Analysis(m).solve().coordinates)).takes.value() < 1e-9);
+  }
+}
+
+TEST_CASE("Porter's governor with friction: (m + M +- F / g) g / (m h) is the square of its speed") {
+  const Mechanism m = shipped("governor_friction");
+  const double ball = 3, sleeve = 15, w = 16, limit = 12, g = 9.80665;
+  const FrictionReport report = report_friction(m, Analysis(m).solve());
+  const BandExtent& h = extent(report.band, "h");
+  CHECK_THAT(h.low, WithinRel(((ball + sleeve) * g - limit) / (ball * w * w), 1e-12));
+  CHECK_THAT(h.high, WithinRel(((ball + sleeve) * g + limit) / (ball * w * w), 1e-12));
+  REQUIRE(report.speeds.size() == 1);
+  const double part = limit / ((ball + sleeve) * g);
+  CHECK_THAT(report.speeds[0].lower.value(), WithinRel(w * std::sqrt(1 - part), 1e-10));
+  CHECK_THAT(report.speeds[0].upper.value(), WithinRel(w * std::sqrt(1 + part), 1e-10));
+  // Along the response: the same at each speed.
+  std::vector<RibbonPlace> places;
+  for (const double speed : {15., 17., 19.}) {
+    Mechanism there = m;
+    set_parameter(there, "parameters.w", speed);
+    places.push_back({speed, start_values(Analysis(there).solve().coordinates)});
+  }
+  const std::vector<RibbonPoint> ribbon = friction_ribbon(m, "parameters.w", places);
+  REQUIRE(ribbon.size() == 3);
+  for (const RibbonPoint& point : ribbon) {
+    const BandExtent* band = find_extent(point, "h");
+    REQUIRE(band);
+    CHECK_THAT(band->high,
+               WithinRel(((ball + sleeve) * g + limit) / (ball * point.number * point.number), 1e-12));
   }
 }
 
