@@ -14,6 +14,7 @@ namespace flyball {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double most_size = 1e100; // m: squares of what is larger, or less than its inverse, have no digits
 
 // What of a vector is in the plane of the disc; twice, so that what is left of a small rest is, too.
 Vec3 disc_part(const ConvexSolid& s, const Vec3& v) {
@@ -222,6 +223,9 @@ ConvexDistance find_distance(const ConvexSolid& first, const ConvexSolid& second
   const Vec3 offset = first.centre - second.centre;
   const double size = extent(first) + extent(second) + offset.norm(), radii = first.radius + second.radius,
                rounding = 16 * epsilon * (size + radii);
+  const double infinity = std::numeric_limits<double>::infinity();
+  if (!(size + radii < most_size && size + radii > 1 / most_size))
+    return {.gap = infinity, .error = infinity};
   const auto placed = [&](double gap, double error, const Apart& at) {
     return ConvexDistance{gap - radii, error + rounding, at.normal, first.centre + at.a,
                           second.centre + at.b};
@@ -229,7 +233,7 @@ ConvexDistance find_distance(const ConvexSolid& first, const ConvexSolid& second
   Apart apart = find_apart(first, second, offset);
   if (apart.distance > 0) return placed(apart.distance, apart.distance - apart.below, apart);
 
-  double depth = std::numeric_limits<double>::infinity();
+  double depth = infinity;
   Vec3 normal = Vec3::Zero();
   const bool complete = visit_normals(first, second, offset, [&](const Vec3& each) {
     const Vec3 n = each.dot(offset) > 0 ? Vec3(-each) : each;

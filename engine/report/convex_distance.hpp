@@ -26,7 +26,8 @@ struct ConvexDistance {
 
 // Exact but for rounding where the cores are apart; where they overlap exact of spheres, capsules and boxes,
 // and of a cylinder and a sphere. The depth of other cylinders is not known: the gap then is not a number.
-// Where more than one pair of points is nearest it is one of them.
+// Where more than one pair of points is nearest it is one of them. Infinite for sizes beyond 1e100 m, or
+// within 1e-100 m, whose squares leave no digits.
 ConvexDistance find_distance(const ConvexSolid& first, const ConvexSolid& second);
 
 } // namespace flyball

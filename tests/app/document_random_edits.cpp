@@ -309,8 +309,8 @@ class Person {
   void name_something(Mechanism& m) {
     if (dice_.chance(0.3) && m.points.size() < 6)
       m.points.push_back({free_name(m, "Q"), vector(), {}});
-    else if (dice_.chance(0.5) && !m.points.empty() && !m.joints.empty())
-      try_to(m, [&] { stand_at_point(m, "joints." + name(PartKind::joint) + ".at", known_name(m)); });
+    else if (dice_.chance(0.5) && !m.points.empty())
+      try_to(m, [&] { stand_at_point(m, point_address(m, {part(), dice_.below(2)}), known_name(m)); });
     else if (m.parameters.size() < 8)
       try_to(m, [&] { name_number(m, expressible(m), free_name(m, "p")); });
   }

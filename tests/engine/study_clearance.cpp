@@ -239,6 +239,14 @@ TEST_CASE("sizes far apart, and solids that nearly touch, keep their digits", "[
       }
 }
 
+TEST_CASE("of sizes whose squares have no digits there is no distance", "[clearance]") {
+  for (const double size : {1e-300, 1e-160, 1e160, 1e300}) {
+    const Vec3 x(size, 0, 0);
+    CHECK_FALSE(std::isfinite(find_distance(drum(-x, x, size), drum(2 * x, 3 * x, size)).gap));
+    CHECK_FALSE(std::isfinite(find_distance(ball(-x, size), block(4 * x, Vec3::Constant(size))).gap));
+  }
+}
+
 namespace {
 
 Shape random_shape(Dice& dice, ShapeType type, const Vec3& near) {
