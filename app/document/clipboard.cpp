@@ -3,6 +3,7 @@
 #include "app/document/formula_edits.hpp"
 #include "app/document/names.hpp"
 #include "app/document/references.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/scene.hpp"
 
 #include <algorithm>
@@ -66,6 +67,10 @@ class Paste {
       if (joint.type == JointType::gear)
         for (std::string& end : joint.joints)
           end = end_at(end, joints_[joint_of_end(end)]);
+      for (Formula& formula : joint.formulas)
+        if (is_drive_law(formula))
+          formula.text = parts_renamed_in(formula.text, ResultPart::joint,
+                                          [&](const std::string& name) { return joints_[name]; });
       append(PartKind::joint, to_.joints, joint);
     }
     for (Force& force : from_.forces) {

@@ -4,6 +4,7 @@
 #include "app/document/image.hpp"
 #include "app/document/names.hpp"
 #include "app/document/references.hpp"
+#include "engine/mechanism/drive_law.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,7 @@ class Copier {
                                                                  : image_of(*joint, isometry));
       mechanism_.joints.back().name = joints[joint->name];
       follow(bodies_of(mechanism_.joints.back()), bodies);
+      follow_in_laws(mechanism_.joints.back(), isometry, joints);
     }
     for (const Force* force : forces_) {
       const int b = body_index(before_, force->body);
@@ -89,6 +91,22 @@ class Copier {
   static void follow(std::span<std::string> names, const Names& copies) {
     for (std::string& name : names)
       if (const auto copy = copies.find(name); copy != copies.end()) name = copy->second;
+  }
+
+  // The torque of a copied drive is one of the copies' coordinates, and along that of the copy.
+  static void follow_in_laws(Joint& image, const Isometry& isometry, const Names& joints) {
+    const std::vector<CoordinateImage> images = images_of_coordinates(image.type, isometry);
+    for (std::size_t i = 0; i < image.coordinates.size(); ++i)
+      for (const char* which : {"torque", "load"}) {
+        const Formula* law = drive_law(image, static_cast<int>(i), which);
+        if (!law) continue;
+        Formula& followed = image.formulas[static_cast<std::size_t>(law - image.formulas.data())];
+        followed.text = parts_renamed_in(law->text, ResultPart::joint, [&](const std::string& name) {
+          const auto copy = joints.find(name);
+          return copy == joints.end() ? name : copy->second;
+        });
+        if (images[i].sign < 0) followed.text = "-(" + followed.text + ")";
+      }
   }
 
   Joint gear_image(const Joint& gear, const Isometry& isometry, const Names& joints) const {

@@ -422,13 +422,20 @@ std::string renamed_in(std::string_view text, std::string_view from, std::string
 
 std::string part_renamed_in(std::string_view text, ResultPart part, std::string_view from,
                             std::string_view to) {
+  return parts_renamed_in(text, part,
+                          [&](const std::string& name) { return name == from ? std::string(to) : name; });
+}
+
+std::string parts_renamed_in(std::string_view text, ResultPart part,
+                             const std::function<std::string(const std::string&)>& renamed) {
   try {
     const Expression expression(text, Expression::Results::allowed);
     std::vector<Replacement> all;
     for (const ResultCall& call : expression.results())
       if (part_of(argument_kind(result_function(call.result), call.arguments.size())) == part)
         for (const ResultCall::Argument& argument : call.arguments)
-          if (argument.name == from) all.push_back({argument.begin, argument.length, argument_text(to)});
+          if (std::string to = renamed(argument.name); to != argument.name)
+            all.push_back({argument.begin, argument.length, argument_text(to)});
     return replaced(text, std::move(all));
   } catch (const ExpressionError&) {
     return std::string(text);

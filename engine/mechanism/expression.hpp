@@ -10,6 +10,7 @@
 #include "engine/mechanism/unit.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -112,6 +113,9 @@ std::string renamed_in(std::string_view text, std::string_view from, std::string
 enum class ResultPart { body, joint, force };
 std::string part_renamed_in(std::string_view text, ResultPart part, std::string_view from,
                             std::string_view to);
+// For many at once: `renamed` tells what each is called from now on.
+std::string parts_renamed_in(std::string_view text, ResultPart part,
+                             const std::function<std::string(const std::string&)>& renamed);
 ResultPart part_of(ArgumentKind kind);
 
 } // namespace flyball

@@ -1,3 +1,4 @@
+#include "app/document/clipboard.hpp"
 #include "app/document/coordinate_image.hpp"
 #include "app/document/copies.hpp"
 #include "app/document/isometry.hpp"
@@ -253,4 +254,41 @@ TEST_CASE("no copies at a plane or about an axis that is none") {
   CHECK(circular_copy(m, ball1, {0, 0, 0}, {0, 1, 0}, 1).empty());
   CHECK(duplicate_parts(m, {{{PartKind::body, "nobody"}}}, {0, 0, 1}).empty());
   CHECK(m == before);
+}
+
+TEST_CASE("the torque of a copied drive is one of the copies' coordinates") {
+  Mechanism m = shipped("governor_engine");
+  const auto law = [&](const std::string& name) {
+    const Joint& found = joint(m, name);
+    REQUIRE(found.formulas.size() == 1);
+    return found.formulas[0].text;
+  };
+  const Selection bodies{{{PartKind::body, "spindle"},
+                          {PartKind::body, "ball1"},
+                          {PartKind::body, "ball2"},
+                          {PartKind::body, "collar"}}};
+  SECTION("duplicated") {
+    duplicate_parts(m, bodies, {1, 0, 0});
+    CHECK(law("spin2") == "gain * (coordinate(slide2) - 0.15 m)");
+    CHECK(law("spin") == "gain * (coordinate(slide) - 0.15 m)");
+    REQUIRE(find_mistakes(m).empty());
+  }
+  SECTION("pasted") {
+    paste_text(m, copy_text(m, bodies));
+    CHECK(law("spin2") == "gain * (coordinate(slide2) - 0.15 m)");
+    REQUIRE(find_mistakes(m).empty());
+  }
+  SECTION("the shaft alone, between the same bodies") {
+    duplicate_parts(m, {{{PartKind::joint, "spin"}}}, {1, 0, 0});
+    CHECK(law("spin2") == "gain * (coordinate(slide) - 0.15 m)");
+  }
+  SECTION("in the mirror a cylindrical joint's angle turns the other way") {
+    Joint& spin = m.joints[static_cast<std::size_t>(joint_index(m, "spin"))];
+    spin.type = JointType::cylindrical;
+    spin.coordinates.resize(2);
+    spin.formulas[0].key = "drive.0.torque";
+    mirror_parts(m, bodies, {1, 0, 0}, {1, 0, 0});
+    CHECK(law("spin2") == "-(gain * (coordinate(slide2) - 0.15 m))");
+    CHECK(joint(m, "spin2").coordinates[0].drive->speed == -11);
+  }
 }
