@@ -81,7 +81,7 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
                        s.run_time_s * 1e6);
     return out;
   }
-  const std::string with_engine = s.at_constant_speed ? "with the drives' torques: " : "";
+  const std::string with_engine = s.at_constant_speed ? "with its speeds free: " : "";
   if (const std::string words = stability(s.stable, s.stability_reason); !words.empty())
     out += "  " + with_engine + words + "\n";
   if (s.at_constant_speed)
@@ -100,7 +100,7 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
     const std::string name = shown_label(c);
     if (c.speed) {
       const double shown = c.angle ? 30 / std::numbers::pi : 1000;
-      out += fmt::format("  {:{}}  {:>22} {:5}  {:>18} {:4}  ± {:.1g} {}  speed by its torque\n", name, width,
+      out += fmt::format("  {:{}}  {:>22} {:5}  {:>18} {:4}  ± {:.1g} {}  speed found\n", name, width,
                          rounded(*c.speed, c.speed_error, 17), c.angle ? "rad/s" : "m/s",
                          rounded(*c.speed * shown, c.speed_error * shown, 12), c.angle ? "rpm" : "mm/s",
                          c.speed_error, c.angle ? "rad/s" : "m/s");
@@ -168,7 +168,7 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
                          s.floquet->multipliers[i].real(), s.floquet->multipliers[i].imag(),
                          std::abs(s.floquet->multipliers[i]), s.floquet->growth[i]);
   } else if (s.eigenvalues && !s.eigenvalues->empty()) {
-    heading(s.at_constant_speed ? "eigenvalues of the linearised motion, with the drives' torques"
+    heading(s.at_constant_speed ? "eigenvalues of the linearised motion, its speeds free"
                                 : "eigenvalues of the linearised motion");
     out += lines_of(*s.eigenvalues);
   }

@@ -9,12 +9,13 @@
 namespace flyball {
 namespace {
 
-// Drives by torque, by name.
-Html torques(const Mechanism& m) {
+// Drives by torque, or those left to themselves, by name.
+template <class Is>
+Html drives(const Mechanism& m, const Is& is) {
   Html out;
   for (const Joint& joint : m.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
-      if (const auto& drive = joint.coordinates[i].drive; drive && drive->torque)
+      if (const auto& drive = joint.coordinates[i].drive; drive && is(*drive))
         out += (out.empty() ? Html() : Html(", ")) + coordinate_name(joint, static_cast<int>(i));
   return out;
 }
@@ -23,7 +24,7 @@ Html speeds(const Mechanism& m) {
   Html out;
   for (const Joint& joint : m.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
-      if (const auto& drive = joint.coordinates[i].drive; drive && !drive->torque)
+      if (const auto& drive = joint.coordinates[i].drive; drive && !finds_speed(*drive))
         out += (out.empty() ? Html() : Html(", ")) + coordinate_name(joint, static_cast<int>(i)) + " at " +
                quantity(drive->speed, is_angle(joint.type, static_cast<int>(i)) ? "rad/s" : "m/s");
   return out;
@@ -58,14 +59,20 @@ OptionalSection assumptions_section(const ReportContents& contents) {
   terms.term("Gravity", m.gravity.isZero() ? Html("None.")
                                            : vector_quantity(m.gravity, "m/s^2", 9) + ", size " +
                                                  quantity(m.gravity.norm(), "m/s^2", 9) + ".");
-  const Html driven = speeds(m), by_torque = torques(m);
-  if (!driven.empty() || by_torque.empty())
+  const Html driven = speeds(m), by_torque = drives(m, [](const Drive&d) { return d.torque.has_value(); }),
+             free = drives(m, [](const Drive&d) { return d.keeps == DriveKeeps::momentum; });
+  if (!driven.empty() || (by_torque.empty() && free.empty()))
     terms.term("Drives", driven.empty() ? Html("None: an equilibrium at rest.")
                                         : "Constant speeds, whatever torque they take: " + driven + ".");
   if (!by_torque.empty())
     terms.term("Drives by torque",
                "Each turns at the speed at which its torque less its load is what turning takes: " +
                    by_torque + ". Stability is told with the torques, which may change with the state.");
+  if (!free.empty())
+    terms.term("Left to themselves",
+               "Each keeps the angular or linear momentum that its given speed makes in the drawn pose, and "
+               "its speed follows: " +
+                   free + ". Stability is told at these momenta.");
   terms.term("Steady state", "Every other coordinate is constant.");
   terms.term("Damping", damped(m)
                             ? "Viscous dampers count in stability and modes; they move no steady state of "

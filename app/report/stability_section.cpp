@@ -119,12 +119,11 @@ OptionalSection stability_section(const ReportContents& contents) {
     body += terms.html();
   }
   if (const auto& at = s.at_constant_speed; at && at->stability_reason) {
-    body += paragraph_of(
-        "That is with drives that give their torques. The same state with its speeds prescribed: " +
-        std::string(at->stable == true    ? "stable. "
-                    : at->stable == false ? "unstable. "
-                                          : "stability open. ") +
-        reason_text(*at->stability_reason));
+    body += paragraph_of("That is with its speeds free. The same state with its speeds prescribed: " +
+                         std::string(at->stable == true    ? "stable. "
+                                     : at->stable == false ? "unstable. "
+                                                           : "stability open. ") +
+                         reason_text(*at->stability_reason));
     if (at->eigenvalues && !at->eigenvalues->empty())
       body += heading_of("Eigenvalues at constant speed") + eigenvalues_table(*at->eigenvalues);
   }

@@ -98,7 +98,7 @@ std::vector<std::string> drive_speeds(const Mechanism& mechanism) {
   for (const Joint& joint : mechanism.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
       const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
-      if (const auto& drive = joint.coordinates[i].drive; !drive || drive->torque) continue;
+      if (const auto& drive = joint.coordinates[i].drive; !drive || finds_speed(*drive)) continue;
       std::string address = "joints." + joint.name + ".drive" + index + ".speed";
       // A speed that a named parameter is, is varied by this.
       if (const std::optional<std::string> formula = formula_at(mechanism, address)) {

@@ -134,6 +134,34 @@ void turn_on(const MotionModel& model, Eigen::VectorXd& u) {
   }
 }
 
+// What is left to itself turns so that it has the momentum it keeps, wherever the motion begins.
+void keep_momenta(const MotionModel& model, double t, const Eigen::VectorXd& q, Eigen::VectorXd& u) {
+  std::vector<int> entries;
+  std::vector<double> wanted;
+  for (std::size_t i = 0; i < model.system.torques.size(); ++i) {
+    const DriveTorqueElement& drive = model.system.torques[i];
+    if (!drive.keeps_momentum) continue;
+    entries.push_back(model.system.links[static_cast<std::size_t>(drive.link)].v);
+    wanted.push_back(model.parameters.torques[i].momentum);
+  }
+  if (entries.empty()) return;
+  Eigen::VectorXd all_q(model.released.nq), all_u(model.released.nv);
+  all_q.head(model.system.nq) = q;
+  all_u.head(model.system.nv) = u;
+  set_drives(model.system, model.parameters, t, all_q, all_u);
+  Kinematics<double> k;
+  std::vector<LinkRates> none;
+  move(model.released, model.parameters, {all_q, all_u}, k, none);
+  MassMatrix m;
+  evaluate_mass(model.released, model.parameters, k, m);
+  const auto count = static_cast<Eigen::Index>(entries.size());
+  const Eigen::VectorXd missing =
+      Eigen::Map<const Eigen::VectorXd>(wanted.data(), count) - m.mass(entries, Eigen::all) * all_u;
+  const auto change = least_squares(m.mass(entries, entries), missing);
+  if (!change) throw SceneError("", "the forces are too large for the computer's numbers");
+  u(entries) += *change;
+}
+
 // The same where speeds are found.
 void start_at_found_speeds(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q,
                            Eigen::VectorXd& u) {
@@ -266,7 +294,10 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
     if (!options.at.empty() && model.system.rows > 0) close_around(options, model, q);
     u.setZero(model.system.nv);
   }
-  if (options.start == Start::rest) turn_on(model, u);
+  if (options.start == Start::rest) {
+    turn_on(model, u);
+    keep_momenta(model, t, q, u);
+  }
   if (options.start == Start::equilibrium) start_at_equilibrium(options, model, q, u);
   Workspace w;
   const Problem problem = model.problem();
@@ -293,6 +324,7 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
   };
   const bool from_rest = options.start == Start::drawn;
   std::vector<int> prescribed = apply_kick(options, model, q, u);
+  const std::vector<int> kicked = prescribed;
   if (options.start == Start::rest || options.start == Start::equilibrium)
     for (const DriveTorqueElement& drive : model.system.torques)
       if (const int v = model.system.links[static_cast<std::size_t>(drive.link)].v;
@@ -304,8 +336,17 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
     move_on({}, true, still);
     u += still;
   }
-  if (model.system.rows > 0 || (from_rest && prescribed.empty()))
-    move_on(prescribed, from_rest && prescribed.empty(), u);
+  if (model.system.rows > 0 || (from_rest && prescribed.empty())) {
+    const Eigen::VectorXd asked = u;
+    try {
+      move_on(prescribed, from_rest && prescribed.empty(), u);
+    } catch (const SceneError&) {
+      // Drives by torque that loops or gears tie together begin as near as they can to where they should.
+      if (prescribed.size() == kicked.size()) throw;
+      u = asked;
+      move_on(kicked, false, u);
+    }
+  }
 }
 
 } // namespace flyball

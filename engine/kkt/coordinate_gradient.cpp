@@ -65,7 +65,8 @@ Eigen::VectorXd found_gradient(const System& system, const Parameters& parameter
 
 double found_scale(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate) {
   const auto l = static_cast<std::size_t>(coordinate.link);
-  if (finds_speed(system.links[l])) return std::abs(parameters.links[l].speed); // not zero: validate_joints
+  if (finds_speed(system.links[l]))
+    return parameters.links[l].speed != 0 ? std::abs(parameters.links[l].speed) : 1;
   return coordinate.angle ? 1 : parameters.length;
 }
 

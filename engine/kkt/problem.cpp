@@ -30,6 +30,12 @@ void set_scaling(const System& system, const Parameters& p, Scaling& out) {
                                  out.column[cut.gear_va]);
         break;
       }
+      if (cut.by_rates && cut.type != JointType::gear) {
+        double fastest = 0;
+        for (const SupportColumn& column : cut.ends.support)
+          fastest = std::max(fastest, out.column[column.v]);
+        scale /= fastest;
+      }
       out.row[cut.first_row + static_cast<int>(r)] = scale;
     }
 }

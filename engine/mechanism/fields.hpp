@@ -165,6 +165,7 @@ void visit_fields(Visitor& v, Part& drive, bool angle = true) {
   v.describe(drive.description);
   v.field({"torque", expected::number, fields::force_unit(angle)}, drive.torque);
   v.field({"load", expected::number, fields::force_unit(angle)}, drive.load);
+  v.field({"keeps", "speed or momentum"}, drive.keeps, DriveKeeps::speed);
   v.field({"speed", expected::number, fields::speed_unit(angle), fields::required}, drive.speed);
 }
 

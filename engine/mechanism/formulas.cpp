@@ -451,7 +451,9 @@ std::string used_of_version_2(const Mechanism& mechanism) {
   for (const Joint& joint : mechanism.joints) {
     if (!joint.formulas.empty()) return first(joint, "joints." + joint.name);
     for (const Coordinate& c : joint.coordinates) {
-      if (c.drive && (c.drive->torque || c.drive->load)) return "joints." + joint.name + ".drive.torque";
+      if (c.drive && (c.drive->load || finds_speed(*c.drive)))
+        return "joints." + joint.name +
+               (finds_speed(*c.drive) && !c.drive->torque ? ".drive.keeps" : ".drive.torque");
       if (c.friction) return "joints." + joint.name + ".friction";
     }
   }

@@ -79,6 +79,14 @@ std::string_view type_name(ForceFrame frame) {
   return frame == ForceFrame::world ? "world" : "body";
 }
 
+std::string_view type_name(DriveKeeps keeps) {
+  return keeps == DriveKeeps::speed ? "speed" : "momentum";
+}
+
+bool finds_speed(const Drive& drive) {
+  return drive.torque || drive.keeps == DriveKeeps::momentum;
+}
+
 std::string_view type_name(SliderScale scale) {
   return scale == SliderScale::linear ? "linear" : "log";
 }

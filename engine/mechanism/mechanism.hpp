@@ -123,13 +123,20 @@ struct Stop {
   bool operator==(const Stop&) const = default;
 };
 
+// What a drive without a torque keeps, whatever the rest does: its speed, or as a shaft left to itself its
+// momentum.
+enum class DriveKeeps { speed, momentum };
+
 // Turns or moves at constant speed: a given one, or where a torque is given the one at which this, less the
 // load, is what turning takes. Torque and load (N m, or N along a slide; positive along the coordinate, the
-// load against it) may be expressions of the state, see drive_law.hpp.
+// load against it) may be expressions of the state, see drive_law.hpp. Left to itself it has the momentum
+// along its coordinate, of all that it carries, that the given speed makes in the drawn pose, and the speed
+// is found.
 struct Drive {
   double speed = 0; // rad/s or m/s; with a torque where the search for it begins
   std::string description{};
   std::optional<double> torque{}, load{};
+  DriveKeeps keeps = DriveKeeps::speed;
   bool operator==(const Drive&) const = default;
 };
 
@@ -260,8 +267,11 @@ std::string_view type_name(JointType type);
 std::string_view type_name(ForceType type);
 std::string_view type_name(ShapeType type);
 std::string_view type_name(ForceFrame frame);
+std::string_view type_name(DriveKeeps keeps);
 std::string_view type_name(SliderScale scale);
 
+// Whether the speed is found rather than given: by a torque, or where momentum is kept.
+bool finds_speed(const Drive& drive);
 // Whether coordinate `i` is a component of a rotation vector, whose rate is no angular velocity and so can
 // be neither driven nor geared.
 bool is_rotation_vector(JointType type, int i);

@@ -56,6 +56,7 @@ class Collector {
   void field(const Field&, const std::optional<bool>&) {}
   void field(const Field&, bool, bool) {}
   void field(const Field&, ForceFrame, ForceFrame) {}
+  void field(const Field&, DriveKeeps, DriveKeeps) {}
   void field(const Field&, const std::string&, const std::string&) {}
   void field(const Field&, const std::optional<std::array<double, 2>>&) {}
   void field(const Field&, const std::optional<std::array<double, 3>>&) {}

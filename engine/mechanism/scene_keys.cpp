@@ -150,6 +150,9 @@ std::span<const std::string_view> words_of(ShapeType) {
 std::span<const std::string_view> words_of(ForceFrame) {
   return words<ForceFrame, 2>();
 }
+std::span<const std::string_view> words_of(DriveKeeps) {
+  return words<DriveKeeps, 2>();
+}
 std::span<const std::string_view> words_of(SliderScale) {
   return words<SliderScale, 2>();
 }

@@ -42,6 +42,7 @@ std::span<const std::string_view> words_of(JointType any);
 std::span<const std::string_view> words_of(ForceType any);
 std::span<const std::string_view> words_of(ShapeType any);
 std::span<const std::string_view> words_of(ForceFrame any);
+std::span<const std::string_view> words_of(DriveKeeps any);
 std::span<const std::string_view> words_of(SliderScale any);
 
 } // namespace flyball::scene_keys

@@ -13,6 +13,7 @@ namespace {
 struct Driven {
   bool is = false;
   double speed = 0;
+  bool found = false;    // the speed
   std::size_t joint = 0; // whose drive it is
   int gear = -1;         // the last gear on the way, -1 where it is driven directly
 };
@@ -32,7 +33,7 @@ class DrivenCoordinates {
     for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
       for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i)
         if (const std::optional<Drive>& drive = mechanism.joints[j].coordinates[i].drive) {
-          all_[first_[j] + i] = {true, drive->speed, j, -1};
+          all_[first_[j] + i] = {true, drive->speed, finds_speed(*drive), j, -1};
           waiting.push_back(first_[j] + i);
         }
     for (; !waiting.empty(); waiting.pop_front())
@@ -41,10 +42,10 @@ class DrivenCoordinates {
 
   const Driven& operator()(std::size_t joint, std::size_t i) const { return all_[first_[joint] + i]; }
 
-  bool every_one(std::size_t joint) const {
+  bool every_one_at_given_speed(std::size_t joint) const {
     const std::size_t count = mechanism_.joints[joint].coordinates.size();
     for (std::size_t i = 0; i < count; ++i)
-      if (!(*this)(joint, i).is) return false;
+      if (!(*this)(joint, i).is || (*this)(joint, i).found) return false;
     return true;
   }
 
@@ -72,8 +73,18 @@ class DrivenCoordinates {
       Driven& target = all_[other];
       const double speed = source.speed * ratio;
       if (!target.is) {
-        target = {true, speed, source.joint, static_cast<int>(g)};
+        target = {true, speed, source.found, source.joint, static_cast<int>(g)};
         waiting.push_back(other);
+        continue;
+      }
+      if (source.found && target.found) continue; // torques add up
+      if (source.found != target.found) {
+        if (is_reported(g)) continue;
+        reported_.push_back(g);
+        mistakes.add(joint_path(mechanism_, g),
+                     "expected drives of one kind: the gear gives a speed to " +
+                         mechanism_.joints[source.found ? source.joint : target.joint].name +
+                         ", whose speed is found");
         continue;
       }
       constexpr double round_off = 1e-9;
@@ -121,8 +132,8 @@ void find_springs_on_driven(const Mechanism& mechanism, const DrivenCoordinates&
     }
 }
 
-// A drive that gives a torque moves one coordinate, and not others through gears.
-void find_gears_on_torques(const Mechanism& mechanism, Mistakes& mistakes) {
+// A gear passes on momentum, which is then not that of the drive alone.
+void find_gears_on_momenta(const Mechanism& mechanism, Mistakes& mistakes) {
   for (std::size_t g = 0; g < mechanism.joints.size(); ++g) {
     const Joint& gear = mechanism.joints[g];
     if (gear.type != JointType::gear) continue;
@@ -130,10 +141,10 @@ void find_gears_on_torques(const Mechanism& mechanism, Mistakes& mistakes) {
       const auto [joint, i] = find_coordinate(mechanism, gear.joints[end]);
       const auto& drive =
           mechanism.joints[static_cast<std::size_t>(joint)].coordinates[static_cast<std::size_t>(i)].drive;
-      if (drive && drive->torque)
+      if (drive && drive->keeps == DriveKeeps::momentum)
         mistakes.add(joint_path(mechanism, g) + ".joints[" + std::to_string(end) + "]",
-                     "expected a coordinate without a drive by torque: through gears such drives are not "
-                     "solved for yet");
+                     "expected a coordinate without a drive that keeps its momentum: through a gear it "
+                     "passes to others");
     }
   }
 }
@@ -166,7 +177,7 @@ std::vector<std::size_t> path_between(const Mechanism& mechanism, const BodyNumb
   return path;
 }
 
-// A loop in which every joint is driven or fixed moves as the drives say, or not at all.
+// A loop in which every joint is driven at a given speed or fixed moves as the drives say, or not at all.
 void find_driven_loops(const Mechanism& mechanism, const DrivenCoordinates& driven, Mistakes& mistakes) {
   const BodyNumbers numbers(mechanism);
   BodyGroups groups(numbers);
@@ -175,7 +186,8 @@ void find_driven_loops(const Mechanism& mechanism, const DrivenCoordinates& driv
     for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
       const Joint& joint = mechanism.joints[j];
       const bool has_bodies = joint.type != JointType::gear && joint.type != JointType::distance;
-      if (!has_bodies || fixed != (joint.type == JointType::fixed) || !driven.every_one(j)) continue;
+      if (!has_bodies || fixed != (joint.type == JointType::fixed) || !driven.every_one_at_given_speed(j))
+        continue;
       if (groups.join(joint.bodies)) {
         joined.push_back(j);
       } else if (!fixed) { // a loop of fixed joints alone is only redundant
@@ -200,7 +212,7 @@ void find_driven_loops(const Mechanism& mechanism, const DrivenCoordinates& driv
 void find_drive_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
   const DrivenCoordinates driven(mechanism, mistakes);
   find_springs_on_driven(mechanism, driven, mistakes);
-  find_gears_on_torques(mechanism, mistakes);
+  find_gears_on_momenta(mechanism, mistakes);
   find_driven_loops(mechanism, driven, mistakes);
 }
 

@@ -41,12 +41,18 @@ void find_torque_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t
   const Joint& joint = mechanism.joints[j];
   const Drive& drive = *joint.coordinates[i].drive;
   const std::string path = coordinate_path(mechanism, j, "drive", i);
-  if (!drive.torque) {
+  const bool momentum = drive.keeps == DriveKeeps::momentum;
+  if (!drive.torque)
     mistakes.expect(!drive.load, path + ".load",
-                    "expected none, or a torque: at a given speed the drive gives what it takes");
-    return;
-  }
-  mistakes.expect(drive.speed != 0, path + ".speed",
+                    momentum ? "expected none: nothing acts on what is left to itself"
+                             : "expected none, or a torque: at a given speed the drive gives what it takes");
+  else
+    mistakes.expect(!momentum, path + ".keeps", "expected speed: where a torque acts no momentum is kept");
+  if (momentum)
+    mistakes.expect(joint.coordinates[i].damping == 0, coordinate_path(mechanism, j, "damping", i),
+                    "expected zero: where a damper resists the drive no momentum is kept");
+  if (!finds_speed(drive)) return;
+  mistakes.expect(drive.speed != 0 || momentum, path + ".speed",
                   "expected a speed other than zero, at which the search for the steady one begins");
   const bool angle = is_angle(joint.type, static_cast<int>(i));
   for (const char* which : {"torque", "load"}) {

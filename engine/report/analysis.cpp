@@ -31,7 +31,7 @@ bool same_kind(const Joint& a, const Joint& b, int i) {
   const auto &x = a.coordinates[static_cast<std::size_t>(i)].drive,
              &y = b.coordinates[static_cast<std::size_t>(i)].drive;
   if (!x || !y) return x.has_value() == y.has_value();
-  if (x->torque.has_value() != y->torque.has_value()) return false;
+  if (x->torque.has_value() != y->torque.has_value() || x->keeps != y->keeps) return false;
   if (!x->torque) return true;
   for (const char* which : {"torque", "load"}) {
     const Formula *of_a = drive_law(a, i, which), *of_b = drive_law(b, i, which);

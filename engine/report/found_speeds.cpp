@@ -1,5 +1,6 @@
 #include "engine/report/found_speeds.hpp"
 
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/report.hpp"
@@ -31,24 +32,33 @@ Mechanism at_constant_speeds(const Mechanism& mechanism, const System& system, c
   Mechanism out = mechanism;
   out.sliders.clear();
   for (const DriveTorqueElement& torque : system.torques) {
+    if (torque.implied) continue;
     const Link& link = system.links[static_cast<std::size_t>(torque.link)];
     Drive& drive = *driven_coordinate(out, system, link).drive;
     drive.torque.reset();
     drive.load.reset();
+    drive.keeps = DriveKeeps::speed;
     drive.speed = q[link.q];
   }
   return out;
 }
 
-AtConstantSpeed stability_at_constant_speed(const Mechanism& mechanism, const System& system,
-                                            const Eigen::VectorXd& q,
-                                            const std::vector<CoordinateSolution>& coordinates) {
+std::optional<AtConstantSpeed>
+stability_at_constant_speed(const Mechanism& mechanism, const System& system, const Eigen::VectorXd& q,
+                            const std::vector<CoordinateSolution>& coordinates) {
+  if (std::ranges::all_of(system.torques, &DriveTorqueElement::implied)) return {};
   SolveOptions options;
   options.nearest = true;
   for (const CoordinateSolution& c : coordinates)
     if (!c.driven && !c.dependent) options.start.emplace_back(coordinate_label(c), c.value);
-  const Solution solution = Analysis(at_constant_speeds(mechanism, system, q)).solve(options);
-  return {solution.stable, solution.stability_reason, solution.eigenvalues};
+  Solution solution;
+  try {
+    solution = Analysis(at_constant_speeds(mechanism, system, q)).solve(options);
+  } catch (const SceneError&) { // drives that loops or gears tie together contradict each other then
+    return {};
+  }
+  if (solution.status != Status::converged) return {};
+  return AtConstantSpeed{solution.stable, solution.stability_reason, solution.eigenvalues};
 }
 
 std::string missing_speed_message(const Mechanism& mechanism, const Problem& problem, Workspace& w) {
@@ -65,6 +75,7 @@ std::string missing_speed_message(const Mechanism& mechanism, const Problem& pro
   forward<double>(system, problem.parameters, q, 0, w.kinematics);
   std::string text;
   for (std::size_t i = 0; i < system.torques.size(); ++i) {
+    if (system.torques[i].keeps_momentum || system.torques[i].implied) continue;
     const Link& link = system.links[static_cast<std::size_t>(system.torques[i].link)];
     const std::string name = name_of_drive(system, link);
     const auto taken = std::ranges::find_if(there.drive_torques, [&](const DriveTorque& d) {

@@ -39,11 +39,23 @@ std::string floquet_message(FloquetFailure failure) {
   case FloquetFailure::unresolved:
     return begin + "and is too large, too stiff or too slow in its period beside its own oscillations to "
                    "follow, or its loops turn too far.";
-  case FloquetFailure::speed_is_free:
-    return begin + "whose speed is free where a torque drives; solved at that speed, prescribed, it is told.";
   case FloquetFailure::cancelled: return begin + "and looking for its multipliers was cancelled.";
   }
   return "";
+}
+
+// Of a drive left to itself.
+std::string lost_momentum_message(const ReportInput& in, Workspace& w) {
+  const System& system = in.problem.system;
+  const auto i = static_cast<std::size_t>(in.existence.pushed);
+  const Link& link = system.links[static_cast<std::size_t>(system.torques[i].link)];
+  evaluate(in.problem, in.found.z, 0, w);
+  const double taken = w.residual.taken[static_cast<Eigen::Index>(i)];
+  return "No steady state: " + system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name +
+         " is left to itself, but " + rounded_text(std::abs(taken), 6) +
+         (link.type == LinkType::revolute ? " N m " : " N ") +
+         (taken * in.found.z.q[link.q] > 0 ? "hold it back" : "drive it on") +
+         ": its momentum does not stay as it is.";
 }
 
 std::string names_of(const Unbounded& found) {
@@ -65,6 +77,18 @@ std::vector<std::string> notes(const System& system, const Mechanism& mechanism)
     if (cut.turns)
       all.push_back("The loop is cut at " + mechanism.joints[static_cast<std::size_t>(cut.joint)].name +
                     ", which turns at a constant rate in the steady state.");
+  std::vector<std::string> implied;
+  for (const DriveTorqueElement& torque : system.torques)
+    if (torque.implied) {
+      const Link& link = system.links[static_cast<std::size_t>(torque.link)];
+      const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+      implied.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)));
+    }
+  if (!implied.empty())
+    all.push_back("Loops and gears make " +
+                  word_list(std::vector<std::string_view>(implied.begin(), implied.end()), "and") +
+                  (implied.size() == 1 ? " turn at a rate of its own, which is found."
+                                       : " turn at rates of their own, which are found."));
   return all;
 }
 
@@ -154,6 +178,7 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
                 [](const Joint& j) { return j.cut.has_value() && coordinate_count(j.type) > 0; })
                 ? "; the joints marked with \"cut\" were left as marked."
                 : ".");
+  if (in.existence.pushed >= 0) return lost_momentum_message(in, w);
   return "No steady state: " + turning_part(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
          " turns with the drives, so the balance holds at one moment only.";
 }

@@ -203,6 +203,8 @@ class ForceReport {
       if (system_.drives[d].motor != static_cast<int>(d)) continue;
       const Link& link = system_.links[at(system_.drives[d].link)];
       const TreeJoint& joint = system_.tree_joints[at(link.tree_joint)];
+      if (joint.joint >= 0 && !mechanism_.joints[at(joint.joint)].coordinates[at(link.coordinate)].drive)
+        continue; // loops or gears make it turn
       DriveTorque torque;
       torque.joint = joint.name;
       torque.index = link.coordinate;

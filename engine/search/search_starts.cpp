@@ -52,7 +52,10 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
     const double value = coordinate_value(problem.system, problem.parameters, drawn, c);
     if (finds_speed(link)) {
       const double most = 3 * lp.speed;
-      ranges.push_back({std::min(0., most), std::max(0., most)});
+      if (most == 0) // left to itself from rest
+        ranges.push_back({-problem.scaling.column[link.v], problem.scaling.column[link.v]});
+      else
+        ranges.push_back({std::min(0., most), std::max(0., most)});
     } else if (link.drive >= 0) {
       ranges.push_back({value, value});
     } else if (c.angle) {

@@ -2,6 +2,8 @@
 
 #include "engine/kkt/problem.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/system/implied_rates.hpp"
+#include "engine/system/kept_momentum.hpp"
 #include "engine/system/residual.hpp"
 
 #include <algorithm>
@@ -32,6 +34,7 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
     fastest = std::max(fastest, std::abs(p.links[l].speed) /
                                     (system.links[l].type == LinkType::revolute ? 1 : p.length));
   }
+  set_implied_rates(system, p);
   Configuration<double> q;
   drawn_configuration(system, p, q);
   const Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.rows);
@@ -40,6 +43,7 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
   for (int i : {0, 1}) {
     forward<double>(system, p, q, i * 0.05 / fastest, k[i]);
     evaluate_residual<double>(system, p, q, lambda, k[i], r[i]);
+    set_closures(system, p, q, k[i], r[i].phi);
   }
   for (std::size_t c = 0; c < system.cuts.size(); ++c) {
     const CutJoint& cut = system.cuts[c];
@@ -58,10 +62,37 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
   return out;
 }
 
+// With the same cuts, and more that turns at rates of its own. Nothing where nothing more does, or the drives
+// pull open what they did not before.
+std::optional<System> with_turning(const System& system, const Mechanism& mechanism,
+                                   const std::vector<CoordinateReference>& more) {
+  if (more.empty()) return {};
+  CutChoice choice;
+  for (const CutJoint& cut : system.cuts)
+    if (cut.type != JointType::gear) choice.cut.push_back(cut.joint);
+  for (const DriveTorqueElement& torque : system.torques)
+    if (const Link& link = system.links[static_cast<std::size_t>(torque.link)]; torque.implied)
+      choice.turning.push_back(
+          {system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint, link.coordinate});
+  choice.turning.insert(choice.turning.end(), more.begin(), more.end());
+  try {
+    return compile(mechanism, choice);
+  } catch (const SceneError&) {
+    return {};
+  }
+}
+
+Parameters bound(const System& system, const Mechanism& mechanism) {
+  Parameters p;
+  bind(system, mechanism, p);
+  return p;
+}
+
 } // namespace
 
 System compile_for_drives(const Mechanism& mechanism) {
   System best = compile(mechanism);
+  const System first = best;
   DrivenCuts fate = drive_cuts(best, mechanism);
   std::deque<CutChoice> queue;
   std::vector<std::vector<int>> seen;
@@ -88,6 +119,23 @@ System compile_for_drives(const Mechanism& mechanism) {
       best = other;
     }
     enqueue(other);
+  }
+  const auto let_turn = [&](const System& from, const std::vector<CoordinateReference>& more) {
+    std::optional<System> turning = with_turning(from, mechanism, more);
+    if (!turning) return;
+    if (DrivenCuts there = drive_cuts(*turning, mechanism); there.opened == 0) {
+      fate = std::move(there);
+      best = std::move(*turning);
+    }
+  };
+  const System second = best;
+  for (const auto& [from, beside] : {std::pair{&first, true}, std::pair{&first, false},
+                                     std::pair{&second, true}, std::pair{&second, false}})
+    if (fate.opened > 0) let_turn(*from, implied_turning(*from, bound(*from, mechanism), beside));
+  constexpr int few = 200; // of which the null space costs nothing beside the rest
+  if (fate.opened == 0 && !best.drives.empty() && best.nv <= few && !keeps_momentum(best)) {
+    const System standing = best;
+    let_turn(standing, slipping_turning(standing, bound(standing, mechanism)));
   }
   for (std::size_t c = 0; c < best.cuts.size(); ++c)
     best.cuts[c].turns = fate.turned[c] && best.cuts[c].type != JointType::distance;

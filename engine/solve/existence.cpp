@@ -1,5 +1,8 @@
 #include "engine/solve/existence.hpp"
 
+#include "engine/system/implied_rates.hpp"
+#include "engine/system/kept_momentum.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -14,6 +17,22 @@ void evaluate_phase(const Problem& problem, const Eigen::VectorXd& q, double t, 
   factor_constraints(problem, w);
 }
 
+// Whether something acts along the coordinates of drives left to themselves.
+void judge_momenta(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w,
+                   Existence& result) {
+  evaluate_phase(problem, q, t, w);
+  Unknowns z{q, w.zero_lambda};
+  if (problem.system.rows > 0) {
+    best_multipliers(problem, w, z.lambda);
+    evaluate(problem, z, t, w);
+  }
+  for (Eigen::Index i = 0; i < w.residual.taken.size(); ++i) {
+    const double left = std::abs(w.residual.taken[i]), size = w.magnitudes.taken[i];
+    if (left <= tolerance::phase_balance * size || left <= result.violation * size) continue;
+    result = {false, false, t, left / size, -1, std::max(result.left, left / size), static_cast<int>(i)};
+  }
+}
+
 } // namespace
 
 std::vector<double> sample_phases(const System& system, const Parameters& p) {
@@ -21,8 +40,9 @@ std::vector<double> sample_phases(const System& system, const Parameters& p) {
   if (p.phase_free) return phases;
   std::vector<double> rates; // phases advance by about a radian, or a third of the reach
   for (const DrivenCoordinate& d : system.drives) {
-    const double speed = std::abs(p.links[static_cast<std::size_t>(d.link)].speed);
-    if (speed == 0) continue;
+    double speed = std::abs(p.links[static_cast<std::size_t>(d.link)].speed);
+    if (speed == 0 && !finds_speed(system.links[static_cast<std::size_t>(d.link)])) continue;
+    if (speed == 0) speed = 1; // found from rest: any will do
     const bool turns = system.links[static_cast<std::size_t>(d.link)].type == LinkType::revolute;
     const double rate = turns ? speed : 3 * speed / p.length;
     if (std::ranges::none_of(rates, [&](double r) { return std::abs(r - rate) < 1e-6 * rate; }))
@@ -38,8 +58,10 @@ std::vector<double> sample_phases(const System& system, const Parameters& p) {
 Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,
                           Workspace& w) {
   Existence result;
+  if (keeps_momentum(problem.system)) judge_momenta(problem, q, 0, w, result);
   for (double t : phases) {
     evaluate_phase(problem, q, t, w);
+    set_closures(problem.system, problem.parameters, q, w.kinematics, w.residual.phi);
     for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
       const CutJoint& cut = problem.system.cuts[c];
       for (std::size_t r = 0; r < cut.rows.size(); ++r) {
@@ -63,6 +85,8 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
       evaluate(problem, z, t, w);
       w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
     }
+    for (Eigen::Index i = 0; i < w.residual.taken.size(); ++i)
+      judge(std::abs(w.residual.taken[i]), w.magnitudes.taken[i]);
     for (Eigen::Index k = 0; k < w.scaled_force.size(); ++k)
       judge(std::abs(w.scaled_force[k]), w.magnitudes.force[k] * problem.scaling.column[k]);
   }

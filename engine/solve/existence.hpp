@@ -12,13 +12,15 @@ struct Existence {
   double violation = 0;    // scaled
   int worst_cut = -1;      // loops_open: in System::cuts
   double left = 0;         // where it holds: the largest imbalance at another phase, scaled
+  int pushed = -1;         // in System::torques: a drive left to itself on which something acts
 };
 
 // Times (s) along q_D(t) at which to look: for each drive several turns at angles where no low harmonic
 // vanishes together. Empty where the mechanism's shape alone makes every phase alike.
 std::vector<double> sample_phases(const System& system, const Parameters& parameters);
 
-// At each phase Phi must vanish and the force balance must lie in the range of Phi_q^T.
+// At each phase Phi must vanish and the force balance must lie in the range of Phi_q^T, and nothing may act
+// along the coordinates of drives left to themselves.
 Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,
                           Workspace& w);
 

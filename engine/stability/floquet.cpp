@@ -25,11 +25,12 @@ void commute(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::MatrixXd
 }
 
 // Speeds of the drives that turn, rad/s; those of slides have no period.
-std::vector<double> turning_speeds(const Problem& problem) {
+std::vector<double> turning_speeds(const Problem& problem, const Eigen::VectorXd& q) {
   std::vector<double> speeds;
   for (const DrivenCoordinate& d : problem.system.drives) {
     const auto l = static_cast<std::size_t>(d.link);
-    const double speed = std::abs(problem.parameters.links[l].speed);
+    const Link& link = problem.system.links[l];
+    const double speed = std::abs(finds_speed(link) ? q[link.q] : problem.parameters.links[l].speed);
     if (speed == 0 || problem.system.links[l].type != LinkType::revolute) continue;
     if (std::ranges::none_of(speeds, [&](double s) { return std::abs(s - speed) <= 1e-12 * speed; }))
       speeds.push_back(speed);
@@ -48,7 +49,7 @@ bool repeats(const Problem& problem, const Eigen::VectorXd& q, double period, Wo
 
 // Of all drives; else, where they have none or a long one, of as few as do.
 std::optional<double> period_of_motion(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
-  const std::vector<double> speeds = turning_speeds(problem);
+  const std::vector<double> speeds = turning_speeds(problem, q);
   if (const auto all = common_period(speeds, usual_turns); all && repeats(problem, q, *all, w)) return all;
   const std::size_t count = std::min<std::size_t>(speeds.size(), 10);
   std::vector<unsigned> subsets;
@@ -117,6 +118,17 @@ MonodromyOutcome monodromy(const PeriodicMotion& motion, int steps, CancelFlag c
   return out;
 }
 
+// Without those that lie at 1 by what is cyclic.
+void leave_out_cyclic(const System& system, const Eigen::MatrixXd& basis, std::vector<Complex>& multipliers) {
+  const Eigen::Index count =
+      cyclic_directions(system, basis, false).cols() + 2 * cyclic_directions(system, basis, true).cols();
+  for (Eigen::Index i = 0; i < count && !multipliers.empty(); ++i) {
+    const auto nearest =
+        std::ranges::min_element(multipliers, {}, [](Complex mu) { return std::abs(mu - 1.); });
+    if (std::abs(*nearest - 1.) < tolerance::neutral_multiplier) multipliers.erase(nearest);
+  }
+}
+
 // The largest distance of a multiplier from the nearest of the coarser ones, relative to the largest of all.
 double difference(const std::vector<Complex>& fine, const std::vector<Complex>& coarse) {
   double largest = 0, worst = 0;
@@ -157,7 +169,7 @@ FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Wo
   };
   const auto period = period_of_motion(problem, q, w);
   if (!period) return fail(FloquetFailure::no_period);
-  const std::vector<double> speeds = turning_speeds(problem);
+  const std::vector<double> speeds = turning_speeds(problem, q);
   const int turns = static_cast<int>(std::ceil(speeds.back() * *period / (2 * std::numbers::pi) - 0.5));
   const auto motion = PeriodicMotion::sample(problem, q, *period, turns, w);
   if (!motion) return fail(FloquetFailure::unresolved);
@@ -197,6 +209,9 @@ FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Wo
       std::ranges::sort(*multipliers, [](Complex a, Complex b) {
         return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
       });
+      if (!problem.system.torques.empty())
+        leave_out_cyclic(problem.system, linear_motion(problem, q, 0, w).basis, *multipliers);
+      if (multipliers->empty()) return fail(FloquetFailure::unresolved);
       Floquet result;
       result.period = motion->period();
       result.multipliers = std::move(*multipliers);

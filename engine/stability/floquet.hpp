@@ -17,8 +17,7 @@ std::optional<double> common_period(const std::vector<double>& speeds, int most)
 enum class FloquetFailure {
   no_period, // the drives that matter have no common period
   singular,  // without mass in directions that turn, or without damping and stiffness in one that has no mass
-  unresolved,    // a period takes more steps than are reasonable
-  speed_is_free, // a drive gives a torque: its speed takes part, and the period with it
+  unresolved, // a period takes more steps than are reasonable
   cancelled,
 };
 
@@ -31,7 +30,8 @@ struct FloquetOutcome {
 // period, of which there are as many as it takes; the monodromy matrix is a product of exponentials by
 // Magnus' expansion of order six (Blanes, Casas, Oteo, Ros, The Magnus expansion and some of its
 // applications, 2009, section 5.3.2), which keeps multipliers of motions without damping on the unit circle.
-// Steps are halved until the multipliers agree.
+// Steps are halved until the multipliers agree. Where speeds are found the multiplier 1 of each phase is left
+// out, and where momentum is kept the one of other momenta.
 FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
 
 // ln(mu) / T, 1/s: growth rates and frequencies, these but for whole turns a period, by size of the imaginary

@@ -49,6 +49,7 @@ LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, dou
     out.basis.setIdentity(system.nv, system.nv);
   }
   linearize(system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.dense.linearization);
+  make_stiffness_of_motion(system, w.dense.linearization.stiffness);
   linearize_motion(system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
   const auto s = problem.scaling.column.asDiagonal();
   out.mass = s * w.dense.linearization.mass * s;
@@ -56,6 +57,27 @@ LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, dou
   out.stiffness = s * w.dense.linearization.stiffness * s;
   out.force = w.magnitudes.force.cwiseProduct(problem.scaling.column);
   return out;
+}
+
+void make_stiffness_of_motion(const System& system, Eigen::MatrixXd& jacobian) {
+  for (const DriveTorqueElement& torque : system.torques) {
+    const int v = system.links[static_cast<std::size_t>(torque.link)].v;
+    jacobian.col(v).setZero();
+    if (torque.keeps_momentum) jacobian.row(v).setZero(); // nothing acts along it, whatever the state
+  }
+}
+
+Eigen::MatrixXd cyclic_directions(const System& system, const Eigen::MatrixXd& basis, bool keep_momentum) {
+  Eigen::MatrixXd all(basis.cols(), 0);
+  for (const DriveTorqueElement& torque : system.torques) {
+    if (torque.keeps_momentum != keep_momentum) continue;
+    all.conservativeResize(Eigen::NoChange, all.cols() + 1);
+    all.rightCols<1>() = basis.row(system.links[static_cast<std::size_t>(torque.link)].v).transpose();
+  }
+  PivotedQr qr;
+  if (all.size() == 0 || !(all.cwiseAbs().maxCoeff() > 1e-12) || !qr.compute(all))
+    return Eigen::MatrixXd(basis.cols(), 0);
+  return qr.q().leftCols(qr.rank(1e-9)); // loops and gears tie some together
 }
 
 std::optional<Eigen::MatrixXd> basis_beside(const LinearMotion& motion, const Eigen::MatrixXd& reference) {

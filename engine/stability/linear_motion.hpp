@@ -7,7 +7,8 @@
 
 namespace flyball {
 
-// In scaled coordinates (n = nv), the multipliers of that phase included.
+// In scaled coordinates (n = nv), the multipliers of that phase included. Where speeds are found
+// (drive_torque.hpp) what turns so is a coordinate like others here, a cyclic one: no force depends on it.
 struct LinearMotion {
   Eigen::MatrixXd mass, velocity, stiffness; // (n, n)
   Eigen::MatrixXd basis;                     // (n, k), orthonormal: null space of the constraints
@@ -16,6 +17,15 @@ struct LinearMotion {
 
 // At the configuration q and the time t (s) along the drives, from their drawn angles.
 LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w);
+
+// From the balance's Jacobian, whose columns are for the speeds that are found and whose rows for the momenta
+// that are kept.
+void make_stiffness_of_motion(const System& system, Eigen::MatrixXd& jacobian);
+
+// Directions on the null space `basis` (n, k) of the constraints, orthonormal, by column: of what turns at
+// speeds that are found by a torque, or keeps its momentum. Along each the motion has an eigenvalue zero, of
+// its phase; where momentum is kept a second, of the states with other momenta.
+Eigen::MatrixXd cyclic_directions(const System& system, const Eigen::MatrixXd& basis, bool keep_momentum);
 
 // The columns of `motion.basis` mixed so that reference^T N is the identity: then N depends on the phase only
 // as far as the null space does. Nothing where the null space turned at right angles to the reference.

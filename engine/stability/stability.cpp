@@ -9,6 +9,8 @@
 #include "engine/stability/gyroscopic_stability.hpp"
 #include "engine/stability/linear_motion.hpp"
 #include "engine/stability/pivot_stability.hpp"
+#include "engine/stability/routh.hpp"
+#include "engine/system/kept_momentum.hpp"
 
 #include <algorithm>
 
@@ -51,9 +53,7 @@ bool stays_balanced(const FactoredState& at, const Eigen::MatrixXd& null_space,
 void classify_by_multipliers(const Problem& problem, const Unknowns& z, int neutral, Workspace& w,
                              Stability& out) {
   FloquetOutcome outcome;
-  if (!problem.system.torques.empty())
-    outcome.failure = FloquetFailure::speed_is_free;
-  else if (problem.system.nv <= largest_for_eigenvalues)
+  if (problem.system.nv <= largest_for_eigenvalues)
     outcome = find_floquet(problem, z.q, w);
   else
     outcome.failure = FloquetFailure::unresolved;
@@ -131,22 +131,47 @@ std::optional<bool> massless_directions_tip(const Eigen::MatrixXd& mass, const E
   return false;
 }
 
-} // namespace
+// Whether a potential with this Hessian, of Routh's for instance, has a strict minimum.
+bool is_minimum(const Eigen::MatrixXd& hessian) {
+  if ((hessian - hessian.transpose()).norm() > tolerance::symmetric * hessian.norm()) return false;
+  ReducedHessian potential;
+  potential.factor(hessian, Eigen::VectorXd::Zero(hessian.rows()), true);
+  return potential.positive_definite();
+}
 
-Eigen::MatrixXd cyclic_directions(const Problem& problem, const Eigen::MatrixXd& basis) {
-  const std::vector<DriveTorqueElement>& torques = problem.system.torques;
-  Eigen::MatrixXd out(basis.cols(), static_cast<Eigen::Index>(torques.size()));
-  for (std::size_t i = 0; i < torques.size(); ++i)
-    out.col(static_cast<Eigen::Index>(i)) =
-        basis.row(problem.system.links[static_cast<std::size_t>(torques[i].link)].v).transpose();
+// On the null space `basis`, at the momenta that are kept.
+std::optional<LinearPencil> motion_with_found_speeds(const Problem& problem, const Eigen::MatrixXd& basis,
+                                                     LinearPencil motion) {
+  motion.directions = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
+  if (!keeps_momentum(problem.system)) return motion;
+  return at_given_momenta(motion.mass, motion.velocity, motion.stiffness,
+                          cyclic_directions(problem.system, basis, true));
+}
+
+// Without those of the phases of what torques drive.
+std::optional<std::vector<Complex>> eigenvalues_with_found_speeds(const Problem& problem,
+                                                                  const Eigen::MatrixXd& basis,
+                                                                  const LinearPencil& motion) {
+  const Eigen::MatrixXd cyclic =
+      motion.directions.transpose() * cyclic_directions(problem.system, basis, false);
+  if (cyclic.cols() == 0)
+    return pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel);
+  auto out =
+      eigenvalues_without_cyclic(motion.mass, motion.velocity, motion.stiffness, cyclic, problem.cancel);
+  if (out) return out;
+  // Something has no mass: all of them, and those nearest to zero left out.
+  out = pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel);
+  for (Eigen::Index i = 0; out && i < cyclic.cols(); ++i)
+    if (!out->empty()) out->erase(std::ranges::min_element(*out, {}, [](Complex x) { return std::abs(x); }));
   return out;
 }
+
+} // namespace
 
 Eigen::MatrixXd stiffness_of_motion(const Problem& problem, const Eigen::MatrixXd& jacobian,
                                     const Eigen::MatrixXd& basis) {
   Eigen::MatrixXd stiffness = jacobian;
-  for (const DriveTorqueElement& torque : problem.system.torques)
-    stiffness.col(problem.system.links[static_cast<std::size_t>(torque.link)].v).setZero();
+  make_stiffness_of_motion(problem.system, stiffness);
   return large::projected(stiffness, basis);
 }
 
@@ -239,25 +264,27 @@ Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
 
   linearize_motion(problem.system, problem.parameters, at.z.q, w.kinematics, w.dense.linearization);
   const auto& s = problem.scaling.column;
-  const Eigen::MatrixXd mass =
+  Eigen::MatrixXd mass =
       large::projected(s.asDiagonal() * w.dense.linearization.mass * s.asDiagonal(), basis);
-  const Eigen::MatrixXd velocity =
+  Eigen::MatrixXd velocity =
       large::projected(s.asDiagonal() * w.dense.linearization.velocity * s.asDiagonal(), basis);
   Eigen::MatrixXd stiffness = reduced;
   if (potential) stiffness = (reduced + reduced.transpose()) / 2;
   if (problem.system.torques.empty()) {
     out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);
   } else {
-    stiffness = stiffness_of_motion(problem, w.dense.stiffness(), basis);
-    out.eigenvalues = eigenvalues_without_cyclic(mass, velocity, stiffness, cyclic_directions(problem, basis),
-                                                 problem.cancel);
-    if (!out.eigenvalues) { // something has no mass: all of them, and those nearest to zero left out
-      out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);
-      for (std::size_t i = 0; out.eigenvalues && i < problem.system.torques.size(); ++i)
-        if (!out.eigenvalues->empty())
-          out.eigenvalues->erase(
-              std::ranges::min_element(*out.eigenvalues, {}, [](Complex x) { return std::abs(x); }));
+    auto motion = motion_with_found_speeds(
+        problem, basis, {mass, velocity, stiffness_of_motion(problem, w.dense.stiffness(), basis), {}});
+    if (!motion) return out;
+    out.eigenvalues = eigenvalues_with_found_speeds(problem, basis, *motion);
+    if (problem.system.conserves && is_minimum(motion->stiffness)) {
+      out.stable = true;
+      out.reason = StabilityReason::minimum;
+      return out;
     }
+    mass = std::move(motion->mass);
+    velocity = std::move(motion->velocity);
+    stiffness = std::move(motion->stiffness);
   }
   if (minimum || !out.eigenvalues) return out;
 

@@ -36,10 +36,9 @@ bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::Matri
 // would take too long in very large mechanisms.
 bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w);
 
-// Where torques drive, the coordinates that they turn are cyclic in the linearised motion (drive_torque.hpp):
-// their directions on the null space `basis` of the constraints, and the stiffness K there from the scaled
-// Jacobian of the balance, whose columns are for their speeds.
-Eigen::MatrixXd cyclic_directions(const Problem& problem, const Eigen::MatrixXd& basis);
+// Where speeds are found, the coordinates that turn so are cyclic in the linearised motion
+// (drive_torque.hpp): the stiffness K on the null space `basis` of the constraints, from the scaled Jacobian
+// of the balance, whose columns are for their speeds.
 Eigen::MatrixXd stiffness_of_motion(const Problem& problem, const Eigen::MatrixXd& jacobian,
                                     const Eigen::MatrixXd& basis);
 

@@ -136,6 +136,11 @@ class Builder {
     check(out.steady);
     model_ = make_motion_model(signals_.mechanism, true);
     steady_system_ = compile_for_drives(signals_.mechanism);
+    if (std::ranges::any_of(steady_system_.torques, [](const DriveTorqueElement& torque) {
+          return torque.keeps_momentum || torque.implied;
+        }))
+      throw Refusal{"A drive is left to itself, or loops and gears make something turn at a rate of its own: "
+                    "linear models of such are not made yet."};
     bind(steady_system_, signals_.mechanism, steady_parameters_);
     place(out.steady);
     const MotionAt drawn(model_, at_phase(0));

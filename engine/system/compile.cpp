@@ -38,7 +38,7 @@ class UnionFind {
 // How a coordinate is driven: from which motor, through which gears.
 struct DriveOrigin {
   bool driven = false;
-  bool by_torque = false;
+  bool finds_speed = false;
   int motor_joint = -1, motor_coordinate = 0;
   std::vector<int> gears;
 };
@@ -105,13 +105,17 @@ class Compiler {
       o.resize(joint(j).coordinates.size());
       for (std::size_t k = 0; k < o.size(); ++k)
         if (const auto& drive = joint(j).coordinates[k].drive)
-          o[k] = {true, drive->torque.has_value(), j, static_cast<int>(k), {}};
+          o[k] = {true, finds_speed(*drive), j, static_cast<int>(k), {}};
     }
+    for (const CoordinateReference& c : choice_.turning)
+      if (!origin(c).driven) origin(c) = {true, true, c.joint, c.coordinate, {}};
     for (bool changed = true; changed;) {
       changed = false;
       for (int j = 0; j < joint_count(); ++j) {
         if (joint(j).type != JointType::gear) continue;
         const CoordinateReference a = gear_end(j, 0), b = gear_end(j, 1);
+        if (origin(a).driven && origin(b).driven && origin(a).finds_speed != origin(b).finds_speed)
+          throw SceneError(joint_path(j), "ties a coordinate whose speed is found to one at a given speed");
         if (origin(a).driven == origin(b).driven) continue;
         DriveOrigin& from = origin(a).driven ? origin(a) : origin(b);
         DriveOrigin& to = origin(a).driven ? origin(b) : origin(a);
@@ -130,9 +134,17 @@ class Compiler {
     }
   }
 
+  const std::optional<Drive>& drive_of(int j, int coordinate) const {
+    return joint(j).coordinates[static_cast<std::size_t>(coordinate)].drive;
+  }
+
+  // What turns at a given speed, or has a drive of its own. What turns at a speed that is found because
+  // others do may close a loop.
   bool is_driven(int j) const {
-    return std::ranges::any_of(origins_[static_cast<std::size_t>(j)],
-                               [](const DriveOrigin& o) { return o.driven; });
+    const auto& all = origins_[static_cast<std::size_t>(j)];
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (drive_of(j, static_cast<int>(k)) || (all[k].driven && !all[k].finds_speed)) return true;
+    return false;
   }
 
   // Lower is kept in the tree first.
@@ -196,17 +208,17 @@ class Compiler {
         o = &origins_[static_cast<std::size_t>(j)][static_cast<std::size_t>(part.coordinate)];
       if (o && o->driven && part.type == LinkType::spherical)
         throw SceneError(joint_path(j) + ".drive", "a rotation vector cannot be driven; use revolute joints");
-      const bool torque = o && o->driven && o->by_torque;
-      if (torque && !o->gears.empty())
-        throw SceneError(joint_path(j), "is geared to a drive by torque, which is not solved for yet");
-      if (torque) torque_links_.push_back(last);
-      const bool turns = o && o->driven && !(torque && torque_driven_ == TorqueDriven::moves_freely);
+      const bool found = o && o->driven && o->finds_speed;
+      const bool turns = o && o->driven && !(found && torque_driven_ == TorqueDriven::moves_freely);
+      if (found && (turns || drive_of(j, part.coordinate))) torque_links_.push_back(last);
       if (turns) {
         l.drive = static_cast<int>(s_.drives.size());
-        s_.drives.push_back({last, l.drive, o->gears});
-        motors_.push_back({o->motor_joint, o->motor_coordinate});
+        // Where a speed is found each has its own, and gears are equations between them.
+        s_.drives.push_back({last, l.drive, found ? std::vector<int>() : o->gears});
+        motors_.push_back(found ? CoordinateReference{j, part.coordinate}
+                                : CoordinateReference{o->motor_joint, o->motor_coordinate});
       }
-      if ((!turns || torque) && part.type != LinkType::fixed) {
+      if ((!turns || found) && part.type != LinkType::fixed) {
         l.q = s_.nq;
         l.v = s_.nv;
         s_.nq += part.type == LinkType::spherical ? 4 : 1;
@@ -368,8 +380,15 @@ class Compiler {
     std::reverse(out.begin() + begin, out.end());
   }
 
+  // Whether what moves the ends against each other turns, all of it, at speeds that are found.
+  bool turns_at_found_speeds(const Support& support) const {
+    return !support.empty() &&
+           std::ranges::all_of(support, [&](const SupportColumn& c) { return finds_speed(link_at(c.link)); });
+  }
+
   void add_cut(CutJoint cut, JointType type) {
     cut.type = type;
+    if (type != JointType::gear) cut.by_rates = turns_at_found_speeds(cut.ends.support);
     cut.first_row = s_.rows;
     cut.rows = rows_of(type);
     s_.rows += static_cast<int>(cut.rows.size());
@@ -431,7 +450,7 @@ class Compiler {
 
   void add_gear(int j) {
     const CoordinateReference a = gear_end(j, 0), b = gear_end(j, 1);
-    if (origin(a).driven) { // then b is, too
+    if (origin(a).driven && !origin(a).finds_speed) { // then b is, too
       s_.dropped_gears.push_back(j);
       return;
     }
@@ -440,7 +459,10 @@ class Compiler {
     for (const Link& l : s_.links) {
       const int owner = s_.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint;
       if (l.type != LinkType::revolute && l.type != LinkType::prismatic) continue;
-      if (owner == a.joint && l.coordinate == a.coordinate) cut.gear_a = l.q, cut.gear_va = l.v;
+      if (owner == a.joint && l.coordinate == a.coordinate) {
+        cut.gear_a = l.q, cut.gear_va = l.v;
+        cut.by_rates = finds_speed(l);
+      }
       if (owner == b.joint && l.coordinate == b.coordinate) cut.gear_b = l.q, cut.gear_vb = l.v;
     }
     if (cut.gear_a < 0 || cut.gear_b < 0)
@@ -496,9 +518,20 @@ class Compiler {
   void add_drive_torques() {
     for (const int l : torque_links_) {
       const Joint& x = joint(s_.tree_joints[static_cast<std::size_t>(link(l).tree_joint)].joint);
-      s_.torques.push_back(
-          {l, law_of(x, link(l).coordinate, "torque"), law_of(x, link(l).coordinate, "load")});
+      const auto& drive = x.coordinates[static_cast<std::size_t>(link(l).coordinate)].drive;
+      s_.torques.push_back({l, law_of(x, link(l).coordinate, "torque"), law_of(x, link(l).coordinate, "load"),
+                            drive && !drive->torque, !drive});
     }
+    for (const DriveTorqueElement& kept : s_.torques)
+      for (const DriveTorqueElement& other : s_.torques)
+        if (kept.keeps_momentum && !other.keeps_momentum &&
+            (hangs_from(s_, kept.link, other.link) || hangs_from(s_, other.link, kept.link)))
+          throw SceneError(
+              "joints." + s_.tree_joints[static_cast<std::size_t>(link(kept.link).tree_joint)].name +
+                  ".drive.keeps",
+              "expected speed, or no drive by torque that carries it or that it carries, found " +
+                  s_.tree_joints[static_cast<std::size_t>(link(other.link).tree_joint)].name +
+                  ": its momentum in the drawn pose is not given then");
   }
 
   DriveLaw::Input input_of(const ResultCall& call) const {
@@ -542,7 +575,6 @@ class Compiler {
     for (const DrivenCoordinate& d : s_.drives)
       if (const int l = link(d.link).parent; l >= 0 && (link(l).frame >= 0 || link(l).mobile))
         s_.single_drives = false;
-    if (!s_.torques.empty()) s_.conservative = false;
     for (const BodyForceElement& e : s_.body_forces) {
       const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
       if (f.type != ForceType::force || f.frame != ForceFrame::world) s_.conservative = false;
@@ -553,6 +585,8 @@ class Compiler {
         s_.conservative = false;
     for (const CutDamperElement& e : s_.cut_dampers)
       if (moving_frame(e.ends.a) != moving_frame(e.ends.b)) s_.conservative = false;
+    s_.conserves = s_.conservative && std::ranges::all_of(s_.torques, &DriveTorqueElement::keeps_momentum);
+    s_.conservative = s_.conservative && s_.torques.empty();
   }
 
   // Below some coordinates the dense equations are faster (measured: `flyball_bench`, chains).

@@ -46,4 +46,19 @@ S row_value(const CutJoint& cut, const CutParametersOf<S>& p, const ConstraintRo
   return u.dot(w) - (row.w == 3 ? S(p.constant) : S(0));
 }
 
+// How fast its value changes at the rates of the kinematics, for a joint that closes a loop by rates.
+template <class S>
+S row_rate(const CutJoint& cut, const CutParametersOf<S>& p, const ConstraintRow& row,
+           const Configuration<S>& q, const Kinematics<S>& k) {
+  if (row.type == RowType::gear) return q[cut.gear_b] - S(p.ratio) * q[cut.gear_a];
+  const LinkState<S>&a = k.at(cut.ends.a), &b = k.at(cut.ends.b);
+  const Vec3T<S> pa = k.point(cut.ends.a, p.a), pb = k.point(cut.ends.b, p.b), d = pb - pa;
+  const Vec3T<S> moved = k.velocity(cut.ends.b, pb) - k.velocity(cut.ends.a, pa);
+  if (row.type == RowType::distance) return d.normalized().dot(moved);
+  const Vec3T<S> u = a.R * p.frame[static_cast<std::size_t>(row.u)].template cast<S>();
+  if (row.type == RowType::point) return u.dot(moved) + a.w.cross(u).dot(d);
+  const Vec3T<S> w = b.R * p.frame[static_cast<std::size_t>(row.w)].template cast<S>();
+  return a.w.cross(u).dot(w) + u.dot(b.w.cross(w));
+}
+
 } // namespace flyball

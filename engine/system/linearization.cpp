@@ -3,6 +3,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/drive_torque.hpp"
+#include "engine/system/kept_momentum.hpp"
 #include "engine/system/pair_stiffness.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -100,14 +101,6 @@ void fill_composites(const System& system, const Parameters& p, const Kinematics
   }
 }
 
-struct LinearizedWrench {
-  Vec3 moment, force;
-};
-
-LinearizedWrench times_inertia(const CompositeBody& b, const Vec3& w, const Vec3& v) {
-  return {b.inertia * w + b.first_moment.cross(v), b.mass * v - b.first_moment.cross(w)};
-}
-
 // The nearest link with coordinates of its own from here to the root, itself included; -1: none.
 int nearest_free(const System& system, int link) {
   while (link >= 0 && system.links[static_cast<std::size_t>(link)].v < 0)
@@ -199,6 +192,10 @@ void add_body_forces(const System& system, const Parameters& p, const Kinematics
 
 } // namespace
 
+LinearizedWrench times_inertia(const CompositeBody& b, const Vec3& w, const Vec3& v) {
+  return {b.inertia * w + b.first_moment.cross(v), b.mass * v - b.first_moment.cross(w)};
+}
+
 Mat3 rotation_stiffness(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
   const Vec3 r = rotation_vector(link, p, q);
   const Mat3 j = inverse_left_jacobian(r), r0 = p.drawn_rotation.toRotationMatrix();
@@ -239,12 +236,6 @@ LinearizedWrench velocity_wrench(const CompositeBody& b, const ScrewRates& s) {
 
 double apply_velocity(const LinearizedRow& row, const ScrewRates& s, const Vec3& arm) {
   return 2 * apply_inertia(row, s.dw, s.dv, arm) + s.sw.dot(row.b);
-}
-
-bool hangs_from(const System& system, int link, int from) {
-  while (link > from)
-    link = system.links[static_cast<std::size_t>(link)].parent;
-  return link == from;
 }
 
 // The entries of `velocity` in the column of a speed that is among the unknowns, without dampers.
@@ -302,7 +293,11 @@ void linearize_constraints(const System& system, const Parameters& p, const Kine
       row_gradient(system.cuts[c], p.cuts[c], system.cuts[c].rows[r], k, [&](int v, double g) {
         out.constraint(system.cuts[c].first_row + static_cast<int>(r), v) += g;
       });
-  for_speeds(system, [&](int v) { out.constraint.col(v).setZero(); }); // loops are closed at any speed
+  for (const CutJoint& cut : system.cuts) // other loops are closed at any speed
+    if (!cut.by_rates)
+      for_speeds(system, [&](int v) {
+        out.constraint.block(cut.first_row, v, static_cast<Eigen::Index>(cut.rows.size()), 1).setZero();
+      });
 }
 
 void linearize(const System& system, const Parameters& p, const Eigen::VectorXd& q,
@@ -350,6 +345,7 @@ void linearize(const System& system, const Parameters& p, const Eigen::VectorXd&
     if (finds_speed(system.links[static_cast<std::size_t>(drive.link)]))
       fill_speed_column(system, k, drive.link, out);
   for_speeds(system, [&](int v) { out.stiffness.col(v) = out.velocity.col(v); });
+  set_kept_momentum_stiffness(system, p, k, out);
 }
 
 void linearize_motion(const System& system, const Parameters& p, const Eigen::VectorXd& q,

@@ -21,6 +21,12 @@ struct CompositeBody {
   Vec3 momentum;     // kg m/s
 };
 
+// About the link's origin (N m and N, or of momenta).
+struct LinearizedWrench {
+  Vec3 moment, force;
+};
+LinearizedWrench times_inertia(const CompositeBody& body, const Vec3& w, const Vec3& v);
+
 // S, Psi' and Psi'' of one coordinate, about its link's origin: angular and linear parts.
 struct ScrewRates {
   Vec3 sw, sv, dw, dv, ddw, ddv;
@@ -33,6 +39,7 @@ struct Linearization {
   Eigen::MatrixXd velocity;   // d f / d q_R': gyroscopic and damping, (nv, nv)
   std::vector<CompositeBody> composites;
   std::vector<ScrewRates> screws;
+  std::vector<Vec3> spins; // kg m^2/s: workspace of kept_momentum.hpp
 };
 
 // Hessian of a spherical link's springs and stops in the step's axes (N m per rad).

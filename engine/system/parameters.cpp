@@ -1,7 +1,9 @@
 #include "engine/system/parameters.hpp"
 
 #include "engine/mechanism/drive_law.hpp"
+#include "engine/system/implied_rates.hpp"
 #include "engine/system/joint_coordinates.hpp"
+#include "engine/system/kept_momentum.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
@@ -145,6 +147,10 @@ class Binder {
       const Link& m = s_.links[static_cast<std::size_t>(motor.link)];
       const Coordinate& c = joint(s_.tree_joints[static_cast<std::size_t>(m.tree_joint)].joint)
                                 .coordinates[static_cast<std::size_t>(m.coordinate)];
+      if (!c.drive) { // implied: it goes on from where it is drawn, see implied_rates.hpp
+        p_.moving = true;
+        continue;
+      }
       N ratio = 1, value = read_(c.drawn);
       CoordinateReference at{s_.tree_joints[static_cast<std::size_t>(m.tree_joint)].joint, m.coordinate};
       for (int gear : d.gears) {
@@ -206,14 +212,21 @@ class Binder {
     }
     p_.torques.resize(s_.torques.size());
     for (std::size_t i = 0; i < s_.torques.size(); ++i) {
+      if (s_.torques[i].implied) continue;
       const Link& l = s_.links[static_cast<std::size_t>(s_.torques[i].link)];
       const Drive& drive = *joint(s_.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint)
                                 .coordinates[static_cast<std::size_t>(l.coordinate)]
                                 .drive;
-      p_.links[static_cast<std::size_t>(s_.torques[i].link)].speed = drive.speed; // no number of the balance
+      N& speed = p_.links[static_cast<std::size_t>(s_.torques[i].link)].speed;
+      if (s_.torques[i].keeps_momentum)
+        speed = read_(drive.speed);
+      else
+        speed = drive.speed; // no number of the balance
       bind_law(s_.torques[i].torque, drive.torque, p_.torques[i].torque);
       bind_law(s_.torques[i].load, drive.load, p_.torques[i].load);
     }
+    for (std::size_t i = 0; i < s_.torques.size(); ++i)
+      if (s_.torques[i].keeps_momentum) p_.torques[i].momentum = drawn_momentum(s_, p_, s_.torques[i].link);
     p_.cuts.resize(s_.cuts.size());
     for (std::size_t i = 0; i < s_.cuts.size(); ++i)
       bind_cut(s_.cuts[i], p_.cuts[i]);
@@ -312,6 +325,7 @@ bool phase_free(const System& system, const Parameters& p) {
 void bind(const System& system, const Mechanism& mechanism, Parameters& parameters) {
   Binder<double>(system, mechanism, {}, parameters).run();
   parameters.length = reach(system, parameters);
+  set_implied_rates(system, parameters);
   parameters.phase_free = phase_free(system, parameters);
 }
 

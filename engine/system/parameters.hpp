@@ -114,6 +114,7 @@ struct BasicDriveLawParameters {
 template <class N>
 struct BasicDriveTorqueParameters {
   BasicDriveLawParameters<N> torque, load;
+  N momentum = 0; // kg m^2/s or kg m/s, where it is kept: in the drawn pose at the given speed
 };
 
 template <class N>

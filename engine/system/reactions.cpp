@@ -1,5 +1,6 @@
 #include "engine/system/reactions.hpp"
 
+#include "engine/system/constraint_row.hpp"
 #include "engine/system/drive_torque.hpp"
 
 #include <algorithm>
@@ -161,6 +162,13 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     loads.push_back(carried);
     out.drives[static_cast<std::size_t>(d.motor)] += carried * p.links[l].gear_ratio;
   }
+  for (std::size_t c = 0; c < system.cuts.size(); ++c) // gears between speeds that are found
+    if (const CutJoint& cut = system.cuts[c]; cut.by_rates && cut.type == JointType::gear)
+      row_gradient(cut, p.cuts[c], cut.rows[0], k, [&](int v, double g) {
+        for (std::size_t d = 0; d < system.drives.size(); ++d)
+          if (system.links[static_cast<std::size_t>(system.drives[d].link)].v == v)
+            out.drives[d] += g * lambda[cut.first_row];
+      });
   add_gears(system, p, lambda, loads, out.gears);
   return out;
 }

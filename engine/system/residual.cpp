@@ -3,6 +3,7 @@
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/extended.hpp"
+#include "engine/system/kept_momentum.hpp"
 #include "engine/system/link_forces.hpp"
 
 #include <algorithm>
@@ -193,6 +194,7 @@ struct ResidualPass {
     for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
       add_cut_damper(system, p, k, i, out.f);
     add_drive_torques(system, p, q, k, out.f);
+    set_kept_momenta<S>(system, p, k, out);
     evaluate_constraints(system, p, q, k, out.phi);
   }
 };
@@ -216,7 +218,9 @@ void evaluate_constraints(const System& system, const ParametersOf<S>& p, const 
     for (std::size_t i = first; i < last; ++i) {
       const CutJoint& cut = system.cuts[i];
       for (std::size_t r = 0; r < cut.rows.size(); ++r)
-        phi[cut.first_row + static_cast<int>(r)] = row_value(cut, p.cuts[i], cut.rows[r], q, k);
+        phi[cut.first_row + static_cast<int>(r)] = cut.by_rates
+                                                       ? row_rate<S>(cut, p.cuts[i], cut.rows[r], q, k)
+                                                       : row_value<S>(cut, p.cuts[i], cut.rows[r], q, k);
     }
   });
 }
@@ -365,6 +369,7 @@ struct MagnitudesPass {
           phi = std::abs(q[cut.gear_b]) + std::abs(c.ratio * q[cut.gear_a]) + std::abs(c.offset) + 1;
           break;
         }
+        if (cut.by_rates) phi *= 1 + k.at(cut.ends.a).w.norm() + k.at(cut.ends.b).w.norm();
       }
     }
   }
@@ -399,6 +404,7 @@ void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen:
                          const Eigen::VectorXd& lambda, const Kinematics<double>& k, Magnitudes& out) {
   MagnitudesPass{system, p, q, lambda, k, out}.run();
   add_drive_torque_sizes(system, p, q, k, out.force);
+  set_kept_momentum_sizes(system, p, k, out);
 }
 
 template AppliedForce<double> applied_force(const BodyForceElement&, const BodyForceParameters&,

@@ -13,6 +13,8 @@ template <class S>
 struct Residual {
   Configuration<S> f;   // N m or N, by coordinate of q_R: inertia less applied plus constraint forces
   Configuration<S> phi; // m or 1, by constraint row; gears rad or m
+  // By System::torques: what turning takes (N m or N), where f has the momentum instead.
+  Configuration<S> taken;
   // Force and moment about the link's origin that its subtree's inertia, weight and single-body forces ask
   // for.
   std::vector<Vec3T<S>> force, moment;
@@ -32,7 +34,7 @@ void evaluate_constraints(const System& system, const ParametersOf<S>& parameter
 // How large the terms of each equation are before they cancel, for scaling and for the rounding error of f:
 // |f_i| below a few units of 1e-16 force[i] is zero as far as double can tell. Same units as f and phi.
 struct Magnitudes {
-  Eigen::VectorXd force, phi;
+  Eigen::VectorXd force, phi, taken;
   std::vector<double> link_force, link_moment; // workspace
   std::vector<double> spine_force, spine_moment, largest;
 };

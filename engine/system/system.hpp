@@ -66,10 +66,12 @@ struct DriveLaw {
   std::vector<Input> inputs; // by Expression::results()
 };
 
-// A drive that gives a torque rather than a speed.
+// A drive that gives a torque rather than a speed, or that is left to itself with the momentum it has.
 struct DriveTorqueElement {
   int link = 0; // whose coordinate it drives
   DriveLaw torque, load;
+  bool keeps_momentum = false; // torque and load are nothing
+  bool implied = false;        // no drive: loops or gears make it turn with others (CutChoice::turning)
 };
 
 // One coordinate of q_R that takes part in an element, with the end of the element that it moves.
@@ -127,7 +129,9 @@ struct CutJoint {
   std::vector<ConstraintRow> rows;
   int gear_a = -1, gear_b = -1; // entries in the configuration
   int gear_va = -1, gear_vb = -1;
-  bool turns = false; // with the drives, in a steady state (compile_for_drives)
+  bool turns = false;    // with the drives, in a steady state (compile_for_drives)
+  bool by_rates = false; // all that moves its ends turns at constant rates: closed as drawn, its equations
+                         // are those of the rates
 };
 
 struct CoordinateInfo {
@@ -150,6 +154,7 @@ struct ReportedCoordinate {
 // How to choose joints to cut where the mechanism does not say.
 struct CutChoice {
   std::vector<int> cut; // joints of the mechanism to cut, beyond those marked; empty: by preference
+  std::vector<CoordinateReference> turning{}; // turn at constant rates that are found, without a drive
 };
 
 // The form of the KKT matrix (kkt/kkt_system.hpp).
@@ -181,6 +186,8 @@ struct System {
   // No drive rides on another or on a free coordinate: the inertia forces then have a potential, too (see
   // potential.hpp).
   bool single_drives = true;
+  // The same but for drives that keep their momentum, for which Routh's potential takes its place.
+  bool conserves = true;
   KktForm kkt_form = KktForm::dense;
   Division division;
 };
@@ -198,6 +205,13 @@ System compile(const Mechanism& mechanism, const CutChoice& choice = {},
 // Whether the link's coordinate turns at a constant speed that is among the unknowns.
 inline bool finds_speed(const Link& link) {
   return link.drive >= 0 && link.v >= 0;
+}
+
+// Whether a link is `from` or hangs from it.
+inline bool hangs_from(const System& system, int link, int from) {
+  while (link > from)
+    link = system.links[static_cast<std::size_t>(link)].parent;
+  return link == from;
 }
 
 // No drive rides on a free coordinate: what eliminations take for granted. And there are neither loops nor

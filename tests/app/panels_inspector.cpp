@@ -672,6 +672,27 @@ TEST_CASE("a drive gives a torque where that is ticked, and its speed is found")
   CHECK(hand.joint("spin").formulas.empty());
 }
 
+TEST_CASE("a drive is left to itself where that is ticked, and its speed is found") {
+  Hand hand;
+  hand.choose(PartKind::joint, "spin");
+  const auto drive = [&] { return *hand.joint("spin").coordinates[0].drive; };
+  hand.one_step([&] { hand.press_widget("inspector/drive/keeps"); });
+  CHECK(drive().keeps == DriveKeeps::momentum);
+  CHECK(find_mistakes(hand.mechanism()).empty());
+  set_mode(hand.app, Mode::explore);
+  hand.frames(3);
+  const CoordinateSolution& spin = coordinate(hand.app.answer.solution, "spin");
+  REQUIRE(spin.speed);
+  CHECK(*spin.speed != drive().speed);
+  set_mode(hand.app, Mode::build);
+  hand.frames(2);
+  // A damper would take the momentum.
+  hand.press_widget("inspector/damper");
+  CHECK(hand.joint("spin").coordinates[0].damping == 0);
+  hand.one_step([&] { hand.press_widget("inspector/drive/by_torque"); });
+  CHECK(drive().keeps == DriveKeeps::speed);
+}
+
 TEST_CASE("the history goes to any step") {
   Hand hand;
   hand.choose(PartKind::body, "ball1");

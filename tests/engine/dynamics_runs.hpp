@@ -12,10 +12,10 @@ inline constexpr Integrator all_integrators[]{Integrator::bdf, Integrator::adams
 
 // By name: "pendulum" and the like.
 inline const std::vector<std::string> shipped_names{
-    "ball_on_string",   "chain20",           "conical_pendulum", "fourbar_turntable", "governor",
-    "governor_bearing", "pendulum",          "rate_gyro",        "watt_governor",     "governor_parametric",
-    "governor_engine",  "governor_hartnell", "governor_porter",  "governor_proell",   "governor_watt",
-    "governor_friction"};
+    "ball_on_string",    "chain20",           "conical_pendulum", "fourbar_turntable", "governor",
+    "governor_bearing",  "pendulum",          "rate_gyro",        "watt_governor",     "governor_parametric",
+    "governor_engine",   "governor_hartnell", "governor_porter",  "governor_proell",   "governor_watt",
+    "governor_friction", "free_top",          "differential"};
 
 inline SimulationOptions lasting(double duration, Integrator method = Integrator::automatic,
                                  double tolerance = 1e-10) {

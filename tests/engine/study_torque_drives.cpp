@@ -401,6 +401,50 @@ TEST_CASE("shafts found at different speeds turn against each other, wherever th
   CHECK(Analysis(m).solve({}).status == Status::no_steady_state);
 }
 
+TEST_CASE("Floquet: multipliers where the speed of the period is found", "[torque][floquet]") {
+  // Springs on a turntable pull at a bead on a fixed slide (Mathieu's equation), at rest where they balance.
+  Mechanism m;
+  m.bodies = {body("bead", 1), body("table", 1, Vec3::Zero(), {1, 1, 1})};
+  m.joints = {driven(revolute("spin", "ground", "table", Vec3::Zero(), Vec3::UnitZ()), 8),
+              dampened(prismatic("x", "ground", "bead", Vec3::Zero(), Vec3::UnitX()), 0.3)};
+  for (const double side : {1., -1.})
+    m.forces.push_back(
+        point_spring(side > 0 ? "east" : "west", "table", "bead", Vec3(side, 0, 0), Vec3::Zero(), 50, 0.7));
+  for (const double free : {0.7, 1.4}) {
+    CAPTURE(free);
+    for (Force& spring : m.forces)
+      spring.free_length = free;
+    SolveOptions nearest;
+    nearest.nearest = true;
+    const Solution prescribed = Analysis(m).solve(nearest);
+    REQUIRE(prescribed.floquet);
+    const auto expect = [&](const Solution& s, std::optional<double> of_shaft) {
+      INFO(s.message);
+      REQUIRE(s.status == Status::converged);
+      CHECK_THAT(speed(s, "spin"), WithinRel(8, 1e-12));
+      REQUIRE(s.floquet);
+      CHECK_THAT(s.floquet->period, WithinRel(prescribed.floquet->period, 1e-12));
+      CHECK(s.stable == prescribed.stable);
+      std::vector<Complex> wanted = prescribed.floquet->multipliers;
+      if (of_shaft) wanted.push_back(*of_shaft);
+      REQUIRE(s.floquet->multipliers.size() == wanted.size());
+      for (const Complex mu : wanted) {
+        double apart = 1;
+        for (const Complex other : s.floquet->multipliers)
+          apart = std::min(apart, std::abs(mu - other));
+        CHECK(apart < 1e-7);
+      }
+    };
+    Mechanism by_torque = m;
+    by_torque.joints[0] = torque_driven(revolute("spin", "ground", "table", Vec3::Zero(), Vec3::UnitZ()), 7,
+                                        "4 N m - 0.5 N m s * rate(spin)");
+    expect(Analysis(by_torque).solve(nearest), std::exp(-0.5 * prescribed.floquet->period));
+    Mechanism left = m;
+    left.joints[0].coordinates[0].drive->keeps = DriveKeeps::momentum;
+    expect(Analysis(left).solve(nearest), {}); // neither phase nor momentum is among them
+  }
+}
+
 TEST_CASE("laws of torque that mean nothing are mistakes with their place", "[torque]") {
   Mechanism m = shipped("governor_engine");
   Joint& spin = m.joints[0];

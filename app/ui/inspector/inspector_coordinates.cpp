@@ -89,12 +89,15 @@ struct CoordinateRows {
     const CoordinateSolution* found = solution();
     // Words and digits are of different heights.
     const float next = ImGui::GetCursorPosY() + ImGui::GetTextLineHeightWithSpacing() + std::round(app.scale);
-    if (found && found->speed && coordinate().drive) {
+    if (found && found->speed) {
       const NumberStyle& numbers = app.options.numbers;
       const ShownUnit unit = rate_unit(angle(), app.units);
       row(app, angle() ? "Turns at" : "Moves at",
           value_text(unit.shown(*found->speed), found->speed_error * unit.factor, numbers), unit.text.c_str(),
-          "The steady speed: there the torque, less the load, is what turning takes.");
+          !coordinate().drive ? "The rate at which loops and gears make it turn in the steady state."
+          : coordinate().drive->torque
+              ? "The steady speed: there the torque, less the load, is what turning takes."
+              : "The steady speed, at which it has the momentum that it keeps.");
     } else if (coordinate().drive || (found && found->driven)) {
       no_value("driven", "It moves at a constant speed, so there is no place where it settles.");
     } else if (!found) {
@@ -144,6 +147,7 @@ struct CoordinateRows {
     if (!coordinate().drive) return;
     const Drive& drive = *coordinate().drive;
     by_torque(drive.torque.has_value());
+    if (!drive.torque) left_to_itself(drive.keeps == DriveKeeps::momentum);
     const std::string unit = angle() ? "N m" : "N";
     if (drive.torque) {
       number(angle() ? "Torque" : "Force", key("drive") + ".torque", *drive.torque, unit,
@@ -153,7 +157,9 @@ struct CoordinateRows {
     }
     number(drive.torque ? "Search from" : "Speed", key("drive") + ".speed", drive.speed, value_unit() + "/s",
            drive.torque ? "Where the search for the steady speed begins."
-                        : "The constant speed of the coordinate; right-handed about or along the axis.");
+           : finds_speed(drive)
+               ? "Makes, in the drawn pose, the momentum that is kept; the steady speed is found."
+               : "The constant speed of the coordinate; right-handed about or along the axis.");
   }
 
   // Whether the drive gives a torque rather than a speed.
@@ -167,6 +173,21 @@ struct CoordinateRows {
       if (!c.drive) return;
       c.drive->torque = on ? std::nullopt : std::optional(0.);
       c.drive->load = c.drive->torque;
+      c.drive->keeps = DriveKeeps::speed;
+    });
+  }
+
+  // Whether the drive keeps its momentum rather than its speed.
+  void left_to_itself(bool on) const {
+    if (!check_row(
+            app, widget(key("drive") + ".keeps"), "Left to itself", on,
+            "Nothing drives it any more: it keeps the momentum that the speed makes in the drawn pose, "
+            "and the steady speed is found.",
+            !on && coordinate().damping != 0 ? "Not beside a damper, which would take the momentum."
+                                             : nullptr))
+      return;
+    change((on ? "Prescribe the speed of " : "Leave to itself ") + joint.name, [on](Coordinate& c) {
+      if (c.drive) c.drive->keeps = on ? DriveKeeps::speed : DriveKeeps::momentum;
     });
   }
 
@@ -202,7 +223,10 @@ struct CoordinateRows {
   void damper() const {
     tick(
         "damper", "Damper", "damper", coordinate().damping != 0,
-        "Resists the coordinate's motion; the steady state is the same.", nullptr,
+        "Resists the coordinate's motion; the steady state is the same.",
+        coordinate().drive && coordinate().drive->keeps == DriveKeeps::momentum
+            ? "Not on what is left to itself: it would take the momentum."
+            : nullptr,
         [](Coordinate& c) { c.damping = 0; },
         [damping = beginning().damping](Coordinate& c) { c.damping = damping; });
   }

@@ -58,8 +58,7 @@ void eigenvalue_results(App& app) {
   lines_of(app, *eigenvalues);
   const auto& at = app.answer.solution.at_constant_speed;
   if (!at || !at->eigenvalues || at->eigenvalues->empty()) return;
-  paragraph("With drives that give their torques. The same state with its speeds prescribed:",
-            colors_of(app).dim);
+  paragraph("That is with its speeds free. The same state with its speeds prescribed:", colors_of(app).dim);
   lines_of(app, *at->eigenvalues);
 }
 

@@ -1,0 +1,268 @@
+// Constant rates that loops and gears ask for: planetary sets, differentials and parallelograms, driven at a
+// speed or by a torque, against closed forms and motions that settle.
+#include "engine/dynamics/settled.hpp"
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <cmath>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+double rate(const Solution& s, std::string_view joint) {
+  INFO(s.message);
+  return coordinate(s, joint).speed.value();
+}
+
+Joint pushed(Joint j, const std::string& law, double guess) {
+  Drive& drive = j.coordinates[0].drive.emplace();
+  drive.speed = guess;
+  drive.torque = law.find('(') == std::string::npos ? std::stod(law) : 0;
+  if (law.find('(') != std::string::npos) j.formulas.push_back({"drive.torque", law});
+  return j;
+}
+
+Body wheel(const std::string& name, double inertia, const Vec3& at = Vec3::Zero()) {
+  return body(name, 1, at, {inertia, inertia, 2 * inertia});
+}
+
+// Sun, one planet that weighs nothing, ring and carrier about z; the ring held.
+constexpr double sun_teeth = 20, planet_teeth = 16, ring_teeth = 52;
+Mechanism planetary(Joint sun, double carrier_damping) {
+  Mechanism m;
+  m.bodies = {wheel("sun", 0.1), wheel("carrier", 0.3), body("planet", 0, {0.9, 0, 0}, {0.02, 0.02, 0.03}),
+              wheel("ring", 0.5)};
+  m.joints = {std::move(sun),
+              dampened(revolute("carrier", "ground", "carrier", {0, 0, 0}, {0, 0, 1}), carrier_damping),
+              revolute("sun on carrier", "carrier", "sun", {0, 0, 0}, {0, 0, 1}),
+              revolute("planet", "carrier", "planet", {0.9, 0, 0}, {0, 0, 1}),
+              revolute("ring on carrier", "carrier", "ring", {0, 0, 0}, {0, 0, 1}),
+              joint(JointType::fixed, "held", "ground", "ring", {0, 0, 0}, {0, 0, 1}),
+              gear("inner mesh", "sun on carrier", "planet", -sun_teeth / planet_teeth),
+              gear("outer mesh", "planet", "ring on carrier", planet_teeth / ring_teeth)};
+  validate(m);
+  return m;
+}
+Joint sun_joint() {
+  return revolute("sun", "ground", "sun", {0, 0, 0}, {0, 0, 1});
+}
+
+void expect_willis(const Solution& s, double sun, double carrier) {
+  CHECK_THAT(carrier, WithinRel(sun * sun_teeth / (sun_teeth + ring_teeth), 1e-12));
+  CHECK_THAT(rate(s, "sun on carrier"), WithinRel(sun - carrier, 1e-12));
+  CHECK_THAT(rate(s, "planet"), WithinRel(-(sun - carrier) * sun_teeth / planet_teeth, 1e-12));
+  CHECK_THAT(rate(s, "ring on carrier"), WithinRel(-carrier, 1e-12));
+}
+
+double carrier_rate(const Solution& s) {
+  const CoordinateSolution& c = coordinate(s, "carrier");
+  // Of a joint that closes the loop it is told by the others.
+  return c.speed ? *c.speed : -rate(s, "ring on carrier");
+}
+
+} // namespace
+
+TEST_CASE("a planetary set turns as Willis says", "[implied]") {
+  const double damping = 3;
+  const double ratio = sun_teeth / (sun_teeth + ring_teeth);
+  SECTION("at a given speed, which takes the carrier's load by the ratio") {
+    const Solution s = Analysis(planetary(driven(sun_joint(), 100), damping)).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    expect_willis(s, 100, carrier_rate(s));
+    REQUIRE(s.drive_torques.size() == 1);
+    CHECK_THAT(s.drive_torques[0].value, WithinRel(damping * 100 * ratio * ratio, 1e-10));
+    CHECK_FALSE(s.at_constant_speed);
+  }
+  SECTION("by a torque") {
+    const Mechanism m = planetary(pushed(sun_joint(), "40 N m - 0.1 N m s * rate(sun)", 50), damping);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(rate(s, "sun"), WithinRel(40 / (0.1 + damping * ratio * ratio), 1e-12));
+    expect_willis(s, rate(s, "sun"), carrier_rate(s));
+    CHECK(s.stable == true);
+    // One speed is left: its inertia at the sun.
+    const double sun = 0.2, carrier = 0.6, planet = 0.03,
+                 planet_rate = (1 - ratio) * sun_teeth / planet_teeth;
+    const double inertia = sun + carrier * ratio * ratio + planet * std::pow(ratio - planet_rate, 2);
+    REQUIRE(s.eigenvalues->size() == 1);
+    CHECK_THAT(-(*s.eigenvalues)[0].real(), WithinRel((0.1 + damping * ratio * ratio) / inertia, 1e-9));
+    SimulationOptions run;
+    run.duration = 40 * inertia / (0.1 + damping * ratio * ratio);
+    run.rate = 2 / run.duration;
+    const Run motion = simulate(m, run);
+    REQUIRE(motion.status == RunStatus::completed);
+    for (const CoordinateTrack& track : motion.coordinates)
+      if (track.joint == "sun") CHECK_THAT(track.rate.back(), WithinRel(rate(s, "sun"), 1e-7));
+  }
+}
+
+TEST_CASE("a differential shares the torque and not the speed", "[implied]") {
+  const double left = 2, right = 5, engine = 30;
+  Mechanism m;
+  m.bodies = {body("case", 4, {0, 0, 0}, {0.2, 0.1, 0.1}), body("left", 3, {-0.5, 0, 0}, {0.3, 0.2, 0.2}),
+              body("right", 3, {0.5, 0, 0}, {0.3, 0.2, 0.2}),
+              body("planet", 0.2, {0, 0, 0}, {0.01, 0.01, 0.02})};
+  m.joints = {
+      pushed(revolute("case", "ground", "case", {0, 0, 0}, {1, 0, 0}), "30 N m - 0.5 N m s * rate(case)", 4),
+      dampened(revolute("left", "ground", "left", {-0.5, 0, 0}, {1, 0, 0}), left),
+      dampened(revolute("right", "ground", "right", {0.5, 0, 0}, {1, 0, 0}), right),
+      revolute("planet", "case", "planet", {0, 0, 0}, {0, 0, 1}),
+      revolute("left in case", "case", "left", {-0.2, 0, 0}, {1, 0, 0}),
+      revolute("right in case", "case", "right", {0.2, 0, 0}, {1, 0, 0}),
+      gear("left mesh", "planet", "left in case", 1),
+      gear("right mesh", "planet", "right in case", -1)};
+  const bool of_case =
+      GENERATE(true, false); // the joints that are coordinates: to the case, or to the ground
+  if (!of_case) m.joints[1].cut = m.joints[2].cut = false;
+  CAPTURE(of_case);
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  const auto wheel_rate = [&](const std::string& wheel) {
+    return of_case ? rate(s, "case") + rate(s, wheel + " in case") : rate(s, wheel);
+  };
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  // w = (w_l + w_r) / 2 and c_l w_l = c_r w_r = (T - 0.5 w) / 2
+  const double share = engine / (2 + 0.25 * (1 / left + 1 / right));
+  CHECK_THAT(wheel_rate("left"), WithinRel(share / left, 1e-11));
+  CHECK_THAT(wheel_rate("right"), WithinRel(share / right, 1e-11));
+  CHECK_THAT(rate(s, "case"), WithinRel((share / left + share / right) / 2, 1e-11));
+  CHECK_THAT(rate(s, "planet"), WithinRel((share / left - share / right) / 2, 1e-11));
+  CHECK(s.stable == true);
+  CHECK(s.eigenvalues->size() == 2);
+  SimulationOptions run;
+  run.duration = 20;
+  run.rate = 0.1;
+  const Run motion = simulate(m, run);
+  INFO(motion.message);
+  REQUIRE(motion.status == RunStatus::completed);
+  for (const CoordinateTrack& track : motion.coordinates)
+    if (track.joint == "left" || track.joint == "right")
+      CHECK_THAT(track.rate.back(), WithinRel(wheel_rate(track.joint), 1e-7));
+}
+
+TEST_CASE("a wheel on a bearing turns at the speed that its air gives it", "[implied]") {
+  // The shaft drags it along by the bearing's oil, the air holds it back.
+  Mechanism m;
+  m.bodies = {wheel("shaft", 0.1), wheel("disc", 0.2)};
+  Joint bearing = dampened(revolute("bearing", "shaft", "disc", {0, 0, 0}, {0, 0, 1}), 0.3);
+  m.joints = {driven(revolute("spin", "ground", "shaft", {0, 0, 0}, {0, 0, 1}), 10), bearing};
+  for (const double side : {1., -1.}) {
+    Force air;
+    air.name = side > 0 ? "air1" : "air2";
+    air.type = ForceType::drag;
+    air.body = "disc";
+    air.at = Vec3(side * 0.5, 0, 0);
+    air.linear = 0.4;
+    m.forces.push_back(air);
+  }
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  // 0.3 r + 2 * 0.4 * 0.5^2 (10 + r) = 0
+  CHECK_THAT(rate(s, "bearing"), WithinRel(-0.2 * 10 / 0.5, 1e-12));
+  CHECK(s.stable == true);
+  CHECK_THAT(s.drive_torques.at(0).value, WithinRel(0.3 * 4, 1e-11));
+}
+
+TEST_CASE("gears lead the torque of a drive to others", "[implied]") {
+  Mechanism m;
+  m.bodies = {wheel("a", 0.1), wheel("b", 0.2, {1, 0, 0})};
+  m.joints = {dampened(pushed(revolute("a", "ground", "a", {0, 0, 0}, {0, 0, 1}), "12", 5), 0.5),
+              dampened(revolute("b", "ground", "b", {1, 0, 0}, {0, 0, 1}), 0.25), gear("mesh", "a", "b", -3)};
+  SECTION("one drive") {
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(rate(s, "a"), WithinRel(12 / (0.5 + 9 * 0.25), 1e-13));
+    CHECK_THAT(rate(s, "b"), WithinRel(-3 * 12 / (0.5 + 9 * 0.25), 1e-13));
+    REQUIRE(s.drive_torques.size() == 1);
+    CHECK_THAT(s.drive_torques[0].value, WithinRel(12, 1e-12));
+    REQUIRE(s.gears.size() == 1);
+    CHECK_THAT(std::abs(s.gears[0].b), WithinRel(0.25 * std::abs(rate(s, "b")), 1e-12));
+    REQUIRE(s.eigenvalues->size() == 1);
+    CHECK_THAT((*s.eigenvalues)[0].real(), WithinRel(-(0.5 + 9 * 0.25) / (0.2 + 9 * 0.4), 1e-11));
+    REQUIRE(s.at_constant_speed);
+  }
+  SECTION("two drives add up") {
+    m.joints[1] = dampened(pushed(m.joints[1], "-2", 5), 0.25);
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(rate(s, "a"), WithinRel((12 + 3 * 2) / (0.5 + 9 * 0.25), 1e-13));
+    CHECK(simulate(m, {}).status == RunStatus::completed); // their guesses do not fit
+  }
+  SECTION("none, and nothing resists") {
+    m.joints[0] = pushed(revolute("a", "ground", "a", {0, 0, 0}, {0, 0, 1}), "0", 5);
+    m.joints[1] = revolute("b", "ground", "b", {1, 0, 0}, {0, 0, 1});
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::not_converged);
+    CHECK_THAT(s.message, ContainsSubstring("Nothing determines the speeds of a and b together"));
+  }
+  SECTION("a given speed at one end and a torque at the other") {
+    m.joints[1] = driven(revolute("b", "ground", "b", {1, 0, 0}, {0, 0, 1}), 3);
+    const auto found = find_mistakes(m);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].where() == "joints.mesh");
+    CHECK_THAT(found[0].expected(), ContainsSubstring("drives of one kind"));
+  }
+}
+
+TEST_CASE("a parallelogram's crank turns the rocker", "[implied]") {
+  Mechanism m;
+  m.bodies = {body("crank", 1, {0, 0.15, 0}, {0.01, 0.01, 0.01}),
+              body("coupler", 2, {0.5, 0.3, 0}, {0.1, 0.1, 0.2}),
+              body("rocker", 1, {1, 0.15, 0}, {0.01, 0.01, 0.01})};
+  m.joints = {driven(revolute("crank", "ground", "crank", {0, 0, 0}, {0, 0, 1}), 10),
+              revolute("pin", "crank", "coupler", {0, 0.3, 0}, {0, 0, 1}),
+              dampened(revolute("rocker", "ground", "rocker", {1, 0, 0}, {0, 0, 1}), 0.7),
+              revolute("end", "coupler", "rocker", {1, 0.3, 0}, {0, 0, 1})};
+  SECTION("at a given speed") {
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(rate(s, "pin"), WithinRel(-10, 1e-12));
+    CHECK_THAT(rate(s, "rocker"), WithinRel(10, 1e-12));
+    CHECK_THAT(s.drive_torques.at(0).value, WithinRel(7, 1e-10));
+  }
+  SECTION("by a torque") {
+    m.joints[0] = pushed(revolute("crank", "ground", "crank", {0, 0, 0}, {0, 0, 1}),
+                         "8 N m - 0.1 N m s * rate(crank)", 5);
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(rate(s, "crank"), WithinRel(10, 1e-12));
+    CHECK_THAT(rate(s, "pin"), WithinRel(-10, 1e-12));
+    CHECK(s.stable == true);
+  }
+  SECTION("no parallelogram, no steady state") {
+    m.bodies[2].position.x() = 1.05;
+    m.joints[2].at.x() = 1.1;
+    CHECK(Analysis(m).solve().status == Status::no_steady_state);
+  }
+  SECTION("in its weight it takes a torque that changes") {
+    m.gravity = {0, -standard_gravity, 0};
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged); // at a given speed the drive gives what it takes
+    CHECK(s.drive_torques.at(0).varying);
+    m.joints[0] = pushed(revolute("crank", "ground", "crank", {0, 0, 0}, {0, 0, 1}), "8", 5);
+    CHECK(Analysis(m).solve().status == Status::no_steady_state);
+  }
+}

@@ -1,0 +1,421 @@
+// Shafts left to themselves: their speeds against closed forms, against the same state at prescribed speed
+// and against damped motions that keep their momentum; their stability against Routh's potential by hand.
+#include "engine/continuation/branches.hpp"
+#include "engine/dynamics/settled.hpp"
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/report/report.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/study/design.hpp"
+#include "engine/system/motion.hpp"
+#include "tests/catch.hpp"
+#include "tests/engine/reference/random_mechanism.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <cmath>
+#include <random>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinRel;
+using Complex = std::complex<double>;
+
+namespace {
+
+double found_speed(const Solution& s, std::string_view joint, int index = 0) {
+  INFO(s.message);
+  return coordinate(s, joint, index).speed.value();
+}
+
+Slider slider(const std::string& address, double from, double to) {
+  Slider out;
+  out.parameter = address;
+  out.from = from;
+  out.to = to;
+  return out;
+}
+
+Joint left_to_itself(Joint j, double speed) {
+  Drive& drive = j.coordinates[0].drive.emplace();
+  drive.speed = speed;
+  drive.keeps = DriveKeeps::momentum;
+  return j;
+}
+
+// A ring of 1 kg on a rod that spins, pulled inwards by a spring: J w = (J0 + m r^2) w with the ring where it
+// is drawn, and k (r - free) = m r w^2.
+struct RingOnRod {
+  static constexpr double hub = 0.3, stiffness = 100, free = 0.2, drawn = 0.25, damping = 4;
+  double momentum;
+  explicit RingOnRod(double speed) : momentum((hub + drawn * drawn) * speed) {}
+  double speed(double r) const { return momentum / (hub + r * r); }
+  double radius() const {
+    double r = drawn;
+    for (int i = 0; i < 100; ++i) {
+      const double w = speed(r), slope = -2 * r * w / (hub + r * r);
+      const double f = stiffness * (r - free) - r * w * w;
+      r -= f / (stiffness - w * w - 2 * r * w * slope);
+    }
+    return r;
+  }
+  // Of Routh's potential V + H^2 / 2 J.
+  double routh_stiffness(double r) const {
+    const double j = hub + r * r, w = momentum / j;
+    return stiffness - w * w + 4 * r * r * w * w / j;
+  }
+  static Mechanism mechanism(double speed) {
+    Mechanism m;
+    m.bodies = {body("rod", 2, {0, 0, 0}, {0.1, hub, 0.1}), body("ring", 1, {drawn, 0, 0})};
+    m.joints = {left_to_itself(revolute("spin", "ground", "rod", {0, 0, 0}, {0, 1, 0}), speed),
+                joint(JointType::prismatic, "slide", "rod", "ring", {drawn, 0, 0}, {1, 0, 0})};
+    Coordinate& slide = m.joints[1].coordinates[0];
+    slide.drawn = drawn;
+    slide.damping = damping;
+    slide.spring = CoordinateSpring{stiffness, free};
+    m.sliders = {slider("joints.spin.drive.speed", 0.1, 12)};
+    return m;
+  }
+};
+
+// The same with the speed prescribed.
+Mechanism at_speed(Mechanism m, std::size_t joint, double speed) {
+  m.joints[joint].coordinates[0].drive = Drive{.speed = speed};
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("a ring on a rod left to itself: it slows down as the ring goes out", "[momentum]") {
+  const RingOnRod ring(7);
+  const Mechanism m = RingOnRod::mechanism(7);
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  const double r = ring.radius();
+  CHECK_THAT(value(s, "slide"), WithinRel(r, 1e-13));
+  CHECK_THAT(found_speed(s, "spin"), WithinRel(ring.speed(r), 1e-13));
+  CHECK(found_speed(s, "spin") < 7);
+  CHECK(std::abs(found_speed(s, "spin") - ring.speed(r)) <=
+        coordinate(s, "spin").speed_error + 1e-14 * ring.speed(r));
+  CHECK(s.stable == true);
+  CHECK(s.stability_reason == StabilityReason::minimum);
+  // s^2 + c s + K = 0: neither the phase nor the states of other momenta are among them.
+  REQUIRE(s.eigenvalues);
+  REQUIRE(s.eigenvalues->size() == 2);
+  const double k = ring.routh_stiffness(r);
+  const Complex root =
+      -RingOnRod::damping / 2 + std::sqrt(Complex(RingOnRod::damping * RingOnRod::damping / 4 - k));
+  CHECK(std::min(std::abs((*s.eigenvalues)[0] - root), std::abs((*s.eigenvalues)[1] - root)) < 1e-9);
+  // At constant speed the ring is held by less.
+  REQUIRE(s.at_constant_speed);
+  CHECK(s.at_constant_speed->stable == true);
+  CHECK(s.drive_torques.at(0).value == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("rates of what is left to itself with the given speed, a length and a spring", "[momentum]") {
+  Mechanism m = RingOnRod::mechanism(7);
+  m.sliders.push_back(slider("joints.slide.spring.stiffness", 50, 200));
+  m.sliders.push_back(slider("bodies.ring.mass", 0.5, 2));
+  m.sliders.push_back(slider("bodies.rod.inertia.1", 0.1, 1));
+  m.sliders.push_back(slider("bodies.ring.position.0", 0.1, 1));
+  const Solution s = Analysis(m).solve();
+  REQUIRE(s.sensitivities.size() == m.sliders.size());
+  for (const Sensitivity& x : s.sensitivities) {
+    CAPTURE(x.address);
+    const double at = get_parameter(m, x.address), h = 1e-4 * at;
+    const auto there = [&](double number) {
+      Mechanism moved = m;
+      set_parameter(moved, x.address, number);
+      return Analysis(moved).solve();
+    };
+    const Solution above = there(at + h), below = there(at - h);
+    REQUIRE(x.rates.size() == 2);
+    for (const Sensitivity::Rate& rate : x.rates) {
+      const double difference = rate.speed ? found_speed(above, rate.joint) - found_speed(below, rate.joint)
+                                           : value(above, rate.joint) - value(below, rate.joint);
+      CHECK(std::abs(rate.value - difference / (2 * h)) < 1e-6 * (1 + std::abs(rate.value)));
+    }
+  }
+}
+
+TEST_CASE("branches and design over the speed that gives the momentum", "[momentum][branches]") {
+  const Mechanism m = RingOnRod::mechanism(7);
+  const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 1, 12);
+  INFO(d.message);
+  REQUIRE(d.branches.size() == 1);
+  REQUIRE(d.branches[0].points.size() > 3);
+  for (const ResponsePoint& point : d.branches[0].points) {
+    const double r = RingOnRod(point.parameter).radius();
+    for (const CoordinateSolution& c : point.coordinates)
+      if (c.joint == "slide") CHECK_THAT(c.value, WithinRel(r, 1e-9));
+    CHECK(point.stable == true);
+  }
+  const DesignAnswer answer = design(m, "joints.spin.drive.speed", 1, 12, "slide", 0.3);
+  REQUIRE(answer.status == Status::converged);
+  CHECK_THAT(RingOnRod(answer.solutions[0].parameter).radius(), WithinRel(0.3, 1e-10));
+}
+
+TEST_CASE("Haug's governor left to itself settles where its momentum says", "[momentum]") {
+  Mechanism m = shipped("governor");
+  m.joints[0].coordinates[0].drive->keeps = DriveKeeps::momentum;
+  m.joints[0].coordinates[0].drive->speed = 12;
+  m.bodies[0].inertia = {0.5, 1, 0.5}; // light, so that the balls are felt
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  const double speed = found_speed(s, "spin");
+  CHECK(std::abs(speed - 12) > 1e-3);
+  const Solution there = Analysis(at_speed(m, 0, speed)).solve();
+  for (const char* joint : {"arm1", "arm2", "slide"})
+    CHECK(std::abs(value(s, joint) - value(there, joint)) < 1e-12);
+  // The momentum is what that of the drawn pose is.
+  const double arm = 0.16, fixed = 1 + 0.125 + 2 * 0.1;
+  const auto inertia = [&](double angle) { return fixed + 2 * std::pow(arm * std::cos(angle), 2); };
+  CHECK_THAT(speed * inertia(value(s, "arm1")), WithinRel(12 * inertia(0), 1e-11));
+  CHECK(s.stable == true);
+
+  SimulationOptions options;
+  options.duration = 60;
+  options.rate = 1;
+  options.at = {{"slide", 0.13}};
+  const Run run = simulate(m, options);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(distance_from(run, run.time.size() - 1, s) < 1e-6);
+  options.start = Start::equilibrium;
+  options.at.clear();
+  options.duration = 5;
+  CHECK(distance_from(simulate(m, options), 5, s) < 1e-9);
+}
+
+TEST_CASE("a heavy top left to itself: steady precession with both momenta kept", "[momentum]") {
+  const double inertia = 0.02, across = 0.015 + 2 * 0.15 * 0.15, weight = 2 * standard_gravity * 0.15;
+  Mechanism m;
+  m.gravity = {0, 0, -standard_gravity};
+  m.bodies = {body("yoke", 0), body("ring", 0),
+              body("top", 2, {0, -0.15 * std::sin(0.6), 0.15 * std::cos(0.6)})};
+  const Vec3 along(0, -std::sin(0.6), std::cos(0.6));
+  m.bodies[2].rotation = Quat(Eigen::AngleAxisd(0.6, Vec3::UnitX()));
+  m.bodies[2].inertia = {0.015, 0.015, 0.02};
+  m.joints = {left_to_itself(revolute("precession", "ground", "yoke", {0, 0, 0}, {0, 0, 1}), 1.5),
+              revolute("nutation", "yoke", "ring", {0, 0, 0}, {1, 0, 0}),
+              left_to_itself(revolute("spin", "ring", "top", {0, 0, 0}, along), 180)};
+  m.joints[1].coordinates[0].drawn = 0.6;
+  validate(m);
+  // Of the drawn pose: p_psi = I3 (r + p cos a), p_phi = I1 p sin^2 a + p_psi cos a.
+  const double of_spin = inertia * (180 + 1.5 * std::cos(0.6));
+  const double of_precession = across * 1.5 * std::pow(std::sin(0.6), 2) + of_spin * std::cos(0.6);
+  const auto precession = [&](double a) {
+    return (of_precession - of_spin * std::cos(a)) / (across * std::pow(std::sin(a), 2));
+  };
+  // m g l = p_psi p - I1 p^2 cos a
+  double a = 0.6;
+  const auto left = [&](double at) {
+    const double p = precession(at);
+    return weight - of_spin * p + across * p * p * std::cos(at);
+  };
+  for (int i = 0; i < 60; ++i)
+    a -= left(a) * 2e-6 / (left(a + 1e-6) - left(a - 1e-6));
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(value(s, "nutation"), WithinRel(a, 1e-10));
+  CHECK_THAT(found_speed(s, "precession"), WithinRel(precession(a), 1e-10));
+  CHECK_THAT(found_speed(s, "spin"), WithinRel(of_spin / inertia - precession(a) * std::cos(a), 1e-11));
+  CHECK(s.stability_reason == StabilityReason::minimum);
+  // One nutation is left of six eigenvalues: w^2 = V''(a) / I1 by differences of Routh's potential.
+  const auto potential = [&](double at) {
+    return weight * std::cos(at) +
+           std::pow(of_precession - of_spin * std::cos(at), 2) / (2 * across * std::pow(std::sin(at), 2));
+  };
+  const double h = 1e-4;
+  const double curvature = (potential(a + h) - 2 * potential(a) + potential(a - h)) / (h * h);
+  REQUIRE(s.eigenvalues->size() == 2);
+  CHECK_THAT(std::abs(s.eigenvalues->back().imag()), WithinRel(std::sqrt(curvature / across), 1e-5));
+}
+
+TEST_CASE("random mechanisms left to themselves have the state of their speed found, prescribed",
+          "[momentum][random]") {
+  int found = 0;
+  for (std::uint32_t seed = 0; seed < 80; ++seed) {
+    CAPTURE(seed);
+    reference::RandomOptions options;
+    options.loops = static_cast<int>(seed % 3);
+    options.massless = false;
+    options.spring_share = 1;
+    options.rotated_bodies = seed % 2 == 0;
+    const Mechanism prescribed = reference::random_mechanism(seed, options);
+    const Solution there = Analysis(prescribed).solve();
+    if (there.status != Status::converged || there.drive_torques.size() != 1 ||
+        there.drive_torques[0].varying || !there.neutral.empty())
+      continue;
+    const DriveTorque& torque = there.drive_torques[0];
+    Mechanism m = prescribed;
+    Coordinate& c = m.joints[static_cast<std::size_t>(joint_index(m, torque.joint))]
+                        .coordinates[static_cast<std::size_t>(torque.index)];
+    if (c.drive->speed == 0 || c.damping != 0) continue;
+    c.drive->keeps = DriveKeeps::momentum;
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    if (s.status != Status::converged) {
+      CHECK_FALSE(s.message.empty());
+      continue;
+    }
+    ++found;
+    // Two ways to the momentum: a composite-body mass matrix in both poses, and the row of the balance.
+    const double speed = found_speed(s, torque.joint, torque.index);
+    Mechanism same = m;
+    Coordinate& turned = same.joints[static_cast<std::size_t>(joint_index(m, torque.joint))]
+                             .coordinates[static_cast<std::size_t>(torque.index)];
+    turned.drive->keeps = DriveKeeps::speed;
+    turned.drive->speed = speed;
+    SolveOptions nearest;
+    nearest.nearest = true;
+    for (const CoordinateSolution& x : s.coordinates)
+      if (!x.driven && !x.dependent) nearest.start.emplace_back(coordinate_label(x), x.value);
+    const Solution again = Analysis(same).solve(nearest);
+    REQUIRE(again.status == Status::converged);
+    for (const CoordinateSolution& x : again.coordinates)
+      if (!x.driven && !x.dependent)
+        CHECK(std::abs(x.value - value(s, x.joint, x.index)) < 1e-7 * (1 + std::abs(x.value)));
+    // The momentum about the drive's coordinate, along its motion: twice the kinetic energy by the speed.
+    const auto energy = [](const Mechanism& of, bool drawn, const Solution& at) {
+      const System system = compile_for_drives(of);
+      Parameters p;
+      bind(system, of, p);
+      Eigen::VectorXd q;
+      drawn_configuration(system, p, q);
+      if (!drawn) {
+        std::vector<std::pair<std::string, double>> start;
+        for (const CoordinateSolution& x : at.coordinates)
+          if (!x.driven && !x.dependent) start.emplace_back(coordinate_label(x), x.value);
+        set_start(system, p, start, q);
+      }
+      Kinematics<double> k;
+      forward<double>(system, p, q, 0, k);
+      return kinetic_energy(system, p, k);
+    };
+    const double given = 2 * energy(prescribed, true, there) / c.drive->speed;
+    const double kept = 2 * energy(same, false, s) / speed;
+    CHECK(std::abs(kept - given) < 1e-8 * std::abs(given));
+  }
+  CAPTURE(found);
+  CHECK(found > 10);
+}
+
+TEST_CASE("rows of kept momenta: their derivatives against differences", "[momentum][random]") {
+  int looked = 0;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    reference::RandomOptions options;
+    options.drives = seed % 2 == 0 ? reference::RandomDrives::root : reference::RandomDrives::several;
+    options.rotated_bodies = true;
+    Mechanism m = reference::random_mechanism(seed, options);
+    for (Joint& joint : m.joints)
+      for (Coordinate& c : joint.coordinates)
+        if (c.drive) {
+          c.drive->keeps = DriveKeeps::momentum;
+          c.damping = 0;
+        }
+    if (std::ranges::any_of(m.joints, [](const Joint& j) { return j.type == JointType::gear; })) continue;
+    const System system = compile(m);
+    if (system.torques.empty()) continue;
+    ++looked;
+    Parameters p;
+    bind(system, m, p);
+    Eigen::VectorXd q;
+    drawn_configuration(system, p, q);
+    std::mt19937 random(seed);
+    Eigen::VectorXd step(system.nv);
+    for (double& x : step)
+      x = std::uniform_real_distribution(-0.2, 0.2)(random);
+    retract<double>(system, step, q);
+    const Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.rows);
+    const auto balance = [&](const Eigen::VectorXd& moved) {
+      Kinematics<double> k;
+      forward<double>(system, p, moved, 0, k);
+      Residual<double> residual;
+      evaluate_residual<double>(system, p, moved, lambda, k, residual);
+      return residual.f;
+    };
+    Kinematics<double> k;
+    forward<double>(system, p, q, 0, k);
+    Residual<double> residual;
+    evaluate_residual<double>(system, p, q, lambda, k, residual);
+    Linearization l;
+    linearize(system, p, q, lambda, k, residual, l);
+    for (int j = 0; j < system.nv; ++j) {
+      CAPTURE(j);
+      const auto central = [&](double h) -> Eigen::VectorXd {
+        Eigen::VectorXd above = q, below = q;
+        retract<double>(system, h * Eigen::VectorXd::Unit(system.nv, j), above);
+        retract<double>(system, -h * Eigen::VectorXd::Unit(system.nv, j), below);
+        return (balance(above) - balance(below)) / (2 * h);
+      };
+      const Eigen::VectorXd difference = (4 * central(5e-4) - central(1e-3)) / 3;
+      for (const DriveTorqueElement& torque : system.torques) {
+        const int i = system.links[static_cast<std::size_t>(torque.link)].v;
+        const double size = 1 + l.stiffness.row(i).cwiseAbs().maxCoeff();
+        CHECK(std::abs(l.stiffness(i, j) - difference[i]) < 1e-8 * size);
+      }
+    }
+  }
+  CAPTURE(looked);
+  CHECK(looked > 15);
+}
+
+TEST_CASE("what is left to itself and pushed is refused with the reason", "[momentum]") {
+  Mechanism m = RingOnRod::mechanism(7);
+  SECTION("drag") {
+    Force drag;
+    drag.name = "air";
+    drag.type = ForceType::drag;
+    drag.body = "ring";
+    drag.linear = 0.5;
+    m.forces = {drag};
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::no_steady_state);
+    CHECK_THAT(s.message,
+               ContainsSubstring("spin is left to itself, but") && ContainsSubstring("hold it back"));
+  }
+  SECTION("a weight that turns with it") {
+    m.gravity = {0, 0, -1};
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::no_steady_state);
+  }
+  SECTION("mistakes, each at its place") {
+    const auto mistake = [&] {
+      const auto found = find_mistakes(m);
+      REQUIRE(found.size() == 1);
+      return found[0];
+    };
+    Coordinate& spin = m.joints[0].coordinates[0];
+    spin.damping = 1;
+    CHECK(mistake().where() == "joints.spin.damping");
+    spin.damping = 0;
+    spin.drive->torque = 3;
+    CHECK(mistake().where() == "joints.spin.drive.keeps");
+    spin.drive->torque.reset();
+    spin.drive->load = 3;
+    CHECK(mistake().where() == "joints.spin.drive.load");
+  }
+  SECTION("in a file") {
+    const std::string text = write_scene(m);
+    CHECK_THAT(text, ContainsSubstring("\"keeps\": \"momentum\"") && ContainsSubstring("\"flyball\": 2"));
+    CHECK(read_scene(text) == m);
+  }
+  SECTION("a drive by torque on it") {
+    m.bodies.push_back(body("wheel", 1, {0, 0.1, 0}, {0.1, 0.2, 0.1}));
+    Joint wheel = revolute("wheel", "rod", "wheel", {0, 0.1, 0}, {0, 1, 0});
+    wheel.coordinates[0].drive = Drive{.speed = 3, .torque = 1.};
+    m.joints.push_back(wheel);
+    CHECK_THROWS_WITH(Analysis(m), ContainsSubstring("expected speed, or no drive by torque"));
+  }
+}
