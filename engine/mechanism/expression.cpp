@@ -161,6 +161,7 @@ class ExpressionParser {
     put({.operation = Operation::name, .index = static_cast<std::uint16_t>(index)}, 0);
   }
   void call(std::string_view name, std::size_t begin) {
+    if (name == "table") return table();
     const std::span functions = expression_functions();
     const auto function = std::ranges::find(functions, name, &ExpressionFunction::name);
     const auto result = std::ranges::find(result_functions(), name, &ResultFunction::name);
@@ -188,6 +189,43 @@ class ExpressionParser {
     if (!take(")")) fail("expected ) after the argument" + std::string(function->arguments > 1 ? "s" : ""));
     put({.operation = Operation::call, .index = static_cast<std::uint16_t>(function - functions.begin())},
         function->arguments);
+  }
+
+  // table(x, [x1, y1], [x2, y2], ...)
+  void table() {
+    sum();
+    std::vector<ValueTable::Point> points;
+    ValueDimension of{{}, true}, dimension{{}, true};
+    while (take(",")) {
+      const auto [x, x_dimension] = table_opened();
+      if (!take(",")) fail("expected , and what stands there");
+      const auto [y, y_dimension] = constant();
+      if (!take("]")) fail("expected ] after a point of the table");
+      of = common("a table has", of, x_dimension);
+      dimension = common("a table has", dimension, y_dimension);
+      if (!points.empty() && !(x > points.back().x)) fail("expected points in ascending order");
+      points.push_back({x, y});
+    }
+    if (!take(")")) fail("expected , or ) after a point of the table");
+    if (points.size() < 2) fail("expected two points or more, as in table(rate(spin), [0, 10], [5, 8])");
+    if (to_.tables_.size() > 1000) fail("expected fewer tables");
+    put({.operation = Operation::table, .index = static_cast<std::uint16_t>(to_.tables_.size())}, 1);
+    to_.tables_.push_back({ValueTable(std::move(points)), of, dimension});
+  }
+  std::pair<double, ValueDimension> table_opened() {
+    if (!take("[")) fail("expected a point of the table, as in [5, 8]");
+    return constant();
+  }
+  // A number with its sign and unit.
+  std::pair<double, ValueDimension> constant() {
+    const double sign = take("+-") == '-' ? -1 : 1;
+    skip_blanks();
+    if (at_ == text_.size() || (!is_figure(text_[at_]) && text_[at_] != '.')) fail("expected a number");
+    number();
+    const Expression::Step step = to_.steps_.back();
+    to_.steps_.pop_back();
+    --values_;
+    return {sign * step.value, step.dimension};
   }
 
   void result_call(const ResultFunction& function, std::size_t begin) {
@@ -274,6 +312,7 @@ Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::siz
     case Operation::name: stack[top++] = values[places.empty() ? step.index : places[step.index]]; continue;
     case Operation::result: stack[top++] = results[result_places[step.index]]; continue;
     case Operation::negate: stack[top - 1] = -stack[top - 1]; continue;
+    case Operation::table: stack[top - 1] = tables_[step.index].values(stack[top - 1]); continue;
     case Operation::call: {
       const ExpressionFunction& function = functions[step.index];
       if (function.arguments == 2) --top;
@@ -322,6 +361,10 @@ ValueDimension Expression::dimension(std::span<const ValueDimension> names,
     case Operation::result: stack.push_back({results[step.index], {}}); continue;
     case Operation::negate:
       if (stack.back().number) stack.back().number = -*stack.back().number;
+      continue;
+    case Operation::table:
+      common("cannot look up in a table", pop().dimension, tables_[step.index].of);
+      stack.push_back({tables_[step.index].dimension, {}});
       continue;
     default: break;
     }

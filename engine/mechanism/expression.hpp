@@ -8,6 +8,7 @@
 #include "engine/mechanism/dual.hpp"
 #include "engine/mechanism/result_functions.hpp"
 #include "engine/mechanism/unit.hpp"
+#include "engine/mechanism/value_table.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -85,18 +86,25 @@ class Expression {
     multiply,
     divide,
     power,
-    call
+    call,
+    table
   };
   // One of a stack machine's: operands are taken from the stack, the result is put there.
   struct Step {
     Operation operation = Operation::number;
-    std::uint16_t index = 0;    // of the name, result or function
+    std::uint16_t index = 0;    // of the name, result, function or table
     double value = 0;           // of the number, in SI units
     ValueDimension dimension{}; // of the number
   };
   static constexpr std::size_t most_values = 64; // on the stack at a time
 
+  struct Table {
+    ValueTable values;
+    ValueDimension of, dimension; // of what it is looked up by; of what stands there
+  };
+
   std::vector<Step> steps_;
+  std::vector<Table> tables_;
   std::vector<std::string> names_;
   std::vector<Mention> mentions_;
   std::vector<ResultCall> results_;

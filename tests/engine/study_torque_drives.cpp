@@ -401,6 +401,30 @@ TEST_CASE("shafts found at different speeds turn against each other, wherever th
   CHECK(Analysis(m).solve({}).status == Status::no_steady_state);
 }
 
+TEST_CASE("a motor's curve as a table over the speed", "[torque]") {
+  Mechanism m;
+  m.bodies = {body("rotor", 1, {0, 0, 0}, {0.1, 2, 0.1})};
+  m.joints = {
+      dampened(torque_driven(revolute("shaft", "ground", "rotor", {0, 0, 0}, {0, 1, 0}), 4,
+                             "table(rate(shaft), [0, 12 N m], [5, 10 N m], [10, 5 N m], [12 rad/s, 0])"),
+               1)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  // Between 5 and 10 rad/s, where the curve's slopes are harmonic means of those beside.
+  const double left = 2 / (1 / -0.4 + 1 / -1.), right = (9. + 12.) / (9 / -1. + 12 / -2.5);
+  const auto curve = [&](double w) {
+    const double t = (w - 5) / 5;
+    return 10 * (2 * t * t * t - 3 * t * t + 1) + 5 * left * (t * t * t - 2 * t * t + t) +
+           5 * (3 * t * t - 2 * t * t * t) + 5 * right * (t * t * t - t * t);
+  };
+  const double w = speed(s, "shaft");
+  CHECK(w > 5);
+  CHECK_THAT(curve(w), WithinRel(w, 1e-12));
+  CHECK(s.stable == true);
+}
+
 TEST_CASE("Floquet: multipliers where the speed of the period is found", "[torque][floquet]") {
   // Springs on a turntable pull at a bead on a fixed slide (Mathieu's equation), at rest where they balance.
   Mechanism m;
