@@ -20,6 +20,9 @@ std::optional<Leap> leap(Equations& equations, double t, const Eigen::VectorXd& 
   const System& system = equations.model().system;
   const double here = equations.independence();
   if (here > near * best) return {};
+  // 1/s, of the motion as it is now, which may be far faster than what the run began with.
+  const double rate =
+      std::max(rate_scale, s.cwiseQuotient(equations.model().scaling.column).lpNorm<Eigen::Infinity>());
   const Eigen::VectorXd a = equations.acceleration();
   const Eigen::Vector3d before = powers(equations);
   // The state further on (s) by Taylor's series.
@@ -32,13 +35,13 @@ std::optional<Leap> leap(Equations& equations, double t, const Eigen::VectorXd& 
   };
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(system.nv);
   Leap out;
-  const double probe = 1e-3 * near / rate_scale;
+  const double probe = 1e-3 * near / rate;
   moved(probe, none, out.q, out.s);
   if (!equations.evaluate(t + probe, out.q, out.s)) return {};
   const double slope = (equations.independence() - here) / probe;
   if (slope >= 0) return {};
   const double half = -here / slope;
-  if (half > 10 * near / rate_scale) return {}; // it may well turn round before
+  if (half > 10 * near / rate) return {}; // it may well turn round before
   moved(-half, none, out.q, out.s);
   if (!equations.project(t - half, out.q, out.s) || !equations.evaluate(t - half, out.q, out.s)) return {};
   const Eigen::VectorXd jerk = (a - equations.acceleration()) / half;
