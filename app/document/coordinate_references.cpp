@@ -23,13 +23,15 @@ std::optional<CoordinateAddress> address_of(const std::string& address, const st
   const auto [end, error] = std::from_chars(first, last, found.index);
   if (error != std::errc{} || (end != last && *end != '.')) return {};
   found.rest = std::string(end, last);
-  constexpr std::array<std::string_view, 5> keys{"coordinate", "spring", "damping", "stop", "drive"};
+  constexpr std::array<std::string_view, 6> keys{"coordinate", "spring",   "damping",
+                                                 "stop",       "friction", "drive"};
   if (std::ranges::find(keys, found.key) == keys.end()) return {}; // such as "at.0"
   return found;
 }
 
 void turn_round(CoordinateAddress& address, Slider& slider) {
   if (address.key == "damping" || address.rest == ".stiffness") return;
+  if (address.key == "friction" && address.rest != ".share") return;
   if (address.rest == ".lower" || address.rest == ".upper")
     address.rest = address.rest == ".lower" ? ".upper" : ".lower";
   const double from = slider.from;

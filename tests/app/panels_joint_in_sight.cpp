@@ -23,14 +23,14 @@ void check_in_sight(Robot& robot, const std::string& name) {
 
 } // namespace
 
-TEST_CASE("drive, spring, damper and stop of a joint are in sight without scrolling") {
+TEST_CASE("drive, spring, damper, stop and friction of a joint are in sight without scrolling") {
   Robot robot(window);
   App& app = robot.app;
   set_mode(app, GENERATE(Mode::build, Mode::explore));
   const char* joint = GENERATE("arm1", "slide"); // a revolute and a prismatic one
   select(app, {{{PartKind::joint, joint}}});
   robot.frames(3);
-  for (const char* tick : {"drive", "spring", "damper", "stop"})
+  for (const char* tick : {"drive", "spring", "damper", "stop", "friction"})
     check_in_sight(robot, tick);
   // With all on that can be, their numbers, too, and no tick has moved.
   const WidgetRect stop = robot.widget("inspector/stop");
@@ -43,7 +43,7 @@ TEST_CASE("drive, spring, damper and stop of a joint are in sight without scroll
     c.stop->upper = 1;
   });
   robot.frames(3);
-  for (const char* tick : {"drive", "spring", "damper", "stop"})
+  for (const char* tick : {"drive", "spring", "damper", "stop", "friction"})
     check_in_sight(robot, tick);
   for (const char* number :
        {"spring/stiffness", "spring/free", "damping", "stop/lower", "stop/upper", "stop/stiffness"})

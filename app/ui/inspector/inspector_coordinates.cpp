@@ -7,6 +7,7 @@
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flyball {
 
@@ -54,12 +55,15 @@ struct CoordinateRows {
     });
   }
 
-  // Beside the one before, where there is room for it.
+  // Beside the one before, where there is room for it; else closer below than another row would be.
   void beside_last(const char* label) const {
     const float width = ImGui::GetFrameHeight() + ImGui::CalcTextSize(label).x + 10 * app.scale;
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     const float gap = 6 * app.scale;
-    if (ImGui::GetItemRectMax().x + gap + width <= right) ImGui::SameLine(0, gap);
+    if (ImGui::GetItemRectMax().x + gap + width <= right)
+      ImGui::SameLine(0, gap);
+    else
+      ImGui::SetCursorPosY(ImGui::GetCursorPosY() - std::round(3 * app.scale));
   }
 
   // A tick; `removed` and `added` edit the coordinate.

@@ -31,7 +31,8 @@ std::string renumbered(const std::string& address, const std::string& joint, con
   const std::string prefix = "joints." + joint + ".";
   if (!address.starts_with(prefix)) return address;
   std::string rest = address.substr(prefix.size());
-  constexpr std::array<std::string_view, 5> keys{"coordinate", "spring", "damping", "stop", "drive"};
+  constexpr std::array<std::string_view, 6> keys{"coordinate", "spring",   "damping",
+                                                 "stop",       "friction", "drive"};
   const auto* key = std::ranges::find(keys, std::string_view(rest).substr(0, rest.find('.')));
   if (key == keys.end()) return address;
   rest.erase(0, key->size());
@@ -79,6 +80,9 @@ void change_joint_type(Mechanism& mechanism, const std::string& name, JointType 
   for (std::size_t i = 0; i < origin.size(); ++i)
     if (origin[i] >= 0 && static_cast<std::size_t>(origin[i]) < before.coordinates.size())
       joint.coordinates[i] = before.coordinates[static_cast<std::size_t>(origin[i])];
+  for (std::size_t i = 0; i < joint.coordinates.size(); ++i) // where coordinates do not slip one by one
+    if (type == JointType::free || (type == JointType::planar && !is_angle(type, static_cast<int>(i))))
+      joint.coordinates[i].friction.reset();
   if (type == JointType::distance) place_points(mechanism, joint);
   if (before.type == JointType::distance) {
     joint.at = before.points[0];
