@@ -2,6 +2,7 @@
 
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/spectral.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/report.hpp"
@@ -157,7 +158,15 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     Coordinate& c = coordinate_at(locked, frictions[i]);
     c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
   }
-  Compiled held(locked);
+  std::optional<Compiled> made;
+  try {
+    made.emplace(locked);
+  } catch (const SceneError& error) { // a drive by torque asks for where one of them stands, say
+    out.message = "What holding takes is not found, since joints with friction would have to be driven: " +
+                  std::string(error.what());
+    return out;
+  }
+  Compiled& held = *made;
   Coordinates rest;
   for (const auto& [name, value] : at) {
     const CoordinateReference c = find_coordinate(mechanism, name);
@@ -251,7 +260,7 @@ std::vector<HeldSpeeds> find_held_speeds(const Mechanism& mechanism, const Coord
   for (Joint& joint : varied.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
       std::optional<Drive>& drive = joint.coordinates[i].drive;
-      if (!drive || drive->torque || drive->speed == 0) continue;
+      if (!drive || finds_speed(*drive) || drive->speed == 0) continue;
       const double speed = drive->speed;
       HeldSpeeds held{joint.name,
                       static_cast<int>(i),

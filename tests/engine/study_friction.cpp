@@ -198,6 +198,19 @@ TEST_CASE("Porter's governor with friction: (m + M +- F / g) g / (m h) is the sq
   }
 }
 
+TEST_CASE("a governor on its engine has a band; what holding takes is refused with the reason") {
+  Mechanism m = shipped("governor_engine");
+  for (Joint& joint : m.joints)
+    if (joint.name == "slide") joint.coordinates[0].friction.emplace().limit = 5;
+  const FrictionReport report = report_friction(m, Analysis(m).solve());
+  const BandExtent& speed = extent(report.band, "spin.speed");
+  CHECK(speed.low < speed.value);
+  CHECK(speed.high > speed.value);
+  CHECK_FALSE(report.drawn.takes);
+  CHECK_THAT(report.drawn.message, ContainsSubstring("joints.spin.drive.torque"));
+  CHECK(report.speeds.empty());
+}
+
 TEST_CASE("friction that cannot be is refused") {
   const auto mistake = [](const std::string& friction, const std::string& extra = "") {
     try {
