@@ -59,7 +59,15 @@ bool has_dampers(const Mechanism& m) {
   return any;
 }
 
+bool finds_speeds(const Mechanism& m) {
+  return std::ranges::any_of(m.joints, [](const Joint& j) {
+    return std::ranges::any_of(j.coordinates,
+                               [](const Coordinate& c) { return c.drive && finds_speed(*c.drive); });
+  });
+}
+
 bool must_rest(const Mechanism& m) {
+  if (finds_speeds(m)) return false;
   return m.joints.size() == m.bodies.size() &&
          std::ranges::all_of(m.joints, [](const Joint& j) { return j.type == JointType::revolute; });
 }

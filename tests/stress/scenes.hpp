@@ -20,6 +20,8 @@ void each_damping(Mechanism& m, const std::function<void(double&)>& change);   /
 void each_speed(Mechanism& m, const std::function<void(double&)>& change);
 bool has_springs(const Mechanism& m);
 bool has_dampers(const Mechanism& m);
+// Some speed is found rather than given: without a resistance, or without a momentum, there is none.
+bool finds_speeds(const Mechanism& m);
 // Every coordinate is an angle of a tree: somewhere in a whole turn the amended potential is least.
 bool must_rest(const Mechanism& m);
 
