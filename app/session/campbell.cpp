@@ -56,26 +56,22 @@ std::optional<std::size_t> branch_through(const std::vector<ResponseBranch>& bra
   return best;
 }
 
-FoundCampbell follow(const Mechanism& mechanism, const CampbellRequest& request, const State& state,
-                     const TaskContext<FoundCampbell>& context) {
-  FoundCampbell found;
+CampbellDiagram follow(const Mechanism& mechanism, const CampbellRequest& request, const State& state,
+                       const TaskContext<CampbellDiagram>& context) {
   const double from = request.from, to = request.to;
   BranchOptions options;
   options.largest_step = 0.007; // lines that are smooth where they are zoomed
   options.cancel = &context.cancel;
   options.progress = context.progress;
-  found.diagram = follow_branches(mechanism, request.drive, from, to, options);
+  ResponseDiagram response = follow_branches(mechanism, request.drive, from, to, options);
   // Nothing may connect the state with what the drawn pose leads to.
   const bool inside = state.speed >= std::min(from, to) && state.speed <= std::max(from, to);
-  if (inside && !state.coordinates.empty() && !branch_through(found.diagram.branches, state) &&
-      !context.cancel) {
+  if (inside && !state.coordinates.empty() && !branch_through(response.branches, state) && !context.cancel) {
     options.all = true;
     options.all_at = {state.speed};
-    found.diagram = follow_branches(mechanism, request.drive, from, to, options);
+    response = follow_branches(mechanism, request.drive, from, to, options);
   }
-  for (const ResponseBranch& branch : found.diagram.branches)
-    found.lines.push_back(track_eigenvalues(branch.points));
-  return found;
+  return campbell_diagram(mechanism, request.drive, std::move(response), request.orders, &context.cancel);
 }
 
 // What is shown; without coordinates where that is no steady state, or of other numbers.
@@ -87,7 +83,7 @@ State present(const Session& session, const std::string& drive) {
 CampbellRequest wanted_now(Session& session) {
   const std::string drive = campbell_drive(session);
   const std::array<double, 2> range = campbell_range(session);
-  return {drive, range[0], range[1],
+  return {drive, range[0], range[1], session.study.modes.campbell.orders,
           session.study.modes.campbell.varied.of(session.document.shared(), {{drive, 0}})};
 }
 
@@ -135,7 +131,7 @@ void follow_campbell(Session& session) {
   campbell.asked_ticket = session.answer.ticket;
   campbell.diagram.ask(session.options, wanted_now(session),
                        [mechanism = session.document.shared(), state = present(session, drive)](
-                           const CampbellRequest& request, const TaskContext<FoundCampbell>& context) {
+                           const CampbellRequest& request, const TaskContext<CampbellDiagram>& context) {
                          return follow(*mechanism, request, state, context);
                        });
 }
@@ -144,8 +140,8 @@ void update_campbell(Session& session) {
   CampbellState& campbell = session.study.modes.campbell;
   auto& diagram = campbell.diagram;
   if (diagram.take("Following the branches was stopped.") && diagram.found && diagram.problem.empty() &&
-      diagram.found->result.diagram.branches.empty())
-    diagram.problem = diagram.found->result.diagram.message;
+      diagram.found->result.response.branches.empty())
+    diagram.problem = diagram.found->result.response.message;
   // The drive may have been taken away.
   const std::vector<std::string> speeds = drive_speeds(session.mechanism());
   if (diagram.found && std::ranges::find(speeds, diagram.found->of.drive) == speeds.end())
@@ -176,7 +172,7 @@ void update_campbell(Session& session) {
 std::optional<std::size_t> campbell_branch(const Session& session) {
   const auto& found = session.study.modes.campbell.diagram.found;
   if (!found) return std::nullopt;
-  return branch_through(found->result.diagram.branches, present(session, found->of.drive));
+  return branch_through(found->result.response.branches, present(session, found->of.drive));
 }
 
 } // namespace flyball

@@ -4,10 +4,9 @@
 
 #include "app/session/study.hpp"
 #include "app/session/varied_mechanism.hpp"
-#include "engine/continuation/branches.hpp"
+#include "engine/study/campbell.hpp"
 
 #include <array>
-#include <complex>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,23 +17,19 @@ namespace flyball {
 struct Session;
 
 struct CampbellRequest {
-  std::string drive;         // address of the speed along the axis
-  double from = 0, to = 0;   // its range
+  std::string drive;       // address of the speed along the axis
+  double from = 0, to = 0; // its range
+  std::vector<double> orders;
   SharedMechanism mechanism; // with that speed 0
   bool operator==(const CampbellRequest&) const = default;
 };
 
-struct FoundCampbell {
-  ResponseDiagram diagram;
-  // By branch, point and line: see track_eigenvalues().
-  std::vector<std::vector<std::vector<std::complex<double>>>> lines;
-};
-
 struct CampbellState {
-  Study<CampbellRequest, FoundCampbell> diagram;
+  Study<CampbellRequest, CampbellDiagram> diagram;
   // As chosen. An empty drive is the first; both ends 0: as the speed's slider.
   std::string drive;
   double from = 0, to = 0;
+  std::vector<double> orders{1, 2}; // oscillations a turn that something excites
   VariedMechanism varied;
   bool current = false;           // the diagram is of the mechanism as it is
   std::uint64_t asked_ticket = 0; // of the answer when it was asked for

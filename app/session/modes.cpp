@@ -86,6 +86,7 @@ void close_modes(Session& session) {
   fresh.campbell.drive = campbell.drive;
   fresh.campbell.from = campbell.from;
   fresh.campbell.to = campbell.to;
+  fresh.campbell.orders = campbell.orders;
   session.study.modes = std::move(fresh);
 }
 

@@ -91,11 +91,6 @@ std::optional<ResponseDiagram> follow_branches_through(const Mechanism& mechanis
                                                        double from, double to, const ResponsePoint& state,
                                                        const BranchOptions& options);
 
-// The eigenvalues of consecutive points of a branch put in one order, so that entry i of every point belongs
-// to one line of a Campbell diagram: matched to what the two points before foretell. Lines are as many as
-// the point with the most eigenvalues has; where a point lacks one the entry is not a number.
-std::vector<std::vector<std::complex<double>>> track_eigenvalues(const std::vector<ResponsePoint>& points);
-
 // The speed of a drive by torque is found: nothing follows from where its search begins. Throws SceneError
 // where the address is that.
 void expect_no_found_speed(const Mechanism& mechanism, const std::string& address);

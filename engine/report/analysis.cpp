@@ -511,6 +511,24 @@ std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitu
   return poses;
 }
 
+std::vector<BodyAmplitude> Analysis::body_amplitudes(const VibrationMode& mode) {
+  State& s = *state_;
+  if (!s.settled) return {};
+  return flyball::body_amplitudes({s.system, s.parameters, s.scaling}, s.answer, mode, s.steady.elsewhere());
+}
+
+std::optional<Whirl> Analysis::whirl(const VibrationMode& mode, std::string_view joint) {
+  State& s = *state_;
+  if (!s.settled) return {};
+  const auto drive = std::ranges::find_if(s.system.links, [&](const Link& link) {
+    return link.drive >= 0 && link.type == LinkType::revolute &&
+           (joint.empty() || s.system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name == joint);
+  });
+  if (drive == s.system.links.end()) return {};
+  return find_whirl({s.system, s.parameters, s.scaling}, s.answer, mode,
+                    static_cast<int>(drive - s.system.links.begin()), s.steady.elsewhere());
+}
+
 std::optional<StabilityEvidence> Analysis::stability_evidence() {
   State& s = *state_;
   if (!s.settled) return {};

@@ -4,13 +4,14 @@
 
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/solve/solution.hpp"
-#include "engine/stability/modes.hpp"
+#include "engine/stability/mode_motion.hpp"
 #include "engine/task/progress.hpp"
 
 #include <atomic>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -111,6 +112,12 @@ class Analysis {
   // phase)), the loops closed, the drives `t` seconds on. `amplitude` is that of the largest entry, in rad or
   // parts of the mechanism's reach. For a mode that grows or decays multiply the amplitude by e^(Re s t).
   std::vector<Pose> mode_poses(const VibrationMode& mode, double amplitude, double phase, double t = 0);
+
+  // How the bodies move in a mode of the last answer, in the mechanism's order.
+  std::vector<BodyAmplitude> body_amplitudes(const VibrationMode& mode);
+  // Its whirl about the axis of the drive of a joint; an empty name is the first that turns. Nothing as
+  // find_whirl() says, and where there is no such drive.
+  std::optional<Whirl> whirl(const VibrationMode& mode, std::string_view joint = {});
 
   // What the potential and the eigenvalues say about the last answer; nothing where modes() is empty for want
   // of one.

@@ -121,6 +121,7 @@ VibrationMode describe_mode(const Problem& problem, const Eigen::VectorXd& q, co
   mode.natural_frequency = natural_frequency(s);
   mode.damping_ratio = damping_ratio(s);
   mode.residual = residual;
+  mode.reach = problem.parameters.length;
   // What a torque drives takes part with its angle or slide, though it is scaled as a speed.
   Eigen::VectorXcd measured = scaled;
   for (const DriveTorqueElement& torque : problem.system.torques) {
@@ -144,6 +145,17 @@ VibrationMode describe_mode(const Problem& problem, const Eigen::VectorXd& q, co
     mode.amplitudes.push_back({joint.name, c.index, coordinate_count(joint.type), c.angle, part});
   }
   return mode;
+}
+
+const ModeAmplitude* VibrationMode::leading() const {
+  const ModeAmplitude* most = nullptr;
+  double size = 0;
+  for (std::size_t i = 0; i < amplitudes.size(); ++i)
+    if (const double mine = std::abs(measured(i)); mine > size * (1 + 1e-6)) {
+      most = &amplitudes[i];
+      size = mine;
+    }
+  return most;
 }
 
 void sort_modes(std::vector<VibrationMode>& modes) {

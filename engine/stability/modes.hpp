@@ -41,8 +41,15 @@ struct VibrationMode {
   // phase (dampers, gyroscopic forces).
   std::vector<ModeAmplitude> amplitudes;   // of the free coordinates, in the scene's order; rad, m
   std::vector<std::complex<double>> shape; // the same as a step of q_R; rad, m
+  double reach = 1;                        // m, the mechanism's, by which slides are measured
   double residual = 0;                     // of (s^2 M + s D + K) v, relative to its terms
   bool oscillates() const { return eigenvalue.imag() > 0; }
+  // An amplitude in radians or reaches; the coordinate that moves most, the first of those that move alike,
+  // none without a shape.
+  std::complex<double> measured(std::size_t i) const {
+    return amplitudes[i].angle ? amplitudes[i].value : amplitudes[i].value / reach;
+  }
+  const ModeAmplitude* leading() const;
 };
 
 // The mode of the eigenvalue s (1/s) and the shape `scaled`, a scaled step of q_R about the configuration q.

@@ -137,14 +137,7 @@ void list(App& app, const FoundModes& found, float height) {
 
 // "swing ± 8.6°": the coordinate that moves most.
 std::string largest_movement(const Session& session, const VibrationMode& mode) {
-  const ModeAmplitude* angle = nullptr;
-  const ModeAmplitude* slide = nullptr;
-  for (const ModeAmplitude& a : mode.amplitudes) {
-    const ModeAmplitude*& most = a.angle ? angle : slide;
-    if (!most || std::abs(a.value) > std::abs(most->value)) most = &a;
-  }
-  // An angle of 1 is as much as a slide can be, for the largest is 1 in radians or reaches.
-  const ModeAmplitude* most = angle && (std::abs(angle->value) > 0.5 || !slide) ? angle : slide;
+  const ModeAmplitude* most = mode.leading();
   if (!most) return {};
   const double movement = session.study.modes.amplitude * std::abs(most->value);
   const ShownUnit unit = coordinate_unit(most->angle, session.units);

@@ -1,0 +1,19 @@
+// A branch's Campbell diagram as a plot in SI units: frequencies of the modes over the drive's speed, lines
+// of excitation, critical speeds.
+#pragma once
+
+#include "app/plot/plot.hpp"
+#include "engine/study/campbell.hpp"
+
+#include <span>
+
+namespace flyball {
+
+// In Hz or rad/s. `from` and `to` are the axis' ends; `orders` the lines of so many oscillations a turn.
+Plot campbell_plot(const Mechanism& mechanism, const std::string& address, const CampbellDiagram& diagram,
+                   std::size_t branch, PlotRange speeds, std::span<const double> orders, bool hertz);
+
+// "2×"
+std::string order_text(double order);
+
+} // namespace flyball

@@ -1,0 +1,60 @@
+// The Campbell diagram: the modes of a steady state over a drive's speed, each followed through crossings,
+// and the speeds at which one swings as often as something excites it.
+#pragma once
+
+#include "engine/continuation/branches.hpp"
+#include "engine/stability/mode_motion.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+struct CampbellPoint {
+  std::vector<VibrationMode> modes; // shapes left out where the linearised motion turns with the drives
+  std::vector<std::optional<Whirl>> whirls; // by mode, about the drive whose speed it is
+  std::vector<int> lines;                   // by line of the branch: which of the modes, or -1
+  const VibrationMode* on(std::size_t line) const {
+    return lines[line] < 0 ? nullptr : &modes[static_cast<std::size_t>(lines[line])];
+  }
+};
+
+struct CampbellBranch {
+  std::vector<CampbellPoint> points; // as those of the response's branch
+  // By line: "mode 2, slide", by frequency where the branch begins and by what moves most where it first
+  // swings; empty for lines that swing nowhere.
+  std::vector<std::string> names;
+};
+
+// A speed at which a mode swings `order` times a turn.
+struct CriticalSpeed {
+  int branch = 0, line = 0;
+  double order = 1;
+  double speed = 0, frequency = 0; // rad/s
+  double error = 0;                // rad/s, of the speed, estimated
+  double damping_ratio = 0;
+  bool stable = true;         // not known to be unstable there
+  std::optional<Whirl> whirl; // about the drive's axis
+};
+
+struct CampbellDiagram {
+  ResponseDiagram response;
+  std::vector<CampbellBranch> branches; // as the response's; of points without modes no lines
+  // By branch and speed. Orders count turns in the frame that the modes are of: that of what carries them.
+  std::vector<CriticalSpeed> critical;
+  double run_time_s = 0; // that of the response included
+};
+
+// The joint whose drive has this address as its speed, or one that a named parameter is; empty: none.
+std::string driven_joint(const Mechanism& mechanism, const std::string& address);
+
+// The modes along the branches of `response`, which were followed over `address`. `orders` (any positive
+// numbers) are of the speed of driven_joint(), and need one. Where `cancel` is set
+// there are branches as far as it came.
+CampbellDiagram campbell_diagram(const Mechanism& mechanism, const std::string& address,
+                                 ResponseDiagram response, std::span<const double> orders,
+                                 const std::atomic<bool>* cancel = nullptr);
+
+} // namespace flyball
