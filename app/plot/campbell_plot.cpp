@@ -16,11 +16,11 @@ constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 // Eigenvalues less than this are zero (1/s).
 double rounding(const CampbellBranch& branch) {
-  double largest = 0;
+  double most = 0;
   for (const CampbellPoint& point : branch.points)
     for (const VibrationMode& mode : point.modes)
-      largest = std::max(largest, std::abs(mode.eigenvalue));
-  return 1e-6 * largest;
+      most = std::max(most, std::abs(mode.eigenvalue));
+  return 1e-6 * most;
 }
 
 struct Segment {
