@@ -28,6 +28,8 @@ FoundModes find(std::shared_ptr<const Mechanism> mechanism,
   const Solution solution = found.analysis->solve(options);
   if (solution.status != Status::converged) throw std::runtime_error(solution.message);
   found.modes = found.analysis->modes();
+  for (const VibrationMode& mode : found.modes)
+    found.whirls.push_back(found.analysis->whirl(mode));
   found.evidence = found.analysis->stability_evidence();
   return found;
 }

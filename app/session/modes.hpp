@@ -17,6 +17,7 @@ struct Session;
 
 struct FoundModes {
   std::vector<VibrationMode> modes;
+  std::vector<std::optional<Whirl>> whirls; // by mode, about the axis of the first drive that turns
   std::optional<StabilityEvidence> evidence;
   std::unique_ptr<Analysis> analysis; // which stands in the state, for poses along a mode
 };

@@ -214,35 +214,6 @@ TEST_CASE("points carry reactions and drive torques where asked", "[branches]") 
   }
 }
 
-TEST_CASE("lines of eigenvalues go on where they cross", "[branches]") {
-  // A mass on equal springs across a turntable, natural +- speed, and another along its axis, constant.
-  const double natural = 10, along = 14;
-  Mechanism m;
-  m.bodies = {spindle(), body("x", 0, Vec3::Zero()), body("puck", 0.5, Vec3::Zero()),
-              body("bell", 0.5, Vec3::Zero())};
-  m.joints = {spin(0, {0, 0, 1}),
-              sprung(prismatic("x", "spindle", "x", Vec3::Zero(), {1, 0, 0}), 0.5 * natural * natural),
-              sprung(prismatic("y", "x", "puck", Vec3::Zero(), {0, 1, 0}), 0.5 * natural * natural),
-              sprung(prismatic("z", "spindle", "bell", Vec3::Zero(), {0, 0, 1}), 0.5 * along * along)};
-  const ResponseDiagram d = follow_branches(m, speed, 0.5, 9);
-  REQUIRE(d.branches.size() == 1);
-  const auto& points = d.branches[0].points;
-  const auto lines = track_eigenvalues(points);
-  REQUIRE(lines.size() == points.size());
-  bool sorted_jumps = false;
-  for (std::size_t line = 0; line < 6; ++line) {
-    const double first = lines[0][line].imag();
-    const double sign = first < 0 ? -1 : 1;
-    const double slope = std::abs(std::abs(first) - along) < 0.1 ? 0 : std::abs(first) > natural ? 1 : -1;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double wanted = sign * ((slope == 0 ? along : natural) + slope * points[i].parameter);
-      CHECK(std::abs(lines[i][line] - std::complex<double>(0, wanted)) < 1e-9);
-      sorted_jumps = sorted_jumps || std::abs(points[i].eigenvalues[line].imag() - wanted) > 1e-3;
-    }
-  }
-  CHECK(sorted_jumps);
-}
-
 TEST_CASE("a rotor with inner and outer damping flutters at its closed form", "[branches]") {
   // m u'' + (c_i + c_e) u' + (k - i w c_i) u = 0, u in a frame that does not turn: Hopf at w = n (1 + c_e /
   // c_i).

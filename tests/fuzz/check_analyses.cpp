@@ -66,7 +66,6 @@ Complaint about(const ResponseDiagram& diagram) {
   for (const SpecialPoint& special : diagram.special)
     if (const auto field = not_finite(special.at))
       return "a number that is none at a special point: " + *field;
-  track_eigenvalues(diagram.branches.empty() ? std::vector<ResponsePoint>{} : diagram.branches[0].points);
   return about(diagram.message);
 }
 

@@ -1,4 +1,5 @@
 // The modes of the state that is shown: a list, what moves in the view, and the Campbell diagram beside it.
+#include "app/plot/campbell_plot.hpp"
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
@@ -43,7 +44,19 @@ std::string four_digits(double value, double size) {
   return std::abs(value) < 1e-7 * size ? "0" : short_text(value, 4);
 }
 
-std::string mode_help(const VibrationMode& mode) {
+std::string whirl_words(const Whirl& whirl, double frequency) {
+  constexpr double straight = 1e-3;
+  if (std::abs(whirl.value) < straight) return "\nSwings straight to and fro: no whirl.";
+  std::string text =
+      whirl.value > 0 ? "\nWhirls forward, as the drive turns" : "\nWhirls backward, against the drive";
+  text += " (" + short_text(std::abs(whirl.value), 3) + " of a circle)";
+  if (!whirl.turning) return text + ".";
+  const double seen = standing_frequencies(whirl, frequency)[whirl.value > 0 ? 0 : 1];
+  return text + ", as seen from what turns with it; from the ground at " + short_text(hertz(seen), 6) +
+         " Hz.";
+}
+
+std::string mode_help(const VibrationMode& mode, const std::optional<Whirl>& whirl) {
   std::string text;
   if (mode.oscillates()) {
     text = "Swings at " + short_text(hertz(mode.frequency), 6) + " Hz (" + short_text(mode.frequency, 6) +
@@ -58,10 +71,12 @@ std::string mode_help(const VibrationMode& mode) {
   if (rate > 1e-7 * std::max(1., mode.natural_frequency))
     text += (grows(mode) ? "\nGrows to e times as much in " : "\nDies out to 1/e in ") +
             short_text(1 / rate, 4) + " s.";
+  if (whirl) text += whirl_words(*whirl, mode.frequency);
   return text;
 }
 
-void mode_row(App& app, std::size_t index, const VibrationMode& mode, double largest) {
+void mode_row(App& app, std::size_t index, const FoundModes& found, double largest) {
+  const VibrationMode& mode = found.modes[index];
   const UiColors& colors = colors_of(app);
   const bool chosen = app.study.modes.chosen == index, bad = grows(mode);
   ImGui::TableNextRow();
@@ -78,7 +93,7 @@ void mode_row(App& app, std::size_t index, const VibrationMode& mode, double lar
           [index, chosen](App& then) { choose_mode(then, chosen ? std::nullopt : std::optional(index)); });
   note_widget(app.widgets, "modes/row/" + std::to_string(index + 1), KeyUse::row);
   if (chosen) mark_chosen(app.widgets);
-  help_on_hover(mode_help(mode).c_str());
+  help_on_hover(mode_help(mode, found.whirls[index]).c_str());
   ImGui::PopID();
   ImGui::SetCursorPos(at);
   ImGui::TextColored(bad      ? colors.bad
@@ -128,7 +143,7 @@ void list(App& app, const FoundModes& found, float height) {
     clipper.Begin(static_cast<int>(found.modes.size()));
     while (clipper.Step())
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-        mode_row(app, static_cast<std::size_t>(i), found.modes[static_cast<std::size_t>(i)], largest);
+        mode_row(app, static_cast<std::size_t>(i), found, largest);
     ImGui::EndTable();
   }
   ImGui::PopStyleColor(2);
@@ -280,7 +295,21 @@ void campbell_choices(App& app, const std::string& drive) {
   }
 }
 
-void campbell_diagram(App& app) {
+// "Critical speeds: 1× mode 1, arm1 at 3.34761 rad/s; ..." on the branch that is shown.
+std::string critical_words(const App& app, const CampbellRequest& of, const CampbellDiagram& diagram) {
+  const std::optional<std::size_t> branch = campbell_branch(app);
+  if (!branch || driven_joint(app.mechanism(), of.drive).empty()) return {};
+  const ShownUnit unit = shown_unit(parameter_unit(app.mechanism(), of.drive), app.units);
+  std::string text;
+  for (const CriticalSpeed& at : diagram.critical)
+    if (at.branch == static_cast<int>(*branch))
+      text += (text.empty() ? "Critical speeds: " : "; ") + order_text(at.order) + " " +
+              diagram.branches[*branch].names[static_cast<std::size_t>(at.line)] + " at " +
+              short_text(unit.shown(at.speed), 6) + " " + unit.text;
+  return text.empty() ? "No critical speed in this range." : text + ".";
+}
+
+void show_campbell(App& app) {
   CampbellState& campbell = app.study.modes.campbell;
   const UiColors& colors = colors_of(app);
   const std::string drive = campbell_drive(app);
@@ -291,6 +320,11 @@ void campbell_diagram(App& app) {
   if (!diagram.problem.empty()) paragraph(diagram.problem, colors.bad);
   if (!diagram.found) return;
   draw_campbell(app);
+  if (const std::string words = critical_words(app, diagram.found->of, diagram.found->result);
+      !words.empty()) {
+    clipped_text(words, ImGui::GetContentRegionAvail().x);
+    note_widget(app.widgets, "campbell/critical");
+  }
   if (!campbell.on_branch && converged(app) && !solving(app) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
   const PlotEvents events = plot_view(
@@ -317,7 +351,7 @@ void modes_panel(App& app) {
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("campbell", {0, 0}, false,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  campbell_diagram(app);
+  show_campbell(app);
   ImGui::EndChild();
 }
 

@@ -1,0 +1,220 @@
+#include "engine/study/campbell.hpp"
+#include "app/cli/command.hpp"
+#include "app/cli/output.hpp"
+#include "app/cli/progress.hpp"
+#include "app/cli/scene_argument.hpp"
+#include "app/cli/solution_json.hpp"
+#include "app/plot/campbell_plot.hpp"
+#include "app/plot/svg.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+namespace flyball::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CampbellArguments {
+  SceneArgument scene;
+  std::string vary, csv, svg;
+  std::vector<double> orders;
+  bool json = false;
+};
+
+std::string_view direction(double whirl) {
+  constexpr double straight = 1e-3;
+  return whirl > straight ? "forward" : whirl < -straight ? "backward" : "straight";
+}
+
+Json whirl_json(const std::optional<Whirl>& whirl, double frequency) {
+  if (!whirl) return nullptr;
+  Json out = {{"value", whirl->value},
+              {"direction", direction(whirl->value)},
+              {"seen_from", whirl->turning ? "drive" : "ground"}};
+  if (whirl->turning) out["from_ground_rad_s"] = standing_frequencies(*whirl, frequency);
+  return out;
+}
+
+std::string whirl_text(const std::optional<Whirl>& whirl) {
+  if (!whirl) return "";
+  return fmt::format("  whirl {:+.3f} {}{}", whirl->value, direction(whirl->value),
+                     whirl->turning ? ", seen from the drive" : "");
+}
+
+Json mode_json(const VibrationMode& mode, const std::string& name, const std::optional<Whirl>& whirl) {
+  Json out = {{"line", name},
+              {"eigenvalue", {mode.eigenvalue.real(), mode.eigenvalue.imag()}},
+              {"frequency_hz", hertz(mode.frequency)},
+              {"damping_ratio", mode.damping_ratio},
+              {"whirl", whirl_json(whirl, mode.frequency)}};
+  Json& shape = out["shape"] = Json::object();
+  for (const ModeAmplitude& a : mode.amplitudes)
+    shape[coordinate_label(a)] = {a.value.real(), a.value.imag()};
+  return out;
+}
+
+Json diagram_json(const CampbellDiagram& d, const std::string& unit) {
+  Json out = {{"status", word(d.response.status)}, {"message", d.response.message}, {"unit", unit}};
+  out["branches"] = Json::array();
+  for (std::size_t b = 0; b < d.branches.size(); ++b) {
+    const CampbellBranch& branch = d.branches[b];
+    Json points = Json::array();
+    for (std::size_t i = 0; i < branch.points.size(); ++i) {
+      const ResponsePoint& at = d.response.branches[b].points[i];
+      Json modes = Json::array();
+      for (std::size_t l = 0; l < branch.names.size(); ++l)
+        if (const VibrationMode* mode = branch.points[i].on(l); mode && !branch.names[l].empty())
+          modes.push_back(
+              mode_json(*mode, branch.names[l],
+                        branch.points[i].whirls[static_cast<std::size_t>(branch.points[i].lines[l])]));
+      points.push_back({{"speed", at.parameter},
+                        {"stable", at.stable ? Json(*at.stable) : Json(nullptr)},
+                        {"modes", std::move(modes)}});
+    }
+    out["branches"].push_back({{"points", std::move(points)}});
+  }
+  out["critical_speeds"] = Json::array();
+  for (const CriticalSpeed& c : d.critical)
+    out["critical_speeds"].push_back(
+        {{"branch", c.branch},
+         {"line", d.branches[static_cast<std::size_t>(c.branch)].names[static_cast<std::size_t>(c.line)]},
+         {"order", c.order},
+         {"speed_rad_s", c.speed},
+         {"error_estimate", c.error},
+         {"frequency_hz", hertz(c.frequency)},
+         {"damping_ratio", c.damping_ratio},
+         {"stable", c.stable},
+         {"whirl", whirl_json(c.whirl, c.frequency)}});
+  out["run_time_s"] = d.run_time_s;
+  return out;
+}
+
+std::string diagram_csv(const CampbellDiagram& d, const std::string& address) {
+  std::string out = "branch," + csv_field(address) +
+                    ",line,frequency [Hz],damping ratio,real part [1/s],whirl,seen from,stable\n";
+  for (std::size_t b = 0; b < d.branches.size(); ++b)
+    for (std::size_t i = 0; i < d.branches[b].points.size(); ++i) {
+      const CampbellPoint& point = d.branches[b].points[i];
+      const ResponsePoint& at = d.response.branches[b].points[i];
+      for (std::size_t l = 0; l < point.lines.size(); ++l) {
+        const VibrationMode* mode = point.on(l);
+        if (!mode || d.branches[b].names[l].empty()) continue;
+        const std::optional<Whirl>& whirl = point.whirls[static_cast<std::size_t>(point.lines[l])];
+        out += fmt::format("{},{},{},{},{},{},{},{},{}\n", b, csv_number(at.parameter),
+                           csv_field(printable(d.branches[b].names[l])), csv_number(hertz(mode->frequency)),
+                           csv_number(mode->damping_ratio), csv_number(mode->eigenvalue.real()),
+                           whirl ? csv_number(whirl->value) : "",
+                           whirl ? (whirl->turning ? "drive" : "ground") : "",
+                           at.stable ? (*at.stable ? "true" : "false") : "");
+      }
+    }
+  return out;
+}
+
+std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, const std::string& unit) {
+  std::string out = fmt::format("{}: {}\n", printable(mechanism.name), printable(d.response.message));
+  for (std::size_t b = 0; b < d.branches.size(); ++b) {
+    const CampbellBranch& branch = d.branches[b];
+    out += fmt::format("  branch {}: {} points\n", b, branch.points.size());
+    for (std::size_t l = 0; l < branch.names.size(); ++l) {
+      if (branch.names[l].empty()) continue;
+      std::size_t first = 0, last = 0;
+      bool any = false;
+      for (std::size_t i = 0; i < branch.points.size(); ++i)
+        if (branch.points[i].on(l)) {
+          if (!any) first = i;
+          last = i;
+          any = true;
+        }
+      const auto end = [&](std::size_t i) {
+        const VibrationMode& mode = *branch.points[i].on(l);
+        return fmt::format("{:.6g} Hz at {:.6g} {}", hertz(mode.frequency),
+                           d.response.branches[b].points[i].parameter, unit);
+      };
+      out += fmt::format(
+          "    {}: {} to {}{}\n", printable(branch.names[l]), end(first), end(last),
+          whirl_text(branch.points[last].whirls[static_cast<std::size_t>(branch.points[last].lines[l])]));
+    }
+  }
+  for (const CriticalSpeed& c : d.critical)
+    out += fmt::format(
+        "  {} at {:.12g} rad/s (± {:.1g}, {:.9g} rpm), {:.9g} Hz: {} of branch {}, damping ratio "
+        "{:.3g}{}{}\n",
+        order_text(c.order), c.speed, c.error, c.speed * 30 / std::numbers::pi, hertz(c.frequency),
+        printable(d.branches[static_cast<std::size_t>(c.branch)].names[static_cast<std::size_t>(c.line)]),
+        c.branch, c.damping_ratio, whirl_text(c.whirl), c.stable ? "" : ", unstable");
+  return out + fmt::format("  {:.1f} ms\n", d.run_time_s * 1e3);
+}
+
+} // namespace
+
+void add_campbell(CLI::App& app, Ending& ending) {
+  auto options = std::make_shared<CampbellArguments>();
+  CLI::App* command =
+      app.add_subcommand("campbell", "Follow modes over a drive's speed; list the critical speeds");
+  options->scene.add_to(*command);
+  command->add_option("--vary", options->vary, "The speed: address=from:to")->required();
+  command
+      ->add_option("--order", options->orders,
+                   "Oscillations a turn that something excites; given again, several (default: 1 and 2)")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->check(above_zero());
+  CLI::Option* csv =
+      command->add_option("--csv", options->csv, "Write the lines to a file (-: standard output)");
+  command->add_option("--svg", options->svg, "Draw the first branch into a file (-: standard output)");
+  command->add_flag("--json", options->json, "Print a JSON object, with the shapes")->excludes(csv);
+  command->footer("Example: flyball campbell governor.json --vary joints.spin.drive.speed=1:20 --order 1");
+  command->callback([options, &ending] {
+    check_outputs(options->scene.file, {{"--csv", options->csv}, {"--svg", options->svg}});
+    const Range range = parse_range("--vary", options->vary);
+    if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
+    std::optional<ProgressBar> progress(std::in_place, "reading");
+    const Mechanism mechanism = options->scene.load();
+    std::vector<double> orders = options->orders;
+    CampbellDiagram diagram;
+    std::string unit;
+    try {
+      unit = parameter_unit(mechanism, range.address);
+      if (driven_joint(mechanism, range.address).empty()) {
+        if (!orders.empty())
+          throw SceneError("--order",
+                           "orders count turns: " + range.address + " is no speed of a drive that turns");
+      } else if (orders.empty()) {
+        orders = {1, 2};
+      }
+      BranchOptions follow;
+      follow.progress = progress->reporter();
+      diagram =
+          campbell_diagram(mechanism, range.address,
+                           follow_branches(mechanism, range.address, range.from, range.to, follow), orders);
+    } catch (const SceneError& error) {
+      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+    }
+    progress.reset();
+    const bool any = diagram.response.status == Status::converged && !diagram.branches.empty();
+    if (any && !options->svg.empty())
+      write_bytes(options->svg,
+                  to_svg(campbell_plot(mechanism, range.address, diagram, 0,
+                                       {std::min(range.from, range.to), std::max(range.from, range.to)},
+                                       orders, true)));
+    if (any && !options->csv.empty()) write_bytes(options->csv, diagram_csv(diagram, range.address));
+    if (options->json)
+      print_json(with_warnings(diagram_json(diagram, unit), mechanism));
+    else if (options->csv.empty() && options->svg != "-")
+      print_text(diagram_text(mechanism, diagram, unit));
+    ending = end_with(any, options->scene.file, diagram.response.message);
+  });
+}
+
+} // namespace flyball::cli

@@ -1,0 +1,121 @@
+// Modes followed over a drive's speed, their whirl and the critical speeds, against closed forms.
+#include "tests/engine/equilibrium_mechanisms.hpp"
+
+#include "engine/mechanism/address.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/study/campbell.hpp"
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+constexpr double natural = 10, along = 14;
+const std::string spin_speed = "joints.spin.drive.speed";
+
+// A mass on equal springs across a turntable, which swings at natural +- speed, and another along its axis.
+Mechanism turning_springs() {
+  Mechanism m;
+  m.bodies = {spindle(), body("x", 0, Vec3::Zero()), body("puck", 0.5, Vec3::Zero()),
+              body("bell", 0.5, Vec3::Zero())};
+  m.joints = {spin(1, {0, 0, 1}),
+              sprung(prismatic("x", "spindle", "x", Vec3::Zero(), {1, 0, 0}), 0.5 * natural * natural),
+              sprung(prismatic("y", "x", "puck", Vec3::Zero(), {0, 1, 0}), 0.5 * natural * natural),
+              sprung(prismatic("z", "spindle", "bell", Vec3::Zero(), {0, 0, 1}), 0.5 * along * along)};
+  return m;
+}
+
+CampbellDiagram diagram_of(const Mechanism& m, double from, double to, std::vector<double> orders) {
+  return campbell_diagram(m, spin_speed, follow_branches(m, spin_speed, from, to), orders);
+}
+
+} // namespace
+
+TEST_CASE("modes keep their lines where these cross, and whirl as the frame tells", "[campbell]") {
+  for (const double way : {1., -1.}) {
+    CAPTURE(way);
+    const CampbellDiagram d = diagram_of(turning_springs(), way * 0.5, way * 9, {});
+    REQUIRE(d.branches.size() == 1);
+    const CampbellBranch& branch = d.branches[0];
+    REQUIRE(branch.names.size() == 3);
+    bool crossed = false;
+    for (std::size_t i = 0; i < branch.points.size(); ++i) {
+      const CampbellPoint& point = branch.points[i];
+      const double speed = std::abs(d.response.branches[0].points[i].parameter);
+      // By frequency at first: forward, which falls as seen from the frame, backward, along.
+      const std::array wanted{natural - speed, natural + speed, along};
+      for (std::size_t l = 0; l < 3; ++l) {
+        REQUIRE(point.on(l));
+        CHECK(std::abs(point.on(l)->eigenvalue - std::complex<double>(0, wanted[l])) < 1e-9);
+        const std::optional<Whirl>& whirl = point.whirls[static_cast<std::size_t>(point.lines[l])];
+        crossed = crossed || point.lines[l] != static_cast<int>(l);
+        if (l == 2) {
+          CHECK_FALSE(whirl); // nothing moves across the axis
+          continue;
+        }
+        // At the crossing itself shapes of one frequency may be any mixture.
+        if (std::abs(wanted[l] - along) < 1e-6) continue;
+        REQUIRE(whirl);
+        CHECK(whirl->turning);
+        CHECK(std::abs(whirl->value - (l == 0 ? 1 : -1)) < 1e-9);
+        const std::array seen = standing_frequencies(*whirl, wanted[l]);
+        CHECK(std::abs(seen[l == 0 ? 0 : 1] - natural) < 1e-9);
+      }
+    }
+    CHECK(crossed);
+    CHECK(branch.names[2].ends_with("z"));
+  }
+}
+
+TEST_CASE("critical speeds are where the closed forms have them", "[campbell]") {
+  const CampbellDiagram d = diagram_of(turning_springs(), 0.5, 9, {1, 2});
+  // natural - w = 2 w, natural - w = w, along = 2 w.
+  const std::array speeds{natural / 3, natural / 2, along / 2};
+  const std::array orders{2., 1., 2.};
+  REQUIRE(d.critical.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(std::abs(d.critical[i].speed - speeds[i]) < 1e-12 * speeds[i]);
+    CHECK(std::abs(d.critical[i].speed - speeds[i]) <= 10 * d.critical[i].error);
+    CHECK(d.critical[i].error < 1e-9);
+    CHECK(d.critical[i].order == orders[i]);
+    CHECK(std::abs(d.critical[i].frequency - orders[i] * speeds[i]) < 1e-11);
+    CHECK(d.critical[i].stable);
+  }
+  CHECK(d.critical[0].whirl->value > 0.99);
+  CHECK(d.critical[2].line == 2);
+}
+
+TEST_CASE("a governor's critical speed is where its eigenvalue says", "[campbell]") {
+  // Independently: the eigenvalues of plain solves, halved into.
+  Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  const CampbellDiagram d = diagram_of(m, 1, 20, {1});
+  REQUIRE_FALSE(d.critical.empty());
+  for (const CriticalSpeed& at : d.critical) {
+    const auto off = [&](double speed) {
+      set_parameter(m, spin_speed, speed);
+      const Solution s = Analysis(m).solve();
+      double best = 1e300;
+      for (const std::complex<double> e : s.eigenvalues.value())
+        if (e.imag() > 0 && std::abs(e.imag() - speed) < std::abs(best)) best = e.imag() - speed;
+      return best;
+    };
+    CHECK(std::abs(off(at.speed)) < 1e-8);
+    CHECK(off(at.speed - 1e-3) * off(at.speed + 1e-3) < 0);
+  }
+}
+
+TEST_CASE("modal assurance of shapes", "[campbell]") {
+  Analysis analysis(turning_springs());
+  REQUIRE(analysis.solve().status == Status::converged);
+  const std::vector<VibrationMode> modes = analysis.modes();
+  REQUIRE(modes.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      CHECK(std::abs(modal_assurance(modes[i], modes[k]) - (i == k ? 1 : 0)) < 1e-9);
+  // How the bodies move: the puck in a circle, the bell along the axis.
+  const std::vector<BodyAmplitude> moved = analysis.body_amplitudes(modes[0]);
+  REQUIRE(moved.size() == 4);
+  CHECK(std::abs(std::abs(moved[2].displacement.x()) - std::abs(moved[2].displacement.y())) < 1e-12);
+  CHECK(moved[3].displacement.norm() < 1e-9);
+  CHECK(moved[0].displacement.norm() == 0);
+}
