@@ -41,19 +41,18 @@ for part in Eigen unsupported; do
   ln -sfn "/usr/include/eigen3/$part" "headers/$part"
 done
 
-# All files of a folder at a time, as FLYBALL_UNITY does.
+# One file; what failed is told, and the others are compiled still.
 compile() {
-  local name=${1//\//_} folder
-  for folder in "$@"; do
-    printf '#include "%s"\n' "$top/$folder"/*.cpp
-  done >"$name.cpp"
-  "$compiler" -std=c++20 -O0 -w "$objects" -I"$top" -isystem headers -c "$name.cpp" -o "$name.o" 2>"$name.log" ||
-    { echo "$1: $(grep -m 3 'error' "$name.log")" && return 1; }
+  local name=${1//\//_}
+  "$compiler" -std=c++20 -O0 -w "$objects" -I"$top" -isystem headers -c "$top/$1" -o "$name.o" 2>"$name.log" ||
+    { echo "$1: $(grep -im 3 'error' "$name.log")" && return 1; }
 }
-rooms=(engine/{linear,system,kkt,solve,stability,search,report,continuation,dynamics,study}
-  app/{document,live,session})
-jobs=("engine/mechanism engine/mechanism/$files" "app/platform app/platform/elsewhere" "${rooms[@]}")
+folders=(engine/{linear,mechanism,system,kkt,solve,stability,search,report,continuation,dynamics,study}
+  app/{platform,document,live,session} "engine/mechanism/$files" app/platform/elsewhere)
 export -f compile
 export top compiler objects
-printf '%s\n' "${jobs[@]}" | xargs -P "$(nproc)" -I{} bash -c 'compile {}'
-echo "${#jobs[@]} folders compile with $compiler"
+cd "$top"
+mapfile -t sources < <(find "${folders[@]}" -maxdepth 1 -name '*.cpp' | sort)
+cd - >/dev/null
+printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -I{} bash -c 'compile {}'
+echo "${#sources[@]} files compile with $compiler"

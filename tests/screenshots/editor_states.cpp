@@ -128,6 +128,9 @@ TEST_CASE("each kind of part has its inspector") {
 
 TEST_CASE("a collar is dragged to where it should settle, and the sliders follow") {
   Hand hand("governor_parametric.json");
+  // Its read-outs would fill the panel, whose rows are a pixel higher with some versions of ImGui than with
+  // others.
+  edit(hand.app, "Clear", [](Mechanism& next, Selection&) { next.measures.clear(); });
   set_mode(hand.app, Mode::explore);
   hand.frames(4);
   const auto collar = static_cast<std::size_t>(body_index(hand.app.mechanism(), "collar"));
