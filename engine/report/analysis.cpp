@@ -309,9 +309,9 @@ Solution Analysis::solve_through(const SolveOptions& options) {
         out.message = why + " " + out.message;
     return out;
   }
-  if (const auto drives = undetermined_speeds(s.system, stability.neutral); !drives.empty()) {
+  if (std::string why = undetermined_speed_message(*s.mechanism, s.system, stability.neutral); !why.empty()) {
     out.status = Status::not_converged;
-    out.message = undetermined_speed_message(drives);
+    out.message = std::move(why);
     return out;
   }
   s.answer = steady.found.z.q;
@@ -401,7 +401,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     std::vector<int> neutral;
   };
   std::vector<Entry> entries;
-  std::vector<std::string> undetermined; // drives whose speed nothing determines
+  std::string undetermined; // that nothing determines the speed of a drive
   SteadyState steady;
   for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i) {
     report_progress(options.progress, "classifying what was found",
@@ -422,8 +422,9 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     const bool by_pivots = pivots_decide(problem);
     const Problem classified = by_pivots ? problem : by_matrices(problem);
     Stability stability = find_stability(steady.factored(classified), !many);
-    if (auto drives = undetermined_speeds(s.system, stability.neutral); !drives.empty()) {
-      undetermined = std::move(drives);
+    if (std::string why = undetermined_speed_message(*s.mechanism, s.system, stability.neutral);
+        !why.empty()) {
+      undetermined = std::move(why);
       continue;
     }
     const bool varies = stability.floquet || stability.floquet_failure;
@@ -459,8 +460,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.potential.value; });
   for (Entry& e : entries)
     out.equilibria.push_back(std::move(e.solution));
-  out.message =
-      entries.empty() && !undetermined.empty() ? undetermined_speed_message(undetermined) : message(out);
+  out.message = entries.empty() && !undetermined.empty() ? undetermined : message(out);
   return out;
 }
 

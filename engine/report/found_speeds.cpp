@@ -96,21 +96,31 @@ std::string missing_speed_message(const Mechanism& mechanism, const Problem& pro
   return text;
 }
 
-std::vector<std::string> undetermined_speeds(const System& system, std::span<const int> neutral) {
+std::string undetermined_speed_message(const Mechanism& mechanism, const System& system,
+                                       std::span<const int> neutral) {
   std::vector<std::string> names;
+  bool implied = false;
   for (const DriveTorqueElement& torque : system.torques) {
     const Link& link = system.links[static_cast<std::size_t>(torque.link)];
-    if (std::ranges::find(neutral, link.v) != neutral.end()) names.push_back(name_of_drive(system, link));
+    if (std::ranges::find(neutral, link.v) == neutral.end()) continue;
+    names.push_back(name_of_drive(system, link));
+    implied = implied || torque.implied;
   }
-  return names;
-}
-
-std::string undetermined_speed_message(std::span<const std::string> drives) {
-  if (drives.size() == 1)
-    return "Nothing determines the speed of " + drives[0] +
+  if (names.empty()) return {};
+  if (implied) {
+    std::string cut;
+    for (const Joint& joint : mechanism.joints)
+      if (joint.cut) cut += (cut.empty() ? "\"" : ", \"") + joint.name + "\"";
+    if (!cut.empty())
+      return "The rate at which the loops make " + names_of_drives(names) +
+             " turn does not follow where they are cut: at " + cut +
+             ". Leave the choice of what to cut open.";
+  }
+  if (names.size() == 1)
+    return "Nothing determines the speed of " + names[0] +
            ": what it gives and what turning takes are the same at every speed. Its torque or load has to "
            "change with the speed or a coordinate, or something has to resist it.";
-  return "Nothing determines the speeds of " + names_of_drives(drives) +
+  return "Nothing determines the speeds of " + names_of_drives(names) +
          " together: what they give and what turning takes are the same whichever they are. A torque or "
          "load has to change with a speed or a coordinate, or something has to resist them.";
 }

@@ -21,10 +21,9 @@ stability_at_constant_speed(const Mechanism& mechanism, const System& system, co
 // began. Empty where that tells nothing.
 std::string missing_speed_message(const Mechanism& mechanism, const Problem& problem, Workspace& w);
 
-// Of the coordinates of q_R that take part in directions that nothing resists: names of the drives whose
-// speed nothing determines; empty where there are none.
-std::vector<std::string> undetermined_speeds(const System& system, std::span<const int> neutral);
-// That nothing determines them.
-std::string undetermined_speed_message(std::span<const std::string> drives);
+// Of the coordinates of q_R that take part in directions that nothing resists: that nothing determines the
+// speeds of drives among them, and why; empty where there are none.
+std::string undetermined_speed_message(const Mechanism& mechanism, const System& system,
+                                       std::span<const int> neutral);
 
 } // namespace flyball
