@@ -1,6 +1,7 @@
 #include "app/session/transfer.hpp"
 
 #include "app/session/session.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/result_functions.hpp"
 #include "engine/mechanism/text.hpp"
@@ -22,6 +23,8 @@ FoundTransfer find_transfer(const TransferRequest& request, const TaskContext<Fo
   FoundTransfer found;
   found.model = linearize(*request.mechanism, input, output, options);
   if (!found.model.refusal.empty()) throw std::runtime_error(found.model.refusal);
+  const Interruptible scope(&context.cancel);
+  context.progress({"frequency response", -1});
   found.response = frequency_response(found.model, telling_frequencies(found.model, frequencies)).front();
   if (found.model.explicit_form)
     if (auto z = zeros(*found.model.explicit_form, 0, 0)) {

@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 
 namespace flyball {
 namespace {

@@ -45,6 +45,8 @@ def reasons(folder):
     for vary in (["branch", "--vary", f"{SPEED}=0:20"],):
         forms += [vary, *([*vary, option, file] for option in ("--csv", "--svg", "--png") for file in (old, "-")),
                   [*vary, "--json"], [*vary, "--all", "--csv", old], [*vary, "--csv", old, "--svg", "-"]]
+    model = ["linearize", "--inputs", SPEED, "--outputs", "h"]
+    forms += [model, [*model, "--json"], [*model, "--frequencies", "1:2:3", "--csv", old]]
     sweep = ["sweep", "--vary", f"{SPEED}=0:20:3"]
     forms += [sweep, [*sweep, "--csv", folder / "sweep.csv"], [*sweep, "--csv", "-"], [*sweep, "--json"]]
     for form in forms:
