@@ -121,7 +121,8 @@ std::string diagram_csv(const CampbellDiagram& d, const std::string& address) {
   return out;
 }
 
-std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, const std::string& unit) {
+std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, const std::string& unit,
+                         bool turns) {
   std::string out = fmt::format("{}: {}\n", printable(mechanism.name), printable(d.response.message));
   for (std::size_t b = 0; b < d.branches.size(); ++b) {
     const CampbellBranch& branch = d.branches[b];
@@ -153,6 +154,9 @@ std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, c
         order_text(c.order), c.speed, c.error, c.speed * 30 / std::numbers::pi, hertz(c.frequency),
         printable(d.branches[static_cast<std::size_t>(c.branch)].names[static_cast<std::size_t>(c.line)]),
         c.branch, c.damping_ratio, whirl_text(c.whirl), c.stable ? "" : ", unstable");
+  if (!turns)
+    out += "  Critical speeds and whirl are not looked for: the number is not the speed of a drive that "
+           "turns.\n";
   return out + fmt::format("  {:.1f} ms\n", d.run_time_s * 1e3);
 }
 
@@ -212,7 +216,7 @@ void add_campbell(CLI::App& app, Ending& ending) {
     if (options->json)
       print_json(with_warnings(diagram_json(diagram, unit), mechanism));
     else if (options->csv.empty() && options->svg != "-")
-      print_text(diagram_text(mechanism, diagram, unit));
+      print_text(diagram_text(mechanism, diagram, unit, !driven_joint(mechanism, range.address).empty()));
     ending = end_with(any, options->scene.file, diagram.response.message);
   });
 }

@@ -79,7 +79,7 @@ Settled find_settled(const Run& run, const Solution& steady, double within) {
   }
   const std::string distance = rounded_text(out.distance, 2) + " from the direct solution";
   if (first == run.time.size() && is_held(run)) {
-    out.message = "Friction holds it " + distance + ", within the band of steady states.";
+    out.message = "Friction holds it where it has come to rest, " + distance + ".";
     return out;
   }
   if (first == run.time.size()) {

@@ -23,8 +23,9 @@ ValueDimension dimension_of(const Mechanism& mechanism, const ResultCall& call) 
 bool is_of_state(std::string_view expression) {
   try {
     return !Expression(expression, Expression::Results::allowed).results().empty();
-  } catch (const ExpressionError&) {
-    return false;
+  } catch (const ExpressionError&) { // to be told where it is read as what it means to be
+    return expression.find("rate(") != std::string_view::npos ||
+           expression.find("coordinate(") != std::string_view::npos;
   }
 }
 

@@ -204,6 +204,7 @@ class ExpressionParser {
       of = common("a table has", of, x_dimension);
       dimension = common("a table has", dimension, y_dimension);
       if (!points.empty() && !(x > points.back().x)) fail("expected points in ascending order");
+      if (std::max(std::abs(x), std::abs(y)) > 1e100) fail("expected numbers below 1e100");
       points.push_back({x, y});
     }
     if (!take(")")) fail("expected , or ) after a point of the table");

@@ -131,6 +131,7 @@ class Simplex {
         vertices_[kept] = vertices_[i];
         weights_[kept++] = weights_[i];
       }
+    if (kept == 0) return false; // of weights that are no numbers
     const bool some = kept < count_;
     count_ = kept;
     double all = 0;

@@ -130,7 +130,8 @@ double modal_assurance(const VibrationMode& a, const VibrationMode& b) {
     mine += std::norm(x);
     theirs += std::norm(y);
   }
-  return mine > 0 && theirs > 0 ? std::norm(both) / (mine * theirs) : 0;
+  const double both_ways = std::norm(both) / (mine * theirs);
+  return std::isfinite(both_ways) ? both_ways : 0;
 }
 
 } // namespace flyball

@@ -107,7 +107,7 @@ double damped_frequency(Complex eigenvalue) {
 }
 double damping_ratio(Complex eigenvalue) {
   const double size = std::abs(eigenvalue);
-  return size > 0 ? -eigenvalue.real() / size : 0;
+  return size > 0 ? 0 - eigenvalue.real() / size : 0; // never -0
 }
 double hertz(double angular_frequency) {
   return angular_frequency / (2 * std::numbers::pi);

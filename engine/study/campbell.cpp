@@ -244,12 +244,13 @@ void add_critical(Describer& describer, const ResponseBranch& followed, const Ca
 std::string driven_joint(const Mechanism& mechanism, const std::string& address) {
   for (const Joint& joint : mechanism.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
-      if (!joint.coordinates[i].drive || joint.coordinates[i].drive->torque) continue;
+      if (!joint.coordinates[i].drive || finds_speed(*joint.coordinates[i].drive)) continue;
       const std::string speed = "joints." + joint.name + ".drive" +
                                 (joint.coordinates.size() > 1 ? "." + std::to_string(i) : "") + ".speed";
       if (parameter_unit(mechanism, speed) != "rad/s") continue;
-      if (speed == address || "parameters." + formula_at(mechanism, speed).value_or("") == address)
-        return joint.name;
+      std::string formula = formula_at(mechanism, speed).value_or("");
+      std::erase(formula, ' ');
+      if (speed == address || "parameters." + formula == address) return joint.name;
     }
   return {};
 }

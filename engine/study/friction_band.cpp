@@ -69,21 +69,49 @@ class Box {
     const auto known = std::ranges::find_if(places_, [&](const Place& place) { return place.state.p == p; });
     if (known != places_.end()) return {*known, true};
     SteadyMap::State state = from.state;
+    Place last = from;
     bool there = true;
     for (int part = 1; part <= parts && there; ++part) {
       const VectorXd to = part == parts ? p : VectorXd(from.state.p + part * (p - from.state.p) / parts);
       there = map_.walk_to(state, to);
-      if (map_.find_rates(state)) add(state);
+      if (!map_.find_rates(state)) continue;
+      add(state);
+      last = places_.back();
     }
     if (!there) lost_ = true;
-    return {places_.back(), there && places_.back().state.p == p};
+    return {last, there && last.state.p == p};
   }
 
-  // The place beyond which no rate of the output, times `sense`, leads up.
+  // The place beyond which no rate of the output, times `sense`, leads up: from the best that is known, of
+  // one share from each, for along a line it may go up and down.
   Place climb(Index output, double sense) {
-    Place at = places_.front();
+    const auto better = [&](const Place& a, const Place& b) {
+      return sense * (a.state.values[output] - b.state.values[output]) > 0;
+    };
+    Place best = places_.front();
     for (const Place& place : places_)
-      if (sense * (place.state.values[output] - at.state.values[output]) > 0) at = place;
+      if (better(place, best)) best = place;
+    best = climb_from(output, sense, best);
+    if (best.state.p.size() > 1) return best;
+    for (std::size_t i = 0, known = places_.size(); i < known; ++i)
+      if (const Place top = climb_from(output, sense, places_[i]); better(top, best)) best = top;
+    return best;
+  }
+
+  // To the corner to which the rates at the first place point; both corners of one share.
+  void go_to_corner(Index output, double sense) {
+    const Place from = places_.front();
+    VectorXd p = from.state.p;
+    for (Index j = 0; j < p.size(); ++j)
+      if (const double rate = sense * from.rates(output, j); rate != 0 || p.size() == 1)
+        p[j] = (rate != 0 ? rate : sense) > 0 ? 1 : -1;
+    go(from, p);
+  }
+
+ private:
+  void add(const SteadyMap::State& state) { places_.push_back({state, map_.rates()}); }
+
+  Place climb_from(Index output, double sense, Place at) {
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
       bool moved = false;
       for (Index j = 0; j < at.state.p.size(); ++j)
@@ -92,18 +120,6 @@ class Box {
     }
     return at;
   }
-
-  // To the corner to which the rates at the first place point.
-  void go_to_corner(Index output, double sense) {
-    const Place from = places_.front();
-    VectorXd p = from.state.p;
-    for (Index j = 0; j < p.size(); ++j)
-      if (const double rate = sense * from.rates(output, j); rate != 0) p[j] = rate > 0 ? 1 : -1;
-    go(from, p);
-  }
-
- private:
-  void add(const SteadyMap::State& state) { places_.push_back({state, map_.rates()}); }
 
   // Along one share, as far as the output grows. Whether that is anywhere.
   bool climb_along(Index output, double sense, Index j, Place& at) {
@@ -114,12 +130,20 @@ class Box {
     if (!(std::abs(rate) > 1e-9 * size) || end == at.state.p) return false;
     const auto [beyond, there] = go(at, end);
     if (beyond.state.p == at.state.p) return false;
-    if (sense * beyond.rates(output, j) * rate >= 0) {
+    // The next place of a line at which the output falls, or that at the end.
+    Place low = at, high = beyond;
+    if (end.size() == 1)
+      for (const Place& place : places_) {
+        const double way = (place.state.p[0] - at.state.p[0]) * rate;
+        if (way > 0 && way < (high.state.p[0] - at.state.p[0]) * rate &&
+            sense * place.rates(output, 0) * rate < 0)
+          high = place;
+      }
+    if (sense * high.rates(output, j) * rate >= 0) {
       at = beyond;
       return there;
     }
     // The rate has a root between.
-    Place low = at, high = beyond;
     for (int i = 0; i < most_bisections && std::abs(high.state.p[j] - low.state.p[j]) > 1e-10; ++i) {
       interruption_point();
       VectorXd middle = low.state.p;
@@ -173,6 +197,11 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
     for (const SpecialPoint& special : diagram->special)
       take(special.at);
   }
+  // It may go on and on: a pendulum that friction holds at any angle.
+  for (const ResponseBranch& branch : diagram->branches)
+    for (const ResponsePoint* end : {&branch.points.front(), &branch.points.back()})
+      if (end->parameter != share.from && end->parameter != share.to && branch.connected)
+        band.message = "Friction holds it farther than the band was followed: " + branch.end + ".";
   return true;
 }
 
@@ -227,7 +256,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     } else if (free.size() == 1 && options.through_folds &&
                follow(mechanism, free.front(), state, options.cancel, band)) {
       band.folds = true;
-      band.message = "The band passes a fold, beyond which friction alone holds.";
+      if (band.message.empty()) band.message = "The band passes a fold, beyond which friction alone holds.";
     } else {
       band.message = "Within the limits of friction the balance folds: the band is told up to there, and a "
                      "push may make it jump.";

@@ -155,6 +155,8 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     c.friction.reset();
   }
   for (const std::size_t i : which.independent) {
+    // What it takes is told of a drive in the tree.
+    locked.joints[static_cast<std::size_t>(frictions[i].joint)].cut = false;
     Coordinate& c = coordinate_at(locked, frictions[i]);
     c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
   }
@@ -167,6 +169,12 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     return out;
   }
   Compiled& held = *made;
+  if (!held.system.torques.empty() && held.system.rows > 0) {
+    out.message =
+        "What holding takes is not found where loops or gears may lead what gives a torque to joints "
+        "with friction.";
+    return out;
+  }
   Coordinates rest;
   for (const auto& [name, value] : at) {
     const CoordinateReference c = find_coordinate(mechanism, name);
@@ -182,7 +190,13 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     LinkParameters& p = held.numbers(to);
     p.start = free.q[free.link(from).q] - p.drawn;
   }
-  set_start(held.system, held.parameters, rest, held.q);
+  try {
+    set_start(held.system, held.parameters, rest, held.q);
+  } catch (const SceneError& error) { // a speed that nothing finds where they stand still
+    out.message = "What holding takes is not found: with the joints that have friction standing still, " +
+                  std::string(error.what()) + ".";
+    return out;
+  }
   const Problem problem = held.problem(cancel);
   SteadyState steady;
   steady.find(problem, held.q, held.q, {.nearest = !at.empty()});
@@ -197,14 +211,21 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     const auto torque = std::ranges::find_if(forces.drive_torques, [&](const DriveTorque& d) {
       return d.joint == out.joints[i].joint && d.index == out.joints[i].index;
     });
-    double value = torque == forces.drive_torques.end() ? 0 : torque->value;
-    if (torque != forces.drive_torques.end() && torque->range)
-      value = std::abs(torque->range->most) > std::abs(torque->range->least) ? torque->range->most
-                                                                             : torque->range->least;
+    if (torque == forces.drive_torques.end()) {
+      out.message = "What holding takes is not found: loops or gears tie " + out.joints[i].joint +
+                    " to another drive, which holds it or turns it.";
+      return out;
+    }
     const int c = free.find(mechanism, frictions[i]);
     CoordinateForce spring = free.numbers(c).force[0];
     spring.friction = 0;
-    needed.push_back(value + spring.gradient(free.q[free.link(c).q]));
+    const double own = spring.gradient(free.q[free.link(c).q]);
+    double value = torque->value + own;
+    if (torque->range) {
+      const double least = torque->range->least + own, most = torque->range->most + own;
+      value = std::abs(most) > std::abs(least) ? most : least;
+    }
+    needed.push_back(value);
   }
   if (which.others.empty())
     tell_each(needed, out);
@@ -279,6 +300,7 @@ std::vector<HeldSpeeds> find_held_speeds(const Mechanism& mechanism, const Coord
         held.upper = speed * find_slip(takes, 1, part);
         break;
       }
+      if (speed < 0) std::swap(held.lower, held.upper);
       drive->speed = speed;
       out.push_back(std::move(held));
     }

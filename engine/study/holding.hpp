@@ -8,6 +8,7 @@
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/solve/solution.hpp"
 
+#include <cmath>
 #include <atomic>
 #include <optional>
 
@@ -51,7 +52,7 @@ struct HeldSpeeds {
   // (upper - lower) over their mean: a governor's insensitivity.
   std::optional<double> insensitivity() const {
     if (!lower || !upper) return {};
-    return (*upper - *lower) / ((*upper + *lower) / 2);
+    return (*upper - *lower) / (std::abs(*upper + *lower) / 2);
   }
 };
 

@@ -72,8 +72,11 @@ Chosen choose_coordinates(const System& system, const Eigen::MatrixXd& basis, bo
   Eigen::MatrixXd rest = basis.transpose();
   for (int v = 0; v < system.nv; ++v) {
     if (!driven[static_cast<std::size_t>(v)]) continue;
+    Eigen::VectorXd along = rest.col(v);
+    const double size = along.norm();
+    if (!(size > 1e-9 * basis.row(v).norm())) continue; // geared to those before
+    along /= size;
     out.coordinates.push_back(v);
-    const Eigen::VectorXd along = basis.row(v);
     rest -= along * (along.transpose() * rest);
   }
   if (const auto left = k - static_cast<Eigen::Index>(out.coordinates.size()); left > 0) {

@@ -104,6 +104,15 @@ TEST_CASE("a governor's critical speed is where its eigenvalue says", "[campbell
   }
 }
 
+TEST_CASE("orders are of speeds that are given", "[campbell]") {
+  Mechanism m = turning_springs();
+  CHECK(driven_joint(m, spin_speed) == "spin");
+  CHECK(driven_joint(m, "joints.x.spring.stiffness").empty());
+  // One that is kept by its momentum only turns as fast as that in the drawn pose.
+  m.joints[0].coordinates[0].drive->keeps = DriveKeeps::momentum;
+  CHECK(driven_joint(m, spin_speed).empty());
+}
+
 TEST_CASE("modal assurance of shapes", "[campbell]") {
   Analysis analysis(turning_springs());
   REQUIRE(analysis.solve().status == Status::converged);
