@@ -37,6 +37,7 @@ Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& b) const {
 }
 
 Eigen::MatrixXd Cholesky::forward(const Eigen::MatrixXd& b) const {
+  if (b.size() == 0) return b;
   if (!large_) return factors_.matrixL().solve(b);
   Eigen::MatrixXd x = b;
   constexpr Eigen::Index some = 8; // columns

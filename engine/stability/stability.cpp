@@ -32,11 +32,11 @@ bool stays_balanced(const FactoredState& at, const Eigen::MatrixXd& null_space,
     retract<double>(problem.system, w.step, moved.q);
     if (!assemble(problem, moved.q, 0, w)) return false;
     evaluate_with_multipliers(problem, moved, w);
+    factor(problem, moved, w); // without loops the basis is made by this alone
     const Eigen::MatrixXd& basis = w.dense.constraints().basis();
     const Eigen::VectorXd left = basis.transpose() * w.residual.f.cwiseProduct(problem.scaling.column);
     const double force = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
     if (left.size() == 0 || left.lpNorm<Eigen::Infinity>() <= tolerance::neutral_force * force) return true;
-    factor(problem, moved, w);
     const auto all = orthonormal_completion(basis.transpose() * null_space);
     if (!all || all->cols() <= null_space.cols()) return false;
     const auto rest = all->rightCols(all->cols() - null_space.cols());

@@ -8,8 +8,8 @@
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/solve/solution.hpp"
 
-#include <cmath>
 #include <atomic>
+#include <cmath>
 #include <optional>
 
 namespace flyball {
