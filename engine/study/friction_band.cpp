@@ -82,23 +82,22 @@ class Box {
     return {last, there && last.state.p == p};
   }
 
-  // The place beyond which no rate of the output, times `sense`, leads up: from the best that is known, of
-  // one share from each, for along a line it may go up and down.
+  // The place beyond which no rate of the output, times `sense`, leads up. Of one share the highest on the
+  // ways to its ends, along which the output may go up and down; of several from the best that is known.
   Place climb(Index output, double sense) {
-    const auto better = [&](const Place& a, const Place& b) {
-      return sense * (a.state.values[output] - b.state.values[output]) > 0;
-    };
-    Place best = places_.front();
-    for (const Place& place : places_)
-      if (better(place, best)) best = place;
-    best = climb_from(output, sense, best);
-    if (best.state.p.size() > 1) return best;
-    for (std::size_t i = 0, known = places_.size(); i < known; ++i)
-      if (const Place top = climb_from(output, sense, places_[i]); better(top, best)) best = top;
-    return best;
+    Place at = *std::ranges::max_element(
+        places_, {}, [&](const Place& place) { return sense * place.state.values[output]; });
+    if (at.state.p.size() == 1) return highest_along(output, sense, at);
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+      bool moved = false;
+      for (Index j = 0; j < at.state.p.size(); ++j)
+        moved = climb_along(output, sense, j, at) || moved;
+      if (!moved) break;
+    }
+    return at;
   }
 
-  // To the corner to which the rates at the first place point; both corners of one share.
+  // To the corner to which the rates at the first place point; of one share to both ends.
   void go_to_corner(Index output, double sense) {
     const Place from = places_.front();
     VectorXd p = from.state.p;
@@ -111,14 +110,16 @@ class Box {
  private:
   void add(const SteadyMap::State& state) { places_.push_back({state, map_.rates()}); }
 
-  Place climb_from(Index output, double sense, Place at) {
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-      bool moved = false;
-      for (Index j = 0; j < at.state.p.size(); ++j)
-        moved = climb_along(output, sense, j, at) || moved;
-      if (!moved) break;
+  Place highest_along(Index output, double sense, const Place& known) {
+    std::vector<Place> line = places_;
+    std::ranges::sort(line, {}, [](const Place& place) { return place.state.p[0]; });
+    Place best = known;
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      if (!(sense * line[i - 1].rates(output, 0) > 0) || !(sense * line[i].rates(output, 0) < 0)) continue;
+      const Place top = crest(output, 0, line[i - 1], line[i]);
+      if (sense * (top.state.values[output] - best.state.values[output]) > 0) best = top;
     }
-    return at;
+    return best;
   }
 
   // Along one share, as far as the output grows. Whether that is anywhere.
@@ -130,31 +131,29 @@ class Box {
     if (!(std::abs(rate) > 1e-9 * size) || end == at.state.p) return false;
     const auto [beyond, there] = go(at, end);
     if (beyond.state.p == at.state.p) return false;
-    // The next place of a line at which the output falls, or that at the end.
-    Place low = at, high = beyond;
-    if (end.size() == 1)
-      for (const Place& place : places_) {
-        const double way = (place.state.p[0] - at.state.p[0]) * rate;
-        if (way > 0 && way < (high.state.p[0] - at.state.p[0]) * rate &&
-            sense * place.rates(output, 0) * rate < 0)
-          high = place;
-      }
-    if (sense * high.rates(output, j) * rate >= 0) {
+    if (sense * beyond.rates(output, j) * rate >= 0) {
       at = beyond;
       return there;
     }
-    // The rate has a root between.
+    const Place top = crest(output, j, at, beyond);
+    const bool moved = std::abs(top.state.p[j] - at.state.p[j]) > 1e-9;
+    at = top;
+    return moved;
+  }
+
+  // Where the rate with the share j has a root, between two places at which its signs differ.
+  Place crest(Index output, Index j, Place low, Place high) {
+    const double sign = low.rates(output, j);
     for (int i = 0; i < most_bisections && std::abs(high.state.p[j] - low.state.p[j]) > 1e-10; ++i) {
       interruption_point();
-      VectorXd middle = low.state.p;
-      middle[j] = (low.state.p[j] + high.state.p[j]) / 2;
-      const auto [place, reached] = go(low, middle);
-      if (!reached) break;
-      (sense * place.rates(output, j) * rate > 0 ? low : high) = place;
+      Place middle = low;
+      VectorXd p = low.state.p;
+      p[j] = (low.state.p[j] + high.state.p[j]) / 2;
+      if (!map_.walk_to(middle.state, p) || !map_.find_rates(middle.state)) break;
+      middle.rates = map_.rates();
+      (middle.rates(output, j) * sign > 0 ? low : high) = middle;
     }
-    const bool moved = std::abs(low.state.p[j] - at.state.p[j]) > 1e-9;
-    at = low;
-    return moved;
+    return low;
   }
 
   SteadyMap map_;
