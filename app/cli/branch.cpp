@@ -23,6 +23,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <utility>
 
@@ -40,9 +41,10 @@ PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, c
                    known.empty() ? "there is no free coordinate to draw" : "expected one of " + known);
 }
 
-// Of each branch the bands at all its points.
-Ribbons follow_ribbons(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,
+// Of each branch the bands at all its points; their time is the diagram's, too.
+Ribbons follow_ribbons(const Mechanism& mechanism, const std::string& address, ResponseDiagram& diagram,
                        const ReportProgress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
   Ribbons out;
   for (const ResponseBranch& branch : diagram.branches) {
     std::vector<RibbonPlace> places;
@@ -52,6 +54,7 @@ Ribbons follow_ribbons(const Mechanism& mechanism, const std::string& address, c
       report_progress(progress, "friction", static_cast<double>(done) / static_cast<double>(places.size()));
     }));
   }
+  diagram.run_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }
 

@@ -31,15 +31,10 @@ struct CampbellArguments {
   bool json = false;
 };
 
-std::string_view direction(double whirl) {
-  constexpr double straight = 1e-3;
-  return whirl > straight ? "forward" : whirl < -straight ? "backward" : "straight";
-}
-
 Json whirl_json(const std::optional<Whirl>& whirl, double frequency) {
   if (!whirl) return nullptr;
   Json out = {{"value", whirl->value},
-              {"direction", direction(whirl->value)},
+              {"direction", word(whirl->direction())},
               {"seen_from", whirl->turning ? "drive" : "ground"}};
   if (whirl->turning) out["from_ground_rad_s"] = standing_frequencies(*whirl, frequency);
   return out;
@@ -47,7 +42,7 @@ Json whirl_json(const std::optional<Whirl>& whirl, double frequency) {
 
 std::string whirl_text(const std::optional<Whirl>& whirl) {
   if (!whirl) return "";
-  return fmt::format("  whirl {:+.3f} {}{}", whirl->value, direction(whirl->value),
+  return fmt::format("  whirl {:+.3f} {}{}", whirl->value, word(whirl->direction()),
                      whirl->turning ? ", seen from the drive" : "");
 }
 

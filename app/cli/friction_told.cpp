@@ -29,6 +29,9 @@ Json to_json(const FrictionReport& f) {
   out["band"] = f.band.found ? Json::object() : Json(nullptr);
   for (const BandExtent& extent : f.band.extents)
     out["band"][extent.name] = {number_json(extent.low), number_json(extent.high)};
+  out["band_error_estimate"] = f.band.found ? Json::object() : Json(nullptr);
+  for (const BandExtent& extent : f.band.extents)
+    out["band_error_estimate"][extent.name] = or_null(extent.error);
   out["band_whole"] = f.band.whole;
   out["band_folds"] = f.band.folds;
   out["band_message"] = f.band.message;
@@ -46,6 +49,7 @@ Json to_json(const FrictionReport& f) {
                                                   {"lower", or_null(held.lower)},
                                                   {"upper", or_null(held.upper)},
                                                   {"insensitivity", or_null(held.insensitivity())}};
+  out["run_time_s"] = f.run_time_s;
   return out;
 }
 
@@ -57,8 +61,9 @@ std::string to_text(const FrictionReport& f) {
     width = std::max(width, coordinate_label(joint).size());
   std::string out = "\nband within which friction holds it\n";
   for (const BandExtent& extent : f.band.extents)
-    out += fmt::format("  {:{}}  {:>18.12g} to {:<18.12g} {}\n", printable(extent.name), width, extent.low,
-                       extent.high, extent.unit);
+    out +=
+        fmt::format("  {:{}}  {:>18.12g} to {:<18.12g} {}{}\n", printable(extent.name), width, extent.low,
+                    extent.high, extent.unit, extent.error ? fmt::format("  ± {:.1g}", *extent.error) : "");
   if (!f.band.message.empty()) out += "  " + printable(f.band.message) + "\n";
   if (f.band.found)
     out += "  Within it the joints with friction stand still until something pushes them beyond their "
@@ -84,6 +89,7 @@ std::string to_text(const FrictionReport& f) {
     if (const auto part = held.insensitivity()) out += ", insensitivity " + percent(*part);
     out += "\n";
   }
+  out += fmt::format("  {:.1f} ms\n", f.run_time_s * 1e3);
   return out;
 }
 

@@ -16,18 +16,30 @@
 namespace flyball {
 namespace {
 
+// All coordinates, the drives' included, with the rates u of the others.
+struct ReleasedMotion {
+  ReleasedMotion(const MotionModel& model, double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u)
+      : all_q(model.released.nq), all_u(model.released.nv) {
+    all_q.head(model.system.nq) = q;
+    set_rates(model, t, u);
+  }
+  void set_rates(const MotionModel& model, double t, const Eigen::VectorXd& u) {
+    all_u.head(model.system.nv) = u;
+    set_drives(model.system, model.parameters, t, all_q, all_u);
+    move(model.released, model.parameters, {all_q, all_u}, k, rates);
+  }
+  Eigen::VectorXd all_q, all_u;
+  Kinematics<double> k;
+  std::vector<LinkRates> rates;
+};
+
 // The velocity of all coordinates nearest to `u` in kinetic energy (massless ones: in size) that keeps the
 // loops closed, with the coordinates in `prescribed` as they are. Names what cannot be.
 void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q,
                     const std::vector<int>& prescribed, bool from_rest, Eigen::VectorXd& u) {
   const int n = model.system.nv;
-  Eigen::VectorXd all_q(model.released.nq), all_u(model.released.nv);
-  all_q.head(model.system.nq) = q;
-  all_u.head(n) = u;
-  set_drives(model.system, model.parameters, t, all_q, all_u);
-  Kinematics<double> k;
-  std::vector<LinkRates> none;
-  move(model.released, model.parameters, {all_q, all_u}, k, none);
+  const ReleasedMotion moving(model, t, q, u);
+  const Kinematics<double>& k = moving.k;
   MassMatrix m;
   evaluate_mass(model.released, model.parameters, k, m);
   Linearization l;
@@ -39,7 +51,7 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
   Eigen::MatrixXd c = Eigen::MatrixXd::Zero(rows + fixed, n);
   Eigen::VectorXd open(rows + fixed);
   c.topRows(rows) = model.scaling.row.asDiagonal() * l.constraint.leftCols(n) * column.asDiagonal();
-  constraint_rates(model.released, model.parameters, all_u, k, none, open);
+  constraint_rates(model.released, model.parameters, moving.all_u, k, moving.rates, open);
   open = open.cwiseProduct(model.scaling.row).eval();
   open.conservativeResize(rows + fixed);
   for (Eigen::Index i = 0; i < fixed; ++i) {
@@ -73,7 +85,7 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
     const Eigen::MatrixXd mass = column.asDiagonal() * m.mass.topLeftCorner(n, n) * column.asDiagonal();
     // From rest: the momentum of everything, the drives' motion included, is to vanish.
     Eigen::VectorXd momentum = mass * range;
-    if (from_rest) momentum += column.cwiseProduct(m.mass.topRows(n) * all_u);
+    if (from_rest) momentum += column.cwiseProduct(m.mass.topRows(n) * moving.all_u);
     const Eigen::MatrixXd reduced = large::projected(mass, basis);
     const auto along = least_squares(reduced, basis.transpose() * momentum);
     if (!along) refuse();
@@ -86,13 +98,8 @@ void close_velocity(const MotionModel& model, double t, const Eigen::VectorXd& q
 // all that moves has mass, or the loops cannot stay closed.
 bool close_velocity_of_many(const MotionModel& model, double t, const Eigen::VectorXd& q, bool from_rest,
                             Eigen::VectorXd& u) {
-  Eigen::VectorXd all_q(model.released.nq), all_u(model.released.nv);
-  all_q.head(model.system.nq) = q;
-  all_u.head(model.system.nv) = u;
-  set_drives(model.system, model.parameters, t, all_q, all_u);
-  Kinematics<double> k;
-  std::vector<LinkRates> none;
-  move(model.released, model.parameters, {all_q, all_u}, k, none);
+  ReleasedMotion moving(model, t, q, u);
+  const Kinematics<double>& k = moving.k;
   std::vector<Vec6> momenta(k.links.size());
   for (std::size_t l = 0; l < momenta.size(); ++l) {
     BodyInertia body;
@@ -111,16 +118,14 @@ bool close_velocity_of_many(const MotionModel& model, double t, const Eigen::Vec
   }
   if (!model.sparse) return false;
   SparseMotion motion(model);
-  const MotionPoint point{model.parameters, all_q, all_u, k, none};
+  const MotionPoint point{model.parameters, moving.all_q, moving.all_u, k, moving.rates};
   if (!motion.analyse(point)) return false;
   Eigen::VectorXd open;
-  constraint_rates(model.released, model.parameters, all_u, k, none, open);
+  constraint_rates(model.released, model.parameters, moving.all_u, k, moving.rates, open);
   motion.correct_velocity(point, open, from_rest ? &momenta : nullptr, change);
   const double before = open.cwiseProduct(model.scaling.row).lpNorm<Eigen::Infinity>();
-  all_u.head(model.system.nv) = u + change;
-  set_drives(model.system, model.parameters, t, all_q, all_u);
-  move(model.released, model.parameters, {all_q, all_u}, k, none);
-  constraint_rates(model.released, model.parameters, all_u, k, none, open);
+  moving.set_rates(model, t, u + change);
+  constraint_rates(model.released, model.parameters, moving.all_u, k, moving.rates, open);
   if (!(open.cwiseProduct(model.scaling.row).lpNorm<Eigen::Infinity>() <= 1e-9 * (1 + before))) return false;
   u += change;
   return true;
@@ -145,18 +150,12 @@ void keep_momenta(const MotionModel& model, double t, const Eigen::VectorXd& q, 
     wanted.push_back(model.parameters.torques[i].momentum);
   }
   if (entries.empty()) return;
-  Eigen::VectorXd all_q(model.released.nq), all_u(model.released.nv);
-  all_q.head(model.system.nq) = q;
-  all_u.head(model.system.nv) = u;
-  set_drives(model.system, model.parameters, t, all_q, all_u);
-  Kinematics<double> k;
-  std::vector<LinkRates> none;
-  move(model.released, model.parameters, {all_q, all_u}, k, none);
+  const ReleasedMotion moving(model, t, q, u);
   MassMatrix m;
-  evaluate_mass(model.released, model.parameters, k, m);
+  evaluate_mass(model.released, model.parameters, moving.k, m);
   const auto count = static_cast<Eigen::Index>(entries.size());
   const Eigen::VectorXd missing =
-      Eigen::Map<const Eigen::VectorXd>(wanted.data(), count) - m.mass(entries, Eigen::all) * all_u;
+      Eigen::Map<const Eigen::VectorXd>(wanted.data(), count) - m.mass(entries, Eigen::all) * moving.all_u;
   const auto change = least_squares(m.mass(entries, entries), missing);
   if (!change) throw SceneError("", "the forces are too large for the computer's numbers");
   u(entries) += *change;

@@ -71,6 +71,22 @@ std::vector<BodyAmplitude> body_amplitudes(const Problem& problem, const Eigen::
   return out;
 }
 
+std::string_view word(WhirlDirection direction) {
+  switch (direction) {
+  case WhirlDirection::forward: return "forward";
+  case WhirlDirection::backward: return "backward";
+  case WhirlDirection::straight: return "straight";
+  }
+  return "";
+}
+
+WhirlDirection Whirl::direction() const {
+  constexpr double straight = 1e-3;
+  return value > straight    ? WhirlDirection::forward
+         : value < -straight ? WhirlDirection::backward
+                             : WhirlDirection::straight;
+}
+
 std::array<double, 2> standing_frequencies(const Whirl& whirl, double frequency) {
   const double speed = std::abs(whirl.speed);
   return {std::abs(speed + frequency), std::abs(speed - frequency)};

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 
 namespace flyball {
 
@@ -19,6 +20,9 @@ struct BodyAmplitude {
 std::vector<BodyAmplitude> body_amplitudes(const Problem& problem, const Eigen::VectorXd& q,
                                            const VibrationMode& mode, Workspace& w);
 
+enum class WhirlDirection { forward, backward, straight };
+std::string_view word(WhirlDirection direction);
+
 // The sense in which the mass centres and the bodies' axes go round a drive's axis.
 struct Whirl {
   // 1: all in circles the way the drive turns, -1: against it, 0: to and fro in planes. Of ellipses with half
@@ -27,6 +31,8 @@ struct Whirl {
   double value = 0;
   bool turning = false; // as seen from the frame that turns with the drive, which carries what moves
   double speed = 0;     // rad/s, of the drive
+  // Straight where the circles differ by less than a thousandth.
+  WhirlDirection direction() const;
 };
 // Of a whirl seen from the frame that turns, as seen from the ground: the frequencies (rad/s) of the forward
 // and the backward circle. |speed + f|, |speed - f|.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flyball {
 namespace {
@@ -63,6 +64,19 @@ class Box {
   const std::vector<Place>& places() const { return places_; }
   bool lost() const { return lost_; }
   std::string unit(Index output) const { return map_.unit(static_cast<std::size_t>(output)); }
+
+  // Of all outputs at a place: as a solve estimates it, not numbers where it does not.
+  VectorXd errors(const Place& place) {
+    const Solution solution = map_.solution(place.state, true);
+    VectorXd out = VectorXd::Constant(place.state.values.size(), std::numeric_limits<double>::quiet_NaN());
+    Index i = 0;
+    for (const CoordinateSolution& c : solution.coordinates)
+      if (const auto number = found_number(c); number && !c.dependent && i < out.size())
+        out[i++] = number->error;
+    for (const MeasureSolution& measure : solution.measures)
+      if (i < out.size()) out[i++] = measure.error.value_or(std::numeric_limits<double>::quiet_NaN());
+    return out;
+  }
 
   // The place at the shares p, or the last on the straight way there. Whether it is there.
   std::pair<Place, bool> go(const Place& from, const VectorXd& p) {
@@ -183,6 +197,7 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   if (!diagram || diagram->branches.empty()) return false;
   for (BandExtent& extent : band.extents) {
     extent.low = extent.high = extent.value;
+    extent.error.reset();
     extent.shares_low.clear();
     extent.shares_high.clear();
     const auto take = [&](const ResponsePoint& at) {
@@ -244,9 +259,13 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     for (Index i = 0; i < count; ++i) {
       if (!measured(i)) continue;
       const Box::Place low = box.climb(i, -1), high = box.climb(i, 1);
-      band.extents.push_back({names[static_cast<std::size_t>(i)], box.unit(i), box.first().state.values[i],
-                              low.state.values[i], high.state.values[i], shares(low.state.p),
-                              shares(high.state.p)});
+      const std::string& name = names[static_cast<std::size_t>(i)];
+      std::optional<double> error;
+      if (options.errors)
+        if (const double worst = std::max(box.errors(low)[i], box.errors(high)[i]); std::isfinite(worst))
+          error = worst;
+      band.extents.push_back({name, box.unit(i), box.first().state.values[i], low.state.values[i],
+                              high.state.values[i], error, shares(low.state.p), shares(high.state.p)});
     }
     band.found = true;
     band.whole = !box.lost();

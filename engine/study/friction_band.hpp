@@ -12,6 +12,7 @@ struct BandExtent {
   std::string name, unit;         // of a found number or a measure; "rad", "m", or the measure's
   double value = 0;               // of the state it is about
   double low = 0, high = 0;       // over the band
+  std::optional<double> error;    // of both, estimated; none where the curve was followed through folds
   std::vector<double> shares_low, // of the joints with friction there; empty where the curve was followed
       shares_high;                // through folds
 };
@@ -29,6 +30,7 @@ struct FrictionBandOptions {
   std::vector<std::pair<std::string, double>> start{};
   // Of a single joint with friction: to be followed through folds.
   bool through_folds = true;
+  bool errors = true; // of the extents, two solves each
   const std::atomic<bool>* cancel = nullptr;
 };
 

@@ -1,21 +1,22 @@
 #include "engine/study/friction_report.hpp"
 
+#include <chrono>
+
 namespace flyball {
 
 FrictionReport report_friction(const Mechanism& mechanism,
                                const std::optional<std::vector<std::pair<std::string, double>>>& steady,
                                const std::atomic<bool>* cancel) {
+  const auto begin = std::chrono::steady_clock::now();
   FrictionReport out;
   out.drawn = find_holding(mechanism, {}, cancel);
-  if (!steady) {
+  if (steady) {
+    out.band = find_friction_band(mechanism, {.start = *steady, .cancel = cancel});
+    out.speeds = find_held_speeds(mechanism, *steady, cancel);
+  } else {
     out.band.message = "There is no steady state for a band to hang together with.";
-    return out;
   }
-  FrictionBandOptions options;
-  options.start = *steady;
-  options.cancel = cancel;
-  out.band = find_friction_band(mechanism, options);
-  out.speeds = find_held_speeds(mechanism, options.start, cancel);
+  out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }
 

@@ -11,6 +11,7 @@ struct FrictionReport {
   FrictionBand band;              // connected with the solution; not found where there is none
   Holding drawn;                  // at the drawn pose
   std::vector<HeldSpeeds> speeds; // where the solution stands
+  double run_time_s = 0;
 };
 
 // Of a mechanism with friction. `steady`: its steady state as of SolveOptions::start, where there is one.

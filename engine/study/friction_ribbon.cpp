@@ -15,7 +15,7 @@ std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::
     if (is_cancelled(cancel)) break;
     FrictionBandOptions options;
     options.start = place.start;
-    options.through_folds = false;
+    options.through_folds = options.errors = false;
     options.cancel = cancel;
     RibbonPoint point{place.number, {}};
     FrictionBand band = find_friction_band(with_parameter(mechanism, address, place.number), options);

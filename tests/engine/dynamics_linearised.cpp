@@ -88,8 +88,8 @@ TEST_CASE("eigenvalues of the shipped scenes, by differences of their motion") {
     REQUIRE(steady.eigenvalues);
     std::vector<Complex> found = eigenvalues_by_differences(m);
     REQUIRE_FALSE(found.empty());
-    // The angle of a shaft whose speed is found has the eigenvalue zero, a momentum that is kept another; they
-    // say nothing.
+    // The angle of a shaft whose speed is found has the eigenvalue zero, a momentum that is kept another;
+    // they say nothing.
     while (found.size() > steady.eigenvalues->size()) {
       const auto zero = std::ranges::min_element(found, {}, [](Complex x) { return std::abs(x); });
       CHECK(std::abs(*zero) < 1e-5);

@@ -25,7 +25,11 @@ void band_rows(App& app, const FrictionBand& band) {
   for (const BandExtent& extent : band.extents) {
     const ShownUnit unit = shown_unit(extent.unit, app.units);
     row(app, extent.name, range_words(unit, extent.low, extent.high), unit.text.c_str(),
-        "Between these friction holds it, wherever it came to rest.");
+        ("Between these friction holds it, wherever it came to rest." +
+         (extent.error
+              ? "\nEach end within " + short_text(unit.shown(*extent.error), 1) + " " + unit.text + "."
+              : std::string()))
+            .c_str());
     note_widget(app.widgets, "results/friction/" + extent.name);
   }
   if (!band.message.empty()) paragraph(band.message, colors_of(app).dim);
@@ -71,6 +75,8 @@ void friction_results(App& app) {
   band_rows(app, friction->band);
   drawn_rows(app, friction->drawn);
   speed_rows(app, friction->speeds);
+  if (app.options.numbers.run_times)
+    row(app, "Run time", duration_text(friction->run_time_s, app.options.numbers), "");
 }
 
 } // namespace flyball

@@ -9,6 +9,25 @@
 
 namespace flyball {
 
+namespace {
+
+// "Critical speeds: 1× mode 1, arm1 at 3.34761 rad/s; ... (each ± 6e-15 rad/s)" on the branch that is shown.
+std::string critical_words(const CampbellDiagram& diagram, std::size_t branch, const ShownUnit& unit) {
+  std::string text;
+  double error = 0;
+  for (const CriticalSpeed& at : diagram.critical)
+    if (at.branch == static_cast<int>(branch)) {
+      text += (text.empty() ? "Critical speeds: " : "; ") + order_text(at.order) + " " +
+              diagram.branches[branch].names[static_cast<std::size_t>(at.line)] + " at " +
+              short_text(unit.shown(at.speed), 6) + " " + unit.text;
+      error = std::max(error, at.error);
+    }
+  return text.empty() ? "No critical speed in this range."
+                      : text + " (each ± " + short_text(unit.shown(error), 1) + " " + unit.text + ").";
+}
+
+} // namespace
+
 void draw_campbell(App& app) {
   const CampbellState& campbell = app.study.modes.campbell;
   CampbellView& drawn = app.plots.campbell;
@@ -28,9 +47,14 @@ void draw_campbell(App& app) {
   if (const std::optional<std::size_t> branch = campbell_branch(app)) {
     plot = campbell_plot(app.mechanism(), of.drive, campbell.diagram.found->result, *branch, speeds,
                          of.orders, drawn.hertz);
+    drawn.critical =
+        driven_joint(app.mechanism(), of.drive).empty()
+            ? ""
+            : critical_words(campbell.diagram.found->result, *branch, shown_unit(unit, app.units));
   } else {
     plot.x = {.label = {}, .unit = unit, .range = speeds, .room = 0};
     plot.y = {.label = "frequency", .unit = drawn.hertz ? "Hz" : "rad/s"};
+    drawn.critical.clear();
   }
   plot.x.label = parameter_phrase(of.drive);
   if (converged(app)) {

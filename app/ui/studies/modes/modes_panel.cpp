@@ -1,5 +1,4 @@
 // The modes of the state that is shown: a list, what moves in the view, and the Campbell diagram beside it.
-#include "app/plot/campbell_plot.hpp"
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
@@ -45,13 +44,14 @@ std::string four_digits(double value, double size) {
 }
 
 std::string whirl_words(const Whirl& whirl, double frequency) {
-  constexpr double straight = 1e-3;
-  if (std::abs(whirl.value) < straight) return "\nSwings straight to and fro: no whirl.";
+  const WhirlDirection direction = whirl.direction();
+  if (direction == WhirlDirection::straight) return "\nSwings straight to and fro: no whirl.";
+  const bool forward = direction == WhirlDirection::forward;
   std::string text =
-      whirl.value > 0 ? "\nWhirls forward, as the drive turns" : "\nWhirls backward, against the drive";
+      forward ? "\nWhirls forward, as the drive turns" : "\nWhirls backward, against the drive";
   text += " (" + short_text(std::abs(whirl.value), 3) + " of a circle)";
   if (!whirl.turning) return text + ".";
-  const double seen = standing_frequencies(whirl, frequency)[whirl.value > 0 ? 0 : 1];
+  const double seen = standing_frequencies(whirl, frequency)[forward ? 0 : 1];
   return text + ", as seen from what turns with it; from the ground at " + short_text(hertz(seen), 6) +
          " Hz.";
 }
@@ -295,20 +295,6 @@ void campbell_choices(App& app, const std::string& drive) {
   }
 }
 
-// "Critical speeds: 1× mode 1, arm1 at 3.34761 rad/s; ..." on the branch that is shown.
-std::string critical_words(const App& app, const CampbellRequest& of, const CampbellDiagram& diagram) {
-  const std::optional<std::size_t> branch = campbell_branch(app);
-  if (!branch || driven_joint(app.mechanism(), of.drive).empty()) return {};
-  const ShownUnit unit = shown_unit(parameter_unit(app.mechanism(), of.drive), app.units);
-  std::string text;
-  for (const CriticalSpeed& at : diagram.critical)
-    if (at.branch == static_cast<int>(*branch))
-      text += (text.empty() ? "Critical speeds: " : "; ") + order_text(at.order) + " " +
-              diagram.branches[*branch].names[static_cast<std::size_t>(at.line)] + " at " +
-              short_text(unit.shown(at.speed), 6) + " " + unit.text;
-  return text.empty() ? "No critical speed in this range." : text + ".";
-}
-
 void show_campbell(App& app) {
   CampbellState& campbell = app.study.modes.campbell;
   const UiColors& colors = colors_of(app);
@@ -320,8 +306,7 @@ void show_campbell(App& app) {
   if (!diagram.problem.empty()) paragraph(diagram.problem, colors.bad);
   if (!diagram.found) return;
   draw_campbell(app);
-  if (const std::string words = critical_words(app, diagram.found->of, diagram.found->result);
-      !words.empty()) {
+  if (const std::string& words = app.plots.campbell.critical; !words.empty()) {
     clipped_text(words, ImGui::GetContentRegionAvail().x);
     note_widget(app.widgets, "campbell/critical");
   }
