@@ -26,11 +26,8 @@ std::vector<Slider> curve_parameters(const Mechanism& m) {
     for (std::size_t i = 0; i < joint.coordinates.size() && out.size() < most_curves; ++i) {
       const auto& drive = joint.coordinates[i].drive;
       if (!drive || finds_speed(*drive) || drive->speed == 0) continue;
-      const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
-      out.push_back({.parameter = "joints." + joint.name + ".drive" + index + ".speed",
-                     .from = 0,
-                     .to = 2 * drive->speed,
-                     .description = ""});
+      out.push_back(
+          {.parameter = drive_speed_address(joint, i), .from = 0, .to = 2 * drive->speed, .description = ""});
     }
   }
   return out;

@@ -93,9 +93,8 @@ std::vector<std::string> drive_speeds(const Mechanism& mechanism) {
   std::vector<std::string> speeds;
   for (const Joint& joint : mechanism.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
-      const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
       if (const auto& drive = joint.coordinates[i].drive; !drive || finds_speed(*drive)) continue;
-      std::string address = "joints." + joint.name + ".drive" + index + ".speed";
+      std::string address = drive_speed_address(joint, i);
       // A speed that a named parameter is, is varied by this.
       if (const std::optional<std::string> formula = formula_at(mechanism, address)) {
         if (parameter_index(mechanism, *formula) < 0) continue;

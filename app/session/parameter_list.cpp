@@ -170,7 +170,7 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
       const Coordinate* before = saved.coordinate(joint.name, i);
       const bool angle = is_angle(joint.type, static_cast<int>(i));
       const std::string path = "joints." + joint.name + ".";
-      const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
+      const auto key = [&](std::string_view part) { return path + coordinate_key(joint, i, part); };
       std::optional<double> stiffness, speed, torque, load, damping;
       if (before && before->spring) stiffness = before->spring->stiffness;
       if (before && before->drive) {
@@ -180,19 +180,19 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
       }
       if (before && before->damping != 0) damping = before->damping;
       if (coordinate.spring)
-        controls.push_back(named_control(path + "spring" + index + ".stiffness", ParameterGroup::springs,
+        controls.push_back(named_control(key("spring") + ".stiffness", ParameterGroup::springs,
                                          angle ? "N m/rad" : "N/m", coordinate.spring->stiffness, stiffness));
       if (coordinate.drive && !coordinate.drive->torque)
-        controls.push_back(named_control(path + "drive" + index + ".speed", ParameterGroup::drives,
+        controls.push_back(named_control(key("drive") + ".speed", ParameterGroup::drives,
                                          angle ? "rad/s" : "m/s", coordinate.drive->speed, speed));
       if (coordinate.drive && coordinate.drive->torque && !drive_law(joint, static_cast<int>(i), "torque"))
-        controls.push_back(named_control(path + "drive" + index + ".torque", ParameterGroup::drives,
+        controls.push_back(named_control(key("drive") + ".torque", ParameterGroup::drives,
                                          angle ? "N m" : "N", *coordinate.drive->torque, torque));
       if (coordinate.drive && coordinate.drive->load && !drive_law(joint, static_cast<int>(i), "load"))
-        controls.push_back(named_control(path + "drive" + index + ".load", ParameterGroup::drives,
-                                         angle ? "N m" : "N", *coordinate.drive->load, load));
+        controls.push_back(named_control(key("drive") + ".load", ParameterGroup::drives, angle ? "N m" : "N",
+                                         *coordinate.drive->load, load));
       if (coordinate.damping != 0 || damping)
-        controls.push_back(named_control(path + "damping" + index, ParameterGroup::dampers,
+        controls.push_back(named_control(key("damping"), ParameterGroup::dampers,
                                          angle ? "N m s/rad" : "N s/m", coordinate.damping, damping));
     }
   for (const Force& force : mechanism.forces) {

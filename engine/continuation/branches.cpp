@@ -27,8 +27,7 @@ void expect_no_found_speed(const Mechanism& mechanism, const std::string& addres
   for (const Joint& joint : mechanism.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
       const auto& drive = joint.coordinates[i].drive;
-      const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
-      if (drive && drive->torque && address == "joints." + joint.name + ".drive" + index + ".speed")
+      if (drive && drive->torque && address == drive_speed_address(joint, i))
         throw SceneError(address,
                          "is found by the drive's torque, and this is where the search for it begins; "
                          "expected another number, such as its load");

@@ -176,6 +176,14 @@ std::string parameter_unit(const Mechanism& mechanism, std::string_view address)
   return find_number(mechanism, address).unit;
 }
 
+std::string coordinate_key(const Joint& joint, std::size_t i, std::string_view part) {
+  return std::string(part) + (joint.coordinates.size() > 1 ? "." + std::to_string(i) : "");
+}
+
+std::string drive_speed_address(const Joint& joint, std::size_t i) {
+  return "joints." + joint.name + "." + coordinate_key(joint, i, "drive") + ".speed";
+}
+
 std::vector<std::string> parameter_addresses(const Mechanism& mechanism) {
   Mechanism copy = mechanism;
   std::vector<std::string> all;

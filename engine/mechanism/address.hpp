@@ -34,6 +34,10 @@ void put_number(Mechanism& mechanism, std::string_view address, double value);
 bool has_number(const Mechanism& mechanism, std::string_view address);
 // Unit of the number, as shown to a person: "rad/s", "N/m", "kg", "" where it has none.
 std::string parameter_unit(const Mechanism& mechanism, std::string_view address);
+// What the keys of a part of coordinate i begin with: "drive", of a joint with several coordinates "drive.1".
+std::string coordinate_key(const Joint& joint, std::size_t i, std::string_view part);
+// Of the speed of its drive, whether or not it has one.
+std::string drive_speed_address(const Joint& joint, std::size_t i);
 // Every address that can be set, in the scene's order: of numbers that no expression gives.
 std::vector<std::string> parameter_addresses(const Mechanism& mechanism);
 

@@ -1,5 +1,6 @@
 #include "engine/mechanism/drive_law.hpp"
 
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/formulas.hpp"
@@ -36,9 +37,8 @@ bool is_drive_law(const Formula& formula) {
 
 const Formula* drive_law(const Joint& joint, int i, std::string_view which) {
   if (joint.formulas.empty()) return nullptr;
-  const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(i) : "";
-  const auto law =
-      std::ranges::find(joint.formulas, "drive" + index + "." + std::string(which), &Formula::key);
+  const std::string key = coordinate_key(joint, static_cast<std::size_t>(i), "drive") + ".";
+  const auto law = std::ranges::find(joint.formulas, key + std::string(which), &Formula::key);
   return law != joint.formulas.end() && is_drive_law(*law) ? &*law : nullptr;
 }
 

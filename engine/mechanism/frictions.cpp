@@ -1,5 +1,7 @@
 #include "engine/mechanism/frictions.hpp"
 
+#include "engine/mechanism/address.hpp"
+
 namespace flyball {
 
 std::vector<CoordinateReference> find_frictions(const Mechanism& mechanism) {
@@ -19,8 +21,8 @@ const Friction& friction_at(const Mechanism& mechanism, CoordinateReference at) 
 
 std::string share_address(const Mechanism& mechanism, CoordinateReference at) {
   const Joint& joint = mechanism.joints[static_cast<std::size_t>(at.joint)];
-  const std::string index = joint.coordinates.size() > 1 ? "." + std::to_string(at.coordinate) : "";
-  return "joints." + joint.name + ".friction" + index + ".share";
+  return "joints." + joint.name + "." +
+         coordinate_key(joint, static_cast<std::size_t>(at.coordinate), "friction") + ".share";
 }
 
 } // namespace flyball

@@ -245,8 +245,7 @@ std::string driven_joint(const Mechanism& mechanism, const std::string& address)
   for (const Joint& joint : mechanism.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
       if (!joint.coordinates[i].drive || finds_speed(*joint.coordinates[i].drive)) continue;
-      const std::string speed = "joints." + joint.name + ".drive" +
-                                (joint.coordinates.size() > 1 ? "." + std::to_string(i) : "") + ".speed";
+      const std::string speed = drive_speed_address(joint, i);
       if (parameter_unit(mechanism, speed) != "rad/s") continue;
       std::string formula = formula_at(mechanism, speed).value_or("");
       std::erase(formula, ' ');

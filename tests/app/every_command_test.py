@@ -71,6 +71,7 @@ def commands(path):
     yield ["sweep", "--vary", f"{address}={low!r}:{high!r}:3", "--csv", "OUT"]
     yield ["sweep", "--vary", f"{address}={low!r}:{high!r}:3", "--csv", "-"]
     yield ["branch", *vary, "--csv", "OUT", "--svg", "OUT2"]
+    yield ["campbell", *vary, "--json"]
     if path.stem in DRAWN:
         yield ["render", "--size", "160x120", "-o", "OUT"]
         yield ["report", "--size", "160x120", "-o", "OUT"]

@@ -77,6 +77,19 @@ Mechanism hung() {
   return m;
 }
 
+// With a named point, and any drives and loops.
+Mechanism random_to_measure(std::uint32_t seed, int bodies) {
+  reference::RandomOptions options;
+  options.bodies = bodies;
+  options.loops = seed % 3 == 0 ? 1 : 0;
+  options.drives = seed % 2 ? reference::RandomDrives::several : reference::RandomDrives::root;
+  options.steady = false;
+  Mechanism m = reference::random_mechanism(seed, options);
+  m.points = {{"A", Vec3(0.3, -0.2, 0.5), {}}};
+  m.measures.clear();
+  return m;
+}
+
 } // namespace
 
 TEST_CASE("measures of a conical pendulum are those of the closed form", "[measures]") {
@@ -139,14 +152,7 @@ TEST_CASE("rates of measures along the coordinates agree with differences", "[me
   Dice dice(7);
   int compared = 0;
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
-    reference::RandomOptions options;
-    options.bodies = 4;
-    options.loops = seed % 3 == 0 ? 1 : 0;
-    options.drives = seed % 2 ? reference::RandomDrives::several : reference::RandomDrives::root;
-    options.steady = false;
-    Mechanism m = reference::random_mechanism(seed, options);
-    m.points = {{"A", Vec3(0.3, -0.2, 0.5), {}}};
-    m.measures.clear();
+    Mechanism m = random_to_measure(seed, 4);
     const auto add = [&](const std::string& text, const std::string& unit) {
       m.measures.push_back({"m" + std::to_string(m.measures.size()), "", text, unit});
     };
@@ -238,14 +244,7 @@ TEST_CASE("measures move with the sliders as their closed form does", "[measures
 TEST_CASE("rates of measures with numbers agree with differences", "[measures]") {
   int compared = 0;
   for (std::uint32_t seed = 1; seed <= 24; ++seed) {
-    reference::RandomOptions options;
-    options.bodies = 3;
-    options.loops = seed % 3 == 0 ? 1 : 0;
-    options.drives = seed % 2 ? reference::RandomDrives::several : reference::RandomDrives::root;
-    options.steady = false;
-    Mechanism m = reference::random_mechanism(seed, options);
-    m.points = {{"A", Vec3(0.3, -0.2, 0.5), {}}};
-    m.measures.clear();
+    Mechanism m = random_to_measure(seed, 3);
     const auto add = [&](const std::string& text, const std::string& unit) {
       m.measures.push_back({"m" + std::to_string(m.measures.size()), "", text, unit});
     };

@@ -275,12 +275,7 @@ TEST_CASE("random mechanisms: the speed is found at which the drive gives what t
   int found = 0, moved = 0;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
     CAPTURE(seed);
-    reference::RandomOptions options;
-    options.loops = static_cast<int>(seed % 3);
-    options.massless = false;
-    options.spring_share = 1;
-    options.rotated_bodies = seed % 2 == 0;
-    const Mechanism prescribed = reference::random_mechanism(seed, options);
+    const Mechanism prescribed = reference::random_sprung_mechanism(seed);
     const Solution there = Analysis(prescribed).solve();
     if (there.status != Status::converged || there.drive_torques.size() != 1 ||
         there.drive_torques[0].varying || there.neutral.size() > 0)

@@ -59,8 +59,7 @@ void export_dialog(App& app) {
                     std::max(dialog.width, dialog.height) <= largest_picture;
   if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app).bad);
   const std::filesystem::path file = typed_file(app, ".png");
-  const bool replaces = file == app.file_dialogs.replacing;
-  if (replaces) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+  const bool replaces = asks_to_replace(app, file);
   ImGui::Dummy({0, 2 * app.scale});
   ImGui::BeginDisabled(!fits || dialog.path.empty());
   accepted = text_button(app, "export/save", replaces ? "Replace" : "Save", true) || accepted;

@@ -27,11 +27,8 @@ void model_dialog(App& app) {
   paragraph(
       "The ending decides: .m for MATLAB and Octave, .py for Python, .npz for NumPy, .json for all of it.",
       format ? colors_of(app).dim : colors_of(app).bad);
-  const bool replaces = file == app.file_dialogs.replacing;
-  if (replaces)
-    paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
-  else if (!app.file_dialogs.message.empty())
-    paragraph(app.file_dialogs.message, colors_of(app).bad);
+  const bool replaces = asks_to_replace(app, file);
+  if (!replaces && !app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
   const bool usable = has_transfer(app) && format && !app.dialog.path.empty();
   ImGui::BeginDisabled(!usable);

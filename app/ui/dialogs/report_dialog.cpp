@@ -23,8 +23,7 @@ void report_dialog(App& app) {
             "parameters and assumptions.",
             colors_of(app).dim);
   const std::filesystem::path file = typed_file(app, ".html");
-  const bool replaces = file == app.file_dialogs.replacing;
-  if (replaces) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+  const bool replaces = asks_to_replace(app, file);
   ImGui::Dummy({0, 2 * app.scale});
   const bool usable = !app.dialog.path.empty() && !writing_report(app);
   ImGui::BeginDisabled(!usable);

@@ -50,12 +50,10 @@ void save_dialog(App& app) {
   if (const auto clicked = file_list(app, "save", ".json", false, 220 * app.scale))
     app.dialog.path = clicked->filename().string();
   const fs::path file = typed_file(app, ".json");
-  const bool replaces = file == app.file_dialogs.replacing;
-  if (replaces)
-    paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
-  else if (!app.file_dialogs.message.empty())
+  const bool replaces = asks_to_replace(app, file);
+  if (!replaces && !app.file_dialogs.message.empty())
     paragraph(app.file_dialogs.message, colors_of(app).bad);
-  else if (is_example(app))
+  else if (!replaces && is_example(app))
     paragraph("Examples stay as they are; this will be a file of your own.", colors_of(app).dim);
   ImGui::Dummy({0, 2 * app.scale});
   const bool usable = !app.dialog.path.empty();

@@ -111,11 +111,8 @@ void plot_dialog(App& app) {
     app.dialog.path = clicked->filename().string();
   if (save.kind != PlotFile::csv) size_fields(app, save);
   const std::filesystem::path file = typed_file(app, extension);
-  const bool replaces = file == app.file_dialogs.replacing;
-  if (replaces)
-    paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
-  else if (!app.file_dialogs.message.empty())
-    paragraph(app.file_dialogs.message, colors_of(app).bad);
+  const bool replaces = asks_to_replace(app, file);
+  if (!replaces && !app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
   const bool usable = fits(save) && !app.dialog.path.empty();
   ImGui::BeginDisabled(!usable);

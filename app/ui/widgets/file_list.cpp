@@ -188,6 +188,12 @@ std::optional<fs::path> entered_file(App& app, bool filtered) {
   return std::nullopt;
 }
 
+bool asks_to_replace(App& app, const std::filesystem::path& file) {
+  const bool asks = file == app.file_dialogs.replacing;
+  if (asks) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+  return asks;
+}
+
 bool may_replace(App& app, const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored) || file == app.file_dialogs.replacing || file == app.document.file())

@@ -34,6 +34,8 @@ std::optional<std::filesystem::path> entered_file(App& app, bool filtered);
 // Whether writing there may go ahead: nothing is there, or it is the document's own file, or the person was
 // told so and pressed again.
 bool may_replace(App& app, const std::filesystem::path& file);
+// Asks whether to replace the file where the person was just kept from it. Whether it does.
+bool asks_to_replace(App& app, const std::filesystem::path& file);
 
 // Where a file that has no place yet may be put: what was used lately, the current folder, the home folder.
 std::filesystem::path usual_folder(const App& app);

@@ -268,4 +268,13 @@ Mechanism random_mechanism(std::uint32_t seed, const RandomOptions& options) {
   }
 }
 
+Mechanism random_sprung_mechanism(std::uint32_t seed) {
+  RandomOptions options;
+  options.loops = static_cast<int>(seed % 3);
+  options.massless = false;
+  options.spring_share = 1;
+  options.rotated_bodies = seed % 2 == 0;
+  return random_mechanism(seed, options);
+}
+
 } // namespace flyball::reference

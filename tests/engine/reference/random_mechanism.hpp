@@ -41,4 +41,8 @@ struct RandomOptions {
 
 Mechanism random_mechanism(std::uint32_t seed, const RandomOptions& options = {});
 
+// With mass and springs everywhere and up to two loops: nothing that a change of the drive's kind leaves
+// open.
+Mechanism random_sprung_mechanism(std::uint32_t seed);
+
 } // namespace flyball::reference

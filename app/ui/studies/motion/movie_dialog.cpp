@@ -132,7 +132,6 @@ void choices(App& app, const MotionRun& shown) {
   const std::size_t frames = requested_times(app, request).size();
   const std::string problem = problem_of(app, shown, request, frames);
   const std::filesystem::path first = first_file(request.file, frames);
-  const bool replaces = first == app.file_dialogs.replacing;
   ImGui::Dummy({0, 2 * app.scale});
   if (!problem.empty())
     paragraph(problem, shown.finished ? colors_of(app).bad : colors_of(app).dim);
@@ -142,7 +141,7 @@ void choices(App& app, const MotionRun& shown) {
                   short_text(request.from) + " s to " + short_text(request.to) + " s of the run",
               colors_of(app).dim);
   if (!movie.problem.empty()) paragraph("Not saved: " + movie.problem, colors_of(app).bad);
-  if (replaces) paragraph(first.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+  const bool replaces = asks_to_replace(app, first);
   ImGui::Dummy({0, 2 * app.scale});
   ImGui::BeginDisabled(!problem.empty());
   accepted = text_button(app, "movie/save", replaces ? "Replace" : "Export", true) || accepted;
