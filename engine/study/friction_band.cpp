@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr int parts = 4;        // of a way to a corner, looked at on the way
 constexpr int most_sweeps = 12; // of all shares, one after the other
-constexpr int most_bisections = 60;
+constexpr int most_iterations = 60;
 constexpr std::size_t most_outputs = 128;
 
 std::vector<FreeNumber> all_shares(const Mechanism& mechanism) {
@@ -155,19 +155,35 @@ class Box {
     return moved;
   }
 
-  // Where the rate with the share j has a root, between two places at which its signs differ.
+  // Where the rate with the share j has a root, between two places at which its signs differ: by regula falsi
+  // that halves the end that stays (Illinois). The output is flat there, so that half its digits do.
   Place crest(Index output, Index j, Place low, Place high) {
-    const double sign = low.rates(output, j);
-    for (int i = 0; i < most_bisections && std::abs(high.state.p[j] - low.state.p[j]) > 1e-10; ++i) {
+    double at_low = low.rates(output, j), at_high = high.rates(output, j);
+    const double flat = 1e-12 * std::max(std::abs(at_low), std::abs(at_high));
+    Place middle = low;
+    int kept = 0;
+    for (int i = 0; i < most_iterations && std::abs(high.state.p[j] - low.state.p[j]) > 1e-8; ++i) {
       interruption_point();
-      Place middle = low;
+      const double span = high.state.p[j] - low.state.p[j];
       VectorXd p = low.state.p;
-      p[j] = (low.state.p[j] + high.state.p[j]) / 2;
+      p[j] += span * std::clamp(at_low / (at_low - at_high), 0.01, 0.99);
       if (!map_.walk_to(middle.state, p) || !map_.find_rates(middle.state)) break;
       middle.rates = map_.rates();
-      (middle.rates(output, j) * sign > 0 ? low : high) = middle;
+      const double rate = middle.rates(output, j);
+      if (!(std::abs(rate) > flat)) break;
+      if ((rate > 0) == (at_low > 0)) {
+        low = middle;
+        at_low = rate;
+        if (kept == 1) at_high /= 2;
+        kept = 1;
+      } else {
+        high = middle;
+        at_high = rate;
+        if (kept == -1) at_low /= 2;
+        kept = -1;
+      }
     }
-    return low;
+    return middle;
   }
 
   SteadyMap map_;
