@@ -240,7 +240,6 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
     if (input.changed()) settling = settling_frames;
     stage.frame(app, size, seconds);
     if (!app.quit) note_unsaved_work(app);
-    bind_window_framebuffer(size.width, size.height);
     stage.render(app, size);
     window.swap();
     if (app.export_request) {

@@ -14,7 +14,7 @@ bool same(const std::vector<Pose>& kept, std::span<const Pose> now) {
   });
 }
 
-const std::shared_ptr<const ViewScene>& keep(const App& app, ShownScene& shown, const ViewFrame& frame) {
+const ShownScene& keep(const App& app, ShownScene& shown, const ViewFrame& frame) {
   SceneSource& source = shown.source;
   // While exploring, the picture waits for the answer.
   const bool waits = app.mode == Mode::explore && app.answer.ticket != 0;
@@ -23,7 +23,7 @@ const std::shared_ptr<const ViewScene>& keep(const App& app, ShownScene& shown, 
       source.theme == frame.theme && source.loads == (frame.loads != nullptr) &&
       source.loads_body == frame.loads_body && source.hidden == frame.hidden &&
       same(source.poses, frame.poses) && same(source.ghost, frame.ghost) && same(source.motion, frame.motion))
-    return shown.scene;
+    return shown;
   source.revision = revision;
   source.ticket = app.answer.ticket;
   source.theme = frame.theme;
@@ -36,21 +36,21 @@ const std::shared_ptr<const ViewScene>& keep(const App& app, ShownScene& shown, 
   shown.mechanism = shown_mechanism(app);
   shown.scene = std::make_shared<const ViewScene>(view_scene(frame));
   ++shown.made;
-  return shown.scene;
+  return shown;
 }
 
 } // namespace
 
-const std::shared_ptr<const ViewScene>& show_scene(App& app, const ViewFrame& frame) {
+const ShownScene& show_scene(App& app, const ViewFrame& frame) {
   return keep(app, app.view.scene, frame);
 }
 
-const std::shared_ptr<const ViewScene>& show_motion_scene(App& app, const ViewFrame& frame) {
+const ShownScene& show_motion_scene(App& app, const ViewFrame& frame) {
   return keep(app, app.view.scene_beside, frame);
 }
 
 const std::shared_ptr<const ViewScene>& shown_scene(App& app) {
-  return show_scene(app, view_frame(app));
+  return show_scene(app, view_frame(app)).scene;
 }
 
 } // namespace flyball

@@ -31,8 +31,8 @@ struct ShownScene {
 };
 
 // Of what the view shows in this frame, and of the view beside it.
-const std::shared_ptr<const ViewScene>& show_scene(App& app, const ViewFrame& frame);
-const std::shared_ptr<const ViewScene>& show_motion_scene(App& app, const ViewFrame& frame);
+const ShownScene& show_scene(App& app, const ViewFrame& frame);
+const ShownScene& show_motion_scene(App& app, const ViewFrame& frame);
 // As the app is now, which commands may have changed since the frame began.
 const std::shared_ptr<const ViewScene>& shown_scene(App& app);
 

@@ -57,8 +57,7 @@ Image interface_picture(App& app, PixelSize size, float scale) {
     for (int i = 0; i < 11; ++i)
       stage.frame(app, size, 0);
     Framebuffer target(size.width, size.height, 1);
-    target.bind();
-    stage.render(app, size);
+    stage.render(app, target);
     image = target.read();
   }
   app.scale = former_scale;

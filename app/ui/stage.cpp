@@ -73,12 +73,12 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
   ViewFrame shown = view_frame(app);
   shown.options.triad = !has_view_cube(app, view); // the cube shows the axes
-  app.view.texture = draw_view(app, view_, shown, show_scene(app, shown), pixels_of(view));
+  app.view.texture = prepare(app, view_, shown, show_scene(app, shown), pixels_of(view));
   if (layout.beside.width > 0) {
     ViewFrame motion = motion_frame(app, shown);
     motion.options.triad = true; // there is no cube
     app.view.texture_beside =
-        draw_view(app, beside_, motion, show_motion_scene(app, motion), pixels_of(layout.beside));
+        prepare(app, beside_, motion, show_motion_scene(app, motion), pixels_of(layout.beside));
   } else {
     beside_ = {};
   }
@@ -100,7 +100,21 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   ImGui::Render();
 }
 
-void Stage::render(const App& app, PixelSize size) {
+void Stage::render(const App& app, const Framebuffer& target) {
+  draw_due(view_);
+  draw_due(beside_);
+  target.bind();
+  draw_interface(app, {target.width(), target.height()});
+}
+
+void Stage::render(const App& app, PixelSize window) {
+  draw_due(view_);
+  draw_due(beside_);
+  bind_window_framebuffer(window.width, window.height);
+  draw_interface(app, window);
+}
+
+void Stage::draw_interface(const App& app, PixelSize size) {
   ImGui::SetCurrentContext(context_.get());
   const ImVec4 background = ui_colors(app.theme).panel;
   glViewport(0, 0, size.width, size.height);
@@ -109,15 +123,15 @@ void Stage::render(const App& app, PixelSize size) {
   renderer_.draw(*ImGui::GetDrawData());
 }
 
-unsigned Stage::draw_view(const App& app, View& view, const ViewFrame& shown,
-                          const std::shared_ptr<const ViewScene>& scene, PixelSize size) {
-  ViewKey key = key_of(app, shown, scene, size);
+unsigned Stage::prepare(const App& app, View& view, const ViewFrame& shown, const ShownScene& scene,
+                        PixelSize size) {
+  ViewKey key = key_of(app, shown, scene.scene, size);
   const auto now = std::chrono::steady_clock::now();
-  if (key.samples != view.drawn.samples) {
+  if (key.samples != view.key.samples) {
     view.target.reset();
     view.quick.reset();
   }
-  const bool changed = !view.target || !(key == view.drawn);
+  const bool changed = !view.target || !(key == view.key);
   if (!changed && !view.draft) return view.target->texture();
   if (changed) view.moved = now;
   const bool moving = view.target && (changed || now - view.moved < rest);
@@ -130,15 +144,27 @@ unsigned Stage::draw_view(const App& app, View& view, const ViewFrame& shown,
     target.emplace(largest_framebuffer(size.width, size.height, draft ? 1 : key.samples));
     made = size;
   }
-  ViewFrame frame = shown;
+  view.key = std::move(key);
+  view.draft = draft;
+  view.due = DueView{shown, scene.mechanism, scene.scene};
+  ViewFrame& frame = view.due->frame;
+  frame.mechanism = scene.mechanism.get();
+  frame.poses = frame.ghost = frame.motion = {};
+  frame.loads = nullptr;
+  frame.loads_turning = {};
+  frame.cut_joints = {};
   frame.options.draft = draft;
   if (target->width() < size.width) // shown larger, with lines as thick as ever
     frame.options.scale *= static_cast<float>(target->width()) / static_cast<float>(size.width);
-  view.solids = view_renderer_.draw(frame, scene, *target).drawn;
-  view.drawn = std::move(key);
-  view.draft = draft;
-  ++views_drawn_;
+  ++views_changed_;
   return target->texture();
+}
+
+void Stage::draw_due(View& view) {
+  if (!view.due) return;
+  Framebuffer& target = view.draft ? *view.quick : *view.target;
+  view.solids = view_renderer_.draw(view.due->frame, view.due->scene, target).drawn;
+  view.due.reset();
 }
 
 } // namespace flyball

@@ -40,34 +40,46 @@ class Stage {
   Stage& operator=(const Stage&) = delete;
 
   void set_scale(App& app, float scale);
-  // One frame: update(), the 3-D view where it changed, then the interface. ImGui's input must be in place;
+  // One frame: update(), which views have changed, then the interface. ImGui's input must be in place;
   // `seconds` have passed since the last frame.
   void frame(App& app, PixelSize size, double seconds);
-  // Draws the frame into the framebuffer that is bound.
-  void render(const App& app, PixelSize size);
-  // How often the 3-D view was drawn so far.
-  int views_drawn() const { return views_drawn_; }
+  // Draws the frame into `target`: the views that have changed since they were drawn, then the interface.
+  void render(const App& app, const Framebuffer& target);
+  // The same into the window's own picture.
+  void render(const App& app, PixelSize window);
+  // In how many frames so far the 3-D view was to be drawn anew.
+  int views_changed() const { return views_changed_; }
   // Where a view of thousands of bodies is drawn in software, it is drawn without anti-aliasing while it
   // moves, and in full once it rests: for windows. Frames have to go on while resting() is so.
   void draft_while_moving(bool on) { drafts_ = on; }
   bool resting() const { return view_.draft || beside_.draft; }
 
  private:
-  // A view of the app, drawn again only where something in it changed; its texture.
+  // What is to be drawn of a view whose frame is gone by then.
+  struct DueView {
+    ViewFrame frame; // without poses, which are in the scene
+    std::shared_ptr<const Mechanism> mechanism;
+    std::shared_ptr<const ViewScene> scene;
+  };
+  // A view of the app, drawn again only where something in it changed.
   struct View {
     std::optional<Framebuffer> target, quick;  // quick: without anti-aliasing
     PixelSize target_made_for, quick_made_for; // they have fewer pixels where OpenGL has no more
-    ViewKey drawn;
-    bool draft = false; // what was drawn last is in `quick`
-    int solids = 0;     // that were in it
+    ViewKey key;
+    std::optional<DueView> due; // not drawn since it changed
+    bool draft = false;         // it is in `quick`
+    int solids = 0;             // that were in what was drawn last
     std::chrono::steady_clock::time_point moved{};
 
     bool is_coarse() const {
       return target && (target->width() < target_made_for.width || target->short_of_samples());
     }
   };
-  unsigned draw_view(const App& app, View& view, const ViewFrame& frame,
-                     const std::shared_ptr<const ViewScene>& scene, PixelSize size);
+  // The texture in which it will be once it is drawn.
+  unsigned prepare(const App& app, View& view, const ViewFrame& frame, const ShownScene& scene,
+                   PixelSize size);
+  void draw_due(View& view);
+  void draw_interface(const App& app, PixelSize size);
 
   ImGuiContext* former_; // that was current before
   std::unique_ptr<ImGuiContext, void (*)(ImGuiContext*)> context_;
@@ -76,7 +88,7 @@ class Stage {
   ScenePictures scene_pictures_;
   MovieExport movie_;
   View view_, beside_;
-  int views_drawn_ = 0;
+  int views_changed_ = 0;
   bool told_coarse_ = false; // that a view has fewer pixels or samples than it should
   bool drafts_ = false;
 };

@@ -88,15 +88,15 @@ TEST_CASE("the view is steered with the mouse") {
 TEST_CASE("play turns the mechanism at the drives' speed, and nothing is drawn while nothing changes") {
   Robot robot;
   robot.frames(2);
-  const int drawn = robot.stage.views_drawn();
+  const int drawn = robot.stage.views_changed();
   robot.frames(5);
-  CHECK(robot.stage.views_drawn() == drawn);
+  CHECK(robot.stage.views_changed() == drawn);
   robot.key(' ');
   CHECK(robot.app.playback.playing);
   const double from = robot.app.playback.time;
   robot.frames(10, 0.02);
   CHECK(robot.app.playback.time - from == Approx(0.2));
-  CHECK(robot.stage.views_drawn() >= drawn + 10);
+  CHECK(robot.stage.views_changed() >= drawn + 10);
   robot.key(' ');
   const double stopped = robot.app.playback.time;
   robot.frames(3, 0.02);

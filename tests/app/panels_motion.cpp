@@ -251,12 +251,12 @@ TEST_CASE("while nothing changes nothing is drawn, also with a motion") {
   MotionRobot robot;
   robot.app.playback.playing = false;
   robot.frames(3);
-  const int drawn = robot.stage.views_drawn();
+  const int drawn = robot.stage.views_changed();
   robot.frames(5);
-  CHECK(robot.stage.views_drawn() == drawn);
+  CHECK(robot.stage.views_changed() == drawn);
   CHECK_FALSE(in_motion(robot.app));
   robot.click("motion/forward");
-  CHECK(robot.stage.views_drawn() > drawn);
+  CHECK(robot.stage.views_changed() > drawn);
 }
 
 TEST_CASE("an edit while the motion is shown is followed, and undone") {

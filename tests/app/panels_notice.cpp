@@ -25,9 +25,9 @@ TEST_CASE("a notice fades, and then nothing has to be drawn for it") {
   CHECK(app.notice.empty());
   CHECK(std::isinf(next_notice_change(app)));
   // The view itself was not drawn again for any of it.
-  const int drawn = robot.stage.views_drawn();
+  const int drawn = robot.stage.views_changed();
   robot.frames(5);
-  CHECK(robot.stage.views_drawn() == drawn);
+  CHECK(robot.stage.views_changed() == drawn);
 }
 
 TEST_CASE("the same notice again is told anew") {

@@ -168,8 +168,7 @@ void Robot::type(const std::string& text) {
 
 Image Robot::picture() {
   Framebuffer target(size.width, size.height, 1);
-  target.bind();
-  stage.render(app, size);
+  stage.render(app, target);
   return target.read();
 }
 

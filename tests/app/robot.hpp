@@ -1,5 +1,5 @@
 // A hand at the interface: points at widgets by name and presses, one change of input a frame, as Dear ImGui
-// 1.86 needs it. Draws real frames off-screen.
+// 1.86 needs it. Frames are those of the program; they are drawn, off-screen, where a picture is asked for.
 #pragma once
 
 #include "app/render/offscreen.hpp"

@@ -81,9 +81,9 @@ void use_window(const Mechanism& m) {
   const auto frame = [&] { stage.frame(app, window, 0.01); };
   for (int i = 0; i < 4; ++i)
     frame();
-  const int drawn = stage.views_drawn();
+  const int drawn = stage.views_changed();
   const double still = fastest(5, frame);
-  const bool drew = stage.views_drawn() != drawn;
+  const bool drew = stage.views_changed() != drawn;
   set_mode(app, Mode::build);
   for (int i = 0; i < 4; ++i)
     frame();
