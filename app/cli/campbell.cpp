@@ -1,5 +1,6 @@
 #include "engine/study/campbell.hpp"
 #include "app/cli/command.hpp"
+#include "app/cli/mode_told.hpp"
 #include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
@@ -31,30 +32,9 @@ struct CampbellArguments {
   bool json = false;
 };
 
-Json whirl_json(const std::optional<Whirl>& whirl, double frequency) {
-  if (!whirl) return nullptr;
-  Json out = {{"value", whirl->value},
-              {"direction", word(whirl->direction())},
-              {"seen_from", whirl->turning ? "drive" : "ground"}};
-  if (whirl->turning) out["from_ground_rad_s"] = standing_frequencies(*whirl, frequency);
-  return out;
-}
-
-std::string whirl_text(const std::optional<Whirl>& whirl) {
-  if (!whirl) return "";
-  return fmt::format("  whirl {:+.3f} {}{}", whirl->value, word(whirl->direction()),
-                     whirl->turning ? ", seen from the drive" : "");
-}
-
-Json mode_json(const VibrationMode& mode, const std::string& name, const std::optional<Whirl>& whirl) {
-  Json out = {{"line", name},
-              {"eigenvalue", {mode.eigenvalue.real(), mode.eigenvalue.imag()}},
-              {"frequency_hz", hertz(mode.frequency)},
-              {"damping_ratio", mode.damping_ratio},
-              {"whirl", whirl_json(whirl, mode.frequency)}};
-  Json& shape = out["shape"] = Json::object();
-  for (const ModeAmplitude& a : mode.amplitudes)
-    shape[coordinate_label(a)] = {a.value.real(), a.value.imag()};
+Json line_json(const VibrationMode& mode, const std::string& name, const std::optional<Whirl>& whirl) {
+  Json out = {{"line", name}};
+  out.update(mode_json(mode, whirl));
   return out;
 }
 
@@ -70,7 +50,7 @@ Json diagram_json(const CampbellDiagram& d, const std::string& unit) {
       for (std::size_t l = 0; l < branch.names.size(); ++l)
         if (const VibrationMode* mode = branch.points[i].on(l); mode && !branch.names[l].empty())
           modes.push_back(
-              mode_json(*mode, branch.names[l],
+              line_json(*mode, branch.names[l],
                         branch.points[i].whirls[static_cast<std::size_t>(branch.points[i].lines[l])]));
       points.push_back({{"speed", at.parameter},
                         {"stable", at.stable ? Json(*at.stable) : Json(nullptr)},
@@ -88,6 +68,7 @@ Json diagram_json(const CampbellDiagram& d, const std::string& unit) {
          {"error_estimate", c.error},
          {"frequency_hz", hertz(c.frequency)},
          {"damping_ratio", c.damping_ratio},
+         {"touches", c.touches},
          {"stable", c.stable},
          {"whirl", whirl_json(c.whirl, c.frequency)}});
   out["run_time_s"] = d.run_time_s;
@@ -145,10 +126,11 @@ std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, c
   for (const CriticalSpeed& c : d.critical)
     out += fmt::format(
         "  {} at {:.12g} rad/s (± {:.1g}, {:.9g} rpm), {:.9g} Hz: {} of branch {}, damping ratio "
-        "{:.3g}{}{}\n",
+        "{:.3g}{}{}{}\n",
         order_text(c.order), c.speed, c.error, c.speed * 30 / std::numbers::pi, hertz(c.frequency),
         printable(d.branches[static_cast<std::size_t>(c.branch)].names[static_cast<std::size_t>(c.line)]),
-        c.branch, c.damping_ratio, whirl_text(c.whirl), c.stable ? "" : ", unstable");
+        c.branch, c.damping_ratio, whirl_text(c.whirl), c.touches ? ", only touches the line" : "",
+        c.stable ? "" : ", unstable");
   if (!turns)
     out += "  Critical speeds and whirl are not looked for: the number is not the speed of a drive that "
            "turns.\n";

@@ -33,6 +33,30 @@ Picture draw_picture(const std::filesystem::path& scene, const PictureOptions& o
   return draw_picture(std::move(mechanism), scene, options);
 }
 
+namespace {
+
+// At both ends of its swing.
+void show_mode(App& app, const PictureOptions& options) {
+  open_study(app, StudyKind::modes);
+  ModesState& modes = app.study.modes;
+  const ViewSize size{static_cast<double>(options.width), static_cast<double>(options.height)};
+  // One round solves and asks for the modes, the next takes them.
+  for (int round = 0; round < 2; ++round)
+    update(app, 0, size);
+  if (!modes.list.problem.empty()) throw SceneError("--mode", modes.list.problem);
+  if (!modes.list.found) return; // there is no equilibrium, which the answer tells
+  const std::size_t count = modes.list.found->result.modes.size();
+  if (count == 0) throw SceneError("--mode", "expected a scene whose equilibrium has modes");
+  if (static_cast<std::size_t>(options.mode) > count)
+    throw SceneError("--mode", fmt::format("expected 1 to {}", count));
+  modes.amplitude = options.amplitude;
+  modes.both_ends = true;
+  choose_mode(app, static_cast<std::size_t>(options.mode) - 1);
+  modes.playing = false;
+}
+
+} // namespace
+
 Picture draw_picture(Mechanism mechanism, const std::filesystem::path& scene, const PictureOptions& options) {
   App app({.mode = LiveSolver::Mode::immediate,
            .on_news = {},
@@ -52,6 +76,7 @@ Picture draw_picture(Mechanism mechanism, const std::filesystem::path& scene, co
     app.mode = Mode::build;
     app.view.ghost = false;
   }
+  if (options.mode > 0) show_mode(app, options);
   const OffscreenContext context;
   const PixelSize size{options.width, options.height};
   Picture picture;

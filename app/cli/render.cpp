@@ -2,6 +2,7 @@
 #include "app/cli/output.hpp"
 #include "app/cli/picture.hpp"
 #include "app/cli/progress.hpp"
+#include "app/cli/scene_argument.hpp"
 #include "engine/mechanism/error.hpp"
 
 #include <CLI/CLI.hpp>
@@ -19,6 +20,8 @@ struct RenderOptions {
   std::filesystem::path scene, out;
   std::string free_body, size = "1280x720", pose = "equilibrium", theme = "light";
   float scale = 1;
+  int mode = 0;
+  double amplitude = 0.15;
   bool interface = false, plain = false, loads = false;
 };
 
@@ -34,6 +37,8 @@ Ending run_render(const RenderOptions& options) {
   wanted.loads = options.loads;
   wanted.free_body = options.free_body;
   wanted.antialiased = !options.plain;
+  wanted.mode = options.mode;
+  wanted.amplitude = options.amplitude;
   constexpr int largest = 16384; // pixels a side
   read_size(options.size, largest, wanted.width, wanted.height);
   std::string ending = options.out.extension().string();
@@ -78,8 +83,22 @@ void add_render(CLI::App& app, Ending& ending) {
   command->add_flag("--loads", options->loads,
                     "With arrows of reactions, drive torques, springs' forces and inertial loads");
   command->add_option("--free-body", options->free_body, "With the free-body diagram of this body");
+  CLI::Option* mode =
+      command
+          ->add_option("--mode", options->mode,
+                       "With this mode's shape: both ends of its swing in amber beside the equilibrium; "
+                       "flyball modes numbers them and makes films")
+          ->check(above_zero())
+          ->excludes("--free-body");
+  command
+      ->add_option("--amplitude", options->amplitude,
+                   "Of the coordinate that moves most in the mode: rad, or parts of the mechanism's reach")
+      ->check(above_zero())
+      ->needs(mode)
+      ->capture_default_str();
   command->add_flag("--no-msaa", options->plain, "Without anti-aliasing of the view: faster");
-  command->footer("Example: flyball render governor.json -o governor.png --ui --size 1280x800");
+  command->footer("Examples: flyball render governor.json -o governor.png --ui --size 1280x800\n"
+                  "          flyball render governor.json -o swing.png --mode 1");
   command->callback([options, &ending] { ending = run_render(*options); });
 }
 

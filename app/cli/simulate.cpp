@@ -8,6 +8,7 @@
 #include "app/cli/solution_text.hpp"
 #include "app/cli/time_limit.hpp"
 #include "app/render/movie.hpp"
+#include "app/ui/studies/motion/run_movie.hpp"
 #include "engine/dynamics/settled.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/error.hpp"
@@ -250,6 +251,7 @@ struct SimulateCommand {
   bool undamped = false, json = false;
   double time_limit = usual_time_limit;
   MovieOptions movie; // without a file: none
+  double factor = 1;  // seconds of the motion that a second of it shows
   std::string size = "1280x720";
 };
 
@@ -298,7 +300,7 @@ MovieOptions movie_of(const SimulateCommand& options, double duration) {
   MovieOptions movie = options.movie;
   if (movie.file.empty()) return movie;
   read_size(options.size, largest_movie, movie.width, movie.height);
-  check_movie(movie, duration);
+  check_movie(movie, duration / options.factor * movie.rate + 1);
   return movie;
 }
 
@@ -350,7 +352,11 @@ Ending run_simulate(const SimulateCommand& options) {
   if (any && !options.save_state.empty())
     write_bytes(options.save_state, state_json(state_at(run, run.time.size() - 1)).dump(2) + "\n");
   if (any && !options.csv.empty()) write_bytes(options.csv, to_csv(run));
-  if (any && !movie.file.empty()) draw_movie(mechanism, std::make_shared<const Run>(run), steady, movie);
+  if (any && !movie.file.empty()) {
+    const auto shown = std::make_shared<const Mechanism>(mechanism);
+    draw_movie(mechanism, std::make_unique<RunScene>(shown, std::make_shared<const Run>(run), steady),
+               movie_times(run, {run.time.front(), run.time.back(), movie.rate, options.factor}), movie);
+  }
   if (options.json)
     print_json(with_warnings(run_json(mechanism, run, settled), mechanism));
   else if (any && options.csv != "-") // then standard output is the table's
@@ -410,13 +416,8 @@ void add_simulate(CLI::App& app, Ending& ending) {
                                            "Draw a film of it, the steady state solid and the motion in "
                                            "amber: .mp4 or .gif by ffmpeg, or .png for "
                                            "numbered frames");
-  command->add_option("--size", options->size, "Pixels of the film")->needs(movie)->capture_default_str();
-  command->add_option("--fps", options->movie.rate, "Frames a second of the film")
-      ->check(above_zero())
-      ->needs(movie)
-      ->capture_default_str();
-  command
-      ->add_option("--slow-motion", options->movie.factor, "Seconds of the motion that a second of it shows")
+  add_movie_look(*command, movie, options->size, options->movie);
+  command->add_option("--slow-motion", options->factor, "Seconds of the motion that a second of it shows")
       ->check(above_zero())
       ->needs(movie)
       ->capture_default_str();

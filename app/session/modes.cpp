@@ -42,10 +42,15 @@ void pose(Session& session) {
     modes.poses.clear();
     return;
   }
-  const ModesState::Posed now{modes.list.found->of, *modes.chosen, modes.amplitude, modes.phase,
-                              steady_time(session)};
+  const ModesState::Posed now{modes.list.found->of, *modes.chosen,        modes.amplitude,
+                              modes.phase,          steady_time(session), modes.both_ends};
   if (!modes.poses.empty() && now == modes.posed) return;
-  modes.poses = modes.list.found->result.analysis->mode_poses(*mode, modes.amplitude, modes.phase, now.time);
+  Analysis& analysis = *modes.list.found->result.analysis;
+  modes.poses = analysis.mode_poses(*mode, modes.amplitude, modes.phase, now.time);
+  if (modes.both_ends)
+    for (const Pose& pose :
+         analysis.mode_poses(*mode, modes.amplitude, modes.phase + full_turn / 2, now.time))
+      modes.poses.push_back(pose);
   modes.posed = now;
 }
 

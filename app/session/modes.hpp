@@ -33,11 +33,13 @@ struct ModesState {
   double amplitude = 0.15;           // of the largest coordinate: rad, or parts of the mechanism's reach
   double phase = 0;                  // rad
   bool playing = false;
-  std::vector<Pose> poses; // along the chosen mode; empty: none
+  bool both_ends = false;  // the swing's end on the other side, too: for a picture
+  std::vector<Pose> poses; // along the chosen mode, of both ends one after the other; empty: none
   struct Posed {
     ModesRequest of;
     std::size_t mode = 0;
     double amplitude = 0, phase = 0, time = 0;
+    bool both_ends = false;
     bool operator==(const Posed&) const = default;
   } posed; // what they are of
 

@@ -123,7 +123,7 @@ ViewFrame view_frame(const App& app) {
       if (app.view.ghost && app.drawn.size() == app.poses.size()) frame.ghost = app.drawn;
       if (moves && !app.motion.beside) frame.motion = app.motion.poses;
       if (const std::vector<Pose>& mode = app.study.modes.poses;
-          moving_mode(app) && mode.size() == frame.mechanism->bodies.size()) {
+          moving_mode(app) && !mode.empty() && mode.size() % frame.mechanism->bodies.size() == 0) {
         frame.motion = mode;
         frame.ghost = {}; // three of them would be too much to look at
       }

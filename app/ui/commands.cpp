@@ -603,6 +603,11 @@ const std::array all_commands{
             .run = show_movie_dialog,
             .enabled = [](const App& app) { return app.motion.on && shown_motion(app) != nullptr; },
             .separated = true},
+    Command{.id = "study.export_mode",
+            .title = "Export the mode…",
+            .help = "Save the mode that is shown as a film that begins again without a jump.",
+            .run = show_mode_movie_dialog,
+            .enabled = [](const App& app) { return moving_mode(app) != nullptr; }},
 
     Command{.id = "help.palette",
             .title = "Find…",

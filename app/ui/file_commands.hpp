@@ -19,8 +19,9 @@ void show_save_dialog(App& app);
 void quit(App& app); // asks first
 void show_export_dialog(App& app);
 void show_report_dialog(App& app);
-void show_model_dialog(App& app); // of the linear model that is shown
-void show_movie_dialog(App& app); // of the motion that is shown
+void show_model_dialog(App& app);      // of the linear model that is shown
+void show_movie_dialog(App& app);      // of the motion that is shown
+void show_mode_movie_dialog(App& app); // of the mode that is shown
 
 // When the program has started: reads what is kept in options.state, and offers what a crash has left.
 void begin_files(App& app);

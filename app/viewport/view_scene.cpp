@@ -69,7 +69,10 @@ ViewScene whole_scene(const ViewFrame& frame) {
   const Mechanism& mechanism = *frame.mechanism;
   const Palette& colors = palette(frame.theme);
   if (frame.loads && frame.poses.size() == mechanism.bodies.size()) add_loads(frame, colors, scene);
-  if (!frame.motion.empty()) scene.motion = build_ghost(mechanism, frame.motion, colors.motion);
+  const std::size_t bodies = mechanism.bodies.size();
+  for (std::size_t b = 0; bodies > 0 && b + bodies <= frame.motion.size(); b += bodies)
+    for (Instance& instance : build_ghost(mechanism, frame.motion.subspan(b, bodies), colors.motion))
+      scene.motion.push_back(std::move(instance));
   if (frame.ghost.empty() || !scene.others.empty()) return scene; // a diagram has no second pose
   const std::vector<Pose> as_drawn = drawn_poses(mechanism);
   const std::span<const Pose> solid = frame.poses.size() == as_drawn.size() ? frame.poses : as_drawn;

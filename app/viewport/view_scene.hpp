@@ -32,7 +32,7 @@ struct ViewFrame {
   std::span<const Pose> poses;          // solid; empty: the drawn pose
   std::span<const Pose> ghost;          // beside it; may be empty
   GhostPose ghost_pose = GhostPose::drawn;
-  std::span<const Pose> motion;                 // amber, translucent: the motion; may be empty
+  std::span<const Pose> motion;                 // amber, translucent: the motion, or several times all bodies
   const Solution* loads = nullptr;              // of the solid poses, to draw what acts; null: nothing of it
   std::span<const AngularMotion> loads_turning; // of the bodies, at the drawn phase
   Quat loads_turn = Quat::Identity();           // since the drawn phase, which the solution is of

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace flyball {
 namespace {
@@ -124,68 +125,207 @@ std::vector<std::string> names_of(const CampbellBranch& branch, std::size_t line
   return names;
 }
 
-// The crossings of one line with one order on the way from one point to the next.
+// Where one line of a branch meets the line of one order: crossings, and double roots where it only touches.
 class CrossingFinder {
  public:
-  CrossingFinder(Describer& describer, double order) : describer_(describer), order_(order) {}
+  CrossingFinder(Describer& describer, const ResponseBranch& followed, const CampbellBranch& branch,
+                 std::size_t line, double order)
+      : describer_(describer), order_(order) {
+    for (std::size_t i = 0; i < branch.points.size(); ++i) {
+      const VibrationMode* mode = branch.points[i].on(line);
+      if (mode && mode->shape.empty()) mode = nullptr;
+      samples_.push_back({&followed.points[i], mode, mode ? off(*mode, followed.points[i].parameter) : 0});
+    }
+  }
 
-  std::optional<CriticalSpeed> find(const ResponsePoint& a, const VibrationMode& at_a, const ResponsePoint& b,
-                                    const VibrationMode& at_b) {
-    if (!at_a.oscillates() && !at_b.oscillates()) return {};
-    double low = a.parameter, high = b.parameter;
-    double f_low = off(at_a, low), f_high = off(at_b, high);
-    if ((f_low < 0) == (f_high < 0) || low == high) return {};
-    const double width = std::abs(high - low);
+  std::vector<CriticalSpeed> find() {
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      if (stands_on(i)) add_sample(i);
+      if (i + 1 == samples_.size() || !samples_[i].mode || !samples_[i + 1].mode) continue;
+      if (stands_on(i) || stands_on(i + 1)) continue;
+      const Way way{samples_[i], samples_[i + 1]};
+      if ((way.a.off < 0) != (way.b.off < 0))
+        add_crossing(way, {way.a.speed(), way.a.off}, {way.b.speed(), way.b.off});
+      else if (may_touch(i))
+        look_between(way);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  struct Sample {
+    const ResponsePoint* at = nullptr;
+    const VibrationMode* mode = nullptr; // null: not known
+    double off = 0;                      // rad/s, above the order's line
+    double speed() const { return at->parameter; }
+  };
+  // From one point of the branch to the next.
+  struct Way {
+    const Sample &a, &b;
+    double slope() const { return (b.off - a.off) / (b.speed() - a.speed()); }
+  };
+  struct Place {
+    double speed = 0, off = 0;
+  };
+
+  double off(const VibrationMode& mode, double speed) const {
+    return mode.frequency - order_ * std::abs(speed);
+  }
+  // Of off(), rad/s.
+  static double rounding(const VibrationMode& mode) {
+    return (mode.residual + 1e-13) * mode.natural_frequency;
+  }
+  bool stands_on(std::size_t i) const {
+    const Sample& s = samples_[i];
+    return s.mode && s.mode->oscillates() && std::abs(s.off) <= rounding(*s.mode);
+  }
+
+  // Whether the line may come nearest to the order's between points i and i + 1: its distance does not go on
+  // falling on either side, and is no more than it changes by hereabouts.
+  bool may_touch(std::size_t i) const {
+    const auto distance = [&](std::size_t k) { return std::abs(samples_[k].off); };
+    double low = std::min(distance(i), distance(i + 1)), high = std::max(distance(i), distance(i + 1));
+    const double least = low;
+    if (i > 0 && samples_[i - 1].mode) {
+      if (distance(i - 1) < distance(i)) return false;
+      high = std::max(high, distance(i - 1));
+    }
+    if (i + 2 < samples_.size() && samples_[i + 2].mode) {
+      if (distance(i + 2) < distance(i + 1)) return false;
+      high = std::max(high, distance(i + 2));
+    }
+    return low != high && least <= high - low;
+  }
+
+  void add(const VibrationMode& mode, double speed, double error, bool touches) {
+    found_.push_back({.order = order_,
+                      .speed = speed,
+                      .frequency = mode.frequency,
+                      .error = error,
+                      .damping_ratio = mode.damping_ratio,
+                      .touches = touches,
+                      .whirl = describer_.whirl(mode)});
+  }
+
+  // A point of the branch that stands on the order's line, as its ends may.
+  void add_sample(std::size_t i) {
+    const Sample& here = samples_[i];
+    const Sample* before = i > 0 && samples_[i - 1].mode ? &samples_[i - 1] : nullptr;
+    const Sample* after = i + 1 < samples_.size() && samples_[i + 1].mode ? &samples_[i + 1] : nullptr;
+    const double uncertain = std::abs(here.off) + rounding(*here.mode);
+    double steepest = 0;
+    for (const Sample* other : {before, after})
+      if (other && other->speed() != here.speed())
+        steepest = std::max(steepest, std::abs(Way{here, *other}.slope()));
+    const bool touches = before && after && (before->off < 0) == (after->off < 0);
+    if (steepest == 0) return add(*here.mode, here.speed(), 0, false);
+    const double width =
+        touches ? std::max(std::abs(before->speed() - here.speed()), std::abs(after->speed() - here.speed()))
+                : 0;
+    // Of a double root off = curvature / 2 (speed - here)^2.
+    add(*here.mode, here.speed(), touches ? std::sqrt(uncertain * width / steepest) : uncertain / steepest,
+        touches);
+  }
+
+  // Between two places of unlike signs, by regula falsi that halves the end that stays (Illinois).
+  void add_crossing(const Way& way, Place low, Place high) {
+    if (low.speed == high.speed || (!way.a.mode->oscillates() && !way.b.mode->oscillates())) return;
+    const Place from = low, to = high;
+    const double width = std::abs(high.speed - low.speed);
     std::optional<VibrationMode> last;
-    double speed = low;
-    // Regula falsi that halves the end that stays (Illinois).
+    double speed = low.speed;
     int kept = 0;
-    for (int i = 0; i < 60 && std::abs(high - low) > 1e-14 * (width + std::abs(low) + std::abs(high)); ++i) {
-      speed = low + (high - low) * std::clamp(f_low / (f_low - f_high), 0.01, 0.99);
-      last = nearest(a, at_a, b, at_b, speed);
-      if (!last) return {};
+    for (int i = 0; i < 60 && std::abs(high.speed - low.speed) >
+                                  1e-14 * (width + std::abs(low.speed) + std::abs(high.speed));
+         ++i) {
+      speed = low.speed + (high.speed - low.speed) * std::clamp(low.off / (low.off - high.off), 0.01, 0.99);
+      last = nearest(way, speed);
+      if (!last) return;
       const double f = off(*last, speed);
       if (f == 0) {
-        low = high = speed;
-      } else if ((f < 0) == (f_low < 0)) {
-        low = speed;
-        f_low = f;
-        if (kept == 1) f_high /= 2;
+        low.speed = high.speed = speed;
+      } else if ((f < 0) == (low.off < 0)) {
+        low = {speed, f};
+        if (kept == 1) high.off /= 2;
         kept = 1;
       } else {
-        high = speed;
-        f_high = f;
-        if (kept == -1) f_low /= 2;
+        high = {speed, f};
+        if (kept == -1) low.off /= 2;
         kept = -1;
       }
       if (std::abs(f) <= 1e-15 * std::max(last->natural_frequency, std::abs(order_ * speed))) break;
     }
-    if (!last || !last->oscillates()) return {};
-    CriticalSpeed out;
-    out.order = order_;
-    out.speed = speed;
-    out.frequency = last->frequency;
-    out.damping_ratio = last->damping_ratio;
-    out.whirl = describer_.whirl(*last);
-    const double slope = (off(at_b, b.parameter) - off(at_a, a.parameter)) / (b.parameter - a.parameter);
-    out.error = (std::abs(off(*last, speed)) + last->residual * last->natural_frequency +
-                 1e-15 * last->natural_frequency) /
-                std::max(std::abs(slope), 1e-300);
-    return out;
+    if (!last || !last->oscillates()) return;
+    // Beside a double root the chord from there is the flatter one, half as steep as the line at the
+    // crossing.
+    double slope = std::numeric_limits<double>::infinity();
+    for (const Place& end : {from, to})
+      if (end.speed != speed) slope = std::min(slope, std::abs(end.off / (end.speed - speed)));
+    add(*last, speed,
+        (std::abs(off(*last, speed)) + (last->residual + 1e-15) * last->natural_frequency) /
+            std::max(slope, 1e-300),
+        false);
   }
 
- private:
-  double off(const VibrationMode& mode, double speed) const {
-    return mode.frequency - order_ * std::abs(speed);
+  // Both ends stand on one side: by golden sections to where the line comes nearest to the order's, until it
+  // is on the other side, touches, or is seen not to come there.
+  void look_between(const Way& way) {
+    constexpr double golden = 0.3819660112501051;
+    const double side = way.a.off < 0 ? -1 : 1;
+    Place low{way.a.speed(), way.a.off}, high{way.b.speed(), way.b.off};
+    const double width = std::abs(high.speed - low.speed);
+    std::optional<VibrationMode> mode;
+    const auto look = [&](double speed) {
+      mode = nearest(way, speed);
+      return Place{speed, mode ? off(*mode, speed) : 0};
+    };
+    Place middle = look(low.speed + golden * (high.speed - low.speed));
+    while (mode && mode->oscillates()) {
+      const double distance = side * middle.off;
+      if (distance < -rounding(*mode)) {
+        add_crossing(way, {way.a.speed(), way.a.off}, middle);
+        add_crossing(way, middle, {way.b.speed(), way.b.off});
+        return;
+      }
+      const double ends = std::max(side * low.off, side * high.off);
+      // Bent one way only it lies above the line from an end through the middle, and the parts are as 1 to
+      // 1.62.
+      if (distance > rounding(*mode) && distance > 1.7 * (ends - distance)) return;
+      if (std::abs(high.speed - low.speed) <= 1e-8 * width) {
+        if (distance <= rounding(*mode)) add_touch(way, *mode, middle);
+        return;
+      }
+      const bool left = std::abs(middle.speed - low.speed) > std::abs(high.speed - middle.speed);
+      const std::optional<VibrationMode> kept = mode;
+      const Place other = look(left ? middle.speed + golden * (low.speed - middle.speed)
+                                    : middle.speed + golden * (high.speed - middle.speed));
+      if (!mode) return;
+      if (side * other.off < side * middle.off) {
+        (left ? high : low) = middle;
+        middle = other;
+      } else {
+        (left ? low : high) = other;
+        mode = kept;
+      }
+    }
   }
-  std::optional<VibrationMode> nearest(const ResponsePoint& a, const VibrationMode& at_a,
-                                       const ResponsePoint& b, const VibrationMode& at_b, double speed) {
-    const double part = (speed - a.parameter) / (b.parameter - a.parameter);
+
+  void add_touch(const Way& way, const VibrationMode& mode, const Place& at) {
+    // off = curvature / 2 (speed - at)^2, as the farther end tells.
+    const Sample& far =
+        std::abs(way.a.speed() - at.speed) > std::abs(way.b.speed() - at.speed) ? way.a : way.b;
+    const double uncertain = std::abs(at.off) + rounding(mode);
+    add(mode, at.speed, std::abs(far.speed() - at.speed) * std::sqrt(uncertain / std::abs(far.off)), true);
+  }
+
+  std::optional<VibrationMode> nearest(const Way& way, double speed) {
+    const VibrationMode &at_a = *way.a.mode, &at_b = *way.b.mode;
+    const double part = (speed - way.a.speed()) / (way.b.speed() - way.a.speed());
     const std::complex<double> expected = at_a.eigenvalue + part * (at_b.eigenvalue - at_a.eigenvalue);
     const double size = 0.2 * std::abs(expected) + std::abs(at_b.eigenvalue - at_a.eigenvalue) + 1e-300;
     std::optional<VibrationMode> best;
     double least = 0;
-    for (VibrationMode& mode : describer_.modes_between(a, b, speed)) {
+    for (VibrationMode& mode : describer_.modes_between(*way.a.at, *way.b.at, speed)) {
       const double cost = std::abs(mode.eigenvalue - expected) / size + 1 -
                           std::max(modal_assurance(mode, at_a), modal_assurance(mode, at_b));
       if (best && cost >= least) continue;
@@ -197,6 +337,8 @@ class CrossingFinder {
 
   Describer& describer_;
   double order_;
+  std::vector<Sample> samples_;
+  std::vector<CriticalSpeed> found_;
 };
 
 CampbellBranch describe_branch(Describer& describer, const ResponseBranch& followed) {
@@ -218,23 +360,28 @@ CampbellBranch describe_branch(Describer& describer, const ResponseBranch& follo
   return branch;
 }
 
+// Not known to be unstable at a point of the branch beside the speed.
+bool stable_at(const ResponseBranch& followed, double speed) {
+  for (std::size_t i = 1; i < followed.points.size(); ++i) {
+    const ResponsePoint &a = followed.points[i - 1], &b = followed.points[i];
+    const bool beside =
+        speed >= std::min(a.parameter, b.parameter) && speed <= std::max(a.parameter, b.parameter);
+    if (beside && (a.stable == false || b.stable == false)) return false;
+  }
+  return true;
+}
+
 void add_critical(Describer& describer, const ResponseBranch& followed, const CampbellBranch& branch,
                   int number, std::span<const double> orders, std::vector<CriticalSpeed>& out) {
   std::vector<CriticalSpeed> critical;
-  for (std::size_t i = 1; describer.turns() && i < branch.points.size(); ++i)
-    for (std::size_t l = 0; l < branch.names.size(); ++l) {
-      const VibrationMode *a = branch.points[i - 1].on(l), *b = branch.points[i].on(l);
-      if (!a || !b || a->shape.empty() || b->shape.empty()) continue;
-      for (const double order : orders) {
-        std::optional<CriticalSpeed> found =
-            CrossingFinder(describer, order).find(followed.points[i - 1], *a, followed.points[i], *b);
-        if (!found) continue;
-        found->branch = number;
-        found->line = static_cast<int>(l);
-        found->stable = followed.points[i].stable != false && followed.points[i - 1].stable != false;
-        critical.push_back(std::move(*found));
+  for (std::size_t l = 0; describer.turns() && l < branch.names.size(); ++l)
+    for (const double order : orders)
+      for (CriticalSpeed& found : CrossingFinder(describer, followed, branch, l, order).find()) {
+        found.branch = number;
+        found.line = static_cast<int>(l);
+        found.stable = stable_at(followed, found.speed);
+        critical.push_back(std::move(found));
       }
-    }
   std::ranges::stable_sort(critical, {}, &CriticalSpeed::speed);
   out.insert(out.end(), critical.begin(), critical.end());
 }

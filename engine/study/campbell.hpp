@@ -28,13 +28,14 @@ struct CampbellBranch {
   std::vector<std::string> names;
 };
 
-// A speed at which a mode swings `order` times a turn.
+// A speed at which a mode swings `order` times a turn: its line crosses the order's, or only touches it.
 struct CriticalSpeed {
   int branch = 0, line = 0;
   double order = 1;
   double speed = 0, frequency = 0; // rad/s
   double error = 0;                // rad/s, of the speed, estimated
   double damping_ratio = 0;
+  bool touches = false;       // a double root: on either side the mode swings more often, or less
   bool stable = true;         // not known to be unstable there
   std::optional<Whirl> whirl; // about the drive's axis
 };

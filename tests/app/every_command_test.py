@@ -60,6 +60,7 @@ def commands(path):
     yield ["solve"]
     yield ["solve", "--json"]
     yield ["solve", "--nearest", "--modes", "4", "--json"]
+    yield ["modes", "--count", "4", "--json"]
     yield ["simulate", "--duration", "0.1", "--json", "--csv", "OUT"]
     yield ["compare", "--repeats", "1", "--json", "--duration", "0.02"]
     try:
@@ -73,6 +74,7 @@ def commands(path):
     yield ["branch", *vary, "--csv", "OUT", "--svg", "OUT2"]
     if path.stem in DRAWN:
         yield ["render", "--size", "160x120", "-o", "OUT"]
+        yield ["render", "--size", "160x120", "--mode", "1", "-o", "OUT"]
         yield ["report", "--size", "160x120", "-o", "OUT"]
     wanted = first_coordinate(scene)
     if wanted:

@@ -1,4 +1,5 @@
-"""Films from the command line: `flyball simulate --movie`, with a script that stands in for ffmpeg.
+"""Films from the command line: `flyball simulate --movie` and `flyball modes --movie`, with a script that stands in
+for ffmpeg.
 
 Usage: movie_test.py FLYBALL SCENE
 """
@@ -29,7 +30,8 @@ exec sleep 60
 class Folder:
     """A folder to write to, and a PATH with this ffmpeg alone, or with none."""
 
-    def __init__(self, script=None):
+    def __init__(self, script=None, command="simulate"):
+        self.command = command
         self.whole = tempfile.TemporaryDirectory()
         root = pathlib.Path(self.whole.name)
         self.out, self.note, programs = root / "out", root / "note", root / "programs"
@@ -43,7 +45,7 @@ class Folder:
         self.environment = {**os.environ, "PATH": str(programs), "NOTE": str(self.note)}
 
     def start(self, *arguments):
-        return subprocess.Popen([FLYBALL, "simulate", SCENE, *arguments], cwd=self.out, env=self.environment,
+        return subprocess.Popen([FLYBALL, self.command, SCENE, *arguments], cwd=self.out, env=self.environment,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def run(self, *arguments):
@@ -92,6 +94,22 @@ check_refused(none, ["--movie", "run.png", "--size", "160"], "--size: expected W
 check_refused(none, ["--movie", "run.png", "--fps", "0"], "--fps")
 check_refused(none, ["--size", "160x90"], "--movie")
 check_refused(Folder(FAIL), [*short, "--movie", "run.gif"], "ffmpeg failed with exit code 7: no such codec")
+
+# The governor's mode swings at 1.04 Hz: 10 frames a second are 10 a swing, and the next swing is the same.
+mode = ["--size", "160x90", "--fps", "10"]
+swing = Folder(command="modes")
+code, error = swing.run(*mode, "--swings", "2", "--movie", "swing.png")
+check(f"a mode is filmed: {code} {error}", code == 0 and error == "")
+names = swing.names()
+check(f"two swings of ten frames, found {names}", names == [f"swing-00{i:02}.png" for i in range(1, 21)])
+pictures = [(swing.out / name).read_bytes() for name in names]
+check("both swings are alike", pictures[:10] == pictures[10:])
+check("it moves", pictures[0] != pictures[5] and pictures[0] != pictures[2])
+wide = Folder(command="modes")
+code, error = wide.run(*mode, "--amplitude", "0.3", "--movie", "swing.png")
+check("as far as it is told", code == 0 and (wide.out / names[5]).read_bytes() != pictures[5])
+check_refused(Folder(command="modes"), [*mode, "--mode", "2", "--movie", "swing.png"], "--mode: expected 1 to 1")
+check_refused(Folder(command="modes"), ["--amplitude", "1"], "--movie")
 
 for wanted in (signal.SIGINT, signal.SIGTERM):
     hanging = Folder(HANG)

@@ -3,13 +3,16 @@
 #include "fake_ffmpeg.hpp"
 #include "robot.hpp"
 
+#include "app/session/modes.hpp"
 #include "app/session/motion.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/studies/motion/movie_export.hpp"
+#include "app/ui/studies/motion/run_movie.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
 
+#include <numbers>
 #include <set>
 
 using namespace flyball;
@@ -105,6 +108,47 @@ TEST_CASE("frames show the moments and the part of the run that were asked for")
   Framebuffer target(160, 91, robot.app.view.samples);
   renderer.draw(frame, target);
   CHECK(target.read() == read_png(folder / "run-0003.png"));
+}
+
+TEST_CASE("the mode that is shown is exported as it is shown") {
+  const TemporaryFolder folder;
+  Robot robot;
+  App& app = robot.app;
+  robot.key('O');
+  robot.frames(3);
+  run_command(app, "study.export_mode"); // no mode moves yet
+  robot.frames(3);
+  REQUIRE_FALSE(app.dialog.showing);
+  robot.click("modes/row/1");
+  app.study.modes.amplitude = 0.2;
+  app.movie.width = 160;
+  app.movie.height = 91;
+  app.movie.rate = 10;
+  robot.click("modes/export");
+  robot.frames(3);
+  REQUIRE(app.dialog.showing);
+  CHECK(fs::path(app.dialog.path).stem() == "flyball-governor-mode-1");
+  robot.point({2, 2});
+  robot.click("movie/png");
+  app.dialog.path = (folder / "swing.png").string();
+  robot.frames(2);
+  robot.click("movie/save");
+  for (int i = 0; i < 2000 && (app.movie.request || app.movie.progress); ++i)
+    robot.frames(1);
+  robot.frames(2);
+  CHECK_FALSE(app.dialog.showing);
+  // At 1.04 Hz, as fast as it is.
+  CHECK(app.notice == "Saved 10 frames, " + (folder / "swing-0001.png").string() + " to swing-0010.png");
+  // The same phase, seen in the window's own view from the same place, is the same picture.
+  app.study.modes.playing = false;
+  app.study.modes.phase = 2 * std::numbers::pi * 3 / 10;
+  robot.frames(3);
+  ViewFrame frame = view_frame(app);
+  frame.hovered = {};
+  ViewRenderer renderer;
+  Framebuffer target(160, 91, app.view.samples);
+  renderer.draw(frame, target);
+  CHECK(target.read() == read_png(folder / "swing-0004.png"));
 }
 
 TEST_CASE("a film goes through ffmpeg from the dialog") {

@@ -2,6 +2,7 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/campbell.hpp"
 
@@ -83,6 +84,84 @@ TEST_CASE("critical speeds are where the closed forms have them", "[campbell]") 
   }
   CHECK(d.critical[0].whirl->value > 0.99);
   CHECK(d.critical[2].line == 2);
+}
+
+namespace {
+
+const std::string speed = "parameters.w";
+
+// A mass on a spring along the axis of a turntable, which stiffens with the speed so that it swings at
+// w + curvature (w - touch)^2 + above, all in rad/s.
+Mechanism stiffening(double curvature, double touch, double above) {
+  Mechanism m;
+  m.parameters = {{"w", "", 3, "rad/s", {}, {}},
+                  {"curvature", "", curvature, "s", {}, {}},
+                  {"touch", "", touch, "rad/s", {}, {}},
+                  {"above", "", above, "rad/s", {}, {}}};
+  m.bodies = {spindle(), body("bell", 0.5, Vec3::Zero())};
+  m.joints = {spin(1, {0, 0, 1}), sprung(prismatic("z", "spindle", "bell", Vec3::Zero(), {0, 0, 1}), 1)};
+  m.joints[0].formulas = {{"drive.speed", "w"}};
+  m.joints[1].formulas = {{"spring.stiffness", "0.5 kg * (w + curvature * (w - touch)^2 + above)^2"}};
+  evaluate_formulas(m);
+  return m;
+}
+
+std::vector<CriticalSpeed> critical_speeds(const Mechanism& m, double from, double to) {
+  const CampbellDiagram d =
+      campbell_diagram(m, speed, follow_branches(m, speed, from, to), std::array{1., 2.});
+  REQUIRE(d.response.branches.size() == 1);
+  std::vector<CriticalSpeed> once;
+  for (const CriticalSpeed& at : d.critical)
+    if (at.order == 1) once.push_back(at);
+  return once;
+}
+
+} // namespace
+
+TEST_CASE("a mode that only touches an order's line is found at the double root", "[campbell]") {
+  // Between the branch's points, from above and from below, and where the range ends beside it.
+  for (const double curvature : {0.05, -0.05})
+    for (const double touch : {3.0123, 4.777, 1.0001, 5.9999}) {
+      CAPTURE(curvature, touch);
+      const std::vector<CriticalSpeed> found = critical_speeds(stiffening(curvature, touch, 0), 1, 6);
+      REQUIRE(found.size() == 1);
+      CHECK(found[0].touches);
+      CHECK(std::abs(found[0].speed - touch) <= found[0].error);
+      CHECK(found[0].error < 1e-4);
+      CHECK(std::abs(found[0].frequency - touch) < 1e-6);
+    }
+}
+
+TEST_CASE("two crossings between two points of a branch are found, and none where it stays away",
+          "[campbell]") {
+  for (const double off : {1e-8, 1e-6, 1e-4}) {
+    CAPTURE(off);
+    const std::vector<CriticalSpeed> found = critical_speeds(stiffening(0.05, 3.0123, -off), 1, 6);
+    REQUIRE(found.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK_FALSE(found[i].touches);
+      const double wanted = 3.0123 + (i == 0 ? -1 : 1) * std::sqrt(off / 0.05);
+      CHECK(std::abs(found[i].speed - wanted) < 1e-9);
+      CHECK(std::abs(found[i].speed - wanted) <= 10 * found[i].error);
+      CHECK(found[i].error < 1e-9);
+    }
+    CHECK(critical_speeds(stiffening(0.05, 3.0123, off), 1, 6).empty());
+  }
+}
+
+TEST_CASE("a critical speed at the very end of the range counts, once", "[campbell]") {
+  // natural - w = w at 5; the end of one range and the beginning of the other.
+  const CampbellDiagram below = diagram_of(turning_springs(), 1, natural / 2, {1}),
+                        above = diagram_of(turning_springs(), natural / 2, 9, {1}),
+                        back = diagram_of(turning_springs(), 9, natural / 2, {1});
+  for (const CampbellDiagram* d : {&below, &above, &back}) {
+    REQUIRE(d->critical.size() == 1);
+    CHECK(std::abs(d->critical[0].speed - natural / 2) <= std::max(d->critical[0].error, 1e-14));
+    CHECK(d->critical[0].error < 1e-11);
+    CHECK_FALSE(d->critical[0].touches);
+  }
+  // At the end it only touches nothing tells from a crossing: it counts all the same.
+  CHECK(critical_speeds(stiffening(0.05, 1, 0), 1, 6).size() == 1);
 }
 
 TEST_CASE("a governor's critical speed is where its eigenvalue says", "[campbell]") {

@@ -1,6 +1,7 @@
 // The modes of the state that is shown: a list, what moves in the view, and the Campbell diagram beside it.
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
+#include "app/ui/file_commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/studies/modes/campbell_plot.hpp"
@@ -182,6 +183,9 @@ void transport(App& app) {
   if (icon_button(app, "modes/play", modes.playing ? icon::pause : icon::play,
                   modes.playing ? "Pause (Space)" : "Play (Space)", modes.playing))
     modes.playing = !modes.playing;
+  ImGui::SameLine();
+  if (icon_button(app, "modes/export", icon::save, "Export as MP4, GIF or numbered pictures…"))
+    show_mode_movie_dialog(app);
   ImGui::SameLine();
   ImGui::SetNextItemWidth(110 * app.scale);
   constexpr double least = 0.01, most = 0.6;

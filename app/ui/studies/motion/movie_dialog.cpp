@@ -1,4 +1,4 @@
-// What a film of the run is to be, and how far it is.
+// What a film of the run or of a mode is to be, and how far it is.
 #include "app/ui/file_commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels.hpp"
@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace flyball {
 
@@ -33,8 +34,8 @@ constexpr std::array endings{Ending{"movie/mp4", "MP4", ".mp4"}, Ending{"movie/g
 
 MovieRequest request_of(const App& app) {
   const MovieState& movie = app.movie;
-  MovieRequest request{typed_path(app), movie.width, movie.height, movie.rate,
-                       movie.factor,    movie.from,  movie.to};
+  MovieRequest request{movie.of,     typed_path(app), movie.width, movie.height, movie.rate,
+                       movie.factor, movie.from,      movie.to,    movie.swings};
   if (const MotionRun* shown = shown_motion(app); shown && movie.whole) {
     request.from = shown->run->time.front();
     request.to = shown->run->time.back();
@@ -74,11 +75,17 @@ void ending_buttons(App& app) {
               colors_of(app).dim);
 }
 
+void swing_fields(App& app) {
+  double swings = app.movie.swings;
+  plain_quantity_field(app, "movie/swings", "Swings", "",
+                       "How often it swings; the film's end goes on with its beginning.", swings,
+                       Least::above_zero);
+  constexpr double most = 10000;
+  app.movie.swings = static_cast<int>(std::round(std::clamp(swings, 1., most)));
+}
+
 void time_fields(App& app, const Run& run) {
   MovieState& movie = app.movie;
-  plain_quantity_field(app, "movie/rate", "Frames a second", "",
-                       "Of the film: 25 to 60 look smooth, a GIF has at most 50.", movie.rate,
-                       Least::above_zero);
   plain_quantity_field(app, "movie/factor", "Speed factor", "",
                        "Seconds of the run that a second of the film shows: below 1 is slow motion.",
                        movie.factor, Least::above_zero);
@@ -93,11 +100,21 @@ void time_fields(App& app, const Run& run) {
   plain_quantity_field(app, "movie/to", "To", "s", "The last moment shown.", movie.to);
 }
 
+// Whether what is to be filmed is still shown, and whole.
+bool shown(const App& app) {
+  return app.movie.of == Filmed::mode ? moving_mode(app) != nullptr : shown_motion(app) != nullptr;
+}
+bool complete(const App& app) {
+  return app.movie.of == Filmed::mode ? modes_are_current(app) : shown_motion(app)->finished;
+}
+
 // Why it cannot be made, or "".
-std::string problem_of(const App& app, const MotionRun& shown, const MovieRequest& request,
-                       std::size_t frames) {
-  if (!shown.finished) return "The run is still being computed.";
-  if (!(request.from < request.to) && !app.movie.whole) return "It ends before it begins.";
+std::string problem_of(const App& app, const MovieRequest& request, std::size_t frames) {
+  if (!complete(app))
+    return app.movie.of == Filmed::mode ? "The modes are of the state before the last changes."
+                                        : "The run is still being computed.";
+  if (request.of == Filmed::run && !(request.from < request.to) && !app.movie.whole)
+    return "It ends before it begins.";
   if (std::min(request.width, request.height) < smallest_movie) return "At least 16 pixels a side.";
   return movie_problem(request.file, {request.width, request.height, request.rate, frames});
 }
@@ -121,24 +138,32 @@ void progress(App& app, const MovieState::Progress& at) {
   if (text_button(app, "movie/cancel", "Cancel") || escape_pressed()) app.movie.cancel = true;
 }
 
-void choices(App& app, const MotionRun& shown) {
+void choices(App& app) {
   MovieState& movie = app.movie;
   bool accepted = path_field(app, "movie", "Name");
   ending_buttons(app);
   size_fields(app, "movie", movie_sizes, fields_column, movie.width, movie.height);
-  time_fields(app, *shown.run);
+  plain_quantity_field(app, "movie/rate", "Frames a second", "",
+                       "Of the film: 25 to 60 look smooth, a GIF has at most 50.", movie.rate,
+                       Least::above_zero);
+  if (movie.of == Filmed::mode)
+    swing_fields(app);
+  else
+    time_fields(app, *shown_motion(app)->run);
 
   const MovieRequest request = request_of(app);
-  const std::size_t frames = requested_times(app, request).size();
-  const std::string problem = problem_of(app, shown, request, frames);
+  const std::size_t frames = requested_moments(app, request).size();
+  const std::string problem = problem_of(app, request, frames);
   const std::filesystem::path first = first_file(request.file, frames);
   ImGui::Dummy({0, 2 * app.scale});
   if (!problem.empty())
-    paragraph(problem, shown.finished ? colors_of(app).bad : colors_of(app).dim);
+    paragraph(problem, complete(app) ? colors_of(app).bad : colors_of(app).dim);
   else
     paragraph(std::to_string(frames) + " frames, " +
-                  short_text(static_cast<double>(frames) / request.rate, 4) + " s long: from " +
-                  short_text(request.from) + " s to " + short_text(request.to) + " s of the run",
+                  short_text(static_cast<double>(frames) / request.rate, 4) + " s long" +
+                  (movie.of == Filmed::mode ? ", with the amplitude that is shown"
+                                            : ": from " + short_text(request.from) + " s to " +
+                                                  short_text(request.to) + " s of the run"),
               colors_of(app).dim);
   if (!movie.problem.empty()) paragraph("Not saved: " + movie.problem, colors_of(app).bad);
   const bool replaces = asks_to_replace(app, first);
@@ -155,10 +180,9 @@ void choices(App& app, const MotionRun& shown) {
   if (text_button(app, "movie/cancel", "Cancel") || escape_pressed()) close_dialog();
 }
 
-} // namespace
-
-void show_movie_dialog(App& app) {
-  if (!shown_motion(app)) return;
+void show_dialog_of(App& app, Filmed of) {
+  app.movie.of = of;
+  if (!shown(app)) return;
   app.dialog.wanted = Dialog::export_run;
   std::error_code ignored;
   show_folder(app, std::filesystem::current_path(ignored));
@@ -168,19 +192,32 @@ void show_movie_dialog(App& app) {
   const std::filesystem::path& file = app.document.file();
   const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
   const char* const ending = ffmpeg_available() ? ".mp4" : ".png";
-  app.dialog.path = (app.file_dialogs.list.shown / ("flyball-" + stem + ending)).string();
+  const std::string which =
+      of == Filmed::mode ? "-mode-" + std::to_string(*app.study.modes.chosen + 1) : std::string();
+  app.dialog.path = (app.file_dialogs.list.shown / ("flyball-" + stem + which + ending)).string();
+}
+
+} // namespace
+
+void show_movie_dialog(App& app) {
+  show_dialog_of(app, Filmed::run);
+}
+
+void show_mode_movie_dialog(App& app) {
+  show_dialog_of(app, Filmed::mode);
 }
 
 void movie_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::export_run, "Export the run", 480)) return;
   MovieState& movie = app.movie;
-  const MotionRun* shown = shown_motion(app);
+  if (!begin_dialog(app, Dialog::export_run, movie.of == Filmed::mode ? "Export the mode" : "Export the run",
+                    480))
+    return;
   if (movie.request || movie.progress)
     progress(app, movie.progress.value_or(MovieState::Progress{}));
-  else if (movie.done || !shown) // without a run: another document
+  else if (movie.done || !shown(app)) // nothing is: another document
     close_dialog();
   else
-    choices(app, *shown);
+    choices(app);
   end_dialog();
 }
 

@@ -1,5 +1,8 @@
 #include "app/ui/studies/motion/movie_export.hpp"
 
+#include "app/ui/studies/modes/mode_movie.hpp"
+#include "app/ui/studies/motion/run_movie.hpp"
+
 #include <exception>
 
 namespace flyball {
@@ -17,49 +20,66 @@ std::string saved_words(const std::filesystem::path& file, std::size_t frames) {
          frame_file(file, frames - 1, frames).filename().string();
 }
 
+// Null where none is shown any more.
+std::unique_ptr<FilmedScene> filmed_scene(const App& app, Filmed of) {
+  const std::shared_ptr<const Mechanism>& mechanism =
+      app.answer.ticket ? app.answer.mechanism : app.document.shared();
+  if (of == Filmed::mode) {
+    const VibrationMode* mode = moving_mode(app);
+    if (!mode) return nullptr;
+    return std::make_unique<ModeScene>(mechanism, app.answer.solution, *mode, app.study.modes.amplitude,
+                                       steady_time(app));
+  }
+  const MotionRun* shown = shown_motion(app);
+  if (!shown) return nullptr;
+  std::optional<Solution> steady;
+  if (converged(app)) steady = app.answer.solution;
+  return std::make_unique<RunScene>(mechanism, shown->run, steady);
+}
+
 } // namespace
 
-std::vector<double> requested_times(const Session& session, const MovieRequest& request) {
+std::vector<double> requested_moments(const Session& session, const MovieRequest& request) {
+  if (request.of == Filmed::mode) {
+    const VibrationMode* mode = moving_mode(session);
+    return mode ? swing_phases(*mode, request.rate, request.swings) : std::vector<double>{};
+  }
   const MotionRun* shown = shown_motion(session);
   if (!shown) return {};
   return movie_times(*shown->run, {request.from, request.to, request.rate, request.factor});
 }
 
 void MovieExport::begin(App& app, const MovieRequest& request) {
-  const MotionRun* shown = shown_motion(app);
-  if (!shown) return;
-  std::optional<Solution> steady;
-  if (converged(app)) steady = app.answer.solution;
-  const std::shared_ptr<const Mechanism>& mechanism =
-      app.answer.ticket ? app.answer.mechanism : app.document.shared();
+  std::unique_ptr<FilmedScene> scene = filmed_scene(app, request.of);
+  if (!scene) return;
   const ViewFrame look = view_frame(app);
   file_ = request.file;
-  movie_.emplace(RunScene(mechanism, shown->run, steady), requested_times(app, request), request.file,
-                 MovieFormat{request.width, request.height, request.rate, 0}, look, app.view.samples);
+  film_.emplace(std::move(scene), requested_moments(app, request), request.file,
+                MovieFormat{request.width, request.height, request.rate, 0}, look, app.view.samples);
 }
 
 void MovieExport::update(App& app, ViewRenderer& renderer) {
   MovieState& state = app.movie;
-  if (!movie_ && !state.request) return; // a stage that draws a picture beside this one's film tells nothing
-  if (std::exchange(state.cancel, false)) movie_.reset();
+  if (!film_ && !state.request) return; // a stage that draws a picture beside this one's film tells nothing
+  if (std::exchange(state.cancel, false)) film_.reset();
   try {
     if (const auto request = std::exchange(state.request, std::nullopt)) {
-      movie_.reset();
+      film_.reset();
       state.problem.clear();
       state.done = false;
       begin(app, *request);
     }
-    if (movie_ && movie_->step(renderer, longest_wait)) {
-      app.notice = saved_words(file_, movie_->frames());
-      movie_.reset();
+    if (film_ && film_->step(renderer, longest_wait)) {
+      app.notice = saved_words(file_, film_->frames());
+      film_.reset();
       state.done = true;
     }
   } catch (const std::exception& error) {
-    movie_.reset();
+    film_.reset();
     state.problem = error.what();
   }
   state.progress.reset();
-  if (movie_) state.progress = {movie_->drawn(), movie_->frames()};
+  if (film_) state.progress = {film_->drawn(), film_->frames()};
 }
 
 } // namespace flyball

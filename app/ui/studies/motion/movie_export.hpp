@@ -3,12 +3,13 @@
 #pragma once
 
 #include "app/ui/app.hpp"
-#include "app/ui/studies/motion/run_movie.hpp"
+#include "app/ui/studies/film.hpp"
 
 namespace flyball {
 
-// The run's moments that a film of the request shows; none where no run is shown.
-std::vector<double> requested_times(const Session& session, const MovieRequest& request);
+// The moments that a film of the request shows: of the run (s), or phases of the mode (rad); none where none
+// is shown.
+std::vector<double> requested_moments(const Session& session, const MovieRequest& request);
 
 class MovieExport {
  public:
@@ -18,7 +19,7 @@ class MovieExport {
  private:
   void begin(App& app, const MovieRequest& request);
 
-  std::optional<RunMovie> movie_;
+  std::optional<Film> film_;
   std::filesystem::path file_;
 };
 
