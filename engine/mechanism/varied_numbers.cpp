@@ -28,6 +28,13 @@ VariedNumbers::VariedNumbers(Mechanism& mechanism, std::span<const std::string> 
   }
 }
 
+std::vector<double> VariedNumbers::values() const {
+  std::vector<double> out;
+  for (const Place& place : places_)
+    out.push_back(place.number.value);
+  return out;
+}
+
 void VariedNumbers::set(std::span<const double> values) {
   for (std::size_t i = 0; i < places_.size(); ++i)
     if (!std::isfinite(values[i])) throw SceneError(places_[i].address, "expected a finite number");

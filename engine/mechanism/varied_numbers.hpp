@@ -18,6 +18,8 @@ class VariedNumbers {
   VariedNumbers(Mechanism& mechanism, std::span<const std::string> addresses);
 
   std::size_t size() const { return places_.size(); }
+  // As they stand, by address.
+  std::vector<double> values() const;
 
   // Sets them all, by address, and all that expressions make of them; several of the same address one after
   // the other. Throws SceneError for a value that is not finite or of which an expression can make nothing;

@@ -160,20 +160,18 @@ struct Analysis::State {
     std::vector<std::string> addresses;
     for (const Slider& slider : mechanism->sliders)
       addresses.push_back(slider.parameter);
-    std::vector<Eigen::VectorXd> rates = sensitivities(steady.factored(problem), *mechanism, addresses);
-    for (std::size_t i = rates.size(); i-- > 0;)
-      if (rates[i].size() == 0) { // none that is finite
-        rates.erase(rates.begin() + static_cast<std::ptrdiff_t>(i));
-        addresses.erase(addresses.begin() + static_cast<std::ptrdiff_t>(i));
-      }
-    for (std::size_t i = 0; i < rates.size(); ++i)
-      out.sensitivities.push_back(name_rates(system, addresses[i], rates[i]));
-    if (measures.empty() || rates.empty()) return;
-    const Eigen::MatrixXd along =
-        measures.rates_along(problem, *mechanism, addresses, steady.found.z.q, rates, steady.elsewhere());
+    const std::vector<Eigen::VectorXd> rates = sensitivities(steady.factored(problem), *mechanism, addresses);
+    if (rates.empty()) return;
+    Eigen::MatrixXd along;
+    if (!measures.empty())
+      along =
+          measures.rates_along(problem, *mechanism, addresses, steady.found.z.q, rates, steady.elsewhere());
     for (std::size_t i = 0; i < rates.size(); ++i) {
+      if (rates[i].size() == 0) continue; // none that is finite
+      out.sensitivities.push_back(name_rates(system, addresses[i], rates[i]));
+      if (measures.empty()) continue;
       const auto rate = along.col(static_cast<Eigen::Index>(i));
-      out.sensitivities[i].measures.assign(rate.begin(), rate.end());
+      out.sensitivities.back().measures.assign(rate.begin(), rate.end());
     }
   }
 

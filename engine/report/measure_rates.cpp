@@ -2,14 +2,12 @@
 #include "engine/report/measures.hpp"
 
 #include "engine/kkt/coordinate_gradient.hpp"
-#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/residual.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -227,21 +225,19 @@ Eigen::VectorXd MeasureSet::rates_by(const Problem& problem, const Mechanism& me
 }
 
 std::vector<double> MeasureSet::differences_by(const Problem& problem, const Mechanism& mechanism,
-                                               const std::string& address, const Eigen::VectorXd& q,
-                                               Workspace& w) {
-  const double value = get_parameter(mechanism, address);
-  const double h = 1e-6 * (std::abs(value) > 1e-100 ? std::abs(value) : 1.);
-  const std::vector<double> here = found_;
-  std::vector<double> sides[2];
-  Mechanism varied = mechanism;
-  Parameters numbers;
+                                               VariedNumbers& numbers, std::size_t k,
+                                               const Eigen::VectorXd& q, Workspace& w) {
+  const std::vector<double> values = numbers.values(), here = found_;
+  const double h = 1e-6 * (std::abs(values[k]) > 1e-100 ? std::abs(values[k]) : 1.);
+  std::vector<double> sides[2], moved = values;
+  Parameters parameters;
   try {
-    VariedNumbers number(varied, {&address, 1});
     for (const int side : {0, 1}) {
-      number.set(std::array{side == 0 ? value + h : value - h});
-      flyball::bind(problem.system, varied, numbers);
-      bind(varied, problem.system, numbers);
-      evaluate_at({problem.system, numbers, problem.scaling}, q, w);
+      moved[k] = side == 0 ? values[k] + h : values[k] - h;
+      numbers.set(moved);
+      flyball::bind(problem.system, mechanism, parameters);
+      bind(mechanism, problem.system, parameters);
+      evaluate_at({problem.system, parameters, problem.scaling}, q, w);
       sides[side] = found_;
     }
     for (std::size_t i = 0; i < here.size(); ++i)
@@ -249,9 +245,43 @@ std::vector<double> MeasureSet::differences_by(const Problem& problem, const Mec
   } catch (const SceneError&) { // expressions make no mechanism of it
     sides[0].assign(here.size(), std::numeric_limits<double>::quiet_NaN());
   }
+  numbers.set(values);
   bind(mechanism, problem.system, problem.parameters);
   found_ = here;
   return sides[0];
+}
+
+Eigen::VectorXd MeasureSet::rates_by_number(const Problem& problem, const Mechanism& mechanism,
+                                            VariedNumbers& numbers, std::size_t k, const Eigen::VectorXd& q,
+                                            const Eigen::VectorXd& rate, Workspace& w) {
+  const auto none = static_cast<Eigen::Index>(size());
+  if (rate.size() == 0) return Eigen::VectorXd::Constant(none, std::numeric_limits<double>::quiet_NaN());
+  NumberRates number_rates;
+  try {
+    numbers.rates(k, number_rates);
+  } catch (const SceneError&) { // such as of a square root at zero
+    return Eigen::VectorXd::Constant(none, std::numeric_limits<double>::quiet_NaN());
+  }
+  std::vector<double> differenced;
+  if (differenced_by_numbers())
+    differenced = differences_by(problem, mechanism, numbers, k, q, w.elsewhere());
+  return rates_ * rate + rates_by(problem, mechanism, number_rates, q, w, differenced);
+}
+
+bool MeasureSet::differenced_by_numbers() const {
+  return std::ranges::any_of(places_, &Place::differenced_by_numbers);
+}
+
+Eigen::MatrixXd MeasureSet::rates_along(const Problem& problem, const Mechanism& mechanism,
+                                        VariedNumbers& numbers, const Eigen::VectorXd& q,
+                                        std::span<const Eigen::VectorXd> rates, Workspace& w) {
+  bind(mechanism, problem.system, problem.parameters);
+  evaluate_at(problem, q, w);
+  gradient(problem, q, w, w.elsewhere());
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(size()), static_cast<Eigen::Index>(numbers.size()));
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    out.col(static_cast<Eigen::Index>(k)) = rates_by_number(problem, mechanism, numbers, k, q, rates[k], w);
+  return out;
 }
 
 Eigen::MatrixXd MeasureSet::rates_along(const Problem& problem, const Mechanism& mechanism,
@@ -259,23 +289,13 @@ Eigen::MatrixXd MeasureSet::rates_along(const Problem& problem, const Mechanism&
                                         std::span<const Eigen::VectorXd> rates, Workspace& w) {
   bind(mechanism, problem.system, problem.parameters);
   evaluate_at(problem, q, w);
-  const Eigen::MatrixXd along = gradient(problem, q, w, w.elsewhere());
-  const bool differences = std::ranges::any_of(places_, &Place::differenced_by_numbers);
-  // They are not set: rates alone are asked for.
-  const VariedNumbers numbers(const_cast<Mechanism&>(mechanism), addresses);
-  NumberRates number_rates;
+  gradient(problem, q, w, w.elsewhere());
   Eigen::MatrixXd out(static_cast<Eigen::Index>(size()), static_cast<Eigen::Index>(addresses.size()));
   for (std::size_t k = 0; k < addresses.size(); ++k) {
-    auto column = out.col(static_cast<Eigen::Index>(k));
-    try {
-      numbers.rates(k, number_rates);
-    } catch (const SceneError&) { // such as of a square root at zero
-      column.setConstant(std::numeric_limits<double>::quiet_NaN());
-      continue;
-    }
-    std::vector<double> differenced;
-    if (differences) differenced = differences_by(problem, mechanism, addresses[k], q, w.elsewhere());
-    column = along * rates[k] + rates_by(problem, mechanism, number_rates, q, w, differenced);
+    // Each on a copy: a number that follows from others is not set while these are varied.
+    Mechanism varied = mechanism;
+    VariedNumbers number(varied, addresses.subspan(k, 1));
+    out.col(static_cast<Eigen::Index>(k)) = rates_by_number(problem, varied, number, 0, q, rates[k], w);
   }
   return out;
 }

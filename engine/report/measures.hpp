@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/kkt/workspace.hpp"
+#include "engine/mechanism/varied_numbers.hpp"
 #include "engine/report/measured_quantity.hpp"
 #include "engine/solve/solution.hpp"
 #include "engine/system/reactions.hpp"
@@ -54,9 +55,13 @@ class MeasureSet {
   const Eigen::MatrixXd& gradient(const Problem& problem, const Eigen::VectorXd& q, const Workspace& w,
                                   Workspace& elsewhere, bool all_differences = false);
 
-  // (measures, addresses): their rates along the steady states of the mechanism, per unit of the number at an
-  // address, where the coordinates' are `rates` (by address, see sensitivities()). Evaluates at q. Not a
-  // number where a measure has none, or where the number moves others at no finite rate.
+  // (measures, numbers): their rates along the steady states of the mechanism, per unit of each of these
+  // numbers of it, which have been set, where the coordinates' are `rates` (by number, see sensitivities();
+  // empty: none). Evaluates at q. Not a number where a measure has none, or where the number moves others at
+  // no finite rate. For differences the numbers are varied, and set back.
+  Eigen::MatrixXd rates_along(const Problem& problem, const Mechanism& mechanism, VariedNumbers& numbers,
+                              const Eigen::VectorXd& q, std::span<const Eigen::VectorXd> rates, Workspace& w);
+  // The same by the addresses of numbers that may not have been set, such as a length that is as drawn.
   Eigen::MatrixXd rates_along(const Problem& problem, const Mechanism& mechanism,
                               std::span<const std::string> addresses, const Eigen::VectorXd& q,
                               std::span<const Eigen::VectorXd> rates, Workspace& w);
@@ -91,14 +96,20 @@ class MeasureSet {
   double rounding_size(const MeasuredState& state, std::size_t quantity) const;
   void difference(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
   const Eigen::VectorXd& combine();
+  bool differenced_by_numbers() const;
+  // Of one of the numbers, with those along the coordinates that gradient() found.
+  Eigen::VectorXd rates_by_number(const Problem& problem, const Mechanism& mechanism, VariedNumbers& numbers,
+                                  std::size_t k, const Eigen::VectorXd& q, const Eigen::VectorXd& rate,
+                                  Workspace& w);
   // Their rates by a number whose rates are given, and all others with it, while the coordinates stand: exact
   // but for those quantities that take `differences`. After evaluate_at().
   Eigen::VectorXd rates_by(const Problem& problem, const Mechanism& mechanism, const NumberRates& rates,
                            const Eigen::VectorXd& q, const Workspace& w,
                            const std::vector<double>& differences);
-  // Of the quantities by the number at an address: central ones, relative error about 1e-9.
+  // Of the quantities by the number k: central ones, relative error about 1e-9.
   std::vector<double> differences_by(const Problem& problem, const Mechanism& mechanism,
-                                     const std::string& address, const Eigen::VectorXd& q, Workspace& w);
+                                     VariedNumbers& numbers, std::size_t k, const Eigen::VectorXd& q,
+                                     Workspace& w);
 
   MeasurePlan plan_;
   // By quantity.

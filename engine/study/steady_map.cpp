@@ -136,7 +136,7 @@ bool SteadyMap::find_rates(const State& state) try {
     state_rates_.col(k) = found[static_cast<std::size_t>(k)];
   rates_.resize(static_cast<Eigen::Index>(wanted_.size()), count());
   Eigen::MatrixXd measured;
-  if (measures_wanted()) measured = measures_.rates_along(p, varied_, addresses_, state.z.q, found, w_);
+  if (measures_wanted()) measured = measures_.rates_along(p, varied_, *numbers_, state.z.q, found, w_);
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (wanted_[i].coordinate)
