@@ -18,6 +18,7 @@
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/periodic/periodic_state.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/compare.hpp"
 #include "engine/study/design.hpp"

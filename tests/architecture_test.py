@@ -11,7 +11,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
 
 # In the order of the house: each folder sees those before it that it names. `engine` is all of the engine.
 ENGINE = ["task", "linear", "mechanism", "system", "kkt", "solve", "stability", "search", "report",
-          "continuation", "dynamics", "study"]
+          "continuation", "dynamics", "periodic", "study"]
 APP = {
     "app/platform": [],
     "app/document": ["engine", "app/platform"],

@@ -1,6 +1,7 @@
 #include "app/cli/command.hpp"
 #include "app/cli/friction_told.hpp"
 #include "app/cli/output.hpp"
+#include "app/cli/periodic_told.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
@@ -23,7 +24,7 @@ void add_solve(CLI::App& app, Ending& ending) {
     std::vector<std::string> start, points;
     int modes = 0, starts = 0;
     double search_time = 1;
-    bool all = false, nearest = false, json = false;
+    bool all = false, nearest = false, periodic = false, json = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("solve", "Find the steady state");
@@ -36,9 +37,14 @@ void add_solve(CLI::App& app, Ending& ending) {
           ->allow_extra_args(false);
   CLI::Option* nearest =
       command->add_flag("--nearest", options->nearest, "The plain Newton-Raphson answer, stable or not");
+  CLI::Option* motion = command->add_flag(
+      "--periodic", options->periodic,
+      "The periodic motion that takes the place of a steady state where drives make the balance turn: the "
+      "search may take longer than without, and finding one is what is asked for (exit 0)");
   command->add_flag("--all", options->all, "All equilibria that a bounded search finds, stable or not")
       ->excludes(nearest)
-      ->excludes(start);
+      ->excludes(start)
+      ->excludes(motion);
   command
       ->add_option("--starts", options->starts,
                    "With --all: the most Newton-Raphson runs (default: as many as the "
@@ -72,6 +78,7 @@ void add_solve(CLI::App& app, Ending& ending) {
       solve.points.push_back(parse_point("--point", text));
     Solution solution;
     std::optional<FrictionReport> friction;
+    std::optional<PeriodicState> periodic;
     try {
       if (options->all) {
         const AllSolutions all = Analysis(mechanism).solve_all(solve);
@@ -88,6 +95,13 @@ void add_solve(CLI::App& app, Ending& ending) {
         report_progress(solve.progress, "friction");
         friction = report_friction(mechanism, solution);
       }
+      if (options->periodic || solution.status == Status::no_steady_state) {
+        report_progress(solve.progress, "periodic motion");
+        PeriodicOptions wanted;
+        wanted.nearest = options->nearest;
+        if (options->periodic) wanted.patience = 50;
+        periodic = find_periodic_state(mechanism, wanted);
+      }
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
@@ -95,11 +109,16 @@ void add_solve(CLI::App& app, Ending& ending) {
     if (options->json) {
       nlohmann::ordered_json told = to_json(mechanism, solution);
       if (friction) told["friction"] = to_json(*friction);
+      if (periodic) told["periodic"] = to_json(*periodic);
       print_json(with_warnings(std::move(told), mechanism));
     } else {
-      print_text(to_text(mechanism, solution) + (friction ? to_text(*friction) : ""));
+      print_text(to_text(mechanism, solution) + (friction ? to_text(*friction) : "") +
+                 (periodic ? to_text(*periodic) : ""));
     }
-    ending = end_with(solution.status == Status::converged, options->scene.file, solution.message);
+    if (options->periodic)
+      ending = end_with(periodic->status == PeriodicStatus::found, options->scene.file, periodic->message);
+    else
+      ending = end_with(solution.status == Status::converged, options->scene.file, solution.message);
   });
 }
 

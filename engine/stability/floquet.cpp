@@ -161,6 +161,35 @@ std::optional<double> common_period(const std::vector<double>& speeds, int most)
   return {};
 }
 
+std::optional<bool> stable_by_multipliers(std::vector<Complex> counted, double error, int neutral) {
+  std::ranges::sort(counted, {}, [](Complex mu) { return std::abs(mu - 1.); });
+  auto begin = counted.begin();
+  for (int i = 0;
+       i < 2 * neutral && begin != counted.end() && std::abs(*begin - 1.) < tolerance::neutral_multiplier;
+       ++i)
+    ++begin;
+  counted.erase(counted.begin(), begin);
+  // Multipliers that lie close together are known to the root of what others are.
+  const double rounding = tolerance::multiplier + 10 * error;
+  bool inside = true, apart = true;
+  for (std::size_t i = 0; i < counted.size(); ++i) {
+    const double size = std::abs(counted[i]);
+    bool close = std::abs(counted[i].imag()) < tolerance::multipliers_meet; // at 1 or -1 a pair meets
+    for (std::size_t j = 0; j < counted.size(); ++j)
+      close = close || (i != j && std::abs(counted[i] - counted[j]) < tolerance::multipliers_meet);
+    const double limit = close ? std::max(tolerance::meeting_multiplier, std::sqrt(10 * error)) : rounding;
+    if (size > 1 + limit) return false;
+    if (size < 1 - limit) continue;
+    inside = false;
+    if (close) apart = false;
+  }
+  if (neutral > 0) return {};
+  // On the unit circle and apart from each other they cannot leave it: motions stay as small as they begin
+  // (Krein).
+  if (inside || apart) return true;
+  return {};
+}
+
 FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
   FloquetOutcome out;
   const auto fail = [&](FloquetFailure failure) {

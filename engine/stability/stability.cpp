@@ -65,39 +65,9 @@ void classify_by_multipliers(const Problem& problem, const Unknowns& z, int neut
   const Floquet& floquet = out.floquet.emplace(std::move(*outcome.result));
   out.eigenvalues = floquet_exponents(floquet);
   out.reason = StabilityReason::floquet;
-  std::vector<Complex> counted = floquet.multipliers;
-  std::ranges::sort(counted, {}, [](Complex mu) { return std::abs(mu - 1.); });
-  auto begin = counted.begin();
-  for (int i = 0;
-       i < 2 * neutral && begin != counted.end() && std::abs(*begin - 1.) < tolerance::neutral_multiplier;
-       ++i)
-    ++begin;
-  counted.erase(counted.begin(), begin);
-  // Multipliers that lie close together are known to the root of what others are.
-  const double rounding = tolerance::multiplier + 10 * floquet.error;
-  bool inside = true, apart = true;
-  for (std::size_t i = 0; i < counted.size(); ++i) {
-    const double size = std::abs(counted[i]);
-    bool close = std::abs(counted[i].imag()) < tolerance::multipliers_meet; // at 1 or -1 a pair meets
-    for (std::size_t j = 0; j < counted.size(); ++j)
-      close = close || (i != j && std::abs(counted[i] - counted[j]) < tolerance::multipliers_meet);
-    const double limit =
-        close ? std::max(tolerance::meeting_multiplier, std::sqrt(10 * floquet.error)) : rounding;
-    if (size > 1 + limit) {
-      out.stable = false;
-      return;
-    }
-    if (size < 1 - limit) continue;
-    inside = false;
-    if (close) apart = false;
-  }
-  if (neutral > 0) {
-    out.reason = StabilityReason::neutral;
-    return;
-  }
-  // On the unit circle and apart from each other they cannot leave it: motions stay as small as they begin
-  // (Krein).
-  if (inside || apart) out.stable = true;
+  if (neutral > 0) out.reason = StabilityReason::neutral;
+  out.stable = stable_by_multipliers(floquet.multipliers, floquet.error, neutral);
+  if (out.stable == false) out.reason = StabilityReason::floquet;
 }
 
 // Whether directions without mass and damping tip over at once: no finite eigenvalue shows it. They do

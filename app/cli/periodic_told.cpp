@@ -1,0 +1,121 @@
+#include "app/cli/periodic_told.hpp"
+
+#include "app/cli/output.hpp"
+#include "app/cli/solution_json.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json range_json(const PeriodicRange& range) {
+  return {{"mean", number_json(range.mean)},
+          {"min", number_json(range.least)},
+          {"max", number_json(range.most)},
+          {"error_estimate", number_json(range.error)}};
+}
+
+// As many decimals as the error leaves.
+std::string in_digits(double value, double error) {
+  const double digits = error > 0 ? std::floor(-std::log10(error)) : 12;
+  const int decimals = static_cast<int>(std::clamp(digits, 0., 15.));
+  if (std::abs(value) < 0.5 * std::pow(10, -decimals)) value = 0; // no sign
+  return fmt::format("{:.{}f}", value, decimals);
+}
+
+std::vector<std::string> range_row(const std::string& name, const PeriodicRange& range,
+                                   std::string_view unit) {
+  if (!std::isfinite(range.mean)) return {name, "-", "-", "-", std::string(unit), "not defined throughout"};
+  return {name,
+          in_digits(range.mean, range.error),
+          in_digits(range.least, range.error),
+          in_digits(range.most, range.error),
+          std::string(unit),
+          fmt::format("± {:.1g}", range.error)};
+}
+
+std::string turns_text(int turns) {
+  if (turns == 0) return "";
+  return fmt::format(", less {} {} a period", turns, std::abs(turns) == 1 ? "turn" : "turns");
+}
+
+} // namespace
+
+Json to_json(const PeriodicState& s) {
+  const bool found = s.status == PeriodicStatus::found;
+  Json out = {{"status", word(s.status)}, {"message", s.message}};
+  for (const char* key :
+       {"period_s", "drive_periods", "coordinates", "drive_torques", "measures", "start", "stable",
+        "stability_reason", "floquet", "residual", "iterations", "history", "segments"})
+    out[key] = nullptr;
+  out["evaluations"] = s.evaluations;
+  out["run_time_s"] = s.run_time_s;
+  if (!found) return out;
+  out["period_s"] = number_json(s.period);
+  out["drive_periods"] = s.drive_periods;
+  out["coordinates"] = Json::object();
+  for (const PeriodicCoordinate& c : s.coordinates) {
+    Json& entry = out["coordinates"][coordinate_label(c)] = range_json(c.range);
+    if (c.turns != 0) entry["turns"] = c.turns;
+  }
+  out["drive_torques"] = Json::object();
+  for (const PeriodicTorque& t : s.drive_torques)
+    out["drive_torques"][coordinate_label(t)] = range_json(t.range);
+  out["measures"] = Json::object();
+  for (const PeriodicMeasure& m : s.measures) {
+    out["measures"][m.name] = range_json(m.range);
+    out["measures"][m.name]["unit"] = m.unit;
+  }
+  out["start"] = Json::object();
+  for (const PeriodicCoordinate& c : s.coordinates) {
+    const auto at = std::ranges::find_if(s.start.coordinates, [&](const StateCoordinate& x) {
+      return x.joint == c.joint && x.index == c.index;
+    });
+    if (at != s.start.coordinates.end())
+      out["start"][coordinate_label(c)] = {{"value", number_json(at->value)},
+                                           {"rate", number_json(at->rate)}};
+  }
+  if (s.stable) out["stable"] = *s.stable;
+  if (s.stability_reason) out["stability_reason"] = word(*s.stability_reason);
+  out["floquet"] = floquet_json(s.floquet);
+  out["residual"] = number_json(s.residual);
+  out["iterations"] = s.iterations;
+  out["history"] = Json::array();
+  for (const double h : s.history)
+    out["history"].push_back(number_json(h));
+  out["segments"] = s.segments;
+  return out;
+}
+
+std::string to_text(const PeriodicState& s) {
+  std::string out = "\nperiodic motion\n  " + printable(s.message) + "\n";
+  if (s.status != PeriodicStatus::found)
+    return out + fmt::format("  {} evaluations, {:.1f} ms\n", s.evaluations, s.run_time_s * 1e3);
+  std::vector<std::vector<std::string>> rows{{"over a period", "mean", "min", "max", "", ""}};
+  for (const PeriodicCoordinate& c : s.coordinates)
+    rows.push_back(range_row(shown_label(c) + turns_text(c.turns), c.range, c.angle ? "rad" : "m"));
+  for (const PeriodicMeasure& m : s.measures)
+    rows.push_back(range_row(printable(m.name), m.range, m.unit));
+  for (const PeriodicTorque& t : s.drive_torques)
+    rows.push_back(range_row(shown_label(t) + ", by the drive", t.range, t.angle ? "N m" : "N"));
+  out += "\n" + aligned(rows, true);
+  if (!s.floquet.multipliers.empty()) {
+    out += fmt::format("\nFloquet multipliers, to {:.1g}\n", s.floquet.error);
+    for (std::size_t i = 0; i < s.floquet.growth.size(); ++i)
+      out += fmt::format("  {:>+13.9f} {:>+13.9f} i  size {:.9g}, growth {:.6g} 1/s\n",
+                         s.floquet.multipliers[i].real(), s.floquet.multipliers[i].imag(),
+                         std::abs(s.floquet.multipliers[i]), s.floquet.growth[i]);
+  }
+  return out + fmt::format("\nresidual {:.1e}, {} iterations, {} {}, {} evaluations, {:.1f} ms\n", s.residual,
+                           s.iterations, s.segments, s.segments == 1 ? "segment" : "segments", s.evaluations,
+                           s.run_time_s * 1e3);
+}
+
+} // namespace flyball::cli

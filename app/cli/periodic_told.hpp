@@ -1,0 +1,19 @@
+// A periodic motion as `flyball solve` tells it.
+#pragma once
+
+#include "engine/periodic/periodic_state.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+namespace flyball::cli {
+
+// {"status", "message", "period_s", "drive_periods", "coordinates", "drive_torques": {joint: {"mean", "min",
+// "max", "error_estimate"}}, "measures": {name: the same with "unit"}, "start": {joint: {"value", "rate"}},
+// "stable", "stability_reason", "floquet", "residual", "iterations", "history", "segments", "evaluations",
+// "run_time_s"}; an angle that goes on has its "turns" a period; what is not available is null.
+nlohmann::ordered_json to_json(const PeriodicState& state);
+std::string to_text(const PeriodicState& state);
+
+} // namespace flyball::cli

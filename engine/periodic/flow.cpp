@@ -1,0 +1,114 @@
+#include "engine/periodic/flow.hpp"
+
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/error.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+constexpr long evaluations_a_step = 14; // of the explicit method
+
+MotionState sampled(const MotionModel& model, const Run& run, std::size_t sample, double time) {
+  const Eigen::Index nq = model.system.nq, nv = model.system.nv;
+  const double* begin = run.states.data() + static_cast<Eigen::Index>(sample) * (nq + nv);
+  return {time, Eigen::Map<const Eigen::VectorXd>(begin, nq),
+          Eigen::Map<const Eigen::VectorXd>(begin + nq, nv)};
+}
+
+// An evaluation takes about 3 us of a few coordinates and grows with the square of many.
+double usual_evaluations(int coordinates) {
+  const double eights = std::max(1., coordinates / 8.);
+  return 1.2e6 / (eights * eights);
+}
+
+} // namespace
+
+Flow::Flow(const Mechanism& mechanism, double patience, const std::atomic<bool>* cancel)
+    : mechanism_(mechanism), model_(make_motion_model(mechanism, true)),
+      most_(static_cast<long>(patience * usual_evaluations(model_.system.nv))), cancel_(cancel) {}
+
+SimulationOptions Flow::from_state(const MotionState& state, double tolerance) const {
+  SimulationOptions options;
+  options.start = Start::state;
+  options.state = name_state(model_, state.time, state.q, state.u);
+  options.tolerance = tolerance;
+  options.method = method_;
+  options.rate = 0;
+  options.measures = false;
+  options.cancel = cancel_;
+  options.max_steps = std::max(1L, (most_ - evaluations_) / evaluations_a_step);
+  return options;
+}
+
+std::optional<MotionState> Flow::drawn() {
+  try {
+    SimulationOptions options;
+    options.rate = 0;
+    options.measures = false;
+    options.cancel = cancel_;
+    const Simulator simulator(mechanism_, options);
+    if (simulator.run().time.empty()) return {};
+    return sampled(model_, simulator.run(), 0, 0);
+  } catch (const SceneError& error) {
+    trouble_ = error.what();
+    return {};
+  }
+}
+
+std::optional<MotionState> Flow::carried(const MotionState& state, double time) {
+  try {
+    const MotionState still{time, state.q, Eigen::VectorXd::Zero(model_.system.nv)};
+    const Simulator simulator(mechanism_, from_state(still, 1e-8));
+    if (simulator.run().time.empty()) return {};
+    return sampled(model_, simulator.run(), 0, time);
+  } catch (const SceneError& error) {
+    trouble_ = error.what();
+    return {};
+  }
+}
+
+std::optional<Passage> Flow::pass(const MotionState& from, double duration, double tolerance) {
+  if (spent() || cancelled()) return {};
+  try {
+    SimulationOptions options = from_state(from, tolerance);
+    options.duration = duration;
+    Simulator simulator(mechanism_, options);
+    const double begin = simulator.time();
+    const bool well = simulator.advance(begin + duration, true);
+    const Run& run = simulator.run();
+    evaluations_ += std::max(1L, run.statistics.evaluations);
+    if (!well) {
+      trouble_ = run.message;
+      if (run.statistics.steps >= options.max_steps) evaluations_ = std::max(evaluations_, most_);
+      return {};
+    }
+    method_ = run.method;
+    return Passage{sampled(model_, run, 0, from.time),
+                   sampled(model_, run, run.time.size() - 1, from.time + duration)};
+  } catch (const SceneError& error) {
+    trouble_ = error.what();
+    return {};
+  }
+}
+
+Run Flow::record(const MotionState& from, double duration, int samples, double tolerance) {
+  try {
+    SimulationOptions options = from_state(from, tolerance);
+    options.duration = duration;
+    options.rate = samples / duration;
+    options.measures = true;
+    options.max_steps = SimulationOptions{}.max_steps;
+    Simulator simulator(mechanism_, options);
+    const bool well = simulator.advance(simulator.time() + duration * (1 + 1e-12));
+    evaluations_ += simulator.run().statistics.evaluations;
+    if (well && simulator.run().time.size() == static_cast<std::size_t>(samples) + 1) return simulator.run();
+    trouble_ = simulator.run().message;
+  } catch (const SceneError& error) {
+    trouble_ = error.what();
+  }
+  return {};
+}
+
+} // namespace flyball

@@ -1,0 +1,21 @@
+// Mean and extremes over a period of what a sampled motion recorded.
+#pragma once
+
+#include "engine/periodic/periodic_state.hpp"
+
+#include <span>
+
+namespace flyball {
+
+// Of values at even distances over a period, the last one that of the first again. The mean by the
+// trapezoidal rule, which a smooth periodic function makes exact; extremes of polynomials of degree six
+// through the samples about. `error` is what half of the samples would have told otherwise.
+PeriodicRange range_over_period(std::span<const double> values);
+
+// Fills coordinates, torques and measures, in the run's order.
+void fill_ranges(const Run& run, PeriodicState& out);
+
+// The same of another approximation of the orbit: errors become what the two differ by, at least.
+void compare_ranges(const PeriodicState& other, PeriodicState& out);
+
+} // namespace flyball

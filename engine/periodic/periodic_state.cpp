@@ -1,0 +1,404 @@
+#include "engine/periodic/periodic_state.hpp"
+
+#include "engine/dynamics/joined.hpp"
+#include "engine/linear/interruption.hpp"
+#include "engine/linear/spectral.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/periodic/orbit_ranges.hpp"
+#include "engine/periodic/shooting.hpp"
+#include "engine/stability/floquet.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+constexpr int most_turns = 240;       // of a drive in a period
+constexpr int settling_periods = 200; // of a motion that is to come near a periodic one
+constexpr double settling = 1e-8;     // tolerance of its steps
+constexpr double settled = 1e-3;      // scaled: from here on it is Newton's method's
+constexpr int longest_multiple = 4;   // of the drives' period that is looked for
+constexpr double push_off = 0.02;     // scaled, from an unstable one
+constexpr double strong_growth = 1e3; // in a segment
+constexpr double inexact = 1e-4;      // relative error of a multiplier: too much
+constexpr int frozen_segments = 8;    // of a guess that stands as drawn
+constexpr int samples_a_turn = 64, least_samples = 256, most_samples = 8192;
+
+double tolerance_of(const Flow& flow) {
+  return flow.is_stiff() ? 1e-10 : 1e-12;
+}
+
+// The period of the drives, or why there is none.
+struct DrivePeriod {
+  double period = 0, fastest = 0; // s; rad/s
+  std::string trouble;            // a sentence
+};
+
+DrivePeriod drive_period(const MotionModel& model) {
+  DrivePeriod out;
+  std::vector<double> speeds;
+  std::vector<std::string> names;
+  for (const DrivenCoordinate& d : model.system.drives) {
+    const auto l = static_cast<std::size_t>(d.link);
+    const Link& link = model.system.links[l];
+    const double speed = model.parameters.links[l].speed;
+    if (speed == 0) continue;
+    const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+    names.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)));
+    if (link.type != LinkType::revolute) {
+      out.trouble = names.back() + " slides on and on: no motion with it comes back.";
+      return out;
+    }
+    speeds.push_back(speed);
+    out.fastest = std::max(out.fastest, std::abs(speed));
+  }
+  if (speeds.empty()) {
+    out.trouble = "No drive turns at a given speed, so that there is no period to look for.";
+    return out;
+  }
+  const auto period = common_period(speeds, most_turns);
+  if (period)
+    out.period = *period;
+  else
+    out.trouble = "The speeds of " +
+                  word_list(std::vector<std::string_view>(names.begin(), names.end()), "and") +
+                  " have no common period of at most " + std::to_string(most_turns) +
+                  " turns: their motion is quasi-periodic and never comes back.";
+  return out;
+}
+
+struct Candidate {
+  Orbit orbit;
+  Monodromy beside;
+  ShootingOptions how;
+  int periods = 1; // of the drives
+  std::optional<bool> stable;
+};
+
+class Search {
+ public:
+  Search(const Mechanism& mechanism, const PeriodicOptions& options)
+      : options_(options), flow_(mechanism, options.patience, options.cancel),
+        drives_(drive_period(flow_.model())) {}
+
+  PeriodicState run() {
+    PeriodicState out;
+    if (has_friction(flow_.model().mechanism)) {
+      out.status = PeriodicStatus::not_periodic;
+      out.message = "Periodic motions are not looked for where dry friction sticks and slips; the motion "
+                    "beside shows them.";
+      return out;
+    }
+    if (!drives_.trouble.empty()) {
+      out.status = PeriodicStatus::not_periodic;
+      out.message = drives_.trouble;
+      return out;
+    }
+    const std::optional<Candidate> found = find();
+    out.evaluations = flow_.evaluations();
+    if (!found) {
+      refuse(out);
+      return out;
+    }
+    tell(*found, out);
+    return out;
+  }
+
+ private:
+  double rate() const { return drives_.fastest; }
+
+  // A stable one where a motion leads to it, else the one nearest to the drawn pose.
+  std::optional<Candidate> find() {
+    const auto start = flow_.drawn();
+    if (!start) {
+      end_ = flow_.cancelled() ? ShootingEnd::cancelled : ShootingEnd::no_motion;
+      return {};
+    }
+    std::optional<Candidate> first = attempt({*start}, 1);
+    if (!first && end_ != ShootingEnd::pumped)
+      if (const auto guess = frozen(*start); !guess.empty()) first = attempt(guess, 1);
+    if (options_.nearest || (first && first->stable != false) || flow_.spent() || flow_.cancelled())
+      return first;
+    const auto [state, periods] = settle(first ? pushed_off(*first) : *start);
+    if (!state) return first;
+    auto second = attempt({*state}, 1);
+    if ((!second || second->stable == false) && periods > 1) {
+      if (auto longer = attempt({*state}, periods)) second = std::move(longer);
+    }
+    if (!second || (first && second->stable == false)) return first;
+    left_first_ = first.has_value();
+    return second;
+  }
+
+  std::optional<Candidate> attempt(const std::vector<MotionState>& guess, int periods) {
+    Candidate c;
+    c.periods = periods;
+    c.how.period = drives_.period * periods;
+    c.how.rate = rate();
+    if (!flow_.pass(guess.front(), c.how.period / 16, settling)) { // finds the method
+      end_ = broken();
+      return {};
+    }
+    c.how.tolerance = tolerance_of(flow_);
+    c.orbit = shoot(flow_, guess, c.how);
+    end_ = c.orbit.end;
+    if (c.orbit.end != ShootingEnd::converged) return {};
+    auto beside = monodromy(flow_, c.orbit, c.how);
+    // Where much grows within a segment, differences tell nothing: shorter ones keep the digits.
+    for (const int segments : {4, 16, 64})
+      if (beside && grows_too_much(*beside, static_cast<int>(c.orbit.nodes.size())) &&
+          segments > static_cast<int>(guess.size()))
+        divide(c, segments, beside);
+    if (!beside) {
+      end_ = broken();
+      return {};
+    }
+    c.beside = std::move(*beside);
+    c.stable = c.beside.multipliers.empty()
+                   ? std::optional(true)
+                   : stable_by_multipliers(c.beside.multipliers, c.beside.error, c.orbit.neutral);
+    return c;
+  }
+
+  static bool grows_too_much(const Monodromy& beside, int segments) {
+    if (beside.multipliers.empty()) return false;
+    const double size = std::abs(beside.multipliers.front());
+    return size > std::pow(strong_growth, segments) || beside.error > inexact * std::max(1., size);
+  }
+
+  // The same orbit in more segments.
+  void divide(Candidate& c, int segments, std::optional<Monodromy>& beside) {
+    std::vector<MotionState> states{c.orbit.nodes.front().base()};
+    for (int i = 1; i < segments; ++i) {
+      const auto passage = flow_.pass(states.back(), c.how.period / segments, c.how.tolerance);
+      if (!passage) return;
+      states.push_back(passage->to);
+    }
+    Orbit divided = shoot(flow_, states, c.how);
+    if (divided.end != ShootingEnd::converged) return;
+    auto better = monodromy(flow_, divided, c.how);
+    if (!better) return;
+    c.orbit = std::move(divided);
+    beside = std::move(better);
+  }
+
+  // As drawn at every phase.
+  std::vector<MotionState> frozen(const MotionState& start) {
+    std::vector<MotionState> out{start};
+    for (int i = 1; i < frozen_segments; ++i) {
+      const auto next = flow_.carried(out.back(), drives_.period * i / frozen_segments);
+      if (!next) return {};
+      out.push_back(*next);
+    }
+    return out;
+  }
+
+  // Off an unstable one, the way it is left.
+  MotionState pushed_off(const Candidate& c) {
+    const auto modes = eigenvectors(c.beside.matrix);
+    const StateChart& node = c.orbit.nodes.front();
+    if (!modes) return node.base();
+    Eigen::Index worst = 0;
+    modes->values.cwiseAbs().maxCoeff(&worst);
+    Eigen::VectorXd way = modes->vectors.col(worst).real();
+    if (way.norm() < 0.1) way = modes->vectors.col(worst).imag();
+    return node.displaced(push_off * way / std::max(way.lpNorm<Eigen::Infinity>(), 1e-300));
+  }
+
+  struct Settling {
+    std::optional<MotionState> state;
+    int periods = 1; // after so many of the drives it is nearly where it was
+  };
+  // Where a motion comes to, period by period.
+  Settling settle(MotionState state) {
+    std::vector<MotionState> past{state};
+    int best = 1; // of the last periods, after so many it was nearest to where it had been
+    for (int k = 1; k <= settling_periods; ++k) {
+      const auto passage = flow_.pass(past.back(), drives_.period, settling);
+      if (!passage) return {};
+      MotionState now = passage->to;
+      now.time = state.time;
+      const StateChart here(flow_.problem(), now, rate(), {});
+      double nearest = std::numeric_limits<double>::infinity();
+      for (int p = 1; p <= std::min(k, longest_multiple); ++p) {
+        const double away = here.distance(past[past.size() - static_cast<std::size_t>(p)]);
+        if (away < settled) return {std::move(now), p};
+        if (away < 0.5 * nearest) {
+          nearest = away;
+          best = p;
+        }
+      }
+      past.push_back(std::move(now));
+    }
+    return {past.back(), best};
+  }
+
+  ShootingEnd broken() const {
+    return flow_.cancelled() ? ShootingEnd::cancelled
+           : flow_.spent()   ? ShootingEnd::spent
+                             : ShootingEnd::no_motion;
+  }
+
+  void refuse(PeriodicState& out) const {
+    const std::string period = rounded_text(drives_.period, 6) + " s";
+    switch (flow_.spent() ? ShootingEnd::spent : end_) {
+    case ShootingEnd::pumped:
+      out.status = PeriodicStatus::not_periodic;
+      out.message = "No periodic motion either: the drives push in step with a motion that nothing damps or "
+                    "holds, and it grows without end. Some damping, or another speed, gives it an end.";
+      return;
+    case ShootingEnd::no_motion:
+      out.message = "No periodic motion was found: the motion does not last a period of " + period + ": " +
+                    flow_.trouble();
+      break;
+    case ShootingEnd::spent:
+      out.message = "No periodic motion was found within " + std::to_string(flow_.most_evaluations()) +
+                    " evaluations of the equations of motion; the period is " + period + ".";
+      break;
+    case ShootingEnd::cancelled: out.message = "Looking for a periodic motion was cancelled."; break;
+    case ShootingEnd::converged:
+    case ShootingEnd::diverged:
+      out.message = "No periodic motion with the period of the drives, " + period +
+                    ", was found from the drawn pose, nor from where a motion from there came in " +
+                    std::to_string(settling_periods) + " periods.";
+    }
+    if (out.message.back() != '.') out.message += ".";
+  }
+
+  void tell(const Candidate& c, PeriodicState& out) {
+    out.period = c.orbit.period;
+    out.drive_periods = c.periods;
+    out.residual = c.orbit.residual;
+    out.iterations = c.orbit.iterations;
+    out.history = c.orbit.history;
+    out.segments = static_cast<int>(c.orbit.nodes.size());
+    out.stable = c.stable;
+    out.stability_reason =
+        c.orbit.neutral > 0 && c.stable != false ? StabilityReason::neutral : StabilityReason::floquet;
+    out.floquet.period = c.orbit.period;
+    out.floquet.multipliers = c.beside.multipliers;
+    out.floquet.error = c.beside.error;
+    for (const auto& mu : out.floquet.multipliers)
+      if (std::abs(mu) > 1e-9 * std::abs(out.floquet.multipliers.front()))
+        out.floquet.growth.push_back(std::log(std::abs(mu)) / c.orbit.period);
+    const MotionState& start = c.orbit.nodes.front().base();
+    out.start = name_state(flow_.model(), 0, start.q, start.u);
+    if (!measure(c, out)) {
+      out.message = "A periodic motion was found, but not what it measures: " + flow_.trouble();
+      return;
+    }
+    out.evaluations = flow_.evaluations();
+    out.status = PeriodicStatus::found;
+    out.message = words(c, out);
+  }
+
+  int samples(const Candidate& c) const {
+    const int turns =
+        std::max(1, static_cast<int>(std::lround(rate() * c.orbit.period / (2 * std::numbers::pi))));
+    int n = least_samples;
+    while (n < std::min(samples_a_turn * turns, most_samples))
+      n *= 2;
+    return n;
+  }
+
+  // A period of the orbit, segment by segment, for an unstable one would be left.
+  Run recorded(const Orbit& orbit, int samples, double tolerance) {
+    const auto m = static_cast<int>(orbit.nodes.size());
+    const int each = (samples + m - 1) / m;
+    Run whole;
+    for (const StateChart& node : orbit.nodes) {
+      const Run part = flow_.record(node.base(), orbit.period / m, each, tolerance);
+      if (part.time.empty()) return {};
+      whole = whole.time.empty() ? part : joined(whole, whole.time.size() - 1, part);
+    }
+    return whole;
+  }
+
+  // Ranges, with the errors that the periodic motion of coarser steps tells.
+  bool measure(const Candidate& c, PeriodicState& out) {
+    auto run = std::make_shared<Run>(recorded(c.orbit, samples(c), c.how.tolerance));
+    if (run->time.empty()) return false;
+    fill_ranges(*run, out);
+    ShootingOptions coarse = c.how;
+    coarse.tolerance = 100 * c.how.tolerance;
+    std::vector<MotionState> states;
+    for (const StateChart& node : c.orbit.nodes)
+      states.push_back(node.base());
+    const Orbit other = shoot(flow_, states, coarse);
+    PeriodicState beside;
+    if (other.end == ShootingEnd::converged)
+      fill_ranges(recorded(other, samples(c), coarse.tolerance), beside);
+    if (beside.coordinates.size() == out.coordinates.size()) compare_ranges(beside, out);
+    for (PeriodicCoordinate& coordinate : out.coordinates)
+      coordinate.range.error += c.orbit.residual * (coordinate.angle ? 1 : flow_.model().parameters.length);
+    out.motion = std::move(run);
+    return true;
+  }
+
+  std::string words(const Candidate& c, const PeriodicState& out) const {
+    std::string text =
+        "It moves periodically with the drives, with a period of " + rounded_text(out.period, 6) + " s";
+    if (c.periods > 1) text += ", " + std::to_string(c.periods) + " times that of the drives";
+    text += ".";
+    if (out.floquet.multipliers.empty())
+      text += " Nothing moves freely: the drives prescribe all of it.";
+    else if (out.stable == false)
+      text += " It is unstable: " + way_out(out.floquet.multipliers.front());
+    else if (c.orbit.neutral > 0)
+      text += " Nothing resists some direction, so that others lie beside it.";
+    else if (!out.stable)
+      text += " Whether it is stable is too close to tell.";
+    else if (out.floquet.growth.front() > -1e-7 / out.period)
+      text += " Motions beside it neither grow nor die out.";
+    else
+      text += " It is stable: motions beside it die out.";
+    if (left_first_)
+      text += " The one nearest to the drawn pose is unstable; a motion that leaves it comes to this one.";
+    return text;
+  }
+
+  static std::string way_out(std::complex<double> mu) {
+    const std::string size = rounded_text(std::abs(mu), 6);
+    if (std::abs(mu.imag()) > 1e-6 * std::abs(mu))
+      return "swings beside it, with a period of their own, grow " + size + " times in each of its own.";
+    if (mu.real() < 0)
+      return "a motion beside it leaves to either side in turn, " + size + " times as far after each period.";
+    return "a motion beside it leaves, " + size + " times as far after each period.";
+  }
+
+  const PeriodicOptions& options_;
+  Flow flow_;
+  DrivePeriod drives_;
+  ShootingEnd end_ = ShootingEnd::diverged; // of the last attempt
+  bool left_first_ = false;
+};
+
+} // namespace
+
+std::string_view word(PeriodicStatus status) {
+  switch (status) {
+  case PeriodicStatus::found: return "found";
+  case PeriodicStatus::not_found: return "not_found";
+  case PeriodicStatus::not_periodic: return "not_periodic";
+  }
+  return "";
+}
+
+PeriodicState find_periodic_state(const Mechanism& mechanism, const PeriodicOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  PeriodicState out;
+  try {
+    const Interruptible scope(options.cancel);
+    out = Search(mechanism, options).run();
+  } catch (const Interrupted&) {
+    out = {};
+    out.message = "Looking for a periodic motion was cancelled.";
+  }
+  out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,78 @@
+// Periodic steady states: where drives at constant speed make the balance turn nothing stands still, but
+// there are motions that come back to themselves after a period of the drives. This finds one, with the mean
+// and range of everything over a period, and says by its Floquet multipliers whether it is stable.
+#pragma once
+
+#include "engine/dynamics/simulation.hpp"
+#include "engine/solve/solution.hpp"
+
+namespace flyball {
+
+struct PeriodicOptions {
+  bool nearest = false; // the one by Newton's method from the drawn pose, stable or not
+  // What the search may take: one is some seconds by the size of the mechanism, counted in evaluations of the
+  // equations of motion, so that every run finds the same.
+  double patience = 1;
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+enum class PeriodicStatus {
+  found,        // with `stable == false` an unstable one
+  not_found,    // though there may be one; the message says what was tried
+  not_periodic, // the drives do not return together, or nothing is periodic where they pump a motion up
+};
+std::string_view word(PeriodicStatus status);
+
+// Of what changes over a period. Not numbers where it is undefined somewhere.
+struct PeriodicRange {
+  double mean = 0, least = 0, most = 0;
+  double error = 0; // estimated, absolute, of each
+};
+
+// Of a joint; rad or m, as it labels it. An angle that goes on by whole turns a period counts less its even
+// share of them.
+struct PeriodicCoordinate {
+  std::string joint;
+  int index = 0, count = 1;
+  bool angle = false, dependent = false;
+  int turns = 0; // a period
+  PeriodicRange range;
+};
+
+struct PeriodicMeasure {
+  std::string name, unit;
+  PeriodicRange range;
+};
+
+// N m or N, by the drive, positive along its coordinate.
+struct PeriodicTorque {
+  std::string joint;
+  int index = 0, count = 1;
+  bool angle = true;
+  PeriodicRange range;
+};
+
+struct PeriodicState {
+  PeriodicStatus status = PeriodicStatus::not_found;
+  std::string message;                         // always sentences
+  double period = 0;                           // s
+  int drive_periods = 1;                       // of the drives' common period, in one of the motion's
+  SimulationState start;                       // at the drawn phase
+  std::vector<PeriodicCoordinate> coordinates; // free ones, in the scene's order
+  std::vector<PeriodicTorque> drive_torques;
+  std::vector<PeriodicMeasure> measures;
+  double residual = 0; // by how much it fails to come back: the largest scaled coordinate or rate
+  std::optional<bool> stable;
+  std::optional<StabilityReason> stability_reason; // floquet or neutral
+  Floquet floquet;                                 // without multipliers where nothing moves freely
+  int iterations = 0, segments = 1;
+  std::vector<double> history; // residuals
+  long evaluations = 0;        // of the equations of motion
+  double run_time_s = 0;
+  std::shared_ptr<const Run> motion; // a period, evenly sampled from the drawn phase on
+};
+
+// Throws SceneError for a mechanism that cannot be compiled.
+PeriodicState find_periodic_state(const Mechanism& mechanism, const PeriodicOptions& options = {});
+
+} // namespace flyball

@@ -1,0 +1,261 @@
+#include "engine/periodic/shooting.hpp"
+
+#include "engine/linear/spectral.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+constexpr double closed = 1e-11;         // scaled gap: what is left is rounding
+constexpr double nearly_closed = 1e-8;   // and so it is here, where an iteration makes it no less
+constexpr double newton_step = 1e-3;     // scaled, of differences that only Newton's method rests on:
+constexpr double newton_tolerance = 1e3; // times the tolerance is enough for them
+constexpr double largest_step = 0.5;     // scaled, of the coordinates in an iteration
+constexpr double singular = 1e-7;        // of the largest singular value: differences are no better
+constexpr double unreachable = 0.1;      // of the gap: so much of it is no step's to close
+constexpr double multiplier_step = 4e-3; // scaled, at first
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+// d(coordinates of `to` after `duration`) / d(coordinates of `from`), by central differences.
+std::optional<Matrix> differences(Flow& flow, const StateChart& from, const StateChart& to, double duration,
+                                  double tolerance, double step) {
+  Matrix out(to.size(), from.size());
+  for (Eigen::Index k = 0; k < from.size(); ++k) {
+    const auto beside = [&](double h) {
+      return flow.pass(from.displaced(h * Vector::Unit(from.size(), k)), duration, tolerance);
+    };
+    const auto forth = beside(step), back = forth ? beside(-step) : std::nullopt;
+    if (!back) return {};
+    out.col(k) = (to.coordinates(forth->to) - to.coordinates(back->to)) / (2 * step);
+  }
+  return out;
+}
+
+class Shooter {
+ public:
+  Shooter(Flow& flow, const ShootingOptions& options) : flow_(flow), options_(options) {
+    orbit_.period = options.period;
+  }
+
+  Orbit run(const std::vector<MotionState>& guess) {
+    if (!place(guess)) return ended(broken());
+    for (;;) {
+      const double gap = largest_gap();
+      orbit_.residual = gap;
+      orbit_.history.push_back(gap);
+      const bool still = orbit_.iterations > 0 && gap > 0.5 * orbit_.history.end()[-2];
+      if (gap <= closed || (gap <= nearly_closed && still)) return ended(ShootingEnd::converged);
+      if (orbit_.iterations == options_.iterations) return ended(ShootingEnd::diverged);
+      if (!linearise()) return ended(broken());
+      Vector step;
+      if (!solve(step)) return ended(ShootingEnd::pumped);
+      if (!advance(step, gap))
+        return ended(gap <= nearly_closed ? ShootingEnd::converged
+                     : moved_             ? ShootingEnd::diverged
+                                          : broken());
+      ++orbit_.iterations;
+    }
+  }
+
+ private:
+  Orbit ended(ShootingEnd end) {
+    orbit_.end = end;
+    return std::move(orbit_);
+  }
+  ShootingEnd broken() const {
+    return flow_.cancelled() ? ShootingEnd::cancelled
+           : flow_.spent()   ? ShootingEnd::spent
+                             : ShootingEnd::no_motion;
+  }
+  std::size_t segments() const { return orbit_.nodes.size(); }
+  double duration() const { return orbit_.period / static_cast<double>(segments()); }
+  const StateChart& after(std::size_t i) const { return orbit_.nodes[(i + 1) % segments()]; }
+
+  // Takes states as the nodes, their loops closed, and looks where each segment ends.
+  bool place(const std::vector<MotionState>& states) {
+    std::vector<StateChart> nodes;
+    std::vector<MotionState> ends;
+    for (const MotionState& state : states) {
+      const auto passage =
+          flow_.pass(state, orbit_.period / static_cast<double>(states.size()), options_.tolerance);
+      if (!passage) return false;
+      nodes.emplace_back(flow_.problem(), passage->from, options_.rate, options_.without);
+      ends.push_back(passage->to);
+    }
+    orbit_.nodes = std::move(nodes);
+    ends_ = std::move(ends);
+    return true;
+  }
+
+  double largest_gap() const {
+    double gap = 0;
+    for (std::size_t i = 0; i < segments(); ++i)
+      gap = std::max(gap, after(i).distance(ends_[i]));
+    return gap;
+  }
+
+  // J_i s_i - s_(i+1) + p_i dT = -r_i, and the phase of a motion without one of its own.
+  bool linearise() {
+    const Eigen::Index n = orbit_.nodes.front().size(), m = static_cast<Eigen::Index>(segments());
+    const Eigen::Index extra = options_.find_period ? 1 : 0;
+    matrix_.setZero(n * m + extra, n * m + extra);
+    gaps_.setZero(n * m + extra);
+    for (Eigen::Index i = 0; i < m; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const auto map = differences(flow_, orbit_.nodes[at], after(at), duration(),
+                                   newton_tolerance * options_.tolerance, newton_step);
+      if (!map) return false;
+      matrix_.block(n * i, n * i, n, n) += *map;
+      matrix_.block(n * i, n * ((i + 1) % m), n, n) -= Matrix::Identity(n, n);
+      gaps_.segment(n * i, n) = after(at).coordinates(ends_[at]);
+      if (!options_.find_period) continue;
+      const auto going = velocity(ends_[at], after(at));
+      if (!going) return false;
+      matrix_.block(n * i, n * m, n, 1) = *going / static_cast<double>(m);
+    }
+    if (extra == 0) return true;
+    const auto begin = velocity(orbit_.nodes.front().base(), orbit_.nodes.front());
+    if (!begin) return false;
+    matrix_.block(n * m, 0, 1, n) = begin->transpose() / std::max(begin->norm(), 1e-300);
+    return true;
+  }
+
+  // The rate at which a chart's coordinates change there, in the motion.
+  std::optional<Vector> velocity(const MotionState& state, const StateChart& chart) {
+    const double dt = 1e-4 / options_.rate;
+    const auto once = flow_.pass(state, dt, options_.tolerance),
+               twice = once ? flow_.pass(state, 2 * dt, options_.tolerance) : std::nullopt;
+    if (!twice) return {};
+    const Vector x = chart.coordinates(once->from);
+    return (4 * (chart.coordinates(once->to) - x) - (chart.coordinates(twice->to) - x)) / (2 * dt);
+  }
+
+  // The shortest step that closes the gaps. False where no step closes much of them.
+  bool solve(Vector& step) {
+    step.setZero(matrix_.cols());
+    if (matrix_.size() == 0) return true;
+    const auto svd = singular_vectors(matrix_);
+    if (!svd) return false;
+    const double least = singular * std::max(1., svd->values[0]);
+    const Eigen::Index rank = (svd->values.array() > least).count();
+    orbit_.neutral = static_cast<int>(svd->values.size() - rank);
+    const Vector along = svd->left.transpose() * gaps_;
+    if (along.tail(along.size() - rank).norm() > unreachable * gaps_.norm()) return false;
+    step = -svd->right.leftCols(rank) * along.head(rank).cwiseQuotient(svd->values.head(rank));
+    return true;
+  }
+
+  // The longest of the parts 1, 1/2, ... of a step after which the gaps are less.
+  bool advance(const Vector& step, double gap) {
+    const Eigen::Index n = orbit_.nodes.front().size(), places = orbit_.nodes.front().positions();
+    double longest = 0;
+    for (std::size_t i = 0; i < segments(); ++i)
+      longest =
+          std::max(longest, step.segment(n * static_cast<Eigen::Index>(i), places).lpNorm<Eigen::Infinity>());
+    const double period = orbit_.period;
+    const std::vector<StateChart> nodes = orbit_.nodes;
+    const std::vector<MotionState> ends = ends_;
+    double part = longest > largest_step ? largest_step / longest : 1;
+    if (options_.find_period)
+      part = std::min(part, 0.2 * period / std::max(std::abs(step[step.size() - 1]), 1e-300));
+    moved_ = false;
+    for (int halved = 0; halved < 6; ++halved, part /= 2) {
+      if (options_.find_period) orbit_.period = period + part * step[step.size() - 1];
+      std::vector<MotionState> states;
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        states.push_back(nodes[i].displaced(part * step.segment(n * static_cast<Eigen::Index>(i), n)));
+        if (options_.find_period)
+          states.back().time = orbit_.period * static_cast<double>(i) / static_cast<double>(nodes.size());
+      }
+      if (place(states)) {
+        moved_ = true;
+        if (largest_gap() < gap) return true;
+      } else if (flow_.spent() || flow_.cancelled()) {
+        moved_ = false;
+        break;
+      }
+    }
+    orbit_.period = period;
+    orbit_.nodes = nodes;
+    ends_ = ends;
+    return false;
+  }
+
+  Flow& flow_;
+  const ShootingOptions& options_;
+  Orbit orbit_;
+  std::vector<MotionState> ends_; // of the segments
+  Matrix matrix_;
+  Vector gaps_;
+  bool moved_ = false; // some part of the last step led to motions that last
+};
+
+// Extrapolated differences of a segment, and the same a level coarser.
+struct Extrapolated {
+  Matrix best, coarser;
+};
+std::optional<Extrapolated> extrapolate(Flow& flow, const StateChart& from, const StateChart& to,
+                                        double duration, double tolerance) {
+  std::optional<Extrapolated> out;
+  double least = 0;
+  // Shorter steps where the map is too bent for longer ones.
+  for (const double h : {multiplier_step, multiplier_step / 100}) {
+    const auto d1 = differences(flow, from, to, duration, tolerance, h);
+    const auto d2 = d1 ? differences(flow, from, to, duration, tolerance, h / 2) : std::nullopt;
+    const auto d3 = d2 ? differences(flow, from, to, duration, tolerance, h / 4) : std::nullopt;
+    if (!d3) return out;
+    const Matrix once = (4 * *d2 - *d1) / 3, twice = (4 * *d3 - *d2) / 3;
+    Extrapolated now{twice + (twice - once) / 15, twice};
+    const double changed =
+        (now.best - now.coarser).size() > 0 ? (now.best - now.coarser).cwiseAbs().maxCoeff() : 0.;
+    const double size = now.best.size() > 0 ? std::max(1., now.best.cwiseAbs().maxCoeff()) : 1.;
+    if (!out || changed < least) {
+      least = changed;
+      out = std::move(now);
+    }
+    if (least <= 1e-7 * size) break;
+  }
+  return out;
+}
+
+} // namespace
+
+Orbit shoot(Flow& flow, const std::vector<MotionState>& guess, const ShootingOptions& options) {
+  return Shooter(flow, options).run(guess);
+}
+
+std::optional<Monodromy> monodromy(Flow& flow, const Orbit& orbit, const ShootingOptions& options) {
+  const std::size_t m = orbit.nodes.size();
+  const double duration = orbit.period / static_cast<double>(m);
+  const Eigen::Index n = orbit.nodes.front().size();
+  Matrix best = Matrix::Identity(n, n), coarser = best;
+  for (std::size_t i = 0; i < m; ++i) {
+    const auto segment =
+        extrapolate(flow, orbit.nodes[i], orbit.nodes[(i + 1) % m], duration, options.tolerance);
+    if (!segment) return {};
+    best = (segment->best * best).eval();
+    coarser = (segment->coarser * coarser).eval();
+  }
+  Monodromy out;
+  out.matrix = best;
+  if (n == 0) return out;
+  auto multipliers = eigenvalues(best);
+  const auto others = eigenvalues(coarser);
+  if (!multipliers || !others) return {};
+  std::ranges::sort(*multipliers, [](const auto& a, const auto& b) {
+    return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
+  });
+  for (const auto& mu : *multipliers) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& other : *others)
+      nearest = std::min(nearest, std::abs(mu - other));
+    out.error = std::max(out.error, nearest);
+  }
+  out.multipliers = std::move(*multipliers);
+  return out;
+}
+
+} // namespace flyball

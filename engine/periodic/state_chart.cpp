@@ -1,0 +1,63 @@
+#include "engine/periodic/state_chart.hpp"
+
+#include "engine/kkt/configuration_difference.hpp"
+#include "engine/kkt/constraint_space.hpp"
+
+namespace flyball {
+
+StateChart::StateChart(const Problem& problem, MotionState base, double rate, const Eigen::MatrixXd& without)
+    : system_(&problem.system), parameters_(&problem.parameters), scaling_(&problem.scaling),
+      base_(std::move(base)), rate_(rate) {
+  const Eigen::Index n = system_->nv;
+  rates_ = Eigen::MatrixXd::Identity(n, n);
+  if (system_->rows > 0 && n > 0) {
+    Kinematics<double> k;
+    Linearization l;
+    forward<double>(*system_, *parameters_, base_.q, base_.time, k);
+    linearize_constraints(*system_, *parameters_, k, l);
+    ConstraintSpace space;
+    space.factor(scaling_->row.asDiagonal() * l.constraint * scaling_->column.asDiagonal(), 1e-9);
+    rates_ = space.basis();
+  }
+  places_ = rates_;
+  left_out_.resize(n, 0);
+  if (without.cols() == 0 || rates_.cols() == 0) return;
+  // What of the free directions is at right angles to those left out.
+  const Eigen::MatrixXd along = rates_.transpose() * without;
+  ConstraintSpace rest;
+  rest.factor(along.transpose(), 1e-9);
+  places_ = rates_ * rest.basis();
+  PivotedQr qr;
+  if (!qr.compute(along)) return;
+  left_out_ = rates_ * qr.q().leftCols(rest.rank());
+}
+
+MotionState StateChart::displaced(const Eigen::VectorXd& x) const {
+  MotionState out = base_;
+  if (size() == 0) return out;
+  retract<double>(*system_, place_change(x), out.q);
+  out.u += rate_ * scaling_->column.cwiseProduct(rates_ * x.tail(rates_.cols()));
+  return out;
+}
+
+Eigen::VectorXd StateChart::place_change(const Eigen::VectorXd& x) const {
+  return scaling_->column.cwiseProduct(places_ * x.head(places_.cols()));
+}
+
+Eigen::VectorXd StateChart::coordinates(const MotionState& state) const {
+  Eigen::VectorXd x(size());
+  if (size() == 0) return x;
+  x << places_.transpose() * scaled_difference(problem(), base_.q, state.q),
+      rates_.transpose() * (state.u - base_.u).cwiseQuotient(scaling_->column) / rate_;
+  return x;
+}
+
+double StateChart::distance(const MotionState& state) const {
+  if (size() == 0) return 0;
+  Eigen::VectorXd places = scaled_difference(problem(), base_.q, state.q);
+  places -= left_out_ * (left_out_.transpose() * places);
+  return std::max(places.lpNorm<Eigen::Infinity>(),
+                  (state.u - base_.u).cwiseQuotient(scaling_->column).lpNorm<Eigen::Infinity>() / rate_);
+}
+
+} // namespace flyball

@@ -1,0 +1,289 @@
+// Periodic steady states against exact ones.
+#include "tests/engine/dynamics_runs.hpp"
+
+#include "engine/periodic/periodic_state.hpp"
+
+#include "tests/catch.hpp"
+
+#include <complex>
+#include <numbers>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+using std::numbers::pi;
+
+namespace {
+
+const PeriodicCoordinate& coordinate(const PeriodicState& s, const std::string& joint, int index = 0) {
+  const auto found = std::ranges::find_if(
+      s.coordinates, [&](const PeriodicCoordinate& c) { return c.joint == joint && c.index == index; });
+  REQUIRE(found != s.coordinates.end());
+  return *found;
+}
+
+// A bearing block that slides in x and y on springs and dampers, and in it a disc that turns about z with its
+// mass centre `e` beside the axis: Jeffcott's rotor. Weight acts along -y.
+Mechanism jeffcott(double speed, double e = 1e-3, double damping = 40, double stiffness = 1e4,
+                   double mass = 4) {
+  Mechanism m;
+  m.gravity = {0, -9.81, 0};
+  m.bodies = {body("across", 0), body("block", 0), body("disc", mass, {e, 0, 0}, {0.01, 0.01, 0.02})};
+  m.joints = {dampened(sprung(prismatic("x", "ground", "across", {0, 0, 0}, {1, 0, 0}), stiffness), damping),
+              dampened(sprung(prismatic("y", "across", "block", {0, 0, 0}, {0, 1, 0}), stiffness), damping),
+              driven(revolute("spin", "block", "disc", {0, 0, 0}, {0, 0, 1}), speed)};
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("Jeffcott's rotor whirls as the closed form says, below and above its critical speed") {
+  const double k = 1e4, mass = 4, damping = 40, e = 1e-3;
+  const double natural = std::sqrt(k / mass), zeta = damping / (2 * mass * natural);
+  for (const double n : {0.3, 0.9, 1., 1.2, 3.}) {
+    CAPTURE(n);
+    const PeriodicState s = find_periodic_state(jeffcott(n * natural, e, damping, k, mass));
+    CAPTURE(s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    const double r = e * n * n / std::hypot(1 - n * n, 2 * zeta * n), sag = mass * 9.81 / k;
+    const PeriodicCoordinate &x = coordinate(s, "x"), &y = coordinate(s, "y");
+    CHECK_THAT(s.period, WithinRel(2 * pi / (n * natural), 1e-14));
+    CHECK_THAT(x.range.mean, WithinAbs(0, 1e-11));
+    CHECK_THAT(y.range.mean, WithinAbs(-sag, 1e-11));
+    CHECK_THAT(x.range.most, WithinAbs(r, 1e-9 * r + 1e-12));
+    CHECK_THAT(x.range.least, WithinAbs(-r, 1e-9 * r + 1e-12));
+    CHECK_THAT(y.range.most, WithinAbs(r - sag, 1e-9 * r + 1e-12));
+    CHECK(std::abs(x.range.most - r) <= x.range.error + 1e-14 * r);
+    CHECK(x.range.error < 1e-7 * r);
+    CHECK(s.stable == true);
+    // exp((-zeta +- i sqrt(1 - zeta^2)) natural T), twice each.
+    const std::complex<double> rate(-zeta * natural, natural * std::sqrt(1 - zeta * zeta)),
+        mu = std::exp(rate * s.period);
+    REQUIRE(s.floquet.multipliers.size() == 4);
+    for (const auto& found : s.floquet.multipliers)
+      CHECK(std::min(std::abs(found - mu), std::abs(found - std::conj(mu))) < 1e-7);
+    // What the drive gives on the average is what the dampers take.
+    CHECK_THAT(s.drive_torques.at(0).range.mean * n * natural,
+               WithinRel(damping * std::pow(n * natural * r, 2), 1e-8));
+  }
+}
+
+namespace {
+
+// A crank of radius r about z that moves a yoke along `axis` by r cos(speed t): a pin in a block that slides
+// across the yoke.
+Mechanism scotch_yoke(double radius, double speed, const Vec3& along) {
+  const Vec3 across = Vec3::UnitZ().cross(along), pin = radius * along;
+  Mechanism m;
+  m.bodies = {body("crank", 1), body("yoke", 1, pin), body("block", 0, pin)};
+  m.joints = {driven(revolute("spin", "ground", "crank", {0, 0, 0}), speed),
+              prismatic("stroke", "ground", "yoke", pin, along),
+              prismatic("slot", "yoke", "block", pin, across), revolute("pin", "crank", "block", pin)};
+  return m;
+}
+
+// A pendulum, drawn at `angle` from hanging, whose pivot goes up and down by r cos(speed t).
+Mechanism shaken_pendulum(double radius, double speed, double length, double damping, double angle) {
+  Mechanism m = scotch_yoke(radius, speed, Vec3::UnitY());
+  m.gravity = {0, -9.81, 0};
+  const Vec3 pivot(0, radius, 0);
+  m.bodies.push_back(body("bob", 1, pivot + length * Vec3(std::sin(angle), -std::cos(angle), 0)));
+  m.joints.push_back(dampened(revolute("swing", "yoke", "bob", pivot), damping));
+  m.joints.back().coordinates[0].drawn = angle;
+  return m;
+}
+
+// Multipliers of p'' + d p' + (g cos(angle) - r w^2 cos(angle) cos(w t)) / l p = 0, that pendulum about a
+// straight position: by Runge and Kutta's method with many steps.
+std::array<std::complex<double>, 2> mathieu_multipliers(double radius, double speed, double length,
+                                                        double damping, double angle, int turns = 1) {
+  Eigen::Matrix2d x = Eigen::Matrix2d::Identity();
+  const int steps = 40000 * turns;
+  const double h = turns * 2 * pi / speed / steps;
+  const auto rate = [&](double t, const Eigen::Matrix2d& y) -> Eigen::Matrix2d {
+    Eigen::Matrix2d a;
+    const double stiffness = std::cos(angle) * (9.81 - radius * speed * speed * std::cos(speed * t)) / length;
+    a << 0, 1, -stiffness, -damping / (length * length);
+    return a * y;
+  };
+  for (int i = 0; i < steps; ++i) {
+    const double t = i * h;
+    const Eigen::Matrix2d k1 = rate(t, x), k2 = rate(t + h / 2, x + h / 2 * k1),
+                          k3 = rate(t + h / 2, x + h / 2 * k2), k4 = rate(t + h, x + h * k3);
+    x += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  const std::complex<double> half = x.trace() / 2,
+                             root = std::sqrt(half * half - std::complex<double>(x.determinant()));
+  return {half + root, half - root};
+}
+
+void check_multipliers(const PeriodicState& s, const std::array<std::complex<double>, 2>& exact,
+                       double within) {
+  REQUIRE(s.floquet.multipliers.size() == 2);
+  for (const auto& mu : s.floquet.multipliers)
+    CHECK(std::min(std::abs(mu - exact[0]), std::abs(mu - exact[1])) <
+          within * std::max(1., std::abs(exact[0])));
+}
+
+} // namespace
+
+TEST_CASE("An oscillator on a Scotch yoke answers as the closed form says") {
+  const double r = 0.05, k = 300, mass = 3, damping = 6, natural = std::sqrt(k / mass),
+               zeta = damping / (2 * mass * natural);
+  for (const double n : {0.5, 1., 2.5}) {
+    CAPTURE(n);
+    Mechanism m = scotch_yoke(r, n * natural, Vec3::UnitX());
+    m.bodies.push_back(body("load", mass, {r, 0, 0}));
+    m.joints.push_back(
+        dampened(sprung(prismatic("shift", "yoke", "load", {r, 0, 0}, {1, 0, 0}), k), damping));
+    const PeriodicState s = find_periodic_state(m);
+    CAPTURE(s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    const double amplitude = r * n * n / std::hypot(1 - n * n, 2 * zeta * n);
+    CHECK_THAT(coordinate(s, "shift").range.most, WithinRel(amplitude, 1e-9));
+    CHECK_THAT(coordinate(s, "shift").range.least, WithinRel(-amplitude, 1e-9));
+    CHECK_THAT(coordinate(s, "stroke").range.most - coordinate(s, "stroke").range.least,
+               WithinRel(2 * r, 1e-9));
+    CHECK(s.stable == true);
+    REQUIRE(s.floquet.multipliers.size() == 2);
+  }
+}
+
+TEST_CASE("Multipliers of a shaken pendulum are Mathieu's") {
+  const double length = 0.4, damping = 0.02;
+  for (const double angle : {0., pi})
+    for (const double radius : {0.005, 0.04})
+      for (const double speed : {7., 11., 60., 300.}) {
+        CAPTURE(angle, radius, speed);
+        PeriodicOptions nearest;
+        nearest.nearest = true;
+        const PeriodicState s =
+            find_periodic_state(shaken_pendulum(radius, speed, length, damping, angle), nearest);
+        CAPTURE(s.message);
+        REQUIRE(s.status == PeriodicStatus::found);
+        const auto exact = mathieu_multipliers(radius, speed, length, damping, angle);
+        check_multipliers(s, exact, 1e-7);
+        const double size = std::max(std::abs(exact[0]), std::abs(exact[1]));
+        if (std::abs(size - 1) > 1e-4) CHECK(s.stable == (size < 1));
+      }
+}
+
+TEST_CASE("An upright pendulum stands beyond Kapitza's limit and is found below it, too") {
+  const double length = 0.4, radius = 0.01, damping = 0.01, angle = pi;
+  const double limit = std::sqrt(2 * 9.81 * length) / radius; // to first order in radius / length
+  // Beyond it, drawn a little aside.
+  const PeriodicState above =
+      find_periodic_state(shaken_pendulum(radius, 1.1 * limit, length, damping, angle - 0.05));
+  REQUIRE(above.status == PeriodicStatus::found);
+  CHECK(above.stable == true);
+  CHECK_THAT(std::abs(coordinate(above, "swing").range.mean), WithinAbs(pi, 1e-7));
+  // Below it the upright one is found, unstable, and it falls into the hanging one.
+  const Mechanism slow = shaken_pendulum(radius, 0.9 * limit, length, damping, angle - 0.05);
+  PeriodicOptions nearest;
+  nearest.nearest = true;
+  const PeriodicState below = find_periodic_state(slow, nearest);
+  REQUIRE(below.status == PeriodicStatus::found);
+  CHECK(below.stable == false);
+  CHECK_THAT(std::abs(coordinate(below, "swing").range.mean), WithinAbs(pi, 1e-7));
+  // The limit itself, where the multiplier passes 1, is the reference's.
+  const auto at = [&](double part) {
+    const auto mu = mathieu_multipliers(radius, part * limit, length, damping, angle);
+    return std::max(std::abs(mu[0]), std::abs(mu[1]));
+  };
+  CHECK(at(0.9) > 1);
+  CHECK(at(1.1) < 1);
+}
+
+TEST_CASE("A slow unstable motion keeps its digits in segments") {
+  // Upright at 1 rad/s it grows a billion times in a turn.
+  const PeriodicState s = [] {
+    PeriodicOptions nearest;
+    nearest.nearest = true;
+    return find_periodic_state(shaken_pendulum(0.1, 1.5, 0.4, 0.02, pi), nearest);
+  }();
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK(s.segments > 1);
+  CHECK(s.stable == false);
+  const auto exact = mathieu_multipliers(0.1, 1.5, 0.4, 0.02, pi);
+  CHECK_THAT(std::abs(s.floquet.multipliers.front()),
+             WithinRel(std::max(std::abs(exact[0]), std::abs(exact[1])), 1e-6));
+}
+
+TEST_CASE("A pendulum that the drive pumps up swings with twice its period") {
+  const double length = 0.4, radius = 0.03, speed = 2 * std::sqrt(9.81 / length);
+  const Mechanism m = shaken_pendulum(radius, speed, length, 0.01, 0.02);
+  PeriodicOptions nearest;
+  nearest.nearest = true;
+  const PeriodicState hanging = find_periodic_state(m, nearest);
+  REQUIRE(hanging.status == PeriodicStatus::found);
+  CHECK(hanging.stable == false);
+  CHECK(hanging.floquet.multipliers.front().real() < -1);
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK(s.drive_periods == 2);
+  CHECK(s.stable == true);
+  CHECK(coordinate(s, "swing").range.most > 0.1);
+  CHECK_THAT(coordinate(s, "swing").range.most, WithinRel(-coordinate(s, "swing").range.least, 1e-6));
+}
+
+TEST_CASE(
+    "A resonance without damping has no periodic motion, and beside it one that neither grows nor dies") {
+  const double natural = std::sqrt(1e4 / 4);
+  const PeriodicState at = find_periodic_state(jeffcott(natural, 1e-3, 0));
+  CHECK(at.status == PeriodicStatus::not_periodic);
+  CHECK_THAT(at.message, ContainsSubstring("damp"));
+  const PeriodicState beside = find_periodic_state(jeffcott(0.8 * natural, 1e-3, 0));
+  REQUIRE(beside.status == PeriodicStatus::found);
+  CHECK(beside.stable != false);
+  CHECK_THAT(coordinate(beside, "x").range.most, WithinRel(1e-3 * 0.64 / 0.36, 1e-8));
+}
+
+TEST_CASE("A Hooke joint turns its shaft unevenly by the closed form") {
+  const double angle = 0.5, inertia = 0.3, speed = 20;
+  const Vec3 out(std::cos(angle), std::sin(angle), 0);
+  Mechanism m;
+  m.bodies = {body("drive", 1, {-0.2, 0, 0}, {0.01, 0.01, 0.01}),
+              body("load", 1, 0.2 * out, {inertia, inertia, inertia})};
+  Joint hooke = joint(JointType::universal, "hooke", "drive", "load", {0, 0, 0});
+  hooke.axis = Vec3::UnitZ();
+  hooke.axis2 = Vec3(-std::sin(angle), std::cos(angle), 0);
+  m.joints = {driven(revolute("in", "ground", "drive", {-0.2, 0, 0}, Vec3::UnitX()), speed), hooke,
+              revolute("out", "ground", "load", 0.2 * out, out)};
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  const PeriodicCoordinate& turned = coordinate(s, "out");
+  CHECK(std::abs(turned.turns) == 1);
+  const double swing = std::atan((1 - std::cos(angle)) / (2 * std::sqrt(std::cos(angle))));
+  CHECK_THAT(turned.range.most - turned.range.least, WithinAbs(2 * swing, 1e-9));
+  // Output angle b with tan b = tan a / cos(angle): the drive gives inertia b'' b' / speed.
+  double most = 0;
+  const double c = std::cos(angle);
+  for (int i = 0; i < 100000; ++i) {
+    const double a = 2 * pi * i / 100000, below = 1 - std::pow(std::sin(angle) * std::cos(a), 2),
+                 ratio = c / below,
+                 bent = -c * std::pow(std::sin(angle), 2) * std::sin(2 * a) / (below * below);
+    most = std::max(most, inertia * ratio * bent * speed * speed);
+  }
+  CHECK_THAT(s.drive_torques.at(0).range.most, WithinRel(most, 1e-7));
+  CHECK_THAT(s.drive_torques.at(0).range.mean, WithinAbs(0, 1e-9 * most));
+}
+
+TEST_CASE("Where the drives have no period, or friction sticks, it is refused with the reason") {
+  Mechanism two = jeffcott(30);
+  two.bodies.push_back(body("other", 1, {0.01, 0, 0}));
+  two.joints.push_back(driven(revolute("second", "block", "other", {0, 0, 0}), 30 * std::sqrt(2.)));
+  const PeriodicState never = find_periodic_state(two);
+  CHECK(never.status == PeriodicStatus::not_periodic);
+  CHECK_THAT(never.message, ContainsSubstring("quasi-periodic"));
+  two.joints.back().coordinates[0].drive->speed = 20;
+  const PeriodicState together = find_periodic_state(two);
+  REQUIRE(together.status == PeriodicStatus::found);
+  CHECK_THAT(together.period, WithinRel(2 * pi / 10, 1e-12));
+  Mechanism still = jeffcott(30);
+  still.joints[2].coordinates[0].drive->speed = 0;
+  CHECK(find_periodic_state(still).status == PeriodicStatus::not_periodic);
+}
