@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace flyball::cli {
 namespace {
@@ -24,7 +25,7 @@ Json range_json(const PeriodicRange& range) {
 
 // As many decimals as the error leaves.
 std::string in_digits(double value, double error) {
-  const double digits = error > 0 ? std::floor(-std::log10(error)) : 12;
+  const double digits = std::isfinite(error) && error > 0 ? std::floor(-std::log10(error)) : 9;
   const int decimals = static_cast<int>(std::clamp(digits, 0., 15.));
   if (std::abs(value) < 0.5 * std::pow(10, -decimals)) value = 0; // no sign
   return fmt::format("{:.{}f}", value, decimals);
@@ -38,12 +39,13 @@ std::vector<std::string> range_row(const std::string& name, const PeriodicRange&
           in_digits(range.least, range.error),
           in_digits(range.most, range.error),
           std::string(unit),
-          fmt::format("± {:.1g}", range.error)};
+          std::isfinite(range.error) ? fmt::format("± {:.1g}", range.error) : "error not known"};
 }
 
-std::string turns_text(int turns) {
-  if (turns == 0) return "";
-  return fmt::format(", less {} {} a period", turns, std::abs(turns) == 1 ? "turn" : "turns");
+std::string advance_text(const PeriodicCoordinate& c) {
+  if (!c.goes_on()) return "";
+  return c.angle ? fmt::format(", less {:.6g} turns a period", c.advance / (2 * std::numbers::pi))
+                 : fmt::format(", less {:.6g} m a period", c.advance);
 }
 
 } // namespace
@@ -52,18 +54,21 @@ Json to_json(const PeriodicState& s) {
   const bool found = s.status == PeriodicStatus::found;
   Json out = {{"status", word(s.status)}, {"message", s.message}};
   for (const char* key :
-       {"period_s", "drive_periods", "coordinates", "drive_torques", "measures", "start", "stable",
-        "stability_reason", "floquet", "residual", "iterations", "history", "segments"})
+       {"period_s", "period_error", "drive_periods", "coordinates", "drive_torques", "measures", "start",
+        "stable", "stability_reason", "floquet", "residual", "iterations", "history", "segments"})
     out[key] = nullptr;
   out["evaluations"] = s.evaluations;
   out["run_time_s"] = s.run_time_s;
   if (!found) return out;
   out["period_s"] = number_json(s.period);
+  out["period_error"] = number_json(s.period_error);
   out["drive_periods"] = s.drive_periods;
   out["coordinates"] = Json::object();
   for (const PeriodicCoordinate& c : s.coordinates) {
     Json& entry = out["coordinates"][coordinate_label(c)] = range_json(c.range);
-    if (c.turns != 0) entry["turns"] = c.turns;
+    if (!c.goes_on()) continue;
+    entry["advance"] = number_json(c.advance);
+    entry["rate"] = range_json(c.rate);
   }
   out["drive_torques"] = Json::object();
   for (const PeriodicTorque& t : s.drive_torques)
@@ -99,8 +104,11 @@ std::string to_text(const PeriodicState& s) {
   if (s.status != PeriodicStatus::found)
     return out + fmt::format("  {} evaluations, {:.1f} ms\n", s.evaluations, s.run_time_s * 1e3);
   std::vector<std::vector<std::string>> rows{{"over a period", "mean", "min", "max", "", ""}};
-  for (const PeriodicCoordinate& c : s.coordinates)
-    rows.push_back(range_row(shown_label(c) + turns_text(c.turns), c.range, c.angle ? "rad" : "m"));
+  for (const PeriodicCoordinate& c : s.coordinates) {
+    rows.push_back(range_row(shown_label(c) + advance_text(c), c.range, c.angle ? "rad" : "m"));
+    if (c.goes_on())
+      rows.push_back(range_row(shown_label(c) + ", its rate", c.rate, c.angle ? "rad/s" : "m/s"));
+  }
   for (const PeriodicMeasure& m : s.measures)
     rows.push_back(range_row(printable(m.name), m.range, m.unit));
   for (const PeriodicTorque& t : s.drive_torques)

@@ -354,7 +354,7 @@ void rewind(Session& session) {
 void update(Session& session, double seconds) {
   if (session.playback.playing && session.motion.on) {
     advance_motion(session, seconds * session.playback.factor);
-  } else if (session.playback.playing && converged(session)) {
+  } else if (session.playback.playing && (converged(session) || periodic_motion(session))) {
     session.playback.time += seconds * session.playback.factor;
     session.moved_time = true;
   }
@@ -390,7 +390,8 @@ bool motion_beside(const Session& session) {
 }
 
 bool in_motion(const Session& session) {
-  return (session.playback.playing && (session.motion.on || converged(session))) ||
+  return (session.playback.playing &&
+          (session.motion.on || converged(session) || periodic_motion(session))) ||
          (session.study.modes.playing && moving_mode(session));
 }
 

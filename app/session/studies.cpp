@@ -26,6 +26,7 @@ void update_studies(Session& session) {
   update_response(session);
   update_band(session);
   update_friction(session);
+  update_periodic(session);
   update_spread(session);
   update_transfer(session);
   update_comparison(session);
@@ -36,7 +37,8 @@ bool studying(const Session& session) {
   return computing_motion(session) || computing_response(session) || comparing(session) ||
          study.states.running() || finding_modes(session) || computing_map(session) ||
          study.spread.samples.running() || study.transfer.found.running() || study.band.computed.running() ||
-         study.friction.report.running() || study.friction.ribbon.running();
+         study.friction.report.running() || study.friction.ribbon.running() ||
+         study.periodic.search.running();
 }
 
 } // namespace flyball

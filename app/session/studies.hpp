@@ -5,6 +5,7 @@
 #include "app/session/friction.hpp"
 #include "app/session/map.hpp"
 #include "app/session/modes.hpp"
+#include "app/session/periodic.hpp"
 #include "app/session/response.hpp"
 #include "app/session/spread.hpp"
 #include "app/session/spread_band.hpp"
@@ -28,6 +29,7 @@ struct StudyState {
   TransferState transfer;
   BandState band; // around the response curve
   FrictionState friction;
+  PeriodicStudy periodic; // in the steady state's place, whatever study is open
 };
 
 // Shows a study, in the explore mode; the same again, or none, closes it.

@@ -107,7 +107,7 @@ const std::shared_ptr<const Mechanism>& shown_mechanism(const App& app) {
 ViewFrame view_frame(const App& app) {
   ViewFrame frame;
   frame.mechanism = shown_mechanism(app).get();
-  const bool solved = converged(app);
+  const bool solved = converged(app) || (periodic_motion(app) && !app.poses.empty());
   if (app.mode == Mode::build) {
     // The answer may still be that to an earlier edit.
     if (app.tool.assembly) {

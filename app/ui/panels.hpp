@@ -36,6 +36,7 @@ void file_banner(App& app, const PanelRect& view); // over the view: what happen
 void coordinate_results(App& app);
 void measure_results(App& app);
 void friction_results(App& app); // of a mechanism with friction: its band, and what holding takes
+void periodic_results(App& app); // where a drive makes the balance turn: the motion in its place
 void solver_results(App& app);
 void pull_results(App& app); // while a hand pulls
 void body_results(App& app); // position, speed and acceleration of the selected bodies

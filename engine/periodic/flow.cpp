@@ -42,31 +42,37 @@ SimulationOptions Flow::from_state(const MotionState& state, double tolerance) c
   return options;
 }
 
-std::optional<MotionState> Flow::drawn() {
+// Where a motion with these options begins.
+std::optional<MotionState> Flow::begin(const SimulationOptions& options, double time) {
   try {
-    SimulationOptions options;
-    options.rate = 0;
-    options.measures = false;
-    options.cancel = cancel_;
     const Simulator simulator(mechanism_, options);
-    if (simulator.run().time.empty()) return {};
-    return sampled(model_, simulator.run(), 0, 0);
+    if (!simulator.run().time.empty()) return sampled(model_, simulator.run(), 0, time);
   } catch (const SceneError& error) {
     trouble_ = error.what();
-    return {};
   }
+  return {};
+}
+
+std::optional<MotionState> Flow::drawn() {
+  SimulationOptions options;
+  options.rate = 0;
+  options.measures = false;
+  options.cancel = cancel_;
+  return begin(options, 0);
+}
+
+std::optional<MotionState> Flow::steady() {
+  SimulationOptions options;
+  options.start = Start::equilibrium;
+  options.rate = 0;
+  options.measures = false;
+  options.cancel = cancel_;
+  return begin(options, 0);
 }
 
 std::optional<MotionState> Flow::carried(const MotionState& state, double time) {
-  try {
-    const MotionState still{time, state.q, Eigen::VectorXd::Zero(model_.system.nv)};
-    const Simulator simulator(mechanism_, from_state(still, 1e-8));
-    if (simulator.run().time.empty()) return {};
-    return sampled(model_, simulator.run(), 0, time);
-  } catch (const SceneError& error) {
-    trouble_ = error.what();
-    return {};
-  }
+  const MotionState still{time, state.q, Eigen::VectorXd::Zero(model_.system.nv)};
+  return begin(from_state(still, 1e-8), time);
 }
 
 std::optional<Passage> Flow::pass(const MotionState& from, double duration, double tolerance) {
@@ -91,6 +97,15 @@ std::optional<Passage> Flow::pass(const MotionState& from, double duration, doub
     trouble_ = error.what();
     return {};
   }
+}
+
+std::vector<MotionState> Flow::trace(const MotionState& from, double duration, int samples,
+                                     double tolerance) {
+  const Run run = record(from, duration, samples, tolerance);
+  std::vector<MotionState> out;
+  for (std::size_t i = 0; i < run.time.size(); ++i)
+    out.push_back(sampled(model_, run, i, run.time[i]));
+  return out;
 }
 
 Run Flow::record(const MotionState& from, double duration, int samples, double tolerance) {

@@ -28,6 +28,8 @@ class Flow {
 
   // The drawn pose carried along by the drives.
   std::optional<MotionState> drawn();
+  // The steady state.
+  std::optional<MotionState> steady();
   // The same coordinates at another time, the loops closed there; carried along by the drives.
   std::optional<MotionState> carried(const MotionState& state, double time);
   // Where a state is after `duration` (s). `tolerance` as SimulationOptions has it; nothing where there is no
@@ -36,6 +38,9 @@ class Flow {
   // The motion with all its outputs, sampled `samples` times and at its start. Without samples where it
   // fails.
   Run record(const MotionState& from, double duration, int samples, double tolerance);
+
+  // Its states alone.
+  std::vector<MotionState> trace(const MotionState& from, double duration, int samples, double tolerance);
 
   // Explicit steps keep to smaller tolerances than implicit ones do.
   bool is_stiff() const { return method_ == Integrator::bdf; }
@@ -47,8 +52,8 @@ class Flow {
   const std::string& trouble() const { return trouble_; }
 
  private:
+  std::optional<MotionState> begin(const SimulationOptions& options, double time);
   SimulationOptions from_state(const MotionState& state, double tolerance) const;
-  std::optional<MotionState> state_of(const Run& run, std::size_t sample, double time);
 
   Mechanism mechanism_;
   MotionModel model_;

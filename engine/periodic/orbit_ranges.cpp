@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
 namespace flyball {
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
 
@@ -70,23 +70,24 @@ double largest_difference(const PeriodicRange& a, const PeriodicRange& b) {
   return std::max({std::abs(a.mean - b.mean), std::abs(a.least - b.least), std::abs(a.most - b.most)});
 }
 
-// Less an even share of whole turns.
-PeriodicRange range_of_track(const CoordinateTrack& track, int& turns) {
-  if (track.rotation) // a rotation vector that turns over jumps
-    for (std::size_t i = 1; i < track.value.size(); ++i)
-      if (std::abs(track.value[i] - track.value[i - 1]) > 3) return {unknown, unknown, unknown, unknown};
-  turns = track.angle && !track.rotation
-              ? static_cast<int>(std::lround((track.value.back() - track.value.front()) / turn))
-              : 0;
-  std::vector<double> values = track.value;
-  const double share = turn * turns / static_cast<double>(values.size() - 1);
+// Of values that go on by `advance` over the period, less their even share of it.
+PeriodicRange range_without(std::vector<double> values, double advance) {
+  const double share = advance / static_cast<double>(values.size() - 1);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] -= share * static_cast<double>(i);
   return range_over_period(values);
 }
 
-void compare(const PeriodicRange& other, PeriodicRange& out) {
-  out.error += largest_difference(other, out);
+// By how much a track goes on; what comes back does so but for rounding and the steps' errors.
+double advance_of(const CoordinateTrack& track) {
+  const double advance = track.value.back() - track.value.front();
+  return std::abs(advance) > 1e-6 * (1 + std::abs(track.value.front())) ? advance : 0;
+}
+
+bool jumps(const CoordinateTrack& track) { // a rotation vector that turns over
+  for (std::size_t i = 1; track.rotation && i < track.value.size(); ++i)
+    if (std::abs(track.value[i] - track.value[i - 1]) > 3) return true;
+  return false;
 }
 
 } // namespace
@@ -103,8 +104,18 @@ PeriodicRange range_over_period(std::span<const double> values) {
 void fill_ranges(const Run& run, PeriodicState& out) {
   for (const CoordinateTrack& track : run.coordinates) {
     if (track.driven) continue;
-    PeriodicCoordinate c{track.joint, track.index, track.count, track.angle, track.dependent, 0, {}};
-    c.range = range_of_track(track, c.turns);
+    PeriodicCoordinate c{track.joint, track.index, track.count, track.angle, track.dependent, 0, {}, {}};
+    if (jumps(track)) {
+      c.range = c.rate = {unknown, unknown, unknown, unknown};
+    } else {
+      c.advance = advance_of(track);
+      std::vector<double> values = track.value;
+      if (c.goes_on() && c.angle) // from within half a turn on
+        for (double& value : values)
+          value -= track.value.front() - std::remainder(track.value.front(), 2 * std::numbers::pi);
+      c.range = range_without(std::move(values), c.advance);
+      c.rate = range_over_period(track.rate);
+    }
     out.coordinates.push_back(std::move(c));
   }
   for (const DriveTrack& track : run.drives)
@@ -114,13 +125,18 @@ void fill_ranges(const Run& run, PeriodicState& out) {
     out.measures.push_back({track.name, track.unit, range_over_period(track.value)});
 }
 
-void compare_ranges(const PeriodicState& other, PeriodicState& out) {
-  for (std::size_t i = 0; i < out.coordinates.size(); ++i)
-    compare(other.coordinates[i].range, out.coordinates[i].range);
-  for (std::size_t i = 0; i < out.drive_torques.size(); ++i)
-    compare(other.drive_torques[i].range, out.drive_torques[i].range);
-  for (std::size_t i = 0; i < out.measures.size(); ++i)
-    compare(other.measures[i].range, out.measures[i].range);
+void compare_ranges(const PeriodicState* other, PeriodicState& out) {
+  const auto compare_all = [&](const auto& theirs, auto& ours, auto range) {
+    for (std::size_t i = 0; i < ours.size(); ++i)
+      std::invoke(range, ours[i]).error +=
+          other ? largest_difference(std::invoke(range, theirs[i]), std::invoke(range, ours[i])) : unknown;
+  };
+  const PeriodicState none;
+  const PeriodicState& there = other ? *other : none;
+  compare_all(there.coordinates, out.coordinates, &PeriodicCoordinate::range);
+  compare_all(there.coordinates, out.coordinates, &PeriodicCoordinate::rate);
+  compare_all(there.drive_torques, out.drive_torques, &PeriodicTorque::range);
+  compare_all(there.measures, out.measures, &PeriodicMeasure::range);
 }
 
 } // namespace flyball

@@ -15,7 +15,8 @@ PeriodicRange range_over_period(std::span<const double> values);
 // Fills coordinates, torques and measures, in the run's order.
 void fill_ranges(const Run& run, PeriodicState& out);
 
-// The same of another approximation of the orbit: errors become what the two differ by, at least.
-void compare_ranges(const PeriodicState& other, PeriodicState& out);
+// Adds to the errors what another approximation of the orbit differs by; null: there is none, and errors are
+// not known.
+void compare_ranges(const PeriodicState* other, PeriodicState& out);
 
 } // namespace flyball

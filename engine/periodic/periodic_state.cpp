@@ -5,6 +5,7 @@
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/periodic/cycle_guess.hpp"
 #include "engine/periodic/orbit_ranges.hpp"
 #include "engine/periodic/shooting.hpp"
 #include "engine/stability/floquet.hpp"
@@ -24,6 +25,9 @@ constexpr int longest_multiple = 4;   // of the drives' period that is looked fo
 constexpr double push_off = 0.02;     // scaled, from an unstable one
 constexpr double strong_growth = 1e3; // in a segment
 constexpr double inexact = 1e-4;      // relative error of a multiplier: too much
+constexpr double least_swing = 0.01;  // scaled, of the first guess around a stable steady state
+constexpr double furthest = 64;       // times as far is the last guess of a limit cycle
+constexpr double standing = 1e-6;     // scaled: what is no further away after half a period stands still
 constexpr int frozen_segments = 8;    // of a guess that stands as drawn
 constexpr int samples_a_turn = 64, least_samples = 256, most_samples = 8192;
 
@@ -56,7 +60,8 @@ DrivePeriod drive_period(const MotionModel& model) {
     out.fastest = std::max(out.fastest, std::abs(speed));
   }
   if (speeds.empty()) {
-    out.trouble = "No drive turns at a given speed, so that there is no period to look for.";
+    if (model.system.torques.empty())
+      out.trouble = "Nothing is driven at a speed or by a torque, so that there is no period to look for.";
     return out;
   }
   const auto period = common_period(speeds, most_turns);
@@ -97,7 +102,7 @@ class Search {
       out.message = drives_.trouble;
       return out;
     }
-    const std::optional<Candidate> found = find();
+    const std::optional<Candidate> found = of_its_own() ? find_cycle() : find();
     out.evaluations = flow_.evaluations();
     if (!found) {
       refuse(out);
@@ -109,6 +114,8 @@ class Search {
 
  private:
   double rate() const { return drives_.fastest; }
+  // Nothing prescribed turns: the motion has a period of its own, if it has one.
+  bool of_its_own() const { return drives_.period == 0; }
 
   // A stable one where a motion leads to it, else the one nearest to the drawn pose.
   std::optional<Candidate> find() {
@@ -133,11 +140,52 @@ class Search {
     return second;
   }
 
+  // From where a motion comes to repeat itself, or around a stable steady state.
+  std::optional<Candidate> find_cycle() {
+    CycleOutcome began = guess_cycle(flow_, flow_.model().mechanism, options_.cancel);
+    cycle_trouble_ = began.trouble;
+    if (!began.guess) return {};
+    ShootingOptions how;
+    how.period = began.guess->period;
+    how.find_period = true;
+    how.rate = 2 * std::numbers::pi / how.period;
+    how.without = began.guess->turns_alike;
+    around_stable_ = !began.guess->state;
+    // The iteration may fall into the steady state, which comes back after any time: then from further away.
+    for (double part = 1; part <= furthest; part *= 2) {
+      auto cycle = complete({at_distance(*began.guess, part, how)}, how, 0);
+      if (cycle && !stands(*cycle)) return cycle;
+      if (!began.guess->steady || flow_.spent() || flow_.cancelled()) break;
+    }
+    return {};
+  }
+
+  // The guess `part` times as far from the steady state.
+  MotionState at_distance(const CycleGuess& guess, double part, const ShootingOptions& how) const {
+    if (!guess.steady) return *guess.state;
+    const StateChart chart(flow_.problem(), *guess.steady, how.rate, how.without);
+    return chart.displaced(guess.state ? Eigen::VectorXd(part * chart.coordinates(*guess.state))
+                                       : Eigen::VectorXd(part * least_swing * guess.swing));
+  }
+
+  bool stands(const Candidate& cycle) {
+    const StateChart& node = cycle.orbit.nodes.front();
+    const auto half = flow_.pass(node.base(), cycle.orbit.period / 2, settling);
+    return !half || node.distance(half->to) < standing;
+  }
+
   std::optional<Candidate> attempt(const std::vector<MotionState>& guess, int periods) {
+    ShootingOptions how;
+    how.period = drives_.period * periods;
+    how.rate = rate();
+    return complete(guess, how, periods);
+  }
+
+  std::optional<Candidate> complete(const std::vector<MotionState>& guess, const ShootingOptions& how,
+                                    int periods) {
     Candidate c;
     c.periods = periods;
-    c.how.period = drives_.period * periods;
-    c.how.rate = rate();
+    c.how = how;
     if (!flow_.pass(guess.front(), c.how.period / 16, settling)) { // finds the method
       end_ = broken();
       return {};
@@ -157,10 +205,28 @@ class Search {
       return {};
     }
     c.beside = std::move(*beside);
-    c.stable = c.beside.multipliers.empty()
-                   ? std::optional(true)
-                   : stable_by_multipliers(c.beside.multipliers, c.beside.error, c.orbit.neutral);
+    if (periods == 0) leave_out_phase(c);
+    c.stable = verdict(c);
     return c;
+  }
+
+  static std::optional<bool> verdict(const Candidate& c) {
+    const auto& [matrix, multipliers, error] = c.beside;
+    if (multipliers.empty()) return true;
+    // Inexact ones, as of motions that pass singular positions, tell little.
+    if (error > 1e-3 && std::abs(multipliers.front()) < 1 + 10 * error) return {};
+    return stable_by_multipliers(multipliers, error, c.orbit.neutral);
+  }
+
+  // A motion that nothing times may be anywhere along itself: that is no growth, and its multiplier 1 tells
+  // how well the others are known.
+  static void leave_out_phase(Candidate& c) {
+    auto& multipliers = c.beside.multipliers;
+    const auto phase =
+        std::ranges::min_element(multipliers, {}, [](const auto& mu) { return std::abs(mu - 1.); });
+    if (phase == multipliers.end()) return;
+    c.beside.error = std::max(c.beside.error, std::abs(*phase - 1.));
+    multipliers.erase(phase);
   }
 
   static bool grows_too_much(const Monodromy& beside, int segments) {
@@ -171,6 +237,7 @@ class Search {
 
   // The same orbit in more segments.
   void divide(Candidate& c, int segments, std::optional<Monodromy>& beside) {
+    c.how.period = c.orbit.period;
     std::vector<MotionState> states{c.orbit.nodes.front().base()};
     for (int i = 1; i < segments; ++i) {
       const auto passage = flow_.pass(states.back(), c.how.period / segments, c.how.tolerance);
@@ -242,7 +309,23 @@ class Search {
                              : ShootingEnd::no_motion;
   }
 
+  void refuse_cycle(PeriodicState& out) const {
+    if (flow_.cancelled())
+      out.message = "Looking for a limit cycle was cancelled.";
+    else if (flow_.spent())
+      out.message = "No limit cycle was found within " + std::to_string(flow_.most_evaluations()) +
+                    " evaluations of the equations of motion.";
+    else if (!cycle_trouble_.empty())
+      out.message = "No limit cycle was found. " + cycle_trouble_;
+    else if (around_stable_)
+      out.message = "No limit cycle was met around the steady state, which is stable.";
+    else
+      out.message = "No limit cycle was found: the iteration did not converge from where the motion nearly "
+                    "repeats itself.";
+  }
+
   void refuse(PeriodicState& out) const {
+    if (of_its_own()) return refuse_cycle(out);
     const std::string period = rounded_text(drives_.period, 6) + " s";
     switch (flow_.spent() ? ShootingEnd::spent : end_) {
     case ShootingEnd::pumped:
@@ -290,6 +373,13 @@ class Search {
       out.message = "A periodic motion was found, but not what it measures: " + flow_.trouble();
       return;
     }
+    if (out.motion->statistics.singular_positions > 0) { // differences tell nothing of such a passage
+      out.stable.reset();
+      out.stability_reason.reset();
+      out.floquet.multipliers.clear();
+      out.floquet.growth.clear();
+      out.floquet.error = std::numeric_limits<double>::quiet_NaN();
+    }
     out.evaluations = flow_.evaluations();
     out.status = PeriodicStatus::found;
     out.message = words(c, out);
@@ -307,7 +397,7 @@ class Search {
   // A period of the orbit, segment by segment, for an unstable one would be left.
   Run recorded(const Orbit& orbit, int samples, double tolerance) {
     const auto m = static_cast<int>(orbit.nodes.size());
-    const int each = (samples + m - 1) / m;
+    const int each = 2 * ((samples + 2 * m - 1) / (2 * m)); // even, so that every second one counts as well
     Run whole;
     for (const StateChart& node : orbit.nodes) {
       const Run part = flow_.record(node.base(), orbit.period / m, each, tolerance);
@@ -323,15 +413,21 @@ class Search {
     if (run->time.empty()) return false;
     fill_ranges(*run, out);
     ShootingOptions coarse = c.how;
+    coarse.period = c.orbit.period;
     coarse.tolerance = 100 * c.how.tolerance;
     std::vector<MotionState> states;
     for (const StateChart& node : c.orbit.nodes)
       states.push_back(node.base());
     const Orbit other = shoot(flow_, states, coarse);
     PeriodicState beside;
-    if (other.end == ShootingEnd::converged)
-      fill_ranges(recorded(other, samples(c), coarse.tolerance), beside);
-    if (beside.coordinates.size() == out.coordinates.size()) compare_ranges(beside, out);
+    if (other.end == ShootingEnd::converged) {
+      out.period_error = std::abs(other.period - c.orbit.period);
+      const Run also = recorded(other, samples(c), coarse.tolerance);
+      if (!also.time.empty()) fill_ranges(also, beside);
+    }
+    const bool known = beside.coordinates.size() == out.coordinates.size() &&
+                       beside.drive_torques.size() == out.drive_torques.size();
+    compare_ranges(known ? &beside : nullptr, out);
     for (PeriodicCoordinate& coordinate : out.coordinates)
       coordinate.range.error += c.orbit.residual * (coordinate.angle ? 1 : flow_.model().parameters.length);
     out.motion = std::move(run);
@@ -339,12 +435,18 @@ class Search {
   }
 
   std::string words(const Candidate& c, const PeriodicState& out) const {
-    std::string text =
-        "It moves periodically with the drives, with a period of " + rounded_text(out.period, 6) + " s";
+    std::string text = around_stable_ ? "Around its stable steady state lies a limit cycle, with a period of "
+                       : of_its_own() ? "It moves in a limit cycle, with a period of its own of "
+                                      : "It moves periodically with the drives, with a period of ";
+    text += rounded_text(out.period, 6) + " s";
     if (c.periods > 1) text += ", " + std::to_string(c.periods) + " times that of the drives";
     text += ".";
-    if (out.floquet.multipliers.empty())
-      text += " Nothing moves freely: the drives prescribe all of it.";
+    if (c.beside.multipliers.empty())
+      text += of_its_own() ? "" : " Nothing moves freely: the drives prescribe all of it.";
+    else if (out.motion->statistics.singular_positions > 0)
+      text +=
+          " It passes positions in which linkages could part into branches: what is beside it is not known "
+          "there, nor whether it is stable.";
     else if (out.stable == false)
       text += " It is unstable: " + way_out(out.floquet.multipliers.front());
     else if (c.orbit.neutral > 0)
@@ -374,6 +476,8 @@ class Search {
   DrivePeriod drives_;
   ShootingEnd end_ = ShootingEnd::diverged; // of the last attempt
   bool left_first_ = false;
+  bool around_stable_ = false; // a limit cycle was looked for around a stable steady state
+  std::string cycle_trouble_;  // why there is none: a sentence
 };
 
 } // namespace

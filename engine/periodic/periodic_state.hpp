@@ -1,5 +1,6 @@
 // Periodic steady states: where drives at constant speed make the balance turn nothing stands still, but
-// there are motions that come back to themselves after a period of the drives. This finds one, with the mean
+// there are motions that come back to themselves after a period of the drives. Where torques drive there are
+// such with a period of their own, where a steady state hunts: limit cycles. This finds one, with the mean
 // and range of everything over a period, and says by its Floquet multipliers whether it is stable.
 #pragma once
 
@@ -26,17 +27,20 @@ std::string_view word(PeriodicStatus status);
 // Of what changes over a period. Not numbers where it is undefined somewhere.
 struct PeriodicRange {
   double mean = 0, least = 0, most = 0;
-  double error = 0; // estimated, absolute, of each
+  double error = 0; // estimated, absolute, of each; not a number where it was not found
 };
 
-// Of a joint; rad or m, as it labels it. An angle that goes on by whole turns a period counts less its even
-// share of them.
+// Of a joint; rad or m, as it labels it. What goes on from period to period counts less its even share of
+// that.
 struct PeriodicCoordinate {
   std::string joint;
   int index = 0, count = 1;
   bool angle = false, dependent = false;
-  int turns = 0; // a period
+  double advance = 0; // rad or m a period
   PeriodicRange range;
+  PeriodicRange rate; // rad/s or m/s
+
+  bool goes_on() const { return advance != 0; }
 };
 
 struct PeriodicMeasure {
@@ -54,10 +58,11 @@ struct PeriodicTorque {
 
 struct PeriodicState {
   PeriodicStatus status = PeriodicStatus::not_found;
-  std::string message;                         // always sentences
-  double period = 0;                           // s
-  int drive_periods = 1;                       // of the drives' common period, in one of the motion's
-  SimulationState start;                       // at the drawn phase
+  std::string message;     // always sentences
+  double period = 0;       // s
+  double period_error = 0; // s, estimated; none where it is that of the drives
+  int drive_periods = 1;   // of the drives' common period, in one of the motion's; 0: of a limit cycle
+  SimulationState start;   // at the drawn phase
   std::vector<PeriodicCoordinate> coordinates; // free ones, in the scene's order
   std::vector<PeriodicTorque> drive_torques;
   std::vector<PeriodicMeasure> measures;

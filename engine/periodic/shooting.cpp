@@ -19,19 +19,34 @@ constexpr double multiplier_step = 4e-3; // scaled, at first
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-// d(coordinates of `to` after `duration`) / d(coordinates of `from`), by central differences.
-std::optional<Matrix> differences(Flow& flow, const StateChart& from, const StateChart& to, double duration,
-                                  double tolerance, double step) {
-  Matrix out(to.size(), from.size());
+// By central differences over a step along each coordinate of `from`: rates of the coordinates at the end, of
+// `to`, and at the beginning, where loops are closed again: a turn of one that moves changes the rates of
+// others in first order.
+struct Rates {
+  Matrix begin, end;
+};
+std::optional<Rates> differences(Flow& flow, const StateChart& from, const StateChart& to, double duration,
+                                 double tolerance, double step) {
+  Rates out{Matrix(from.size(), from.size()), Matrix(to.size(), from.size())};
   for (Eigen::Index k = 0; k < from.size(); ++k) {
     const auto beside = [&](double h) {
       return flow.pass(from.displaced(h * Vector::Unit(from.size(), k)), duration, tolerance);
     };
     const auto forth = beside(step), back = forth ? beside(-step) : std::nullopt;
     if (!back) return {};
-    out.col(k) = (to.coordinates(forth->to) - to.coordinates(back->to)) / (2 * step);
+    out.begin.col(k) = (from.coordinates(forth->from) - from.coordinates(back->from)) / (2 * step);
+    out.end.col(k) = (to.coordinates(forth->to) - to.coordinates(back->to)) / (2 * step);
   }
   return out;
+}
+
+// d(coordinates at the end) / d(those at the beginning). Rates of what has no momentum follow from the rest.
+std::optional<Matrix> derivative(const std::optional<Rates>& rates) {
+  if (!rates) return {};
+  if (rates->begin.size() == 0) return rates->end;
+  const auto transposed = least_squares_columns(rates->begin.transpose(), rates->end.transpose());
+  if (!transposed) return {};
+  return Matrix(transposed->transpose());
 }
 
 class Shooter {
@@ -97,7 +112,8 @@ class Shooter {
     return gap;
   }
 
-  // J_i s_i - s_(i+1) + p_i dT = -r_i, and the phase of a motion without one of its own.
+  // E_i s_i - B_(i+1) s_(i+1) + p_i dT = -r_i, where steps s_i begin with B_i s_i and end with E_i s_i, and
+  // the phase of a motion without one of its own.
   bool linearise() {
     const Eigen::Index n = orbit_.nodes.front().size(), m = static_cast<Eigen::Index>(segments());
     const Eigen::Index extra = options_.find_period ? 1 : 0;
@@ -105,11 +121,11 @@ class Shooter {
     gaps_.setZero(n * m + extra);
     for (Eigen::Index i = 0; i < m; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const auto map = differences(flow_, orbit_.nodes[at], after(at), duration(),
-                                   newton_tolerance * options_.tolerance, newton_step);
-      if (!map) return false;
-      matrix_.block(n * i, n * i, n, n) += *map;
-      matrix_.block(n * i, n * ((i + 1) % m), n, n) -= Matrix::Identity(n, n);
+      const auto rates = differences(flow_, orbit_.nodes[at], after(at), duration(),
+                                     newton_tolerance * options_.tolerance, newton_step);
+      if (!rates) return false;
+      matrix_.block(n * i, n * i, n, n) += rates->end;
+      matrix_.block(n * ((i + m - 1) % m), n * i, n, n) -= rates->begin;
       gaps_.segment(n * i, n) = after(at).coordinates(ends_[at]);
       if (!options_.find_period) continue;
       const auto going = velocity(ends_[at], after(at));
@@ -203,9 +219,10 @@ std::optional<Extrapolated> extrapolate(Flow& flow, const StateChart& from, cons
   double least = 0;
   // Shorter steps where the map is too bent for longer ones.
   for (const double h : {multiplier_step, multiplier_step / 100}) {
-    const auto d1 = differences(flow, from, to, duration, tolerance, h);
-    const auto d2 = d1 ? differences(flow, from, to, duration, tolerance, h / 2) : std::nullopt;
-    const auto d3 = d2 ? differences(flow, from, to, duration, tolerance, h / 4) : std::nullopt;
+    const auto map = [&](double step) {
+      return derivative(differences(flow, from, to, duration, tolerance, step));
+    };
+    const auto d1 = map(h), d2 = d1 ? map(h / 2) : std::nullopt, d3 = d2 ? map(h / 4) : std::nullopt;
     if (!d3) return out;
     const Matrix once = (4 * *d2 - *d1) / 3, twice = (4 * *d3 - *d2) / 3;
     Extrapolated now{twice + (twice - once) / 15, twice};

@@ -256,7 +256,7 @@ TEST_CASE("A Hooke joint turns its shaft unevenly by the closed form") {
   CAPTURE(s.message);
   REQUIRE(s.status == PeriodicStatus::found);
   const PeriodicCoordinate& turned = coordinate(s, "out");
-  CHECK(std::abs(turned.turns) == 1);
+  CHECK_THAT(std::abs(turned.advance), WithinAbs(2 * pi, 1e-11));
   const double swing = std::atan((1 - std::cos(angle)) / (2 * std::sqrt(std::cos(angle))));
   CHECK_THAT(turned.range.most - turned.range.least, WithinAbs(2 * swing, 1e-9));
   // Output angle b with tan b = tan a / cos(angle): the drive gives inertia b'' b' / speed.
@@ -286,4 +286,33 @@ TEST_CASE("Where the drives have no period, or friction sticks, it is refused wi
   Mechanism still = jeffcott(30);
   still.joints[2].coordinates[0].drive->speed = 0;
   CHECK(find_periodic_state(still).status == PeriodicStatus::not_periodic);
+}
+
+TEST_CASE("A steady state is periodic, too, with the multipliers that its eigenvalues make") {
+  for (const char* name : {"governor", "watt_governor", "governor_parametric", "governor_bearing",
+                           "governor_porter", "pendulum", "fourbar_turntable"}) {
+    CAPTURE(name);
+    const Mechanism m = shipped(name);
+    const Solution steady = solve(m);
+    PeriodicOptions nearest;
+    nearest.nearest = true;
+    const PeriodicState s = find_periodic_state(m, nearest);
+    CAPTURE(s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    REQUIRE(steady.eigenvalues);
+    for (const CoordinateSolution& c : steady.coordinates) {
+      if (c.driven) continue;
+      const PeriodicCoordinate& at = coordinate(s, c.joint, c.index);
+      CHECK_THAT(at.range.mean, WithinAbs(c.value, 1e-9));
+      CHECK_THAT(at.range.most - at.range.least, WithinAbs(0, 1e-9));
+    }
+    for (const std::complex<double> rate : *steady.eigenvalues) {
+      const std::complex<double> mu = std::exp(rate * s.period);
+      double nearest_mu = 1;
+      for (const auto& found : s.floquet.multipliers)
+        nearest_mu = std::min(nearest_mu, std::abs(found - mu));
+      CHECK(nearest_mu < 1e-7);
+    }
+    CHECK(s.stable == true);
+  }
 }

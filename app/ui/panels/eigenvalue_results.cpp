@@ -49,6 +49,8 @@ void lines_of(App& app, const std::vector<std::complex<double>>& eigenvalues) {
 } // namespace
 
 void eigenvalue_results(App& app) {
+  if (const PeriodicState* motion = periodic_motion(app); motion && !motion->floquet.multipliers.empty())
+    return multiplier_results(app, motion->floquet);
   if (app.answer.solution.floquet) return multiplier_results(app, *app.answer.solution.floquet);
   const auto& eigenvalues = app.answer.solution.eigenvalues;
   if (!eigenvalues || eigenvalues->empty()) return;

@@ -19,6 +19,12 @@ struct Verdict {
   ImVec4 color;
 };
 
+Verdict verdict_of(const PeriodicState& motion, const UiColors& colors) {
+  if (motion.stable == true) return {icon::check, "Moves periodically, stable", colors.good};
+  if (motion.stable == false) return {icon::warning, "Moves periodically, unstable", colors.bad};
+  return {icon::question, "Moves periodically, stability undecided", colors.warn};
+}
+
 Verdict verdict_of(const Solution& solution, const UiColors& colors) {
   switch (solution.status) {
   case Status::not_converged: return {icon::warning, "Not converged", colors.bad};
@@ -46,7 +52,8 @@ std::string without_repetition(const std::string& message, const std::string& he
 void verdict(App& app) {
   const UiColors& colors = colors_of(app);
   const Solution& solution = app.answer.solution;
-  const Verdict verdict = verdict_of(solution, colors);
+  const PeriodicState* motion = periodic_motion(app);
+  const Verdict verdict = motion ? verdict_of(*motion, colors) : verdict_of(solution, colors);
   const std::string unheld = unheld_words(solution), headline = unheld.empty() ? verdict.text : unheld;
   ImGui::PushFont(app.fonts.strong);
   ImGui::TextColored(verdict.color, "%s", verdict.icon);
@@ -58,6 +65,10 @@ void verdict(App& app) {
   note_widget(app.widgets, "results/verdict");
   if (solution.status == Status::converged && solution.stability_reason)
     paragraph(reason_text(*solution.stability_reason), colors.dim);
+  if (const PeriodicState* state = periodic_state(app))
+    paragraph(state->message, motion ? colors.dim : colors.text);
+  else if (app.study.periodic.search.running())
+    paragraph("Looking for a periodic motion…", colors.dim);
   // Where all went well the words above say it already.
   if (solution.status != Status::converged || solution.message != "Converged.")
     paragraph(without_repetition(solution.message, headline),
@@ -133,6 +144,7 @@ void results_panel(App& app, const PanelRect& rect) {
     pull_results(app);
     neutral_joints(app);
     coordinate_results(app);
+    periodic_results(app);
     friction_results(app);
     measure_results(app);
     body_results(app);

@@ -37,7 +37,15 @@ StatusLine status_line(const App& app) {
   case Status::not_converged:
     return {solution.unheld.empty() ? "No steady state found" : unheld_words(solution), colors.bad,
             icon::warning};
-  case Status::no_steady_state: return {"There is no steady state", colors.bad, icon::warning};
+  case Status::no_steady_state:
+    if (const PeriodicState* motion = periodic_motion(app))
+      return motion->stable == true ? StatusLine{"Moves periodically, stable", colors.good, icon::check}
+             : motion->stable == false
+                 ? StatusLine{"Moves periodically, unstable", colors.warn, icon::warning}
+                 : StatusLine{"Moves periodically", colors.warn, icon::info};
+    return {app.study.periodic.search.running() ? "No steady state; looking for a periodic motion…"
+                                                : "There is no steady state",
+            colors.bad, icon::warning};
   case Status::infeasible: return {"The loops cannot be closed", colors.bad, icon::warning};
   }
   if (solution.stable == true) return {"Steady state, stable", colors.good, icon::check};

@@ -108,7 +108,7 @@ void draw_reach(const App& app, const ReachGrab& grab, const ViewInput& input) {
 void take_reach(App& app, const ViewInput& input, const HandHit& hit) {
   app.tool.spent = true;
   const Mechanism& m = app.mechanism();
-  if (app.poses.size() != m.bodies.size() || solving(app)) return;
+  if (!converged(app) || app.poses.size() != m.bodies.size() || solving(app)) return;
   if (const std::string refusal = goal_refusal(app); !refusal.empty()) return show_error(app, refusal);
   app.tool.spent = false;
   const int body = body_index(m, hit.body);

@@ -1,0 +1,36 @@
+// The motion that takes the steady state's place where a drive makes the balance turn. Nothing of it is
+// computed where there is a steady state.
+#pragma once
+
+#include "app/session/shared_mechanism.hpp"
+#include "app/session/study.hpp"
+#include "engine/periodic/periodic_state.hpp"
+
+namespace flyball {
+
+struct Session;
+
+struct PeriodicRequest {
+  SharedMechanism mechanism;
+  bool operator==(const PeriodicRequest&) const = default;
+};
+
+struct PeriodicStudy {
+  Study<PeriodicRequest, PeriodicState> search;
+  // What the poses that the session shows are of.
+  struct Posed {
+    std::shared_ptr<const Run> motion;
+    double time = 0; // s
+    bool operator==(const Posed&) const = default;
+  } posed;
+};
+
+void update_periodic(Session& session);
+// Of the answer that is shown, or of the one before while that is looked for; null: none, or not asked.
+const PeriodicState* periodic_state(const Session& session);
+// The same where one was found.
+const PeriodicState* periodic_motion(const Session& session);
+// The motion's run begins in it, so that the plots have it.
+void show_periodic_motion(Session& session);
+
+} // namespace flyball

@@ -1,0 +1,65 @@
+// Where a drive makes the balance turn: what the motion in the steady state's place runs through in a period.
+#include "app/session/units.hpp"
+#include "app/ui/panels.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <cmath>
+
+namespace flyball {
+
+namespace {
+
+constexpr int digits = 6; // of ends, which are looked at rather than copied
+
+void range_row(App& app, const std::string& name, const PeriodicRange& range, const ShownUnit& unit,
+               const std::string& help = {}) {
+  const NumberStyle& numbers = app.options.numbers;
+  if (!std::isfinite(range.mean)) return row(app, name, "-", "", "It is not defined throughout the period.");
+  const double error = std::isfinite(range.error) ? range.error : 1e-6 * std::abs(range.most - range.least);
+  const std::string about =
+      (help.empty() ? "" : help + "\n") + "Mean over a period; below it the ends between which it moves.\n" +
+      (std::isfinite(range.error)
+           ? "± " + magnitude_text(std::max(error * unit.factor, numbers.noise), numbers) + " " + unit.text
+           : std::string("Its error is not known."));
+  row(app, name, value_text(unit.shown(range.mean), std::max(error, numbers.noise) * unit.factor, numbers),
+      unit.text.c_str(), about.c_str());
+  note_widget(app.widgets, "results/periodic/" + name);
+  right_digits(app,
+               short_text(unit.shown(range.least), digits) + " … " +
+                   short_text(unit.shown(range.most), digits) + " " + unit.text,
+               colors_of(app).dim);
+  ImGui::Dummy({0, 0});
+}
+
+std::string advance_help(const PeriodicCoordinate& c, const ShownUnit& unit) {
+  if (!c.goes_on()) return "";
+  return "It goes on by " + short_text(unit.factor * c.advance, digits) + " " + unit.text +
+         " a period, and counts less its even share of that.";
+}
+
+} // namespace
+
+void periodic_results(App& app) {
+  const PeriodicState* state = periodic_motion(app);
+  if (!state) return;
+  heading(app, "Over a period");
+  row(app, "Period", value_text(state->period, 1e-7 * state->period, {8, 1e-16, false}), "s",
+      state->drive_periods == 1
+          ? "That of the drives."
+          : (std::to_string(state->drive_periods) + " times that of the drives.").c_str());
+  for (const PeriodicCoordinate& c : state->coordinates) {
+    const ShownUnit unit = shown_unit(c.angle ? "rad" : "m", app.units);
+    range_row(app, coordinate_label(c), c.range, unit, advance_help(c, unit));
+  }
+  for (const PeriodicMeasure& m : state->measures)
+    range_row(app, m.name, m.range, shown_unit(m.unit, app.units));
+  for (const PeriodicTorque& t : state->drive_torques)
+    range_row(app, "Drive of " + coordinate_label(t), t.range, shown_unit(t.angle ? "N m" : "N", app.units));
+  if (app.options.numbers.run_times)
+    row(app, "Run time", duration_text(state->run_time_s, app.options.numbers), "");
+  if (text_button(app, "results/periodic/motion", "Show in the motion's plots")) show_periodic_motion(app);
+  help_on_hover("The motion begins in this one, at the drawn phase.");
+}
+
+} // namespace flyball

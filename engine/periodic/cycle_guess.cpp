@@ -1,0 +1,190 @@
+#include "engine/periodic/cycle_guess.hpp"
+
+#include "engine/linear/spectral.hpp"
+#include "engine/periodic/shooting.hpp"
+#include "engine/report/analysis.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace flyball {
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+constexpr double step_tolerance = 1e-8; // of the motion that is followed
+constexpr int followed = 10;            // guessed periods between two looks
+constexpr int looks = 40;               // at most
+constexpr int samples = 96;             // a guessed period
+constexpr double returned = 0.03;       // of the way between: near enough
+constexpr double at_rest = 1e-6;        // scaled: what moves less does not
+constexpr double off_steady = 0.01;     // scaled, from a steady state
+constexpr double steadily = 0.01;       // of its size: what changes less in between has settled
+constexpr double alike = 1e-6;          // scaled, of motions from two angles
+
+// Of the drives by torque, and of what turns with them.
+Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
+  const System& system = flow.model().system;
+  std::vector<int> columns;
+  for (const DriveTorqueElement& drive : system.torques) {
+    const Link& link = system.links[static_cast<std::size_t>(drive.link)];
+    if (link.type == LinkType::revolute) columns.push_back(link.v);
+  }
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(system.nv, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    out(columns[i], static_cast<Eigen::Index>(i)) = 1;
+  if (columns.empty() || system.rows == 0) return out;
+  Kinematics<double> k;
+  Linearization l;
+  forward<double>(system, flow.model().parameters, state.q, state.time, k);
+  linearize_constraints(system, flow.model().parameters, k, l);
+  const Scaling& scaling = flow.model().scaling;
+  const auto together =
+      null_space(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal() * out);
+  return together ? Eigen::MatrixXd(out * *together) : Eigen::MatrixXd(system.nv, 0);
+}
+
+// Those of them along which a turn changes nothing of how the motion goes on.
+Eigen::MatrixXd indifferent(Flow& flow, const MotionState& state, double rate) {
+  const Eigen::MatrixXd all = turning_directions(flow, state);
+  Eigen::MatrixXd out(all.rows(), 0);
+  const double span = 0.1 / rate;
+  const auto here = flow.pass(state, span, step_tolerance * 1e-3);
+  for (Eigen::Index i = 0; here && i < all.cols(); ++i) {
+    const Eigen::VectorXd way = all.col(i).normalized();
+    const auto goes_alike = [&](double angle) {
+      MotionState turned = state;
+      retract<double>(flow.model().system, flow.model().scaling.column.cwiseProduct(angle * way), turned.q);
+      const auto there = flow.pass(turned, span, step_tolerance * 1e-3);
+      if (!there) return false;
+      const StateChart chart(flow.problem(), here->to, rate, way);
+      return chart.distance(there->to) < alike;
+    };
+    if (!goes_alike(0.7) || !goes_alike(2.2)) continue;
+    out.conservativeResize(Eigen::NoChange, out.cols() + 1);
+    out.col(out.cols() - 1) = way;
+  }
+  return out;
+}
+
+// The least damped swing about the steady state.
+struct Swing {
+  bool stable = false;          // the steady state
+  std::optional<double> period; // s; nothing where nothing swings, or there is no steady state
+};
+Swing least_damped_swing(const Mechanism& mechanism, const std::atomic<bool>* cancel) {
+  SolveOptions options;
+  options.cancel = cancel;
+  const Solution steady = Analysis(mechanism).solve(options);
+  Swing out;
+  if (steady.status != Status::converged || !steady.eigenvalues) return out;
+  out.stable = steady.stable == true;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const std::complex<double>& s : *steady.eigenvalues)
+    if (s.imag() > 0 && s.real() > most) {
+      most = s.real();
+      out.period = turn / s.imag();
+    }
+  return out;
+}
+
+// Its shape as CycleGuess has it; nothing where that does not swing.
+Eigen::VectorXd shape_of_swing(Flow& flow, const StateChart& steady, double period) {
+  Orbit orbit;
+  orbit.period = period;
+  orbit.nodes = {steady};
+  ShootingOptions how;
+  how.tolerance = step_tolerance * 1e-3;
+  const auto beside = monodromy(flow, orbit, how);
+  const auto modes = beside ? eigenvectors(beside->matrix) : std::nullopt;
+  if (!modes || modes->values.size() == 0) return {};
+  Eigen::Index largest = 0;
+  modes->values.cwiseAbs().maxCoeff(&largest);
+  const Eigen::VectorXd way = modes->vectors.col(largest).real();
+  const double size = way.size() > 0 ? way.lpNorm<Eigen::Infinity>() : 0.;
+  return size > 0 ? Eigen::VectorXd(way / size) : Eigen::VectorXd();
+}
+
+// s, of a turn of the fastest drive by torque.
+std::optional<double> turn_of_drives(const Flow& flow, const MotionState& state) {
+  double fastest = 0;
+  for (const DriveTorqueElement& drive : flow.model().system.torques) {
+    const Link& link = flow.model().system.links[static_cast<std::size_t>(drive.link)];
+    if (link.type == LinkType::revolute) fastest = std::max(fastest, std::abs(state.u[link.v]));
+  }
+  if (!(fastest > 0)) return {};
+  return turn / fastest;
+}
+
+// The first time that a motion comes near where it began, having been away.
+struct Return {
+  double farthest = 0, nearest = std::numeric_limits<double>::infinity(); // scaled
+  std::size_t sample = 0;                                                 // 0: it does not
+};
+Return first_return(const StateChart& begin, const std::vector<MotionState>& trace) {
+  Return out;
+  for (std::size_t i = 1; i < trace.size(); ++i) {
+    const double away = begin.distance(trace[i]);
+    if (away > out.farthest)
+      out = {away, std::numeric_limits<double>::infinity(), 0};
+    else if (away < out.nearest) {
+      out.nearest = away;
+      out.sample = i;
+    }
+    if (out.nearest < returned * out.farthest && away > 2 * out.nearest) break;
+  }
+  return out;
+}
+
+} // namespace
+
+CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, const std::atomic<bool>* cancel) {
+  CycleOutcome out;
+  const auto refused = [&](const std::string& why) {
+    out.guess.reset();
+    out.trouble = why;
+    return out;
+  };
+  const Swing swing = least_damped_swing(mechanism, cancel);
+  const std::optional<MotionState> steady = swing.period ? flow.steady() : std::nullopt;
+  if (swing.stable && !steady) return refused("Nothing swings about the steady state, which is stable.");
+  std::optional<MotionState> state = steady ? steady : flow.drawn();
+  if (!state) return refused(flow.trouble());
+  std::optional<double> period = swing.period;
+  if (!period) period = turn_of_drives(flow, *state);
+  if (!period)
+    return refused(
+        "No drive turns, and nothing swings about a steady state, so that there is no period to look for.");
+  const Eigen::MatrixXd alike_along = indifferent(flow, *state, turn / *period);
+  if (steady) {
+    const StateChart chart(flow.problem(), *steady, turn / *period, alike_along);
+    if (swing.stable) {
+      out.guess = {*period, alike_along, steady, {}, shape_of_swing(flow, chart, *period)};
+      if (out.guess->swing.size() == 0)
+        return refused("Nothing swings about the steady state, which is stable.");
+      return out;
+    }
+    state = chart.displaced(Eigen::VectorXd::Constant(chart.size(), off_steady));
+  }
+  double before = 0; // how far it went away at the last look
+  for (int look = 0; look < looks; ++look) {
+    const auto passage = flow.pass(*state, followed * *period, step_tolerance);
+    if (!passage) return refused("The motion does not last: " + flow.trouble());
+    state = passage->to;
+    state->time = 0;
+    // What turns may have become faster or slower.
+    if (!swing.period) period = turn_of_drives(flow, *state).value_or(*period);
+    const std::vector<MotionState> trace = flow.trace(*state, 3 * *period, 3 * samples, step_tolerance);
+    if (trace.empty()) return refused("The motion does not last: " + flow.trouble());
+    const StateChart chart(flow.problem(), *state, turn / *period, alike_along);
+    const Return back = first_return(chart, trace);
+    if (back.farthest < at_rest) return refused("The motion comes to rest.");
+    const bool grows = std::abs(back.farthest - before) > steadily * back.farthest;
+    before = back.farthest;
+    if (back.sample == 0 || back.nearest > returned * back.farthest || (grows && look + 1 < looks)) continue;
+    out.guess = {*period * static_cast<double>(back.sample) / samples, alike_along, steady, state, {}};
+    return out;
+  }
+  return refused("The motion did not come to repeat itself.");
+}
+
+} // namespace flyball

@@ -1,0 +1,30 @@
+// Where a motion that nothing times from outside, as of a governor that hunts, begins to repeat itself: from
+// there shooting finds the limit cycle and its period.
+#pragma once
+
+#include "engine/periodic/flow.hpp"
+
+namespace flyball {
+
+struct CycleGuess {
+  double period = 0;           // s
+  Eigen::MatrixXd turns_alike; // (nv, any), scaled: angles at all of which the motion goes on alike
+  std::optional<MotionState> steady;
+  std::optional<MotionState> state; // of a motion that nearly repeats itself
+  // Without it: the shape of the least damped swing about the steady state, in StateChart's coordinates
+  // there, its largest entry 1. Around a stable steady state an unstable cycle may lie, beyond which it
+  // hunts.
+  Eigen::VectorXd swing;
+};
+
+struct CycleOutcome {
+  std::optional<CycleGuess> guess;
+  std::string trouble; // where there is none: a sentence
+};
+
+// Where the steady state is unstable the motion that leaves it, and where there is none that from the drawn
+// pose, is followed until it nearly returns and grows no more, or for as long as the flow allows. The period
+// is first that of the least damped swing about the steady state, else a turn of what a torque drives.
+CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, const std::atomic<bool>* cancel);
+
+} // namespace flyball

@@ -1,0 +1,135 @@
+// Limit cycles: motions with a period of their own.
+#include "tests/engine/dynamics_runs.hpp"
+
+#include "engine/periodic/periodic_state.hpp"
+#include "tests/catch.hpp"
+
+#include <numbers>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+using std::numbers::pi;
+
+namespace {
+
+const PeriodicCoordinate& of(const PeriodicState& s, const std::string& joint) {
+  const auto found = std::ranges::find(s.coordinates, joint, &PeriodicCoordinate::joint);
+  REQUIRE(found != s.coordinates.end());
+  return *found;
+}
+
+PeriodicState hunting(double damping) {
+  return find_periodic_state(shipped("governor_engine", {{"joints.slide.damping", damping}}));
+}
+
+} // namespace
+
+TEST_CASE("Haug's governor hunts in a limit cycle below 21.54 N s/m, as its motion does") {
+  const Mechanism m = shipped("governor_engine", {{"joints.slide.damping", 15.}});
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK(s.drive_periods == 0);
+  CHECK(s.period_error < 1e-6 * s.period);
+  const PeriodicCoordinate &slide = of(s, "slide"), &spin = of(s, "spin");
+  CHECK(slide.range.most - slide.range.least > 1e-3);
+  CHECK(spin.goes_on());
+  CHECK_THAT(spin.rate.mean, WithinRel(spin.advance / s.period, 1e-9));
+  // The shaft's torque is 7500 N (s - 0.15 m): on the average nothing.
+  CHECK_THAT(slide.range.mean, WithinAbs(0.15, 1e-7));
+  // It has lost its stability hard: the arms swing through straight.
+  CHECK(of(s, "arm1").range.most > pi / 2);
+  CHECK(s.stable == true);
+  // A motion beside it comes to it.
+  SimulationOptions options = lasting(120, Integrator::automatic, 1e-11);
+  options.start = Start::state;
+  options.state = s.start;
+  for (StateCoordinate& c : options.state.coordinates)
+    if (c.joint == "slide") c.rate += 0.05;
+  const Run run = simulate(m, options);
+  const std::vector<double>& values = track(run, "slide").value;
+  const auto [least, most] = std::ranges::minmax(std::vector(values.end() - 500, values.end()));
+  CHECK_THAT(least, WithinAbs(slide.range.least, 1e-5));
+  CHECK_THAT(most, WithinAbs(slide.range.most, 1e-5));
+}
+
+TEST_CASE("Above the limit of hunting an unstable cycle bounds the pushes after which the governor settles") {
+  // Its size grows with the square root of the distance from the limit.
+  const double limit = 21.54;
+  const auto size_of = [](const PeriodicState& s) {
+    const PeriodicCoordinate& slide = of(s, "slide");
+    return (slide.range.most - slide.range.least) / 2;
+  };
+  const PeriodicState a = hunting(limit + 0.15), b = hunting(limit + 0.6);
+  CAPTURE(a.message, b.message);
+  REQUIRE(a.status == PeriodicStatus::found);
+  REQUIRE(b.status == PeriodicStatus::found);
+  CHECK_THAT(std::pow(size_of(b) / size_of(a), 2), WithinRel(4., 0.1));
+  CHECK(b.stable == false);
+  CHECK(b.floquet.multipliers.front().real() > 1);
+  // Inside it dies out, outside it grows.
+  const Mechanism m = shipped("governor_engine", {{"joints.slide.damping", limit + 0.6}});
+  const Solution steady = solve(m);
+  for (const double part : {0.9, 1.1}) {
+    SimulationOptions options = lasting(10 * b.period);
+    options.start = Start::state;
+    options.state = b.start;
+    for (StateCoordinate& c : options.state.coordinates)
+      for (const CoordinateSolution& at : steady.coordinates) {
+        if (at.joint != c.joint) continue;
+        if (at.speed) {
+          c.rate = *at.speed + part * (c.rate - *at.speed);
+        } else if (!at.driven) {
+          c.value = at.value + part * (c.value - at.value);
+          c.rate *= part;
+        }
+      }
+    const Run run = simulate(m, options);
+    const std::vector<double>& values = track(run, "slide").value;
+    const auto one = static_cast<std::ptrdiff_t>(b.period * 100);
+    const auto [least, most] = std::ranges::minmax(std::vector(values.begin(), values.begin() + one));
+    const auto [later_least, later_most] = std::ranges::minmax(std::vector(values.end() - one, values.end()));
+    CAPTURE(part);
+    CHECK(((later_most - later_least) > (most - least)) == (part > 1));
+  }
+}
+
+TEST_CASE("An eccentric wheel that a torque drives turns unevenly, with its exact period and multiplier") {
+  // J a'' = T - b a' - m g e cos a, a from the horizontal.
+  const double mass = 2, e = 0.1, inertia = 0.05, torque = 6, load = 0.6, g = 9.81;
+  const double about = inertia + mass * e * e;
+  Mechanism m;
+  m.gravity = {0, -g, 0};
+  m.bodies = {body("wheel", mass, {e, 0, 0}, {0.01, 0.01, inertia})};
+  m.joints = {dampened(revolute("spin", "ground", "wheel", {0, 0, 0}), load)};
+  m.joints[0].coordinates[0].drive = Drive{.speed = torque / load, .torque = torque};
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  // By the angle: w' = (T - b w - m g e cos a) / (J w), to where it returns.
+  double w = torque / load, period = 0;
+  const int steps = 20000;
+  const double h = 2 * pi / steps;
+  for (int turns = 0; turns < 30; ++turns) {
+    period = 0;
+    for (int i = 0; i < steps; ++i) {
+      const auto rate = [&](double a, double speed) {
+        return (torque - load * speed - mass * g * e * std::cos(a)) / (about * speed);
+      };
+      const double a = i * h, k1 = rate(a, w), k2 = rate(a + h / 2, w + h / 2 * k1),
+                   k3 = rate(a + h / 2, w + h / 2 * k2), k4 = rate(a + h, w + h * k3),
+                   middle = w + h / 2 * (k1 + 2 * k2) / 3;
+      const double before = w;
+      w += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+      period += h / 6 * (1 / before + 4 / middle + 1 / w);
+    }
+  }
+  CHECK_THAT(s.period, WithinRel(period, 1e-6));
+  CHECK_THAT(of(s, "spin").advance, WithinAbs(2 * pi, 1e-8));
+  CHECK_THAT(of(s, "spin").rate.mean, WithinRel(2 * pi / period, 1e-6));
+  CHECK(s.stable == true);
+  REQUIRE(s.floquet.multipliers.size() == 1);
+  CHECK_THAT(s.floquet.multipliers[0].real(), WithinAbs(std::exp(-load / about * period), 1e-6));
+}
