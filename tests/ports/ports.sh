@@ -47,7 +47,7 @@ compile() {
   "$compiler" -std=c++20 -O0 -w "$objects" -I"$top" -isystem headers -c "$top/$1" -o "$name.o" 2>"$name.log" ||
     { echo "$1: $(grep -im 3 'error' "$name.log")" && return 1; }
 }
-folders=(engine/{linear,mechanism,system,kkt,solve,stability,search,report,continuation,dynamics,study}
+folders=(engine/{linear,mechanism,system,kkt,solve,stability,search,report,continuation,dynamics,periodic,study}
   app/{platform,document,live,session} "engine/mechanism/$files" app/platform/elsewhere)
 export -f compile
 export top compiler objects
