@@ -43,29 +43,6 @@ Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
   return together ? Eigen::MatrixXd(out * *together) : Eigen::MatrixXd(system.nv, 0);
 }
 
-// Those of them along which a turn changes nothing of how the motion goes on.
-Eigen::MatrixXd indifferent(Flow& flow, const MotionState& state, double rate) {
-  const Eigen::MatrixXd all = turning_directions(flow, state);
-  Eigen::MatrixXd out(all.rows(), 0);
-  const double span = 0.1 / rate;
-  const auto here = flow.pass(state, span, step_tolerance * 1e-3);
-  for (Eigen::Index i = 0; here && i < all.cols(); ++i) {
-    const Eigen::VectorXd way = all.col(i).normalized();
-    const auto goes_alike = [&](double angle) {
-      MotionState turned = state;
-      retract<double>(flow.model().system, flow.model().scaling.column.cwiseProduct(angle * way), turned.q);
-      const auto there = flow.pass(turned, span, step_tolerance * 1e-3);
-      if (!there) return false;
-      const StateChart chart(flow.problem(), here->to, rate, way);
-      return chart.distance(there->to) < alike;
-    };
-    if (!goes_alike(0.7) || !goes_alike(2.2)) continue;
-    out.conservativeResize(Eigen::NoChange, out.cols() + 1);
-    out.col(out.cols() - 1) = way;
-  }
-  return out;
-}
-
 // The least damped swing about the steady state.
 struct Swing {
   bool stable = false;          // the steady state
@@ -137,6 +114,28 @@ Return first_return(const StateChart& begin, const std::vector<MotionState>& tra
 
 } // namespace
 
+Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate) {
+  const Eigen::MatrixXd all = turning_directions(flow, state);
+  Eigen::MatrixXd out(all.rows(), 0);
+  const double span = 0.1 / rate;
+  const auto here = flow.pass(state, span, step_tolerance * 1e-3);
+  for (Eigen::Index i = 0; here && i < all.cols(); ++i) {
+    const Eigen::VectorXd way = all.col(i).normalized();
+    const auto goes_alike = [&](double angle) {
+      MotionState turned = state;
+      retract<double>(flow.model().system, flow.model().scaling.column.cwiseProduct(angle * way), turned.q);
+      const auto there = flow.pass(turned, span, step_tolerance * 1e-3);
+      if (!there) return false;
+      const StateChart chart(flow.problem(), here->to, rate, way);
+      return chart.distance(there->to) < alike;
+    };
+    if (!goes_alike(0.7) || !goes_alike(2.2)) continue;
+    out.conservativeResize(Eigen::NoChange, out.cols() + 1);
+    out.col(out.cols() - 1) = way;
+  }
+  return out;
+}
+
 CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, const std::atomic<bool>* cancel) {
   CycleOutcome out;
   const auto refused = [&](const std::string& why) {
@@ -154,7 +153,7 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, const std::atom
   if (!period)
     return refused(
         "No drive turns, and nothing swings about a steady state, so that there is no period to look for.");
-  const Eigen::MatrixXd alike_along = indifferent(flow, *state, turn / *period);
+  const Eigen::MatrixXd alike_along = angles_alike(flow, *state, turn / *period);
   if (steady) {
     const StateChart chart(flow.problem(), *steady, turn / *period, alike_along);
     if (swing.stable) {

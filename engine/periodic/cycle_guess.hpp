@@ -6,9 +6,13 @@
 
 namespace flyball {
 
+// Angles of what torques drive, as scaled directions (nv, any), at all of which the motion goes on alike:
+// these need not return after a period.
+Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate);
+
 struct CycleGuess {
   double period = 0;           // s
-  Eigen::MatrixXd turns_alike; // (nv, any), scaled: angles at all of which the motion goes on alike
+  Eigen::MatrixXd turns_alike; // angles_alike()
   std::optional<MotionState> steady;
   std::optional<MotionState> state; // of a motion that nearly repeats itself
   // Without it: the shape of the least damped swing about the steady state, in StateChart's coordinates

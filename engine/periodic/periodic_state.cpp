@@ -60,7 +60,9 @@ DrivePeriod drive_period(const MotionModel& model) {
     out.fastest = std::max(out.fastest, std::abs(speed));
   }
   if (speeds.empty()) {
-    if (model.system.torques.empty())
+    if (std::ranges::none_of(model.system.torques, [](const DriveTorqueElement& drive) {
+          return !drive.keeps_momentum && !drive.implied;
+        }))
       out.trouble = "Nothing is driven at a speed or by a torque, so that there is no period to look for.";
     return out;
   }
@@ -124,6 +126,7 @@ class Search {
       end_ = flow_.cancelled() ? ShootingEnd::cancelled : ShootingEnd::no_motion;
       return {};
     }
+    if (!flow_.model().system.torques.empty()) alike_ = angles_alike(flow_, *start, rate());
     std::optional<Candidate> first = attempt({*start}, 1);
     if (!first && end_ != ShootingEnd::pumped)
       if (const auto guess = frozen(*start); !guess.empty()) first = attempt(guess, 1);
@@ -178,6 +181,7 @@ class Search {
     ShootingOptions how;
     how.period = drives_.period * periods;
     how.rate = rate();
+    how.without = alike_;
     return complete(guess, how, periods);
   }
 
@@ -288,7 +292,7 @@ class Search {
       if (!passage) return {};
       MotionState now = passage->to;
       now.time = state.time;
-      const StateChart here(flow_.problem(), now, rate(), {});
+      const StateChart here(flow_.problem(), now, rate(), alike_);
       double nearest = std::numeric_limits<double>::infinity();
       for (int p = 1; p <= std::min(k, longest_multiple); ++p) {
         const double away = here.distance(past[past.size() - static_cast<std::size_t>(p)]);
@@ -474,6 +478,7 @@ class Search {
   const PeriodicOptions& options_;
   Flow flow_;
   DrivePeriod drives_;
+  Eigen::MatrixXd alike_;                   // angles that need not return
   ShootingEnd end_ = ShootingEnd::diverged; // of the last attempt
   bool left_first_ = false;
   bool around_stable_ = false; // a limit cycle was looked for around a stable steady state

@@ -64,6 +64,25 @@ def reasons(folder):
     check("a report without a steady state tells why, too", "<h2>No steady state</h2>" in page and "</html>" in page)
 
 
+def periodic(_):
+    """Where the balance turns the motion that returns is told, with the exit code of what was asked for."""
+    rotor = pathlib.Path(SCENE).parent / "horizontal_rotor.json"
+    for option, wanted in ((), 1), (("--periodic",), 0):
+        code, out, error = run("solve", rotor, "--json", *option)
+        answer = json.loads(out)
+        told = answer["periodic"]
+        check(f"solve {option} ends with {wanted}, found {code}: {error}", code == wanted)
+        check("the status is that of the steady state", answer["status"] == "no_steady_state")
+        check("the motion is found, stable", told["status"] == "found" and told["stable"] is True)
+        across = told["coordinates"]["across"]
+        check("it has ends about its mean", across["min"] < across["mean"] < across["max"])
+        check("its multipliers are told", len(told["floquet"]["multipliers"]) == 4)
+    code, out, error = run("solve", SCENE, "--json")
+    check("a steady state is told alone", code == 0 and "periodic" not in json.loads(out))
+    code, _, error = run("solve", CASES / "control_characters.json", "--periodic", "--all")
+    check(f"all states and a motion are two questions: {error}", code == 2)
+
+
 def control_characters(folder):
     """No control character but line ends reaches the terminal, from whatever is printed."""
     scene = json.loads((CASES / "control_characters.json").read_text())
@@ -235,7 +254,7 @@ def parts(folder):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for part in (reasons, control_characters, tables, own_scene, limits, repetitions, reports, parts):
+    for part in (reasons, periodic, control_characters, tables, own_scene, limits, repetitions, reports, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()
         part(home)

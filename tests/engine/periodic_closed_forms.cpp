@@ -288,6 +288,62 @@ TEST_CASE("Where the drives have no period, or friction sticks, it is refused wi
   CHECK(find_periodic_state(still).status == PeriodicStatus::not_periodic);
 }
 
+TEST_CASE("A massless node between springs and a damper takes part as the closed form says") {
+  // A load on a spring with a damper beside it, in series with another spring, on a Scotch yoke.
+  const double r = 0.05, mass = 3, k = 400, c = 15, other = 900, speed = 12;
+  Mechanism m = scotch_yoke(r, speed, Vec3::UnitX());
+  m.bodies.push_back(body("node", 0, {r, 0, 0}));
+  m.bodies.push_back(body("load", mass, {r, 0, 0}));
+  m.joints.push_back(sprung(prismatic("near", "yoke", "node", {r, 0, 0}, {1, 0, 0}), other));
+  m.joints.push_back(dampened(sprung(prismatic("far", "node", "load", {r, 0, 0}, {1, 0, 0}), k), c));
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  using Complex = std::complex<double>;
+  const Complex soft(k, speed * c), both = 1. / (1. / other + 1. / soft),
+                                    shift = mass * r * speed * speed / (both - mass * speed * speed);
+  CHECK_THAT(coordinate(s, "near").range.most, WithinRel(std::abs(both * shift / other), 1e-8));
+  CHECK_THAT(coordinate(s, "far").range.most, WithinRel(std::abs(both * shift / soft), 1e-8));
+  CHECK(s.stable == true);
+}
+
+TEST_CASE("What a torque turns beside need not return with the drives") {
+  // A balanced fan at 20 rad/s in the housing of a rotor at 30: its angle changes nothing.
+  Mechanism m = jeffcott(30);
+  m.bodies.push_back(body("fan", 0.5, {0, 0, 0}, {0.01, 0.01, 0.01}));
+  m.joints.push_back(dampened(revolute("blow", "block", "fan", {0, 0, 0}), 0.1));
+  m.joints.back().coordinates[0].drive = Drive{.speed = 15, .torque = 2.};
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK_THAT(s.period, WithinRel(2 * pi / 30, 1e-12));
+  CHECK_THAT(coordinate(s, "blow").rate.mean, WithinRel(20., 1e-9));
+  CHECK_THAT(coordinate(s, "blow").advance, WithinRel(20 * s.period, 1e-9));
+  CHECK(s.stable == true);
+  CHECK(s.floquet.multipliers.size() == 5); // both ways and the fan's speed
+}
+
+TEST_CASE("A load that strikes a stop moves as it does in the end") {
+  Mechanism m = scotch_yoke(0.05, 9, Vec3::UnitX());
+  m.bodies.push_back(body("load", 3, {0.05, 0, 0}));
+  Joint shift = dampened(sprung(prismatic("shift", "yoke", "load", {0.05, 0, 0}, {1, 0, 0}), 300), 6);
+  shift.coordinates[0].stop = Stop{.lower = {}, .upper = 0.03, .stiffness = 2e4};
+  m.joints.push_back(shift);
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  REQUIRE(s.stable == true);
+  CHECK(coordinate(s, "shift").range.most > 0.03);
+  SimulationOptions options = lasting(60 * s.period, Integrator::automatic, 1e-11);
+  options.rate = 400 / s.period;
+  const Run run = simulate(m, options);
+  const std::vector<double>& values = track(run, "shift").value;
+  const auto [least, most] =
+      std::ranges::minmax(std::vector(values.end() - 400 * s.drive_periods, values.end()));
+  CHECK_THAT(coordinate(s, "shift").range.least, WithinAbs(least, 1e-6));
+  CHECK_THAT(coordinate(s, "shift").range.most, WithinAbs(most, 1e-6));
+}
+
 TEST_CASE("A steady state is periodic, too, with the multipliers that its eigenvalues make") {
   for (const char* name : {"governor", "watt_governor", "governor_parametric", "governor_bearing",
                            "governor_porter", "pendulum", "fourbar_turntable"}) {

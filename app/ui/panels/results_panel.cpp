@@ -72,7 +72,7 @@ void verdict(App& app) {
   // Where all went well the words above say it already.
   if (solution.status != Status::converged || solution.message != "Converged.")
     paragraph(without_repetition(solution.message, headline),
-              solution.status == Status::converged ? colors.dim : colors.text);
+              solution.status == Status::converged || motion ? colors.dim : colors.text);
 }
 
 // Directions that nothing resists.
@@ -139,12 +139,12 @@ void results_panel(App& app, const PanelRect& rect) {
     paragraph(*app.answer.error, colors_of(app).text);
   } else if (app.answer.ticket) {
     verdict(app);
+    periodic_results(app);
     remedies(app);
     warning_rows(app, "results/warnings", 3);
     pull_results(app);
     neutral_joints(app);
     coordinate_results(app);
-    periodic_results(app);
     friction_results(app);
     measure_results(app);
     body_results(app);
