@@ -48,6 +48,7 @@ Coordinate with_sign(Coordinate c, double sign) {
   if (sign > 0) return c;
   c.drawn = 0.0 - c.drawn;
   if (c.spring) c.spring->free = 0.0 - c.spring->free;
+  if (c.spring && c.spring->force) c.spring->force = 0.0 - *c.spring->force;
   if (c.friction) c.friction->share = 0.0 - c.friction->share;
   if (c.drive) {
     c.drive->speed = 0.0 - c.drive->speed;
@@ -80,7 +81,7 @@ class Mixture {
     change([](Coordinate& c) { return &c.drawn; });
     const bool alike = std::ranges::all_of(from_, [&](std::size_t i) {
       const auto &spring = before_[i].spring, &other = before_[from_[0]].spring;
-      return spring && other && spring->stiffness == other->stiffness;
+      return spring && other && spring->stiffness == other->stiffness && !spring->force && !other->force;
     });
     if (alike) change([](Coordinate& c) { return &c.spring->free; });
     for (std::size_t k = 0; k < from_.size(); ++k)

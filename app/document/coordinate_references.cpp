@@ -23,7 +23,7 @@ std::optional<CoordinateAddress> address_of(const std::string& address, const st
   const auto [end, error] = std::from_chars(first, last, found.index);
   if (error != std::errc{} || (end != last && *end != '.')) return {};
   found.rest = std::string(end, last);
-  constexpr std::array<std::string_view, 6> keys{"coordinate", "spring",   "damping",
+  constexpr std::array<std::string_view, 7> keys{"coordinate", "spring",   "damping", "damping_force",
                                                  "stop",       "friction", "drive"};
   if (std::ranges::find(keys, found.key) == keys.end()) return {}; // such as "at.0"
   return found;

@@ -4,6 +4,7 @@
 #include "app/document/turns.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/numbers.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -267,8 +268,47 @@ void set_by_itself(Mechanism& mechanism, const std::string& address, double valu
   });
 }
 
+namespace {
+
+// An expression of the deflection or rate is the whole force: it stands in the place of the stiffness or
+// damping that it was given for. False where it is none.
+bool put_law(Mechanism& mechanism, const std::string& address, const std::string& text) {
+  const auto [formulas, key] = formula_place(mechanism, address);
+  if (!formulas) return false;
+  const bool spring = key.ends_with("stiffness") && !key.starts_with("stop") && names(text, spring_variable);
+  if (!spring && !(key.starts_with("damping") && names(text, damper_variable))) return false;
+  const auto set = [&, &all = *formulas, &old = key](double& number, std::optional<double>& force,
+                                                     const std::string& law) {
+    number = 0;
+    force = 0;
+    std::erase_if(all, [&](const Formula& each) { return each.key == old || each.key == law; });
+    all.push_back({law, text});
+    std::ranges::sort(all, {}, &Formula::key);
+    std::erase_if(mechanism.sliders, [&](const Slider& each) { return each.parameter == address; });
+    return true;
+  };
+  for (Force& each : mechanism.forces)
+    if (&each.formulas == formulas && each.type == ForceType::spring)
+      return spring ? set(each.stiffness, each.force, "force")
+                    : set(each.damping, each.damping_force, "damping_force");
+  for (Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; &joint.formulas == formulas && i < joint.coordinates.size(); ++i) {
+      Coordinate& c = joint.coordinates[i];
+      const std::string of_spring = coordinate_key(joint, i, "spring");
+      if (spring && c.spring && key == of_spring + ".stiffness")
+        return set(c.spring->stiffness, c.spring->force, of_spring + ".force");
+      if (!spring && key == coordinate_key(joint, i, "damping"))
+        return set(c.damping, c.damping_force, coordinate_key(joint, i, "damping_force"));
+    }
+  return false;
+}
+
+} // namespace
+
 void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text) {
-  all_or_nothing(mechanism, [&](Mechanism& next) { put(next, address, text); });
+  all_or_nothing(mechanism, [&](Mechanism& next) {
+    if (!put_law(next, address, text)) put(next, address, text);
+  });
 }
 
 void stand_at_point(Mechanism& mechanism, const std::string& vector, const std::string& point) {

@@ -1,7 +1,10 @@
 #include "app/document/image.hpp"
 
 #include "app/document/coordinate_image.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/force_law.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace flyball {
@@ -54,9 +57,37 @@ Body image_of(const Body& body, const Isometry& isometry) {
   return image;
 }
 
+namespace {
+
+// Where the coordinate is turned round its law gives at every place what it gave at the opposite one.
+std::string law_image(const std::string& text, std::string_view variable, double sign) {
+  if (sign > 0) return text;
+  return "-(" + renamed_in(text, variable, "(-" + std::string(variable) + ")") + ")";
+}
+
+// Laws of springs and dampers go with their coordinates.
+void move_laws(const Joint& joint, const Isometry& isometry, Joint& image) {
+  const std::vector<CoordinateImage> images = images_of_coordinates(joint.type, isometry);
+  for (std::size_t i = 0; i < images.size() && i < joint.coordinates.size(); ++i) {
+    const auto move = [&](const Formula* law, std::string_view part, std::string_view rest,
+                          std::string_view variable) {
+      if (!law) return;
+      Formula& moved = image.formulas[static_cast<std::size_t>(law - joint.formulas.data())];
+      moved.key = coordinate_key(joint, images[i].index, part) + std::string(rest);
+      moved.text = law_image(law->text, variable, images[i].sign);
+    };
+    move(spring_law(joint, static_cast<int>(i)), "spring", ".force", spring_variable);
+    move(damper_law(joint, static_cast<int>(i)), "damping_force", "", damper_variable);
+  }
+  std::ranges::sort(image.formulas, {}, &Formula::key);
+}
+
+} // namespace
+
 Joint image_of(const Joint& joint, const Isometry& isometry) {
   Joint image = joint;
   image.coordinates = image_of(joint.coordinates, joint.type, isometry);
+  if (!joint.formulas.empty()) move_laws(joint, isometry, image);
   if (has_at(joint.type)) image.at = isometry.point(joint.at);
   switch (joint.type) {
   case JointType::revolute: image.axis = isometry.axial(joint.axis); break;

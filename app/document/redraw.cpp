@@ -125,7 +125,7 @@ class Redraw {
       for (std::size_t i = first; i < first + 3; ++i) {
         if (!images[i].mixed) continue;
         const Coordinate& c = joint.coordinates[i];
-        if (c.stop) return false;
+        if (c.stop || c.damping_force || (c.spring && c.spring->force)) return false;
         if (other && (c.damping != other->damping || c.drive.has_value() != other->drive.has_value() ||
                       stiffness(c) != stiffness(*other)))
           return false;

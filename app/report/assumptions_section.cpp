@@ -2,6 +2,7 @@
 #include "app/report/numbers.hpp"
 #include "app/report/sections.hpp"
 #include "app/report/versions.hpp"
+#include "engine/mechanism/damped.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -36,11 +37,11 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 bool damped(const Mechanism& m) {
-  const auto damper = [](const Coordinate& c) { return c.damping != 0; };
+  const auto damper = [](const Coordinate& c) { return is_damped(c); };
   return std::ranges::any_of(m.joints,
                              [&](const Joint& j) { return std::ranges::any_of(j.coordinates, damper); }) ||
          std::ranges::any_of(m.forces, [](const Force& f) {
-           return f.type == ForceType::drag || (f.type == ForceType::spring && f.damping != 0);
+           return f.type == ForceType::drag || (f.type == ForceType::spring && is_damped(f));
          });
 }
 

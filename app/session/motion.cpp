@@ -2,6 +2,7 @@
 
 #include "app/session/session.hpp"
 #include "engine/dynamics/joined.hpp"
+#include "engine/mechanism/damped.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -80,9 +81,9 @@ bool has_dampers(const Mechanism& mechanism) {
   return std::ranges::any_of(mechanism.joints,
                              [](const Joint& joint) {
                                return std::ranges::any_of(joint.coordinates,
-                                                          [](const Coordinate& c) { return c.damping != 0; });
+                                                          [](const Coordinate& c) { return is_damped(c); });
                              }) ||
-         std::ranges::any_of(mechanism.forces, [](const Force& force) { return force.damping != 0; });
+         std::ranges::any_of(mechanism.forces, [](const Force& force) { return is_damped(force); });
 }
 
 const MotionRun* shown_motion(const Session& session) {

@@ -3,6 +3,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/formulas.hpp"
 
 #include <fmt/format.h>
@@ -179,7 +180,11 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
         load = before->drive->load;
       }
       if (before && before->damping != 0) damping = before->damping;
-      if (coordinate.spring)
+      if (coordinate.spring && coordinate.spring->force && !spring_law(joint, static_cast<int>(i)))
+        controls.push_back(named_control(key("spring") + ".force", ParameterGroup::springs,
+                                         angle ? "N m" : "N", *coordinate.spring->force,
+                                         before && before->spring ? before->spring->force : std::nullopt));
+      if (coordinate.spring && !coordinate.spring->force)
         controls.push_back(named_control(key("spring") + ".stiffness", ParameterGroup::springs,
                                          angle ? "N m/rad" : "N/m", coordinate.spring->stiffness, stiffness));
       if (coordinate.drive && !coordinate.drive->torque)
@@ -202,7 +207,10 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
     if (const double before = was_spring ? found->second->damping : 0; force.damping != 0 || before != 0)
       controls.push_back(named_control("forces." + force.name + ".damping", ParameterGroup::dampers, "N s/m",
                                        force.damping, before != 0 ? std::optional(before) : std::nullopt));
-    if (force.stiffness == 0) continue; // a damper alone
+    if (force.force && !spring_law(force))
+      controls.push_back(named_control("forces." + force.name + ".force", ParameterGroup::springs, "N",
+                                       *force.force, was_spring ? found->second->force : std::nullopt));
+    if (force.stiffness == 0) continue; // a damper alone, or a force in its place
     controls.push_back(named_control("forces." + force.name + ".stiffness", ParameterGroup::springs, "N/m",
                                      force.stiffness,
                                      was_spring ? std::optional(found->second->stiffness) : std::nullopt));

@@ -1,6 +1,7 @@
 #include "app/viewport/assembly.hpp"
 
 #include "app/viewport/camera.hpp"
+#include "engine/mechanism/damped.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -151,7 +152,7 @@ SlideRange slide_range(const Coordinate& c, double unit) {
     const double length = std::max(6 * unit, 1.6 * std::abs(c.drawn - c.spring->free));
     range.anchor = from_zero ? 0 : std::min(c.drawn, c.spring->free) - length;
     include(range.anchor);
-  } else if (c.damping > 0) {
+  } else if (is_damped(c)) {
     include(range.anchor);
   }
   if (c.stop && c.stop->lower) include(*c.stop->lower);

@@ -1,5 +1,7 @@
 #include "app/viewport/glyphs.hpp"
 
+#include "engine/mechanism/damped.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -65,7 +67,7 @@ void draw_slide_forces(Sketch& sketch, const Assembly& assembly, std::size_t ind
                                     std::max(0.15 * std::abs(c.spring->free - range.anchor), 1e-9 * u));
     sketch.coil(start, end - reach * axis, across, 1.25 * u, 0.2 * u, true);
   }
-  if (c.damping > 0) {
+  if (is_damped(c)) {
     sketch.pen.role = Role::damper;
     const double inset = std::min(2.2 * u, 0.2 * std::abs(value - range.anchor));
     draw_dashpot(sketch, start + std::copysign(inset, reach) * axis, end, 2.5 * u * across,
@@ -88,7 +90,7 @@ void draw_turn_forces(Sketch& sketch, const Assembly& assembly, std::size_t inde
     sketch.spiral(at + 1.5 * u * axis, axis, assembly.vector(child, along.axis.unitOrthogonal()), 1.9 * u,
                   0.14 * u);
   }
-  if (c.damping > 0) {
+  if (is_damped(c)) {
     sketch.pen.role = Role::damper;
     sketch.pen.color = colors.metal_dark;
     sketch.disc(at - 1.25 * u * axis, axis, 0.3 * u, 1.25 * u, 0.1 * u);
@@ -103,15 +105,15 @@ void draw_spring(Sketch& sketch, const Assembly& assembly, std::size_t index, co
   const double drawn = (force.points[1] - force.points[0]).stableNorm(), length = (b - a).stableNorm();
   const double free = force.free_length.value_or(drawn);
   const Vec3 side = length > 0 ? free_side(assembly, (b - a) / length) : Vec3(Vec3::UnitX());
-  if (force.stiffness > 0 || !(force.damping > 0)) {
+  if (!is_damper_alone(force)) {
     sketch.pen.role = Role::spring;
     sketch.pen.color = spring_color(colors, length - free, std::max(0.15 * free, 1e-9 * u));
     sketch.coil(a, b, side, std::min(1.1 * u, 0.2 * drawn), std::min(0.18 * u, 0.035 * drawn), false);
   }
-  if (force.damping > 0) {
+  if (is_damped(force)) {
     sketch.pen.role = Role::damper;
-    draw_dashpot(sketch, a, b, force.stiffness > 0 ? Vec3(2.2 * u * side) : Vec3(Vec3::Zero()), 0.6 * drawn,
-                 u, colors);
+    draw_dashpot(sketch, a, b, !is_damper_alone(force) ? Vec3(2.2 * u * side) : Vec3(Vec3::Zero()),
+                 0.6 * drawn, u, colors);
   }
   sketch.pen.role = Role::force;
   sketch.pen.color = colors.metal_dark;
@@ -134,7 +136,7 @@ void draw_joint_forces(Sketch& sketch, const Assembly& assembly, std::size_t ind
   const Joint& joint = assembly.mechanism.joints[index];
   sketch.pen = {colors.metal, Surface::metal, Role::spring, {PartKind::joint, static_cast<int>(index)}};
   for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
-    if (!joint.coordinates[i].spring && !(joint.coordinates[i].damping > 0)) continue;
+    if (!joint.coordinates[i].spring && !is_damped(joint.coordinates[i])) continue;
     if (coordinate_axis(joint, i).angle)
       draw_turn_forces(sketch, assembly, index, i, colors);
     else

@@ -1,5 +1,8 @@
 #include "app/viewport/loads.hpp"
 
+#include "engine/mechanism/damped.hpp"
+#include "engine/system/elastic_force.hpp"
+
 #include <algorithm>
 #include <string_view>
 #include <unordered_map>
@@ -57,7 +60,8 @@ class Collector {
       if (i >= joint.coordinates.size()) continue;
       const Coordinate& coordinate = joint.coordinates[i];
       double force = 0;
-      if (coordinate.spring) force -= coordinate.spring->stiffness * (c.value - coordinate.spring->free);
+      if (const auto& spring = coordinate.spring)
+        force -= elastic_force(mechanism_, joint, c.index, c.value - spring->free).force;
       if (const auto& stop = coordinate.stop) {
         if (stop->lower) force += stop->stiffness * std::max(*stop->lower - c.value, 0.);
         if (stop->upper) force -= stop->stiffness * std::max(c.value - *stop->upper, 0.);
@@ -76,8 +80,10 @@ class Collector {
       if (!(length > 0)) continue;
       const Vec3 along = (b - a) / length;
       const double free = force.free_length.value_or((force.points[1] - force.points[0]).stableNorm());
-      const double stretching = force.damping > 0 ? along.dot(velocity(second, b) - velocity(first, a)) : 0;
-      const Vec3 pull = (force.stiffness * (length - free) + force.damping * stretching) * along;
+      const double stretching = is_damped(force) ? along.dot(velocity(second, b) - velocity(first, a)) : 0;
+      const Vec3 pull = (elastic_force(mechanism_, force, length - free).force +
+                         damping_force(mechanism_, force, stretching)) *
+                        along;
       if (first >= 0 && of_body(first)) add(LoadKind::spring, false, a, pull, part_at(PartKind::force, f));
       if (second >= 0 && of_body(second)) add(LoadKind::spring, false, b, -pull, part_at(PartKind::force, f));
     }

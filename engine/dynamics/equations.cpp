@@ -40,8 +40,8 @@ std::vector<FlipElement> list_flips(const System& system, const Parameters& p) {
   std::vector<FlipElement> out;
   for (std::size_t i = 0; i < system.links.size(); ++i) {
     if (system.links[i].v < 0 || system.links[i].type != LinkType::spherical) continue;
-    if (p.links[i].elastic || p.links[i].force[0].damping != 0 || p.links[i].force[1].damping != 0 ||
-        p.links[i].force[2].damping != 0)
+    if (p.links[i].elastic || p.links[i].force[0].damped() || p.links[i].force[1].damped() ||
+        p.links[i].force[2].damped())
       out.push_back({static_cast<int>(i), true});
   }
   return out;

@@ -56,9 +56,9 @@ MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   if (damped) return m;
   for (LinkParameters& l : m.parameters.links)
     for (CoordinateForce& f : l.force)
-      f.damping = 0;
+      f.remove_damper();
   for (PointSpringParameters& s : m.parameters.springs)
-    s.damping = 0;
+    s.remove_damper();
   for (CutDamperParameters& d : m.parameters.cut_dampers)
     d.damping = 0;
   return m;

@@ -62,7 +62,7 @@ void NewtonElimination::set_joint(const MotionPoint& point, std::size_t l, int v
   }
   if constexpr (N == 1) {
     j.stiffness(0, 0) = lp.elastic ? lp.force[0].curvature(point.q[link.q]) : 0;
-    j.damping(0, 0) = lp.force[0].damping;
+    j.damping(0, 0) = lp.force[0].resistance_slope(point.u[v]);
   } else {
     j.damping = rotation_damping(link, lp, point.q);
     j.stiffness.setZero();

@@ -108,19 +108,20 @@ PairBlocks& PairBlocks::operator+=(const PairBlocks& other) {
 PairBlocks spring_blocks(const PointSpringElement& e, const PointSpringParameters& p,
                          const Kinematics<double>& k, bool moving, Lines lines) {
   const SpringState<double> s = spring_state(e, p, k);
-  if (p.free_length == 0 && p.damping == 0) { // needs no direction: the points may meet
+  if (p.without_length()) { // needs no direction: the points may meet
     const Ends at = ends_of(e.ends, s.a, s.b, k);
     return force_between(p.stiffness * (s.b - s.a), at.pa, at.pb, -p.stiffness * at.pa, p.stiffness * at.pb);
   }
   PairBlocks x = line_blocks(s.a - k.at(e.ends.a).o, s.b - k.at(e.ends.b).o, s.direction, s.length,
-                             p.stiffness, s.tension, lines);
-  if (p.damping == 0 || !moving) return x;
+                             p.pull_slope(s.length), s.tension, lines);
+  if (!p.damped() || !moving) return x;
+  const double damping = p.resistance_slope(stretching(e, s, k));
   const Ends at = ends_of(e.ends, s.a, s.b, k);
   // Points are carried by frames that turn with w: a point's velocity changes by w x its shift.
   const Mat3 across = (Mat3::Identity() - s.direction * s.direction.transpose()) / s.length;
   const Vec3 rate = k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a);
   const auto change = [&](int link, const Mat36& motion) {
-    return Mat36(p.damping * s.direction *
+    return Mat36(damping * s.direction *
                  (rate.transpose() * across + s.direction.transpose() * skew(k.at(link).w)) * motion);
   };
   const Mat36 by_a = -change(e.ends.a, at.pa), by_b = change(e.ends.b, at.pb);
@@ -209,7 +210,7 @@ PairDamping spring_damping(const PointSpringElement& e, const PointSpringParamet
                            const Kinematics<double>& k) {
   const SpringState<double> s = spring_state(e, p, k);
   PairDamping out;
-  out.damping = p.damping;
+  out.damping = p.resistance_slope(stretching(e, s, k));
   out.rate.a << -(s.a - k.at(e.ends.a).o).cross(s.direction), -s.direction;
   out.rate.b << (s.b - k.at(e.ends.b).o).cross(s.direction), s.direction;
   return out;

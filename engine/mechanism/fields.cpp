@@ -1,5 +1,7 @@
 #include "engine/mechanism/fields.hpp"
 
+#include <array>
+
 namespace flyball::fields {
 
 GearUnits gear_units(const Mechanism& mechanism, const Joint& gear) {
@@ -15,6 +17,14 @@ GearUnits gear_units(const Mechanism& mechanism, const Joint& gear) {
   const std::string_view offset = value_unit(b == Measure::angle);
   if (a == Measure::unknown || a == b) return {"", offset};
   return {b == Measure::angle ? "rad/m" : "m/rad", offset};
+}
+
+std::string_view bearing_unit(std::string_view of, std::size_t size, std::size_t row, std::size_t column) {
+  if (size == 2) return of;
+  constexpr std::array<std::string_view, 4> by_shift{"N/m", "N", "N m/m", "N m/rad"},
+      by_rate{"N s/m", "N s", "N m s/m", "N m s/rad"};
+  const std::size_t kind = (row < 3 ? 0U : 2U) + (column < 3 ? 0U : 1U);
+  return of == by_shift[0] ? by_shift[kind] : by_rate[kind];
 }
 
 Vec3 mass_centre(const Mechanism& mechanism, std::string_view body) {

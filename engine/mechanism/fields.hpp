@@ -40,6 +40,7 @@ inline constexpr std::string_view number = "a number", text = "a text", word = "
                                   named_objects = "an object of objects by name",
                                   named_points = "an object of points by name",
                                   expression = "an expression of results, as \"=x(ball)\"";
+inline constexpr std::string_view matrix = "a matrix of two rows of two numbers or of six rows of six";
 inline constexpr std::string_view two_points =
     "two points [[x, y, z], [x, y, z]], on the first body and on the second";
 } // namespace expected
@@ -52,7 +53,7 @@ inline constexpr Field name{"name", expected::word, "", required}, type{"type", 
     simulation{"simulation", expected::object}, density{"density", expected::number, "kg/m^3"},
     mass{"mass", expected::number, "kg"}, position{"position", expected::point, "m"},
     inertia{"inertia", "three numbers [xx, yy, zz] or six [xx, yy, zz, xy, xz, yz]", "kg m^2"},
-    value{"value", expected::number, "", required};
+    value{"value", expected::number, "", required}, stiffness{"stiffness", expected::number, "N/m"};
 
 // Of a coordinate's value, of what it takes to move it, and of its rate.
 constexpr std::string_view value_unit(bool angle) {
@@ -75,6 +76,8 @@ struct GearUnits {
   std::string_view ratio, offset;
 };
 GearUnits gear_units(const Mechanism& mechanism, const Joint& gear);
+// Of entry (row, column) of a bearing's matrix with `size` rows; `of` is the unit of the first.
+std::string_view bearing_unit(std::string_view of, std::size_t size, std::size_t row, std::size_t column);
 // Of a body of the mechanism; zero where there is no such body.
 Vec3 mass_centre(const Mechanism& mechanism, std::string_view body);
 } // namespace fields
@@ -138,7 +141,9 @@ void visit_fields(Visitor& v, Part& body) {
 template <class Visitor, PartOf<CoordinateSpring> Part>
 void visit_fields(Visitor& v, Part& spring, bool angle = true) {
   v.describe(spring.description);
-  v.field({"stiffness", expected::number, fields::stiffness_unit(angle), fields::required}, spring.stiffness);
+  v.field({"force", expected::number, fields::force_unit(angle)}, spring.force);
+  if (!spring.force) // else it stands for it
+    v.field({fields::stiffness.key, expected::number, fields::stiffness_unit(angle)}, spring.stiffness);
   v.field({"free", expected::number, fields::value_unit(angle)}, spring.free, 0);
 }
 
@@ -174,6 +179,7 @@ void visit_fields(Visitor& v, Part& coordinate, bool angle = true) {
   v.field({"coordinate", expected::number, fields::value_unit(angle)}, coordinate.drawn, 0);
   v.field({"spring", expected::object}, coordinate.spring);
   v.field({"damping", expected::number, fields::damping_unit(angle)}, coordinate.damping, 0);
+  v.field({"damping_force", expected::number, fields::force_unit(angle)}, coordinate.damping_force);
   v.field({"stop", expected::object}, coordinate.stop);
   v.field({"friction", expected::object}, coordinate.friction);
   v.field({"drive", expected::object}, coordinate.drive);
@@ -218,9 +224,20 @@ void visit_fields(Visitor& v, Part& force, const Mechanism* of = nullptr) {
   if (force.type == ForceType::spring) {
     v.field(fields::bodies, force.bodies);
     v.field(fields::points, force.points);
-    v.field({"stiffness", expected::number, "N/m", required}, force.stiffness);
+    v.field({"force", expected::number, "N"}, force.force);
+    if (!force.force) v.field(fields::stiffness, force.stiffness);
     v.field({"free_length", expected::number, "m"}, force.free_length, drawn_distance(force.points));
     v.field({"damping", expected::number, "N s/m"}, force.damping, 0);
+    v.field({"damping_force", expected::number, "N"}, force.damping_force);
+    return;
+  }
+  if (force.type == ForceType::bearing) {
+    v.field(fields::bodies, force.bodies);
+    v.field({"at", expected::point, "m", required}, force.at);
+    v.field({"axis", expected::direction, "", required}, force.axis);
+    v.field({"x_axis", expected::direction}, force.x_axis);
+    v.field({"stiffness", expected::matrix, "N/m"}, force.bearing_stiffness, {});
+    v.field({"damping", expected::matrix, "N s/m"}, force.bearing_damping, {});
     return;
   }
   v.field({"body", expected::word, "", required}, force.body);

@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/formula_plan.hpp"
 #include "engine/mechanism/given_names.hpp"
 #include "engine/mechanism/infinite_rate.hpp"
@@ -216,7 +217,7 @@ struct FormulaPlan::State {
     visit_parts(m, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
       const std::vector<Number> numbers = numbers_of_part();
       for (const Formula& formula : formulas) {
-        if (is_drive_law(formula)) continue; // has a value at each state
+        if (is_drive_law(formula) || is_force_law(formula)) continue; // has a value at each state
         const std::string where = joined_path(path, formula.key);
         const auto number = std::ranges::find(numbers, formula.key, &Number::key);
         if (number == numbers.end())
@@ -350,7 +351,10 @@ std::vector<GivenNumber> given_numbers(const Mechanism& mechanism) {
   visit_parts(copy, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
     const std::vector<Number> numbers = numbers_of_part();
     for (const Formula& formula : formulas)
-      if (const auto number = std::ranges::find(numbers, formula.key, &Number::key); number != numbers.end())
+      if (is_force_law(formula)) // no number
+        continue;
+      else if (const auto number = std::ranges::find(numbers, formula.key, &Number::key);
+               number != numbers.end())
         all.push_back({path, joined_path(path, formula.key), formula.text, number->value, number->unit});
   });
   return all;
@@ -455,10 +459,15 @@ std::string used_of_version_2(const Mechanism& mechanism) {
         return "joints." + joint.name +
                (finds_speed(*c.drive) && !c.drive->torque ? ".drive.keeps" : ".drive.torque");
       if (c.friction) return "joints." + joint.name + ".friction";
+      if (c.spring && c.spring->force) return "joints." + joint.name + ".spring.force";
+      if (c.damping_force) return "joints." + joint.name + ".damping_force";
     }
   }
   for (const Force& force : mechanism.forces)
-    if (!force.formulas.empty()) return first(force, "forces." + force.name);
+    if (!force.formulas.empty())
+      return first(force, "forces." + force.name);
+    else if (force.force || force.damping_force || force.type == ForceType::bearing)
+      return "forces." + force.name;
   return {};
 }
 

@@ -108,10 +108,13 @@ enum class JointType {
   gear,        // joints, ratio, offset: q_b = ratio q_a + offset; always cut
 };
 
+// Pulls its coordinate back by stiffness times deflection, or by a force (N m or N, against the deflection)
+// that is given in its place, mostly as an expression of the deflection, see force_law.hpp.
 struct CoordinateSpring {
   double stiffness = 0; // N/m or N m/rad
-  double free = 0;      // m or rad, value of the coordinate at which the spring is slack
+  double free = 0;      // m or rad, value of the coordinate from which the deflection is counted
   std::string description{};
+  std::optional<double> force{};
   bool operator==(const CoordinateSpring&) const = default;
 };
 
@@ -160,6 +163,7 @@ struct Coordinate {
   double damping = 0; // N m s/rad or N s/m
   std::optional<Stop> stop;
   std::optional<Friction> friction{};
+  std::optional<double> damping_force{}; // N m or N, an expression of the rate in place of `damping`
   std::optional<Drive> drive;
   bool operator==(const Coordinate&) const = default;
 };
@@ -183,25 +187,35 @@ struct Joint {
   bool operator==(const Joint&) const = default;
 };
 
-enum class ForceType { spring, force, torque, drag };
+enum class ForceType { spring, force, torque, drag, bearing };
 enum class ForceFrame { world, body };
+
+// Stiffness or damping of a bearing by rows, entries of its own axes: 2 x 2 of the shifts along x and y (N/m,
+// N s/m), or 6 x 6 of the shifts along x, y and z (the axis) and the components of the rotation vector about
+// them (N/m, N, N m/m, N m/rad, each times s for damping); empty: zero. See bearing.hpp.
+using BearingMatrix = std::vector<double>;
 
 // A force beside the joints; which fields count depends on the type.
 struct Force {
   std::string name;
   std::string description;
   ForceType type = ForceType::spring;
-  std::array<std::string, 2> bodies;                      // spring
+  std::array<std::string, 2> bodies;                      // spring, bearing
   std::array<Vec3, 2> points{Vec3::Zero(), Vec3::Zero()}; // m; spring: on the first body, on the second
   double stiffness = 0;                                   // N/m; spring
   std::optional<double> free_length;                      // m; spring; default the drawn distance
   double damping = 0;                                     // N s/m; spring, along its line
-  std::string body;                                       // force, torque, drag
-  std::optional<Vec3> at;                                 // m; force, torque, drag; default the mass centre
-  Vec3 vector = Vec3::Zero();                             // N or N m; force, torque
-  ForceFrame frame = ForceFrame::world;                   // whether `vector` is in world or in body axes
-  double linear = 0;                                      // N s/m; drag, in air at rest in the world
-  double quadratic = 0;                                   // N s^2/m^2; drag
+  std::optional<double> force{}, damping_force{}; // N; spring: in place of these, see CoordinateSpring
+  std::string body;                               // force, torque, drag
+  std::optional<Vec3> at;               // m; force, torque, drag; default the mass centre; bearing, required
+  Vec3 vector = Vec3::Zero();           // N or N m; force, torque
+  ForceFrame frame = ForceFrame::world; // whether `vector` is in world or in body axes
+  double linear = 0;                    // N s/m; drag, in air at rest in the world
+  double quadratic = 0;                 // N s^2/m^2; drag
+  Vec3 axis = Vec3::UnitZ();            // bearing, any length: of what turns in it
+  std::optional<Vec3>
+      x_axis{}; // bearing, any length: its x in the plane across; default as bearing_axes says
+  BearingMatrix bearing_stiffness{}, bearing_damping{};
   Formulas formulas{};
   bool operator==(const Force&) const = default;
 };
@@ -269,6 +283,14 @@ std::string_view type_name(ShapeType type);
 std::string_view type_name(ForceFrame frame);
 std::string_view type_name(DriveKeeps keeps);
 std::string_view type_name(SliderScale scale);
+
+// Whether what acts does so between two bodies, at `bodies`, rather than on one, at `body`.
+bool acts_between(ForceType type);
+// x, y and z of a bearing, unit vectors of the drawn pose as columns. Without an x_axis x is the world axis
+// nearest to the plane across, the first of several.
+Mat3 bearing_axes(const Force& bearing);
+// 2 or 6: the larger of its matrices.
+int bearing_size(const Force& bearing);
 
 // Whether the speed is found rather than given: by a torque, or where momentum is kept.
 bool finds_speed(const Drive& drive);

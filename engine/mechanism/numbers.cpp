@@ -46,6 +46,14 @@ class Collector {
     for (std::size_t i = 0; i < places.size(); ++i)
       add(key(field) + "." + std::to_string(i), field, places[i]);
   }
+  void field(const Field& field, BearingMatrix& places, const BearingMatrix&) {
+    const std::size_t size = places.size() > 4 ? 6 : 2;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      Field entry = field;
+      entry.unit = fields::bearing_unit(field.unit, size, i / size, i % size);
+      add(key(field) + "." + std::to_string(i / size) + "." + std::to_string(i % size), entry, places[i]);
+    }
+  }
   void pair(const Field& field, Vec3& a, Vec3& b) {
     add(key(field) + ".0", field, a);
     add(key(field) + ".1", field, b);

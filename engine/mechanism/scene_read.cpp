@@ -97,6 +97,23 @@ void check(const ValueReader& value, const Stop& stop) {
   if (!stop.lower && !stop.upper) throw SceneError(value.path(), "expected lower, upper or both");
 }
 
+// A spring pulls by its stiffness, or by a force in its place.
+void check_spring(const ValueReader& value, bool by_force, std::string_view noun) {
+  const bool stiffness = value.json().contains(fields::stiffness.key);
+  const std::string where = key_path(value.path(), fields::stiffness.key);
+  if (by_force && stiffness)
+    throw SceneError(where, "expected none beside `force`, which stands in its place");
+  if (!by_force && !stiffness)
+    throw SceneError(where, "missing; " + std::string(noun) +
+                                " needs it, or a `force` in its place: " + std::string(expected::number));
+}
+void check(const ValueReader& value, const CoordinateSpring& spring) {
+  check_spring(value, spring.force.has_value(), noun(spring));
+}
+void check(const ValueReader& value, const Force& force) {
+  if (force.type == ForceType::spring) check_spring(value, force.force.has_value(), noun(force));
+}
+
 template <class Part>
 Part read_object(const ValueReader& value);
 
@@ -141,6 +158,14 @@ void read(const ValueReader& value, std::array<double, 6>& to) {
   if (entries.size() != 3 && entries.size() != 6) value.fail();
   for (std::size_t i = 0; i < entries.size(); ++i)
     to[i] = entries[i].number();
+}
+void read(const ValueReader& value, BearingMatrix& to) {
+  const std::vector<ValueReader> rows = value.elements(2, 6, expected::matrix);
+  const std::size_t size = rows.size();
+  if (size != 2 && size != 6) value.fail();
+  for (const ValueReader& row : rows)
+    for (const ValueReader& entry : row.elements(size, size, expected::number))
+      to.push_back(entry.number());
 }
 template <class Value>
 void read(const ValueReader& value, std::optional<Value>& to) {

@@ -148,6 +148,13 @@ class ObjectWriter {
     return with_formulas(all ? Json(inertia) : Json(std::vector<double>(inertia.begin(), products)), place_,
                          place_.key(field));
   }
+  Json value_of(const Field& field, const BearingMatrix& matrix) const {
+    const std::size_t size = matrix.size() > 4 ? 6 : 2;
+    Json rows = Json::array();
+    for (auto row = matrix.begin(); row != matrix.end(); row += static_cast<std::ptrdiff_t>(size))
+      rows.push_back(std::vector<double>(row, row + static_cast<std::ptrdiff_t>(size)));
+    return with_formulas(std::move(rows), place_, place_.key(field));
+  }
   template <class Part>
   Json value_of(const Field&, const std::vector<Part>& parts) const {
     Json list = Json::array();

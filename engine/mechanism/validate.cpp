@@ -97,6 +97,10 @@ class NumberCheck {
     for (const double each : values)
       check(each);
   }
+  void check(const BearingMatrix& entries) {
+    for (const double each : entries)
+      check(each);
+  }
   void check(const std::array<Vec3, 2>& points) {
     check(points[0]);
     check(points[1]);
@@ -273,7 +277,7 @@ bool is_right_at(const Mechanism& mechanism, std::string_view address) {
     found =
         part_at(mechanism.forces, force_index(mechanism, name), [&](const Force& force, const auto& path) {
           find_non_finite(mechanism, force, path, mistakes);
-          find_mistakes_of(force, path, mistakes);
+          find_mistakes_of(mechanism, force, path, mistakes);
         });
   } else {
     // Gears tie the drives and drawn values of joints to each other.
@@ -372,7 +376,7 @@ void validate_numbers(const Mechanism& mechanism) {
   }
   for (const Force& force : mechanism.forces) {
     find_non_finite(mechanism, force, force.name, mistakes);
-    find_mistakes_of(force, force.name, mistakes);
+    find_mistakes_of(mechanism, force, force.name, mistakes);
   }
   find_setting_mistakes(mechanism, mistakes);
   // Ratios above zero and drives that agree.

@@ -20,7 +20,7 @@ void find_connection_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
     if (!is_cut_by_hand(joint)) uncut.join(joint.bodies);
   }
   for (const Force& force : mechanism.forces) {
-    if (force.type != ForceType::spring) continue;
+    if (!acts_between(force.type)) continue;
     all.join(force.bodies);
     uncut.join(force.bodies);
   }

@@ -1,4 +1,5 @@
 #include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -49,7 +50,8 @@ void find_torque_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t
   else
     mistakes.expect(!momentum, path + ".keeps", "expected speed: where a torque acts no momentum is kept");
   if (momentum)
-    mistakes.expect(joint.coordinates[i].damping == 0, coordinate_path(mechanism, j, "damping", i),
+    mistakes.expect(joint.coordinates[i].damping == 0 && !joint.coordinates[i].damping_force,
+                    coordinate_path(mechanism, j, "damping", i),
                     "expected zero: where a damper resists the drive no momentum is kept");
   if (!finds_speed(drive)) return;
   mistakes.expect(drive.speed != 0 || momentum, path + ".speed",
@@ -63,6 +65,44 @@ void find_torque_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t
       mistakes.add(error.where(), error.expected());
     }
   }
+}
+
+// A force in place of a stiffness or damping is a law; of a spring also a number.
+template <class Check>
+void find_law_mistakes(const Formula* law, const std::string& path, Mistakes& mistakes, const Check& check) {
+  try {
+    if (law) check(*law);
+  } catch (const SceneError& error) {
+    mistakes.add(error.where().empty() ? path : error.where(), error.expected());
+  }
+}
+
+void find_damper_mistakes(const std::optional<double>& force, const Formula* law, double damping,
+                          const std::string& path, Mistakes& mistakes) {
+  if (!force) return;
+  if (!law) mistakes.add(path, "expected an expression of the rate, as \"=40 N*tanh(rate/(1 m/s))\"");
+  if (damping != 0) mistakes.add(path, "expected none beside `damping`, in whose place it stands");
+}
+
+void find_force_law_mistakes(const Mechanism& mechanism, const Joint& joint, std::size_t i,
+                             const std::string& spring_path, const std::string& damper_path,
+                             Mistakes& mistakes) {
+  const Coordinate& coordinate = joint.coordinates[i];
+  const int index = static_cast<int>(i);
+  const bool angle = is_angle(joint.type, index);
+  if (coordinate.spring && coordinate.spring->force)
+    find_law_mistakes(spring_law(joint, index), spring_path, mistakes, [&](const Formula& law) {
+      check_spring_law(mechanism, law, angle, spring_path + ".force");
+    });
+  if (!coordinate.damping_force) return;
+  const Formula* law = damper_law(joint, index);
+  find_damper_mistakes(coordinate.damping_force, law, coordinate.damping, damper_path, mistakes);
+  if (is_rotation_vector(joint.type, index))
+    return mistakes.add(damper_path, "expected `damping`: the components of a rotation vector have no rates "
+                                     "of their own; use revolute joints");
+  find_law_mistakes(law, damper_path, mistakes, [&](const Formula& formula) {
+    check_damper_law(mechanism, formula, angle, damper_path);
+  });
 }
 
 // Each coordinate holds by itself, so it must be one that slips by itself.
@@ -104,6 +144,7 @@ void find_coordinate_mistakes(const Mechanism& mechanism, std::size_t j, std::si
   const auto path = [&](std::string_view key) { return coordinate_path(mechanism, j, key, i); };
   if (coordinate.damping < 0)
     mistakes.add(path("damping"), "expected zero or more, found " + number_text(coordinate.damping));
+  find_force_law_mistakes(mechanism, joint, i, path("spring"), path("damping_force"), mistakes);
   if (coordinate.stop) {
     const Stop& stop = *coordinate.stop;
     mistakes.expect(stop.lower || stop.upper, path("stop"), "expected lower, upper or both");
@@ -214,7 +255,27 @@ void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
   }
 }
 
-void find_mistakes_of(const Force& force, const std::string& path, Mistakes& mistakes) {
+namespace {
+
+void find_bearing_mistakes(const Force& bearing, const std::string& path, Mistakes& mistakes) {
+  constexpr const char* direction = "expected a direction, not zero";
+  mistakes.expect(has_direction(bearing.axis), path, ".axis", direction);
+  if (bearing.x_axis) {
+    mistakes.expect(has_direction(*bearing.x_axis), path, ".x_axis", direction);
+    if (has_direction(bearing.axis) && has_direction(*bearing.x_axis))
+      mistakes.expect(!parallel(bearing.axis, *bearing.x_axis), path, ".x_axis",
+                      "expected a direction that is not parallel to `axis`");
+  }
+  const std::size_t k = bearing.bearing_stiffness.size(), d = bearing.bearing_damping.size();
+  if (k == 0 && d == 0) mistakes.add(path, "expected `stiffness`, `damping` or both");
+  if (k != 0 && d != 0 && k != d) mistakes.add(path + ".damping", "expected as many rows as `stiffness` has");
+}
+
+} // namespace
+
+void find_mistakes_of(const Mechanism& mechanism, const Force& force, const std::string& path,
+                      Mistakes& mistakes) {
+  if (force.type == ForceType::bearing) return find_bearing_mistakes(force, path, mistakes);
   const auto not_negative = [&](double value, const char* key) {
     if (value < 0) mistakes.add(path + "." + key, "expected zero or more, found " + number_text(value));
   };
@@ -224,6 +285,15 @@ void find_mistakes_of(const Force& force, const std::string& path, Mistakes& mis
                    "expected two points apart, or a `free_length` of 0: the spring has no direction");
     not_negative(force.free_length.value_or(0), "free_length");
     not_negative(force.damping, "damping");
+    if (force.force && coincide(force.points))
+      mistakes.add(path + ".points", "expected two points apart: the force has no direction");
+    find_law_mistakes(spring_law(force), path, mistakes,
+                      [&](const Formula& law) { check_spring_law(mechanism, law, false, path + ".force"); });
+    const Formula* law = damper_law(force);
+    find_damper_mistakes(force.damping_force, law, force.damping, path + ".damping_force", mistakes);
+    find_law_mistakes(law, path, mistakes, [&](const Formula& formula) {
+      check_damper_law(mechanism, formula, false, path + ".damping_force");
+    });
     return;
   }
   not_negative(force.linear, "linear");
@@ -235,13 +305,13 @@ void find_force_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
   for (std::size_t i = 0; i < mechanism.forces.size(); ++i) {
     const Force& force = mechanism.forces[i];
     const std::string path = part_path("forces", i, force.name);
-    if (force.type == ForceType::spring)
+    if (acts_between(force.type))
       find_two_body_mistakes(mechanism, numbers, force.bodies, path, mistakes);
     else if (force.body == ground_name)
       mistakes.add(path + ".body", "expected a body; the ground does not move");
     else if (!numbers.has(force.body))
       add_unknown_body(mechanism, force.body, false, path + ".body", mistakes);
-    find_mistakes_of(force, path, mistakes);
+    find_mistakes_of(mechanism, force, path, mistakes);
   }
 }
 

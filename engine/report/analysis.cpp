@@ -4,9 +4,11 @@
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
 #include "engine/report/found_speeds.hpp"
+#include "engine/report/kinks.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/turning_part.hpp"
@@ -40,6 +42,24 @@ bool same_kind(const Joint& a, const Joint& b, int i) {
   return true;
 }
 
+bool same_law(const Formula* a, const Formula* b) {
+  return (a == nullptr) == (b == nullptr) && (!a || a->text == b->text);
+}
+
+bool same_laws(const Joint& a, const Joint& b, int i) {
+  const Coordinate &x = a.coordinates[static_cast<std::size_t>(i)],
+                   &y = b.coordinates[static_cast<std::size_t>(i)];
+  return (x.spring && x.spring->force) == (y.spring && y.spring->force) &&
+         x.damping_force.has_value() == y.damping_force.has_value() &&
+         same_law(spring_law(a, i), spring_law(b, i)) && same_law(damper_law(a, i), damper_law(b, i));
+}
+
+bool same_laws(const Force& a, const Force& b) {
+  return a.force.has_value() == b.force.has_value() &&
+         a.damping_force.has_value() == b.damping_force.has_value() &&
+         same_law(spring_law(a), spring_law(b)) && same_law(damper_law(a), damper_law(b));
+}
+
 // Parts and connections, as opposed to numbers: what a compiled system depends on.
 bool same_topology(const Mechanism& a, const Mechanism& b) {
   if (a.bodies.size() != b.bodies.size() || a.joints.size() != b.joints.size() ||
@@ -56,14 +76,14 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
       const Coordinate &c = x.coordinates[k], &d = y.coordinates[k];
       if (c.spring.has_value() != d.spring.has_value() || c.stop.has_value() != d.stop.has_value() ||
           c.friction.has_value() != d.friction.has_value() || !same_kind(x, y, static_cast<int>(k)) ||
-          (c.damping != 0) != (d.damping != 0))
+          (c.damping != 0) != (d.damping != 0) || !same_laws(x, y, static_cast<int>(k)))
         return false;
     }
   }
   for (std::size_t i = 0; i < a.forces.size(); ++i) {
     const Force &x = a.forces[i], &y = b.forces[i];
     if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.body != y.body ||
-        x.frame != y.frame || (x.damping != 0) != (y.damping != 0))
+        x.frame != y.frame || (x.damping != 0) != (y.damping != 0) || !same_laws(x, y))
       return false;
   }
   return true;
@@ -327,6 +347,12 @@ Solution Analysis::solve_through(const SolveOptions& options) {
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
       stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
   }
+  const Kinks kinks = find_kinks(problem, *s.mechanism, s.answer, steady.elsewhere());
+  if (kinks.spring ||
+      (kinks.damper && stability.reason != StabilityReason::minimum)) { // one side says little
+    stability.stable.reset();
+    stability.reason = StabilityReason::marginal;
+  }
   if (open && stability.reason != StabilityReason::neutral) {
     stability.stable.reset();
     stability.reason = StabilityReason::marginal;
@@ -342,6 +368,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                           stability,    options.points, &s.measures};
   report(input, steady.error.solution + steady.error.data, options.details, steady.reuse(), out);
   if (!without_modes.empty()) out.message += " " + without_modes;
+  if (!kinks.message.empty()) out.message += " " + kinks.message;
   if (options.details && !s.system.torques.empty())
     out.at_constant_speed = stability_at_constant_speed(*s.mechanism, s.system, s.answer, out.coordinates);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)

@@ -49,11 +49,11 @@ double usual_stiffness(const Problem& problem, double mass) {
   }
   double sum = mass * (p.gravity.norm() / p.length + fastest * fastest);
   for (const PointSpringParameters& spring : p.springs)
-    sum = std::max(sum, spring.stiffness);
+    sum = std::max(sum, spring.pull_slope(spring.free_length));
   for (std::size_t l = 0; l < p.links.size(); ++l) {
     const double unit = problem.system.links[l].type == LinkType::prismatic ? 1 : p.length;
     for (const CoordinateForce& force : p.links[l].force)
-      sum = std::max(sum, force.stiffness / (unit * unit));
+      sum = std::max(sum, (force.laws ? force.laws->spring.slope(0) : force.stiffness) / (unit * unit));
   }
   return sum > 0 ? sum : 1;
 }

@@ -91,11 +91,15 @@ void MeasureSet::rates(const MeasuredState& s, std::size_t i, Eigen::VectorXd& o
   }
   case Result::length:
   case Result::tension: {
-    const PairEnds& ends = s.system.springs[static_cast<std::size_t>(place.spring)].ends;
+    const PointSpringElement& element = s.system.springs[static_cast<std::size_t>(place.spring)];
+    const PairEnds& ends = element.ends;
     const PointSpringParameters& p = s.parameters.springs[static_cast<std::size_t>(place.spring)];
-    return apart({ends.a, p.a}, {ends.b, p.b}, quantity.result == Result::length ? 1 : p.stiffness);
+    return apart(
+        {ends.a, p.a}, {ends.b, p.b},
+        quantity.result == Result::length ? 1 : p.pull_slope(spring_state(element, p, s.kinematics).length));
   }
-  case Result::spring: return add_coordinate_rates(s, place.reported, -numbers.stiffness, out);
+  case Result::spring:
+    return add_coordinate_rates(s, place.reported, numbers.spring_slope(s.coordinate(place.reported)), out);
   case Result::clearance: {
     if (!is_clearance_of_bodies(quantity)) {
       const double slope = numbers.clearance_slope(s.coordinate(place.reported));

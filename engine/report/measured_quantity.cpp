@@ -22,6 +22,20 @@ BasicTrackedPoint<N> tracked(const System& system, const BasicParameters<N>& p, 
   return {link, drawn - p.origin - p.links[static_cast<std::size_t>(link)].origin};
 }
 
+// Of a coordinate's spring.
+template <class N>
+BoundLaw law_of(const System& system, const BasicParameters<N>& p, const ResultQuantity::Of& of) {
+  for (const ForceLawElement& e : system.coordinate_laws) {
+    const Link& link = system.links[static_cast<std::size_t>(e.at)];
+    if (system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint == of.part &&
+        link.coordinate + e.component == of.coordinate)
+      return p.links[static_cast<std::size_t>(e.at)]
+          .force[static_cast<std::size_t>(e.component)]
+          .laws->spring;
+  }
+  return {};
+}
+
 template <class N>
 N angle_between(const Vec3T<N>& a, const Vec3T<N>& b) {
   using std::atan2;
@@ -66,6 +80,7 @@ void take_numbers(const ResultQuantity& quantity, const System& system, const Ba
     if (c.spring) {
       out.stiffness = read(c.spring->stiffness);
       out.free = read(c.spring->free);
+      out.law = law_of(system, p, quantity.of[0]);
     }
     out.lower = out.upper = std::nullopt;
     if (c.stop && c.stop->lower) out.lower = read(*c.stop->lower);

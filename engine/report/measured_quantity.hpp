@@ -12,12 +12,16 @@ template <class N>
 struct BasicQuantityNumbers {
   std::array<BasicTrackedPoint<N>, 3> points;
   N stiffness = 0, free = 0;                        // of a coordinate's spring
+  BoundLaw law{};                                   // in place of its stiffness
   std::optional<N> lower, upper;                    // of a coordinate's stops
   N mass = 0;                                       // kg
   std::array<std::vector<BasicSolid<N>>, 2> solids; // of the two bodies of a clearance
 
   // Of the coordinate's spring, along it, and to the nearer of its stops.
-  N spring(N q) const { return -stiffness * (q - free); }
+  N spring(N q) const { return law ? -law.value(N(q - free)) : -stiffness * (q - free); }
+  double spring_slope(double q) const {
+    return law ? -law.slope(q - static_cast<double>(free)) : -static_cast<double>(stiffness);
+  }
   N clearance(N q) const;
   double clearance_slope(double q) const; // 1 or -1
 };

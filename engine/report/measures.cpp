@@ -16,7 +16,7 @@ std::size_t slot(int i) {
   return static_cast<std::size_t>(i);
 }
 
-constexpr double rounding = 16 * std::numeric_limits<double>::epsilon(); // of a quantity of size 1
+constexpr double measure_rounding = 16 * std::numeric_limits<double>::epsilon(); // of a quantity of size 1
 
 bool asks_for_forces(Result result) {
   switch (result) {
@@ -59,7 +59,7 @@ void MeasureSet::bind(const Mechanism& m, const System& system, const Parameters
     Place& place = places_[i];
     take_numbers<double>(quantity, system, p, m, {}, numbers_[i]);
     if (quantity.result == Result::tension)
-      place.differenced = !system.torques.empty() || p.springs[slot(place.spring)].damping != 0;
+      place.differenced = !system.torques.empty() || p.springs[slot(place.spring)].damped();
     differenced_ = differenced_ || place.differenced;
   }
 }
@@ -248,12 +248,19 @@ double MeasureSet::rounding_size(const MeasuredState& s, std::size_t i) const {
   case Result::rate:
   case Result::angle: return size;
   case Result::coordinate: return std::max(size, quantity.angle ? 1 : reach);
-  case Result::spring: return std::abs(numbers_[i].stiffness) * std::max(size, quantity.angle ? 1 : reach);
-  case Result::tension:
-    return std::max(size, s.parameters.springs[slot(places_[i].spring)].stiffness * reach);
+  case Result::spring: {
+    const double at = s.coordinate(places_[i].reported);
+    return std::max(size, std::abs(numbers_[i].spring_slope(at)) *
+                              std::max(std::abs(at), quantity.angle ? 1 : reach));
+  }
+  case Result::tension: {
+    const std::size_t n = slot(places_[i].spring);
+    const double length = spring_state(s.system.springs[n], s.parameters.springs[n], s.kinematics).length;
+    return std::max(size, std::abs(s.parameters.springs[n].pull_slope(length)) * reach);
+  }
   case Result::clearance:
     if (is_clearance_of_bodies(quantity))
-      return size + reach + clearance_of(s.kinematics, i).error / rounding;
+      return size + reach + clearance_of(s.kinematics, i).error / measure_rounding;
     return std::max(size, quantity.angle ? 1 : reach);
   default: return size + reach;
   }
@@ -284,7 +291,7 @@ std::vector<MeasureSolution> MeasureSet::solutions(const Problem& problem, const
     double estimate = rates_.row(row).cwiseAbs() * error;
     for (std::size_t k = 0; k < found_.size(); ++k) {
       const double part = std::abs(partials_(row, static_cast<Eigen::Index>(k)));
-      if (part > 0) estimate += rounding * part * rounding_size(state, k);
+      if (part > 0) estimate += measure_rounding * part * rounding_size(state, k);
     }
     if (out[i].value && std::isfinite(estimate)) out[i].error = estimate + epsilon * std::abs(*out[i].value);
   }

@@ -51,11 +51,11 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   const bool damped =
       std::ranges::any_of(p.links,
                           [](const LinkParameters& l) {
-                            return std::ranges::any_of(
-                                l.force, [](const CoordinateForce& f) { return f.damping != 0; });
+                            return std::ranges::any_of(l.force,
+                                                       [](const CoordinateForce& f) { return f.damped(); });
                           }) ||
       !system.cut_dampers.empty() ||
-      std::ranges::any_of(p.springs, [](const PointSpringParameters& s) { return s.damping != 0; });
+      std::ranges::any_of(p.springs, [](const PointSpringParameters& s) { return s.damped(); });
   say(damped, "dampers: in the eigenvalues, and in the balance where parts turn against each other");
   say(std::ranges::any_of(system.links,
                           [](const Link& l) { return l.type == LinkType::spherical && l.v >= 0; }),

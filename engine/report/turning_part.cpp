@@ -33,7 +33,7 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
     l.elastic = false;
   }
   for (PointSpringParameters& s : only.springs)
-    s.stiffness = s.damping = 0;
+    s.remove();
   for (BodyForceParameters& f : only.body_forces) {
     f.vector.setZero();
     f.linear = f.quadratic = 0;
@@ -98,7 +98,7 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
       springs,
       [&](std::size_t i, bool on) {
         only.springs[i] = problem.parameters.springs[i];
-        if (!on) only.springs[i].stiffness = only.springs[i].damping = 0;
+        if (!on) only.springs[i].remove();
       },
       [&](std::size_t i) {
         return "the spring " + mechanism.forces[static_cast<std::size_t>(system.springs[i].force)].name;

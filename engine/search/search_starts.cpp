@@ -67,8 +67,10 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
       const double reach = 2 * problem.parameters.length;
       SearchRange range{value - reach, value + reach};
       const CoordinateForce& f = lp.force[0];
-      if (f.stiffness != 0)
-        range = {std::min(range.lower, f.free - reach), std::max(range.upper, f.free + reach)};
+      if (f.has_spring()) {
+        const double free = f.laws ? f.laws->free : f.free;
+        range = {std::min(range.lower, free - reach), std::max(range.upper, free + reach)};
+      }
       // A stop gives way by what its stiffness allows.
       if (f.has_lower) range.lower = std::max(range.lower, f.lower - 0.5 * reach);
       if (f.has_upper) range.upper = std::min(range.upper, f.upper + 0.5 * reach);

@@ -38,9 +38,7 @@ bool places_parts(const BasicParameters<Dual>& p) {
   const auto link = [](const BasicLinkParameters<Dual>& l) {
     return moves(l.offset, l.axis, l.drawn, l.com, l.start, l.drawn_rotation.coeffs());
   };
-  const auto spring = [](const BasicPointSpringParameters<Dual>& s) {
-    return s.damping.value != 0 && moves(s.a, s.b);
-  };
+  const auto spring = [](const BasicPointSpringParameters<Dual>& s) { return s.damped() && moves(s.a, s.b); };
   const auto damper = [](const BasicCutDamperParameters<Dual>& d) { return moves(d.a, d.b, d.axis); };
   const auto cut = [](const BasicCutParameters<Dual>& c) {
     return moves(c.a, c.b, c.drawn, c.constant, c.ratio) ||

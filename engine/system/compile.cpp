@@ -58,6 +58,7 @@ class Compiler {
     add_forces();
     list_coordinates();
     add_drive_torques();
+    add_force_laws();
     classify();
     choose_kkt_form();
     s_.division = divide(s_);
@@ -127,7 +128,8 @@ class Compiler {
     needs_coordinate_.assign(m_.joints.size(), false);
     for (int j = 0; j < joint_count(); ++j) {
       for (const Coordinate& c : joint(j).coordinates)
-        if (c.spring || c.stop || c.friction) needs_coordinate_[static_cast<std::size_t>(j)] = true;
+        if (c.spring || c.stop || c.friction || c.damping_force)
+          needs_coordinate_[static_cast<std::size_t>(j)] = true;
       if (joint(j).type == JointType::gear)
         for (int end : {0, 1})
           needs_coordinate_[static_cast<std::size_t>(gear_end(j, end).joint)] = true;
@@ -151,7 +153,7 @@ class Compiler {
   auto preference(int j) const {
     const Joint& x = joint(j);
     const bool labelled = std::ranges::any_of(
-        x.coordinates, [](const Coordinate& c) { return c.drawn != 0 || c.damping != 0; });
+        x.coordinates, [](const Coordinate& c) { return c.drawn != 0 || c.damping != 0 || c.damping_force; });
     int rank = 4;
     if (labelled) rank = 3;
     if (needs_coordinate_[static_cast<std::size_t>(j)]) rank = 2;
@@ -567,6 +569,53 @@ class Compiler {
     return out;
   }
 
+  static std::shared_ptr<const ForceLaw> read_law(const Formula* law, std::string_view variable,
+                                                  const std::string& where) {
+    try {
+      return law ? std::make_shared<const ForceLaw>(law->text, variable) : nullptr;
+    } catch (const ExpressionError& error) {
+      throw SceneError(where, "\"=" + law->text + "\": " + error.what());
+    }
+  }
+
+  void add_force_laws() {
+    for (int l = 0; l < static_cast<int>(s_.links.size()); ++l) {
+      const Link& x = link(l);
+      const TreeJoint& t = s_.tree_joints[static_cast<std::size_t>(x.tree_joint)];
+      if (t.joint < 0 || x.type == LinkType::fixed) continue;
+      const Joint& of = joint(t.joint);
+      for (int k = 0; k < (x.type == LinkType::spherical ? 3 : 1); ++k) {
+        const int i = x.coordinate + k;
+        const Coordinate& c = of.coordinates[static_cast<std::size_t>(i)];
+        const bool spring = c.spring && c.spring->force, damper = c.damping_force.has_value();
+        if (spring || damper)
+          s_.coordinate_laws.push_back({l, k, spring, damper,
+                                        read_law(spring_law(of, i), spring_variable, joint_path(t.joint)),
+                                        read_law(damper_law(of, i), damper_variable, joint_path(t.joint))});
+      }
+    }
+    for (int i = 0; i < static_cast<int>(s_.springs.size()); ++i) {
+      const Force& x = m_.forces[static_cast<std::size_t>(s_.springs[static_cast<std::size_t>(i)].force)];
+      const std::string where = "forces." + x.name;
+      if (x.force || x.damping_force)
+        s_.spring_laws.push_back({i, 0, x.force.has_value(), x.damping_force.has_value(),
+                                  read_law(spring_law(x), spring_variable, where),
+                                  read_law(damper_law(x), damper_variable, where)});
+    }
+  }
+
+  // Whether damping may be negative, so that a minimum of the potential need not be stable.
+  bool some_damper_may_drive() const {
+    const auto drives = [&](const Formula* law) { return law && !resists_at_rest(*law); };
+    return std::ranges::any_of(m_.joints,
+                               [&](const Joint& x) {
+                                 for (int i = 0; i < static_cast<int>(x.coordinates.size()); ++i)
+                                   if (drives(damper_law(x, i))) return true;
+                                 return false;
+                               }) ||
+           std::ranges::any_of(m_.forces, [&](const Force& x) { return drives(damper_law(x)); });
+  }
+
   // The drives a link turns with, innermost last; two links with the same ones never move against each other
   // in the steady state.
   int moving_frame(int l) const { return l < 0 ? -1 : link_at(l).frame; }
@@ -580,11 +629,13 @@ class Compiler {
       if (f.type != ForceType::force || f.frame != ForceFrame::world) s_.conservative = false;
     }
     for (const PointSpringElement& e : s_.springs)
-      if (m_.forces[static_cast<std::size_t>(e.force)].damping != 0 &&
-          moving_frame(e.ends.a) != moving_frame(e.ends.b))
+      if (const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
+          (f.damping != 0 || f.damping_force) && moving_frame(e.ends.a) != moving_frame(e.ends.b))
         s_.conservative = false;
     for (const CutDamperElement& e : s_.cut_dampers)
       if (moving_frame(e.ends.a) != moving_frame(e.ends.b)) s_.conservative = false;
+    if (!s_.coordinate_laws.empty() || !s_.spring_laws.empty())
+      s_.conservative = s_.conservative && !some_damper_may_drive();
     s_.conserves = s_.conservative && std::ranges::all_of(s_.torques, &DriveTorqueElement::keeps_momentum);
     s_.conservative = s_.conservative && s_.torques.empty();
   }

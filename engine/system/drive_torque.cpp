@@ -102,7 +102,7 @@ void add_drive_torques(const System& system, const ParametersOf<S>& p, const Con
   for (std::size_t i = 0; i < system.torques.size(); ++i) {
     const auto l = static_cast<std::size_t>(system.torques[i].link);
     const Link& link = system.links[l];
-    if (finds_speed(link)) f[link.v] += S(p.links[l].force[0].damping) * q[link.q];
+    if (finds_speed(link)) f[link.v] += p.links[l].force[0].resistance(q[link.q]);
     f[link.v] -= law_value<S>(system, p, i, q, k);
   }
 }
@@ -115,7 +115,7 @@ void add_drive_torque_sizes(const System& system, const Parameters& p, const Eig
     const LawState<double> state{system, p, q, k};
     force[link.v] += std::abs(state.value(system.torques[i].torque, p.torques[i].torque).value) +
                      std::abs(state.value(system.torques[i].load, p.torques[i].load).value);
-    if (finds_speed(link)) force[link.v] += std::abs(p.links[l].force[0].damping * q[link.q]);
+    if (finds_speed(link)) force[link.v] += std::abs(p.links[l].force[0].resistance(q[link.q]));
   }
 }
 

@@ -361,6 +361,11 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
   fill_velocity(system, p, q, k, out);
 }
 
+double coordinate_damping(const System& system, const Parameters& p, int link, const Kinematics<double>& k) {
+  const CoordinateForce& f = p.links[static_cast<std::size_t>(link)].force[0];
+  return f.laws ? f.resistance_slope(turning_rate(system, link, k)) : f.damping;
+}
+
 void add_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                  const Kinematics<double>& k, Eigen::MatrixXd& velocity) {
   for (std::size_t l = 0; l < system.links.size(); ++l) {
@@ -370,7 +375,7 @@ void add_damping(const System& system, const Parameters& p, const Eigen::VectorX
     if (link.type == LinkType::spherical)
       velocity.block<3, 3>(link.v, link.v) += rotation_damping(link, p.links[l], q);
     else
-      velocity(link.v, link.v) += p.links[l].force[0].damping;
+      velocity(link.v, link.v) += coordinate_damping(system, p, static_cast<int>(l), k);
   }
   for (std::size_t n = 0; n < system.body_forces.size(); ++n) {
     interruption_point();

@@ -65,6 +65,10 @@ void linearize(const System& system, const Parameters& parameters, const Eigen::
 void linearize_motion(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                       const Kinematics<double>& kinematics, Linearization& out);
 
+// How fast a coordinate's damper resists more as its rate grows (N m s/rad or N s/m), for links of one axis.
+double coordinate_damping(const System& system, const Parameters& parameters, int link,
+                          const Kinematics<double>& kinematics);
+
 // Adds the derivative of all damping and drag forces with the velocities; symmetric and positive
 // semidefinite.
 void add_damping(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,

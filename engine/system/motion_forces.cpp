@@ -7,7 +7,7 @@ namespace flyball {
 namespace {
 
 bool damped(const LinkParameters& p) {
-  return p.force[0].damping != 0 || p.force[1].damping != 0 || p.force[2].damping != 0;
+  return p.force[0].damped() || p.force[1].damped() || p.force[2].damped();
 }
 
 Vec3 dampings(const LinkParameters& p) {
@@ -26,7 +26,7 @@ void add_coordinate_damping(const System& system, const Parameters& p, const Eig
       const Vec3 rate = j * u.segment<3>(link.v);
       f.segment<3>(link.v) += j.transpose() * dampings(p.links[i]).cwiseProduct(rate);
     } else {
-      f[link.v] += p.links[i].force[0].damping * u[link.v];
+      f[link.v] += p.links[i].force[0].resistance(u[link.v]);
     }
   }
 }
@@ -67,15 +67,13 @@ ForcePowers force_powers(const System& system, const Parameters& p, const Eigen:
       out.dissipated += dampings(p.links[i]).dot(rate.cwiseAbs2());
     } else {
       const CoordinateForce& f = p.links[i].force[0];
-      out.dissipated += (f.damping * u[link.v] - f.friction) * u[link.v];
+      out.dissipated += (f.resistance(u[link.v]) - f.friction) * u[link.v];
     }
   }
   for (std::size_t i = 0; i < system.springs.size(); ++i) {
-    if (p.springs[i].damping == 0) continue;
-    const PointSpringElement& e = system.springs[i];
-    const SpringState<double> s = spring_state(e, p.springs[i], k);
-    const double rate = s.direction.dot(k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a));
-    out.dissipated += p.springs[i].damping * rate * rate;
+    if (!p.springs[i].damped()) continue;
+    const double rate = stretching(system.springs[i], spring_state(system.springs[i], p.springs[i], k), k);
+    out.dissipated += p.springs[i].resistance(rate) * rate;
   }
   for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
     const CutDamperElement& e = system.cut_dampers[i];
@@ -118,10 +116,8 @@ double potential_energy(const System& system, const Parameters& p, const Eigen::
       energy += lp.force[0].energy(q[link.q]) + lp.force[0].friction * q[link.q]; // which is dissipated
     }
   }
-  for (std::size_t i = 0; i < system.springs.size(); ++i) {
-    const double stretch = spring_state(system.springs[i], p.springs[i], k).length - p.springs[i].free_length;
-    energy += p.springs[i].stiffness * stretch * stretch / 2;
-  }
+  for (std::size_t i = 0; i < system.springs.size(); ++i)
+    energy += p.springs[i].energy(spring_state(system.springs[i], p.springs[i], k).length);
   for (std::size_t i = 0; i < system.body_forces.size(); ++i)
     if (p.body_forces[i].type == ForceType::force && p.body_forces[i].frame == ForceFrame::world)
       energy -= p.body_forces[i].vector.dot(k.point(system.body_forces[i].link, p.body_forces[i].at));

@@ -87,7 +87,7 @@ void add_springs(const System& system, const Parameters& p, const Kinematics<dou
     const PointSpringElement& e = system.springs[n];
     const PointSpringParameters& f = p.springs[n];
     const SpringState<double> s = spring_state(e, f, k);
-    if (f.free_length == 0 && f.damping == 0) { // k d: no direction needed, points may meet
+    if (f.without_length()) { // k d: no direction needed, points may meet
       for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) {
         const Vec3& pi = i.second ? s.b : s.a;
         const Vec3& pj = j.second ? s.b : s.a;
@@ -97,9 +97,10 @@ void add_springs(const System& system, const Parameters& p, const Kinematics<dou
       });
       continue;
     }
-    const Line line{s.a, s.b, s.direction, s.length, f.stiffness, s.tension};
+    const Line line{s.a, s.b, s.direction, s.length, f.pull_slope(s.length), s.tension};
     for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) { return line_hessian(line, i, j); });
-    if (f.damping == 0 || !p.moving) continue;
+    if (!f.damped() || !p.moving) continue;
+    const double damping = f.resistance_slope(stretching(e, s, k));
     const Vec3 va = k.velocity(e.ends.a, s.a), vb = k.velocity(e.ends.b, s.b);
     for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) {
       const Vec3 motion = j.column.at(j.second ? s.b : s.a) * (j.second ? 1. : -1.);
@@ -107,7 +108,7 @@ void add_springs(const System& system, const Parameters& p, const Kinematics<dou
       const Vec3 change =
           velocity_change(j, screws[static_cast<std::size_t>(j.v)], j.second ? s.b : s.a, j.second ? vb : va);
       const double rate = turned.dot(vb - va) + (j.second ? 1. : -1.) * s.direction.dot(change);
-      return f.damping * rate * s.direction.dot(i.column.at(i.second ? s.b : s.a)) * (i.second ? 1. : -1.);
+      return damping * rate * s.direction.dot(i.column.at(i.second ? s.b : s.a)) * (i.second ? 1. : -1.);
     });
   }
 }
@@ -197,14 +198,15 @@ void add_pair_damping(const System& system, const Parameters& p, const Kinematic
                       Eigen::MatrixXd& velocity) {
   for (std::size_t n = 0; n < system.springs.size(); ++n) {
     interruption_point();
-    if (p.springs[n].damping == 0) continue;
+    if (!p.springs[n].damped()) continue;
     const PointSpringElement& e = system.springs[n];
     const SpringState<double> s = spring_state(e, p.springs[n], k);
+    const double damping = p.springs[n].resistance_slope(stretching(e, s, k));
     const auto along = [&](const Part& i) {
       return (i.second ? 1. : -1.) * s.direction.dot(i.column.at(i.second ? s.b : s.a));
     };
     for_pairs(e.ends.support, k, velocity,
-              [&](const Part& i, const Part& j) { return p.springs[n].damping * along(i) * along(j); });
+              [&](const Part& i, const Part& j) { return damping * along(i) * along(j); });
   }
   for (std::size_t n = 0; n < system.cut_dampers.size(); ++n) {
     interruption_point();

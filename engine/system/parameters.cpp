@@ -27,6 +27,8 @@ class Binder {
     p_.links.resize(s_.links.size());
     for (std::size_t l = 0; l < s_.links.size(); ++l)
       bind_link(l);
+    for (const ForceLawElement& e : s_.coordinate_laws)
+      bind_coordinate_law(e);
     bind_speeds();
     bind_elements();
   }
@@ -117,6 +119,33 @@ class Binder {
     out.elastic = out.elastic || c.friction || f.elastic();
   }
 
+  BoundLaw bound(const std::shared_ptr<const ForceLaw>& law, const std::optional<double>& number) const {
+    if (!law) return number ? BoundLaw(nullptr, {Dual(read_(*number))}) : BoundLaw();
+    std::vector<Dual> numbers;
+    for (const std::string& name : law->names())
+      numbers.push_back(read_(named_number(m_, name)));
+    return {law, std::move(numbers)};
+  }
+
+  void bind_coordinate_law(const ForceLawElement& e) const {
+    const Link& link = s_.links[static_cast<std::size_t>(e.at)];
+    const Coordinate& c = joint(s_.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint)
+                              .coordinates[static_cast<std::size_t>(link.coordinate + e.component)];
+    BasicLinkParameters<N>& out = p_.links[static_cast<std::size_t>(e.at)];
+    BasicCoordinateForce<N>& f = out.force.hold(static_cast<std::size_t>(e.component));
+    BasicForceLaws<N> laws;
+    if (e.has_spring) {
+      laws.spring = bound(e.spring, c.spring->force);
+      laws.free = read_(c.spring->free);
+    }
+    if (e.has_damper) {
+      laws.damper = bound(e.damper, c.damping_force);
+      f.damping = laws.damper.slope(0);
+    }
+    f.laws = std::make_shared<const BasicForceLaws<N>>(std::move(laws));
+    out.elastic = out.elastic || e.has_spring;
+  }
+
   N limit_of(const Friction& x) const { // see friction_limit
     if (x.limit) return read_(*x.limit);
     N limit = 1;
@@ -186,8 +215,20 @@ class Binder {
       const PointSpringElement& e = s_.springs[i];
       const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
       const Vector a = read_(f.points[0]), b = read_(f.points[1]);
-      p_.springs[i] = {in_link(a, e.ends.a), in_link(b, e.ends.b), read_(f.stiffness),
-                       read_(f.free_length, (b - a).norm()), read_(f.damping)};
+      p_.springs[i] = {in_link(a, e.ends.a), in_link(b, e.ends.b),
+                       read_(f.stiffness),   read_(f.free_length, (b - a).norm()),
+                       read_(f.damping),     nullptr};
+    }
+    for (const ForceLawElement& e : s_.spring_laws) {
+      BasicPointSpringParameters<N>& out = p_.springs[static_cast<std::size_t>(e.at)];
+      const Force& f = m_.forces[static_cast<std::size_t>(s_.springs[static_cast<std::size_t>(e.at)].force)];
+      BasicForceLaws<N> laws;
+      if (e.has_spring) laws.spring = bound(e.spring, f.force);
+      if (e.has_damper) {
+        laws.damper = bound(e.damper, f.damping_force);
+        out.damping = laws.damper.slope(0);
+      }
+      out.laws = std::make_shared<const BasicForceLaws<N>>(std::move(laws));
     }
     p_.body_forces.resize(s_.body_forces.size());
     for (std::size_t i = 0; i < s_.body_forces.size(); ++i) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/mechanism/number_rates.hpp"
+#include "engine/system/bound_law.hpp"
 #include "engine/system/spatial.hpp"
 #include "engine/system/system.hpp"
 
@@ -16,25 +17,43 @@ struct BasicCoordinateForce {
   N lower = 0, upper = 0, stop_stiffness = 0; // stop_stiffness 0: no stop
   bool has_lower = false, has_upper = false;
   N friction = 0; // what friction gives, N m or N, positive along the coordinate
-  bool elastic() const { return stiffness != 0 || stop_stiffness != 0; }
+  // In place of stiffness and damping, which then are 0 and that at rest; null: none.
+  std::shared_ptr<const BasicForceLaws<N>> laws;
+  bool has_spring() const { return stiffness != 0 || (laws && laws->spring); }
+  bool elastic() const { return has_spring() || stop_stiffness != 0; }
+  bool damped() const { return damping != 0 || (laws && laws->damper); }
 
   // Torque or force of the spring, stop and friction on the coordinate's own side: dV/dq at q.
   template <class S>
   S gradient(S q) const {
     S g = S(stiffness) * (q - S(free)) - S(friction);
+    if (laws) g += laws->spring.value(S(q - S(laws->free)));
     if (has_lower && q < S(lower)) g += S(stop_stiffness) * (q - S(lower));
     if (has_upper && q > S(upper)) g += S(stop_stiffness) * (q - S(upper));
     return g;
   }
+  bool touched(N q) const { return (has_lower && q < lower) || (has_upper && q > upper); }
   N curvature(N q) const {
-    return stiffness + ((has_lower && q < lower) || (has_upper && q > upper) ? stop_stiffness : 0);
+    const N k = stiffness + (touched(q) ? stop_stiffness : N(0));
+    return laws ? k + laws->spring.slope(q - laws->free) : k;
   }
   template <class S>
   S energy(S q) const {
     S v = S(stiffness) * (q - S(free)) * (q - S(free));
     if (has_lower && q < S(lower)) v += S(stop_stiffness) * (q - S(lower)) * (q - S(lower));
     if (has_upper && q > S(upper)) v += S(stop_stiffness) * (q - S(upper)) * (q - S(upper));
-    return v / 2 - S(friction) * q;
+    v = v / 2 - S(friction) * q;
+    return laws ? v + laws->spring.energy(q - laws->free) : v;
+  }
+  // What the damper resists a rate with, and how fast that changes with it.
+  template <class S>
+  S resistance(S rate) const {
+    return laws && laws->damper ? laws->damper.value(rate) : S(damping) * rate;
+  }
+  N resistance_slope(N rate) const { return laws && laws->damper ? laws->damper.slope(rate) : damping; }
+  void remove_damper() {
+    damping = 0;
+    if (laws) laws = std::make_shared<BasicForceLaws<N>>(laws->spring, BoundLaw(), laws->free);
   }
 };
 
@@ -55,7 +74,7 @@ class BasicCoordinateForces {
   auto end() const { return held_.end(); }
 
  private:
-  static constexpr Force none{};
+  static inline const Force none{};
   std::vector<Force> held_;
 };
 
@@ -87,6 +106,36 @@ template <class N>
 struct BasicPointSpringParameters {
   BasicOffset<N> a, b;
   N stiffness = 0, free_length = 0, damping = 0;
+  std::shared_ptr<const BasicForceLaws<N>> laws; // as of a coordinate
+  bool damped() const { return damping != 0 || (laws && laws->damper); }
+  // No force but k d between its points, which may meet.
+  bool without_length() const { return free_length == N(0) && damping == N(0) && !laws; }
+
+  template <class S>
+  S pull(S length) const {
+    const S stretch = length - S(free_length);
+    return laws && laws->spring ? laws->spring.value(stretch) : S(stiffness) * stretch;
+  }
+  N pull_slope(N length) const {
+    return laws && laws->spring ? laws->spring.slope(length - free_length) : stiffness;
+  }
+  N energy(N length) const {
+    const N stretch = length - free_length;
+    return laws && laws->spring ? laws->spring.energy(stretch) : stiffness * stretch * stretch / 2;
+  }
+  template <class S>
+  S resistance(S rate) const {
+    return laws && laws->damper ? laws->damper.value(rate) : S(damping) * rate;
+  }
+  N resistance_slope(N rate) const { return laws && laws->damper ? laws->damper.slope(rate) : damping; }
+  void remove_damper() {
+    damping = 0;
+    if (laws) laws = std::make_shared<BasicForceLaws<N>>(laws->spring, BoundLaw(), laws->free);
+  }
+  void remove() {
+    stiffness = damping = 0;
+    laws.reset();
+  }
 };
 
 template <class N>

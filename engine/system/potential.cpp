@@ -37,8 +37,7 @@ Potential amended_potential(const System& system, const Parameters& p, const Eig
   }
   for (std::size_t i = 0; i < system.springs.size(); ++i) {
     const SpringState<double> s = spring_state(system.springs[i], p.springs[i], k);
-    const double stretch = s.length - p.springs[i].free_length;
-    add(p.springs[i].stiffness * stretch * stretch / 2);
+    add(p.springs[i].energy(s.length));
   }
   for (std::size_t i = 0; i < system.body_forces.size(); ++i)
     if (p.body_forces[i].type == ForceType::force && p.body_forces[i].frame == ForceFrame::world)

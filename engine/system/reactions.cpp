@@ -157,8 +157,8 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     const LinkState<double>& x = k.links[l];
     const double carried =
         x.axis.dot(system.links[l].type == LinkType::revolute ? needed[l].moment : needed[l].force) +
-        p.links[l].force[0].damping *
-            (finds_speed(system.links[l]) ? turning_rate(system, d.link, k) : p.links[l].speed);
+        p.links[l].force[0].resistance(finds_speed(system.links[l]) ? turning_rate(system, d.link, k)
+                                                                    : p.links[l].speed);
     loads.push_back(carried);
     out.drives[static_cast<std::size_t>(d.motor)] += carried * p.links[l].gear_ratio;
   }

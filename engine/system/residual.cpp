@@ -34,9 +34,9 @@ SpringState<S> spring_state(const PointSpringElement& e, const PointSpringParame
   const Vec3T<S> d = s.b - s.a;
   s.length = d.norm();
   s.direction = s.length > 0 ? Vec3T<S>(d / s.length) : Vec3T<S>(Vec3T<S>::Zero());
-  s.tension = S(p.stiffness) * (s.length - S(p.free_length));
-  if (p.damping != NumberOf<S>(0))
-    s.tension += S(p.damping) * s.direction.dot(k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a));
+  s.tension = p.pull(s.length);
+  if (p.damped())
+    s.tension += p.resistance(S(s.direction.dot(k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a))));
   return s;
 }
 
@@ -98,9 +98,8 @@ void add_spring(const System& system, const ParametersOf<S>& p, const Kinematics
   const PointSpringElement& e = system.springs[i];
   const SpringState<S> s = spring_state(e, p.springs[i], k);
   // With no free length the force is k d, well defined where the points meet.
-  const bool linear = p.springs[i].free_length == NumberOf<S>(0) && p.springs[i].damping == NumberOf<S>(0);
-  const Vec3T<S> pull =
-      linear ? Vec3T<S>(S(p.springs[i].stiffness) * (s.b - s.a)) : Vec3T<S>(s.tension * s.direction);
+  const Vec3T<S> pull = p.springs[i].without_length() ? Vec3T<S>(S(p.springs[i].stiffness) * (s.b - s.a))
+                                                      : Vec3T<S>(s.tension * s.direction);
   for (const SupportColumn& c : e.ends.support) {
     const S g = pull.dot(k.columns[static_cast<std::size_t>(c.v)].at(c.second ? s.b : s.a));
     f[c.v] += c.second ? g : -g;
@@ -233,6 +232,12 @@ void evaluate_residual(const System& system, const ParametersOf<S>& p, const Con
 
 namespace {
 
+// Of a law's force: what it is, and what rounding of the numbers that it is given by makes of it.
+double law_size(const BoundLaw& law, double deflection, double position) {
+  const Dual force = law(Dual(deflection, 1));
+  return std::abs(force.value) + std::abs(force.rate) * (std::abs(deflection) + std::abs(position));
+}
+
 // The same for the sizes of the terms.
 struct MagnitudesPass {
   const System& system;
@@ -270,12 +275,14 @@ struct MagnitudesPass {
           const CoordinateForce& c = lp.force[0];
           out.force[link.v] += std::abs(c.friction) +
                                std::abs(c.stiffness) * (std::abs(q[link.q]) + std::abs(c.free)) +
-                               (c.curvature(q[link.q]) - c.stiffness) *
+                               (c.touched(q[link.q]) ? c.stop_stiffness : 0) *
                                    (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
+          if (c.laws) out.force[link.v] += law_size(c.laws->spring, q[link.q] - c.laws->free, q[link.q]);
         } else if (lp.elastic) {
           for (int j = 0; j < 3; ++j)
             for (const CoordinateForce& c : lp.force)
-              out.force[link.v + j] += (std::abs(c.stiffness) + c.stop_stiffness) * (4 + std::abs(c.free));
+              out.force[link.v + j] += (std::abs(c.stiffness) + c.stop_stiffness) * (4 + std::abs(c.free)) +
+                                       (c.laws ? law_size(c.laws->spring, 4, c.laws->free) : 0);
         }
       }
       if (link.parent < 0) continue;
@@ -292,9 +299,9 @@ struct MagnitudesPass {
       const auto i = static_cast<std::size_t>(n);
       const PointSpringElement& e = system.springs[i];
       const SpringState<double> s = spring_state(e, p.springs[i], k);
-      const double size =
-          std::abs(p.springs[i].stiffness) * (s.a.norm() + s.b.norm() + s.length + p.springs[i].free_length) +
-          std::abs(s.tension);
+      const double size = std::abs(p.springs[i].pull_slope(s.length)) *
+                              (s.a.norm() + s.b.norm() + s.length + p.springs[i].free_length) +
+                          std::abs(s.tension);
       // By the whole lever, which is rounded too where the axis points along it.
       for (const SupportColumn& c : e.ends.support) {
         const Column<double>& column = k.columns[static_cast<std::size_t>(c.v)];

@@ -65,4 +65,10 @@ template <class S>
 SpringState<S> spring_state(const PointSpringElement& element, const PointSpringParametersOf<S>& parameters,
                             const Kinematics<S>& kinematics);
 
+// How fast its length grows (m/s).
+inline double stretching(const PointSpringElement& e, const SpringState<double>& s,
+                         const Kinematics<double>& k) {
+  return s.direction.dot(k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.a));
+}
+
 } // namespace flyball

@@ -8,7 +8,7 @@
 // chain is reversed with its axes turned round, so that coordinates keep their sign.
 #pragma once
 
-#include "engine/mechanism/expression.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/system/division.hpp"
 
@@ -93,6 +93,14 @@ struct PointSpringElement {
   PairEnds ends;
 };
 
+// Laws in place of a stiffness and a damping (force_law.hpp); null where a number is the force.
+struct ForceLawElement {
+  int at = 0;        // link, or entry of System::springs
+  int component = 0; // of a spherical link
+  bool has_spring = false, has_damper = false;
+  std::shared_ptr<const ForceLaw> spring, damper;
+};
+
 // A force, torque or drag on one body.
 struct BodyForceElement {
   int force = 0;
@@ -172,6 +180,7 @@ struct System {
   std::vector<CoordinateInfo> coordinates;  // of the tree, in the scene's order, implicit joints last
   std::vector<ReportedCoordinate> reported; // of all joints, in the same order
   std::vector<PointSpringElement> springs;
+  std::vector<ForceLawElement> coordinate_laws, spring_laws;
   std::vector<BodyForceElement> body_forces;
   std::vector<CutDamperElement> cut_dampers;
   std::vector<DriveTorqueElement> torques;

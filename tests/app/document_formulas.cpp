@@ -3,11 +3,14 @@
 #include "app/document/copies.hpp"
 #include "app/document/document.hpp"
 #include "app/document/formula_edits.hpp"
+#include "app/document/image.hpp"
 #include "app/document/rename.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <cmath>
 #include <functional>
@@ -195,4 +198,39 @@ TEST_CASE("a joint stands at a point at a stroke") {
   says(refusal([&] { stand_at_point(m, "joints.spin.at", "nowhere"); }),
        "there is no parameter \"nowhere.x\"");
   CHECK(m.joints[0].at == m.points[5].at);
+}
+
+TEST_CASE("an expression of the deflection or rate becomes the law of a spring or damper") {
+  Mechanism m = test::shipped("governor");
+  set_expression(m, "joints.slide.spring.stiffness", "800 N/m*deflection + 2e5 N/m^3*deflection^3");
+  set_expression(m, "joints.slide.damping", "30 N s/m*rate");
+  const Joint& slide = m.joints[static_cast<std::size_t>(joint_index(m, "slide"))];
+  REQUIRE(spring_law(slide, 0));
+  REQUIRE(damper_law(slide, 0));
+  CHECK(slide.coordinates[0].damping == 0);
+  CHECK_NOTHROW(validate(m));
+  CHECK_FALSE(has_number(m, "joints.slide.spring.stiffness"));
+}
+
+TEST_CASE("laws are mirrored with their coordinates") {
+  Mechanism m = read_scene(R"~({"flyball": 2, "name": "t",
+    "bodies": [{"name": "a", "mass": 1, "position": [0, 0, 0]}],
+    "joints": [{"name": "c", "type": "cylindrical", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 0, 1],
+    "spring": [{"force": "=table(deflection, [-1, -2 N m], [0, 1 N m], [1, 9 N m])", "free": 0.25},
+               {"force": "=3 N/m*deflection"}], "damping_force": ["=2 N m s*rate + 1 N m s^2*rate^2", null]}]})~");
+  const Joint& joint = m.joints[0];
+  const Joint image = image_of(joint, Isometry{Mat3(Vec3(-1, 1, 1).asDiagonal()), Vec3::Zero()});
+  REQUIRE(spring_law(image, 0));
+  REQUIRE(damper_law(image, 0));
+  CHECK(spring_law(image, 1)->text == spring_law(joint, 1)->text);
+  CHECK(image.coordinates[0].spring->free == -0.25);
+  for (const double x : {-1.5, -0.2, 0., 0.6, 3.}) {
+    const auto value = [x](const Formula* law, std::string_view variable, double sign) {
+      return sign * ForceLaw(law->text, variable)({}, sign * x).value;
+    };
+    CHECK(value(spring_law(image, 0), spring_variable, 1) ==
+          value(spring_law(joint, 0), spring_variable, -1));
+    CHECK(value(damper_law(image, 0), damper_variable, 1) ==
+          value(damper_law(joint, 0), damper_variable, -1));
+  }
 }

@@ -128,7 +128,7 @@ inline constexpr Mistake mistakes_of_form[] = {
     {R"("radius": 0.25)", R"("radius": 0.25, "raduis": 1)", "bodies.table.shapes[0].raduis", "\"radius\""},
     {R"("damping": 4)", R"("dampening": 4)", "joints.hinge.dampening", "did you mean \"damping\"?"},
     {R"("stiffness": 300)", R"("stiffness": 300, "rest": 1)", "joints.hinge.spring.rest",
-     "its keys are stiffness, free and description"},
+     "its keys are force, stiffness, free and description"},
     {R"("upper": 3)", R"("uper": 3)", "joints.thread.stop[1].uper", "\"upper\""},
     {R"("speed": 10)", R"("speed": 10, "unit": "rpm")", "joints.spin.drive.unit", "unknown key of a drive"},
     {R"("vector": [7, 8, 9])", R"("vector": [7, 8, 9], "fram": "world")", "forces.turn.fram", "\"frame\""},

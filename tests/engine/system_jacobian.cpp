@@ -1,5 +1,6 @@
 // f_z against derivatives of the extended residual that owe nothing to its formulas, for each type of
 // joint and force by itself and for random mechanisms; the matrices of the motion against the reference.
+#include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/engine/system_model.hpp"
@@ -166,6 +167,22 @@ struct Dressing {
   Dress dress;
 };
 
+// Springs by laws, beside dampers by laws where coordinates have rates.
+Dress with_laws(const std::string& name) {
+  return [name](Mechanism& m) {
+    Joint& joint = m.joints[static_cast<std::size_t>(joint_index(m, name))];
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      Coordinate& c = joint.coordinates[i];
+      c.spring = CoordinateSpring{0, 0.1, "", 0};
+      joint.formulas.push_back(
+          {coordinate_key(joint, i, "spring") + ".force", "20*sinh(2*deflection) + 9*deflection^3 + 1"});
+      if (is_rotation_vector(joint.type, static_cast<int>(i))) continue;
+      c.damping_force = 0;
+      joint.formulas.push_back({coordinate_key(joint, i, "damping_force"), "2*rate + tanh(3*rate)"});
+    }
+  };
+}
+
 // What acts on the coordinates of a joint.
 std::vector<Dressing> dressings(const std::string& name) {
   const auto each = [name](auto act) -> Dress {
@@ -189,7 +206,8 @@ std::vector<Dressing> dressings(const std::string& name) {
           {"lower stop", each([stop](Coordinate& c, double k) { stop(c, k, 2, 4); })},
           {"upper stop", each([stop](Coordinate& c, double k) { stop(c, k, -4, -2); })},
           {"idle stop", each([stop](Coordinate& c, double k) { stop(c, k, -4, 4); })},
-          {"damper", each([](Coordinate& c, double k) { c.damping = 2 * k; })}};
+          {"damper", each([](Coordinate& c, double k) { c.damping = 2 * k; })},
+          {"spring's law", with_laws(name)}};
 }
 
 Force spring_between(const std::string& a, const std::string& b, const Vec3& on_a, const Vec3& on_b) {
@@ -223,6 +241,18 @@ std::vector<std::pair<std::string, Force>> forces() {
   Force to_ground = spring_between("ground", "tool", {2, 0.3, 0}, {0.8, 0.8, 0.4});
   Force between_drives = spring_between("table", "sled", {0.1, 0.4, 0}, {1.1, 0.2, 0});
   between_drives.damping = 3;
+  Force law = across, damper_law = between_drives, both_laws = between_drives;
+  for (Force* each : {&law, &both_laws}) {
+    each->force = 0;
+    each->formulas.push_back({"force", "table(deflection, [-1, -90], [0, 0], [0.4, 20], [1, 90])"});
+  }
+  both_laws.damping = damper_law.damping = 0;
+  for (Force* each : {&damper_law, &both_laws}) {
+    each->damping_force = 0;
+    each->formulas.push_back({"damping_force", "3*rate + 2*rate^3"});
+  }
+  Force constant = spring_between("ground", "tool", {2, 0.3, 0}, {0.8, 0.8, 0.4});
+  constant.force = 30;
   Force drag = on_tool(ForceType::drag, ForceFrame::world), quadratic = drag, both = drag;
   drag.linear = both.linear = 2;
   quadratic.quadratic = both.quadratic = 1.5;
@@ -234,6 +264,10 @@ std::vector<std::pair<std::string, Force>> forces() {
           {"damped spring across drives", damped},
           {"damped spring without free length", damped_free},
           {"damper to ground", damper},
+          {"spring by a law across drives", law},
+          {"damper by a law between drives", damper_law},
+          {"spring and damper by laws between drives", both_laws},
+          {"spring of constant force", constant},
           {"world force", on_tool(ForceType::force, ForceFrame::world)},
           {"body force", on_tool(ForceType::force, ForceFrame::body)},
           {"world torque", on_tool(ForceType::torque, ForceFrame::world)},

@@ -5,6 +5,7 @@
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/damped.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,8 @@ struct CoordinateRows {
   const Beginning& beginning() const { return angle() ? of_angle : of_length; }
   std::string value_unit() const { return angle() ? "rad" : "m"; }
   std::string stiffness_unit() const { return angle() ? "N m/rad" : "N/m"; }
+  std::string damping_unit() const { return angle() ? "N m s/rad" : "N s/m"; }
+  std::string force_unit() const { return angle() ? "N m" : "N"; }
   // "spring.1" where there are several coordinates.
   std::string key(const std::string& word) const {
     return joint.coordinates.size() > 1 ? word + "." + std::to_string(i) : word;
@@ -187,8 +190,7 @@ struct CoordinateRows {
             app, widget(key("drive") + ".keeps"), "Left to itself", on,
             "Nothing drives it any more: it keeps the momentum that the speed makes in the drawn pose, "
             "and the steady speed is found.",
-            !on && coordinate().damping != 0 ? "Not beside a damper, which would take the momentum."
-                                             : nullptr))
+            !on && is_damped(coordinate()) ? "Not beside a damper, which would take the momentum." : nullptr))
       return;
     change((on ? "Prescribe the speed of " : "Leave to itself ") + joint.name, [on](Coordinate& c) {
       if (c.drive) c.drive->keeps = on ? DriveKeeps::speed : DriveKeeps::momentum;
@@ -217,28 +219,47 @@ struct CoordinateRows {
 
   void spring_numbers() const {
     if (!coordinate().spring) return;
-    number("Stiffness", key("spring") + ".stiffness", coordinate().spring->stiffness, stiffness_unit(),
-           angle() ? "Torque by the angle from where the spring is slack."
-                   : "Force by the distance from where the spring is slack.");
-    number("Slack at", key("spring") + ".free", coordinate().spring->free, value_unit(),
-           "The coordinate's value at which the spring is slack.");
+    const CoordinateSpring& spring = *coordinate().spring;
+    if (spring.force)
+      number(angle() ? "Torque" : "Force", key("spring") + ".force", *spring.force, force_unit(),
+             "Against the deflection: a number, or an expression of it such as =2000 N/m*deflection + 1e6 "
+             "N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).");
+    else
+      number("Stiffness", key("spring") + ".stiffness", coordinate().spring->stiffness, stiffness_unit(),
+             angle()
+                 ? "Torque by the angle from where the spring is slack. An expression of the deflection is "
+                   "the whole torque."
+                 : "Force by the distance from where the spring is slack. An expression of the deflection is "
+                   "the whole force, as =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).");
+    number(spring.force ? "Counted from" : "Slack at", key("spring") + ".free", spring.free, value_unit(),
+           spring.force ? "The coordinate's value at which the deflection is zero."
+                        : "The coordinate's value at which the spring is slack.");
   }
 
   void damper() const {
     tick(
-        "damper", "Damper", "damper", coordinate().damping != 0,
+        "damper", "Damper", "damper", is_damped(coordinate()),
         "Resists the coordinate's motion; the steady state is the same.",
         coordinate().drive && coordinate().drive->keeps == DriveKeeps::momentum
             ? "Not on what is left to itself: it would take the momentum."
             : nullptr,
-        [](Coordinate& c) { c.damping = 0; },
+        [](Coordinate& c) {
+          c.damping = 0;
+          c.damping_force.reset();
+        },
         [damping = beginning().damping](Coordinate& c) { c.damping = damping; });
   }
 
   void damper_numbers() const {
+    if (coordinate().damping_force)
+      number(angle() ? "Torque" : "Force", key("damping_force"), *coordinate().damping_force, force_unit(),
+             "Against the rate, an expression of it such as =40 N*tanh(rate/(0.1 m/s)) or =table(rate, "
+             "[-1 m/s, -30 N], [0 m/s, 0 N], [1 m/s, 90 N]).");
     if (coordinate().damping != 0)
-      number("Damping", key("damping"), coordinate().damping, angle() ? "N m s/rad" : "N s/m",
-             angle() ? "Torque by the speed of the angle." : "Force by the speed of the slide.", Least::zero);
+      number("Damping", key("damping"), coordinate().damping, damping_unit(),
+             angle() ? "Torque by the speed of the angle. An expression of the rate is the whole torque."
+                     : "Force by the speed of the slide. An expression of the rate is the whole force.",
+             Least::zero);
   }
 
   // A limit that may be absent.
@@ -373,7 +394,7 @@ struct CoordinateRows {
 
   bool acted_on() const {
     const Coordinate& c = coordinate();
-    return c.drive || c.spring || c.stop || c.friction || c.damping != 0;
+    return c.drive || c.spring || c.stop || c.friction || is_damped(c);
   }
 };
 

@@ -7,6 +7,8 @@ namespace flyball {
 
 namespace {
 
+constexpr double usual_stiffness = 1000, usual_damping = 10; // N/m, N s/m; where there was a law
+
 std::string address_of(const Force& force, const std::string& key) {
   return "forces." + force.name + "." + key;
 }
@@ -17,12 +19,30 @@ void spring_rows(App& app, const Force& force) {
     body_end_row(app, part, force.bodies, end, end == 0 ? "From" : "To");
     end_point_rows(app, part, force.points, end);
   }
-  quantity_row(app, "Stiffness",
-               {.name = "inspector/stiffness",
-                .value = force.stiffness,
-                .unit = "N/m",
-                .help = "Force by how far it is stretched; zero for a damper alone.",
-                .address = address_of(force, "stiffness")});
+  if (force.force)
+    quantity_row(app, "Force",
+                 {.name = "inspector/force",
+                  .value = *force.force,
+                  .unit = "N",
+                  .help =
+                      "That pulls its ends together: a number, or an expression of the deflection such as "
+                      "=2000 N/m*deflection + 1e6 N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], "
+                      "[5 mm, 40 N]).",
+                  .address = address_of(force, "force")},
+                 [name = force.name](App& changed) {
+                   edit_force(changed, "Stiffness of " + name, name, [](Force& same) {
+                     same.force.reset();
+                     same.stiffness = usual_stiffness;
+                   });
+                 });
+  else
+    quantity_row(app, "Stiffness",
+                 {.name = "inspector/stiffness",
+                  .value = force.stiffness,
+                  .unit = "N/m",
+                  .help = "Force by how far it is stretched; zero for a damper alone. An expression of the "
+                          "deflection is the whole force, as =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).",
+                  .address = address_of(force, "stiffness")});
   std::function<void(App&)> reset;
   if (force.free_length)
     reset = [name = force.name](App& changed) {
@@ -38,11 +58,28 @@ void spring_rows(App& app, const Force& force) {
                 .address = address_of(force, "free_length"),
                 .standard = !force.free_length},
                reset);
+  if (force.damping_force)
+    return quantity_row(app, "Damping force",
+                        {.name = "inspector/damping_force",
+                         .value = *force.damping_force,
+                         .unit = "N",
+                         .help = "Against the rate of its length, an expression of it such as =40 "
+                                 "N*tanh(rate/(0.1 m/s)) or =table(rate, [-1 m/s, -30 N], [0 m/s, 0 N], [1 "
+                                 "m/s, 90 N]).",
+                         .address = address_of(force, "damping_force")},
+                        [name = force.name](App& changed) {
+                          edit_force(changed, "Damping of " + name, name, [](Force& same) {
+                            same.damping_force.reset();
+                            same.damping = usual_damping;
+                          });
+                        });
   quantity_row(app, "Damping",
                {.name = "inspector/damping",
                 .value = force.damping,
                 .unit = "N s/m",
-                .help = "Force by the speed at which its length changes.",
+                .help =
+                    "Force by the speed at which its length changes. An expression of the rate is the whole "
+                    "force, as =40 N*tanh(rate/(0.1 m/s)).",
                 .least = Least::zero,
                 .address = address_of(force, "damping")});
 }

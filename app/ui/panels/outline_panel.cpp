@@ -8,6 +8,7 @@
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/body_form.hpp"
+#include "engine/mechanism/damped.hpp"
 
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
@@ -79,7 +80,7 @@ std::string kind_words(const Mechanism& mechanism, PartId id) {
   if (id.kind == PartKind::joint) return std::string(type_name(mechanism.joints[i].type));
   if (id.kind == PartKind::body) return short_text(mechanism.bodies[i].mass, 4) + " kg";
   const Force& force = mechanism.forces[i];
-  const bool damper = force.type == ForceType::spring && force.stiffness == 0 && force.damping != 0;
+  const bool damper = force.type == ForceType::spring && is_damper_alone(force);
   return damper ? "damper" : std::string(type_name(force.type));
 }
 

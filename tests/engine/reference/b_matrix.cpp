@@ -152,7 +152,8 @@ void apply(const Mechanism& mechanism, const Force& force, const Carriers& carri
     push(mechanism, bodies, force.body, point.x,
          -(Real(force.linear) + Real(force.quadratic) * point.v.norm()) * point.v);
     break;
-  case ForceType::spring: break;
+  case ForceType::spring:
+  case ForceType::bearing: break; // the reference knows none
   }
 }
 

@@ -1,0 +1,58 @@
+// Forces of springs and dampers as expressions: of a spring by its `deflection`, "=table(deflection, [0 mm,
+// 0 N], [5 mm, 40 N], [9 mm, 200 N])", of a damper by its `rate`, "=40 N*tanh(rate/(0.1 m/s))". Beside these
+// they know parameters and coordinates of points. They have no value by themselves, but one at every state.
+//
+// The deflection is the coordinate less `free`, or the length less the free length (m or rad); the rate that
+// of the coordinate or length. Both forces are counted against them, as stiffness times deflection is.
+#pragma once
+
+#include "engine/mechanism/expression.hpp"
+#include "engine/mechanism/mechanism.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flyball {
+
+inline constexpr std::string_view spring_variable = "deflection", damper_variable = "rate";
+
+// Whether an expression of a joint or force is such a law.
+bool is_force_law(const Formula& formula);
+
+// The law of a joint's coordinate `i`, or of a spring between points; null where a number or nothing does.
+const Formula* spring_law(const Joint& joint, int i);
+const Formula* damper_law(const Joint& joint, int i);
+const Formula* spring_law(const Force& force);
+const Formula* damper_law(const Force& force);
+
+// A law as it is read, a function of one variable with numbers by name.
+class ForceLaw {
+ public:
+  // Throws ExpressionError.
+  ForceLaw(std::string_view text, std::string_view variable);
+
+  const Expression& expression() const { return expression_; }
+  // Which of the expression's names are numbers, in order.
+  const std::vector<std::string>& names() const { return names_; }
+  // `numbers`: by names(). No allocation. Not finite where it is undefined.
+  Dual operator()(std::span<const Dual> numbers, Dual x) const;
+
+ private:
+  static constexpr std::size_t most_names = 32;
+  Expression expression_;
+  std::vector<std::string> names_;
+  std::size_t variable_; // among the expression's names; their number where it is not mentioned
+};
+
+// Throws SceneError at `where`, naming what is wrong: a name that is unknown, a dimension that does not fit,
+// and of a damper a force at rest, where it would be no damper's.
+void check_spring_law(const Mechanism& mechanism, const Formula& law, bool angle, const std::string& where);
+void check_damper_law(const Mechanism& mechanism, const Formula& law, bool angle, const std::string& where);
+
+// Whether a damper by this law takes up energy where it hardly moves, whatever the numbers of the mechanism:
+// its slope at rest is not below zero, and no parameter decides that.
+bool resists_at_rest(const Formula& damper_law);
+
+} // namespace flyball

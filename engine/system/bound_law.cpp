@@ -1,0 +1,19 @@
+#include "engine/system/bound_law.hpp"
+
+#include "engine/linear/quadrature.hpp"
+
+namespace flyball {
+
+BoundLaw::BoundLaw(std::shared_ptr<const ForceLaw> law, std::vector<Dual> numbers)
+    : law_(std::move(law)), numbers_(std::move(numbers)) {}
+
+Dual BoundLaw::operator()(Dual x) const {
+  if (law_) return (*law_)(numbers_, x);
+  return numbers_.empty() ? Dual(0) : numbers_.front();
+}
+
+double BoundLaw::energy(double x) const {
+  return integral([this](double at) { return (*this)(Dual(at)).value; }, 0, x);
+}
+
+} // namespace flyball
