@@ -99,7 +99,7 @@ void add_solve(CLI::App& app, Ending& ending) {
         report_progress(solve.progress, "periodic motion");
         PeriodicOptions wanted;
         wanted.nearest = options->nearest;
-        if (options->periodic) wanted.patience = 50;
+        if (options->periodic) wanted.patience = 10;
         periodic = find_periodic_state(mechanism, wanted);
       }
     } catch (const SceneError& error) {

@@ -136,7 +136,8 @@ Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate) 
   return out;
 }
 
-CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, const std::atomic<bool>* cancel) {
+CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart start,
+                         const std::atomic<bool>* cancel) {
   CycleOutcome out;
   const auto refused = [&](const std::string& why) {
     out.guess.reset();
@@ -144,9 +145,10 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, const std::atom
     return out;
   };
   const Swing swing = least_damped_swing(mechanism, cancel);
-  const std::optional<MotionState> steady = swing.period ? flow.steady() : std::nullopt;
-  if (swing.stable && !steady) return refused("Nothing swings about the steady state, which is stable.");
-  std::optional<MotionState> state = steady ? steady : flow.drawn();
+  const bool leaves = start == CycleStart::steady;
+  const std::optional<MotionState> steady = leaves && swing.period ? flow.steady() : std::nullopt;
+  if (leaves && !steady) return refused("Nothing swings about a steady state.");
+  std::optional<MotionState> state = leaves ? steady : flow.drawn();
   if (!state) return refused(flow.trouble());
   std::optional<double> period = swing.period;
   if (!period) period = turn_of_drives(flow, *state);
@@ -176,7 +178,8 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, const std::atom
     if (trace.empty()) return refused("The motion does not last: " + flow.trouble());
     const StateChart chart(flow.problem(), *state, turn / *period, alike_along);
     const Return back = first_return(chart, trace);
-    if (back.farthest < at_rest) return refused("The motion comes to rest.");
+    if (back.farthest < at_rest)
+      return refused("The motion from the drawn pose settles in the steady state.");
     const bool grows = std::abs(back.farthest - before) > steadily * back.farthest;
     before = back.farthest;
     if (back.sample == 0 || back.nearest > returned * back.farthest || (grows && look + 1 < looks)) continue;

@@ -26,9 +26,15 @@ struct CycleOutcome {
   std::string trouble; // where there is none: a sentence
 };
 
-// Where the steady state is unstable the motion that leaves it, and where there is none that from the drawn
-// pose, is followed until it nearly returns and grows no more, or for as long as the flow allows. The period
-// is first that of the least damped swing about the steady state, else a turn of what a torque drives.
-CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, const std::atomic<bool>* cancel);
+enum class CycleStart {
+  steady, // the motion that leaves the steady state where that is unstable; where it is stable its swing
+          // alone
+  drawn,  // the motion from the drawn pose
+};
+
+// A motion is followed until it nearly returns and grows no more, or for as long as the flow allows. The
+// period is first that of the least damped swing about the steady state, else a turn of what a torque drives.
+CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart start,
+                         const std::atomic<bool>* cancel);
 
 } // namespace flyball

@@ -143,19 +143,27 @@ class Search {
     return second;
   }
 
-  // From where a motion comes to repeat itself, or around a stable steady state.
+  // Around the steady state, or where a motion leads to: first one that leaves it.
   std::optional<Candidate> find_cycle() {
-    CycleOutcome began = guess_cycle(flow_, flow_.model().mechanism, options_.cancel);
+    for (const CycleStart start : {CycleStart::steady, CycleStart::drawn}) {
+      if (auto cycle = find_cycle(start)) return cycle;
+      if (flow_.spent() || flow_.cancelled()) break;
+    }
+    return {};
+  }
+
+  std::optional<Candidate> find_cycle(CycleStart start) {
+    CycleOutcome began = guess_cycle(flow_, flow_.model().mechanism, start, options_.cancel);
     cycle_trouble_ = began.trouble;
+    around_stable_ = began.guess && !began.guess->state;
     if (!began.guess) return {};
     ShootingOptions how;
     how.period = began.guess->period;
     how.find_period = true;
     how.rate = 2 * std::numbers::pi / how.period;
     how.without = began.guess->turns_alike;
-    around_stable_ = !began.guess->state;
     // The iteration may fall into the steady state, which comes back after any time: then from further away.
-    for (double part = 1; part <= furthest; part *= 2) {
+    for (double part = 1; part <= furthest; part *= 1.4) {
       auto cycle = complete({at_distance(*began.guess, part, how)}, how, 0);
       if (cycle && !stands(*cycle)) return cycle;
       if (!began.guess->steady || flow_.spent() || flow_.cancelled()) break;
@@ -321,8 +329,6 @@ class Search {
                     " evaluations of the equations of motion.";
     else if (!cycle_trouble_.empty())
       out.message = "No limit cycle was found. " + cycle_trouble_;
-    else if (around_stable_)
-      out.message = "No limit cycle was met around the steady state, which is stable.";
     else
       out.message = "No limit cycle was found: the iteration did not converge from where the motion nearly "
                     "repeats itself.";
