@@ -139,8 +139,8 @@ void results_panel(App& app, const PanelRect& rect) {
     paragraph(*app.answer.error, colors_of(app).text);
   } else if (app.answer.ticket) {
     verdict(app);
-    periodic_results(app);
     remedies(app);
+    periodic_results(app);
     warning_rows(app, "results/warnings", 3);
     pull_results(app);
     neutral_joints(app);
