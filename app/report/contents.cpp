@@ -112,6 +112,12 @@ ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const
     out.evidence = analysis.stability_evidence();
     out.springs = spring_loads(*out.mechanism, out.solution);
   }
+  if (out.solution.status == Status::no_steady_state) {
+    PeriodicOptions periodic;
+    periodic.nearest = options.nearest;
+    periodic.cancel = options.cancel;
+    out.periodic = find_periodic_state(*out.mechanism, periodic);
+  }
   for (const Slider& over : curve_parameters(*out.mechanism))
     if (!cancelled()) out.curves.push_back(follow(out, over, options));
   out.cut_short = cancelled();

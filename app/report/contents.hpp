@@ -4,6 +4,7 @@
 #include "app/plot/plot.hpp"
 #include "app/report/spring_loads.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/periodic/periodic_state.hpp"
 #include "engine/report/analysis.hpp"
 
 #include <functional>
@@ -34,6 +35,7 @@ struct ReportContents {
   std::vector<SceneError> warnings;
   SystemSummary system;
   Solution solution;
+  std::optional<PeriodicState> periodic; // where the balance turns with the drives
   std::vector<VibrationMode> modes;
   std::optional<StabilityEvidence> evidence;
   std::vector<SpringLoad> springs;

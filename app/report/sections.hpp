@@ -14,6 +14,7 @@ using OptionalSection = std::optional<ReportSection>;
 
 // Without a steady state, why there is none.
 OptionalSection steady_state_section(const ReportContents& contents);
+OptionalSection periodic_section(const ReportContents& contents); // where there is none
 OptionalSection stability_section(const ReportContents& contents);
 OptionalSection loads_section(const ReportContents& contents);
 OptionalSection curves_section(const ReportContents& contents);

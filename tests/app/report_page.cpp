@@ -186,6 +186,19 @@ TEST_CASE("a report without a steady state says why") {
   CHECK(section(page, "stability").empty());
 }
 
+TEST_CASE("a report of what moves periodically tells its ranges and multipliers") {
+  const ReportContents contents = contents_of("horizontal_rotor");
+  REQUIRE(contents.periodic);
+  CHECK(contents.periodic->stable == true);
+  const std::string page = report_page(contents);
+  check_page(page);
+  const std::string told = section(page, "periodic-motion");
+  CHECK(told.find("across") != std::string::npos);
+  CHECK(told.find("bearing") != std::string::npos);
+  CHECK(told.find("Floquet multipliers") != std::string::npos);
+  CHECK_FALSE(contents_of("pendulum").periodic);
+}
+
 TEST_CASE("numbers in a report are set as in print") {
   CHECK(written_number("-1.2e-07").text() == "−1.2\u202f×\u202f10<sup>−7</sup>");
   CHECK(quantity(-2.5, "m/s^2").text() == "−2.5\u00a0m/s²");

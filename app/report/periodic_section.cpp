@@ -1,0 +1,67 @@
+#include "app/report/numbers.hpp"
+#include "app/report/sections.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <cmath>
+
+namespace flyball {
+namespace {
+
+std::vector<Html> range_cells(const std::string& name, const PeriodicRange& range, std::string_view unit) {
+  const auto within = [&](double value) {
+    return std::isfinite(range.error) ? quantity_within(value, range.error, unit) : quantity(value, unit);
+  };
+  if (!std::isfinite(range.mean)) return {name, "–", "–", "–", "–"};
+  return {name, within(range.mean), within(range.least), within(range.most),
+          std::isfinite(range.error) ? magnitude(range.error, unit) : Html("not known")};
+}
+
+Html ranges_table(const PeriodicState& s) {
+  HtmlTable table({{"Over a period", false}, {"Mean"}, {"Least"}, {"Most"}, {"Error of each"}});
+  for (const PeriodicCoordinate& c : s.coordinates) {
+    table.row(range_cells(coordinate_label(c) + (c.goes_on() ? ", less its even share" : ""), c.range,
+                          coordinate_unit_of(c.angle)));
+    if (c.goes_on())
+      table.row(range_cells(coordinate_label(c) + ", its rate", c.rate, c.angle ? "rad/s" : "m/s"));
+  }
+  for (const PeriodicMeasure& m : s.measures)
+    table.row(range_cells(m.name, m.range, m.unit));
+  for (const PeriodicTorque& t : s.drive_torques)
+    table.row(range_cells("Drive of " + coordinate_label(t), t.range, force_unit_of(t.angle)));
+  return table.html();
+}
+
+Html multipliers(const PeriodicState& s) {
+  HtmlTable table({{"Multiplier", false}, {"Size"}, {"Growth"}});
+  for (std::size_t i = 0; i < s.floquet.growth.size(); ++i) {
+    const std::complex<double> mu = s.floquet.multipliers[i];
+    Html value = quantity(mu.real(), "", 9);
+    if (mu.imag() != 0)
+      value += Html(mu.imag() < 0 ? " − " : " + ") + quantity(std::abs(mu.imag()), "", 9) + " i";
+    table.row({value, quantity(std::abs(mu), "", 9), quantity(s.floquet.growth[i], "1/s")});
+  }
+  if (table.empty()) return {};
+  return heading_of("Floquet multipliers") +
+         paragraph_of(Html("What a period makes of motions beside it, to about ") +
+                      magnitude(s.floquet.error, "") + ".") +
+         table.html();
+}
+
+} // namespace
+
+OptionalSection periodic_section(const ReportContents& contents) {
+  if (!contents.periodic) return std::nullopt;
+  const PeriodicState& s = *contents.periodic;
+  const bool found = s.status == PeriodicStatus::found;
+  Html body = element("p", s.message, {{"class", found ? "lead" : "lead refusal"}}) + "\n";
+  if (found) {
+    HtmlTerms terms;
+    terms.term("Period", quantity(s.period, "s", 10));
+    terms.term("Fails to come back by", magnitude(s.residual, "") + " (scaled)");
+    terms.term("Run time", duration(s.run_time_s));
+    body += ranges_table(s) + multipliers(s) + heading_of("How it was found") + terms.html();
+  }
+  return ReportSection{"periodic-motion", "Periodic motion", body};
+}
+
+} // namespace flyball
