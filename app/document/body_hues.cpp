@@ -36,7 +36,7 @@ Neighbours neighbours_in(const Mechanism& mechanism) {
   for (const Joint& joint : mechanism.joints)
     if (joint.type != JointType::gear) connect(joint.bodies);
   for (const Force& force : mechanism.forces)
-    if (force.type == ForceType::spring) connect(force.bodies);
+    if (acts_between(force.type)) connect(force.bodies);
   return all;
 }
 

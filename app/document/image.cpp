@@ -113,6 +113,25 @@ Joint image_of(const Joint& joint, const Isometry& isometry) {
   return image;
 }
 
+namespace {
+
+// Of a mirrored bearing x and z are the images, y is what makes them right-handed: shifts along y and turns
+// about x and z change their sign.
+void turn_bearing(const Force& bearing, const Isometry& isometry, Force& image) {
+  if (isometry.linear.isIdentity(0)) return;
+  image.axis = isometry.vector(bearing.axis);
+  image.x_axis = isometry.vector(bearing.x_axis.value_or(Vec3(bearing_axes(bearing).col(0))));
+  if (isometry.sense() > 0) return;
+  constexpr std::array<double, 6> signs{1, -1, 1, -1, 1, -1};
+  for (BearingMatrix* matrix : {&image.bearing_stiffness, &image.bearing_damping}) {
+    const std::size_t size = matrix->size() > 4 ? 6 : 2;
+    for (std::size_t i = 0; i < matrix->size(); ++i)
+      (*matrix)[i] = signs[i / size] * signs[i % size] * (*matrix)[i] + 0.0;
+  }
+}
+
+} // namespace
+
 Force image_of(const Force& force, const Isometry& isometry, const Quat& body, bool body_too) {
   Force image = force;
   if (force.type == ForceType::spring) {
@@ -122,6 +141,10 @@ Force image_of(const Force& force, const Isometry& isometry, const Quat& body, b
   }
   if (force.at) image.at = isometry.point(*force.at);
   if (force.type == ForceType::drag) return image;
+  if (force.type == ForceType::bearing) {
+    turn_bearing(force, isometry, image);
+    return image;
+  }
   const bool axial = force.type == ForceType::torque;
   if (force.frame == ForceFrame::world) {
     image.vector = axial ? isometry.axial(force.vector) : isometry.vector(force.vector);

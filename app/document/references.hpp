@@ -19,11 +19,11 @@ inline std::span<const std::string> bodies_of(const Joint& joint) {
   return joint.bodies;
 }
 inline std::span<std::string> bodies_of(Force& force) {
-  if (force.type == ForceType::spring) return force.bodies;
+  if (acts_between(force.type)) return force.bodies;
   return {&force.body, 1};
 }
 inline std::span<const std::string> bodies_of(const Force& force) {
-  if (force.type == ForceType::spring) return force.bodies;
+  if (acts_between(force.type)) return force.bodies;
   return {&force.body, 1};
 }
 

@@ -45,6 +45,8 @@ std::vector<SnapPoint> snap_points(const Mechanism& mechanism) {
     if (force.type == ForceType::spring)
       for (const Vec3& point : force.points)
         all.add(point, {PartKind::force, force.name}, "end of " + force.name);
+    else if (force.type == ForceType::bearing && force.at)
+      all.add(*force.at, {PartKind::force, force.name}, force.name);
   for (const Joint& joint : mechanism.joints)
     if (joint.type == JointType::distance)
       for (const Vec3& point : joint.points)

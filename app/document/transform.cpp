@@ -67,6 +67,11 @@ class Transform {
         transform_ends(force.bodies, force.points);
       return;
     }
+    if (force.type == ForceType::bearing) {
+      if (selected || (moves(force.bodies[0]) && moves(force.bodies[1])))
+        force = image_of(force, isometry_, Quat::Identity(), false);
+      return;
+    }
     const bool with_body = moves(force.body);
     if (selected) {
       const int b = body_index(mechanism_, force.body);

@@ -41,7 +41,8 @@ bool damped(const Mechanism& m) {
   return std::ranges::any_of(m.joints,
                              [&](const Joint& j) { return std::ranges::any_of(j.coordinates, damper); }) ||
          std::ranges::any_of(m.forces, [](const Force& f) {
-           return f.type == ForceType::drag || (f.type == ForceType::spring && is_damped(f));
+           return f.type == ForceType::drag || (f.type == ForceType::spring && is_damped(f)) ||
+                  std::ranges::any_of(f.bearing_damping, [](double c) { return c != 0; });
          });
 }
 

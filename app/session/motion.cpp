@@ -83,7 +83,10 @@ bool has_dampers(const Mechanism& mechanism) {
                                return std::ranges::any_of(joint.coordinates,
                                                           [](const Coordinate& c) { return is_damped(c); });
                              }) ||
-         std::ranges::any_of(mechanism.forces, [](const Force& force) { return is_damped(force); });
+         std::ranges::any_of(mechanism.forces, [](const Force& force) {
+           return is_damped(force) ||
+                  std::ranges::any_of(force.bearing_damping, [](double c) { return c != 0; });
+         });
 }
 
 const MotionRun* shown_motion(const Session& session) {

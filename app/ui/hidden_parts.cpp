@@ -40,8 +40,8 @@ void isolate_selected(App& app) {
     consider(PartKind::joint, joint.name, joins_selected(selection, joint.bodies));
   for (const Force& force : mechanism.forces)
     consider(PartKind::force, force.name,
-             force.type == ForceType::spring ? joins_selected(selection, force.bodies)
-                                             : selection.has(Part{PartKind::body, force.body}));
+             acts_between(force.type) ? joins_selected(selection, force.bodies)
+                                      : selection.has(Part{PartKind::body, force.body}));
 }
 
 void show_hidden(App& app) {

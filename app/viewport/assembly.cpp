@@ -296,10 +296,9 @@ Assembly::Assembly(const Mechanism& built, std::span<const Pose> in_poses)
     }
   }
   for (const Force& force : built.forces) {
-    const bool spring = force.type == ForceType::spring;
-    force_bodies.push_back(
-        {find(spring ? force.bodies[0] : force.body), spring ? find(force.bodies[1]) : -1});
-    if (spring)
+    const bool two = acts_between(force.type);
+    force_bodies.push_back({find(two ? force.bodies[0] : force.body), two ? find(force.bodies[1]) : -1});
+    if (force.type == ForceType::spring)
       for (std::size_t e = 0; e < 2; ++e)
         attach(force_bodies.back()[e], {force.points[e], -1, static_cast<int>(e)});
   }

@@ -32,14 +32,14 @@ struct Assembly {
   const Mechanism& mechanism;
   std::span<const Pose> poses;
   std::vector<std::array<int, 2>> joint_bodies;     // -1: ground
-  std::vector<std::array<int, 2>> force_bodies;     // spring: both; others: the body, then -1
+  std::vector<std::array<int, 2>> force_bodies;     // spring, bearing: both; others: the body, then -1
   std::vector<std::vector<Attachment>> attachments; // by body
   SceneScale scale;
   std::vector<std::optional<Shaft>> shafts; // by body: as what it is drawn, if it is one
   std::vector<double>
       balls; // m, by body: radius of the ball drawn about its mass centre, 0 for none; empty until then
   double middle_mass = 0;                  // kg, the median of the bodies that have mass
-  std::array<double, 4> largest_vectors{}; // N or N m, by type of force
+  std::array<double, 5> largest_vectors{}; // N or N m, by type of force
 
   Assembly(const Mechanism& built, std::span<const Pose> in_poses);
 

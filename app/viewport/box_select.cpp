@@ -29,6 +29,8 @@ std::vector<PartAnchor> part_anchors(const Mechanism& mechanism, std::span<const
     const int body = assembly.force_bodies[i][0];
     if (force.type == ForceType::spring)
       add(PartKind::force, i, middle(assembly.force_bodies[i], force.points));
+    else if (force.type == ForceType::bearing)
+      add(PartKind::force, i, assembly.point(assembly.force_bodies[i][1], force.at.value_or(Vec3::Zero())));
     else if (body >= 0)
       add(PartKind::force, i,
           assembly.point(body, force.at.value_or(mechanism.bodies[static_cast<std::size_t>(body)].position)));

@@ -144,10 +144,32 @@ void draw_joint_forces(Sketch& sketch, const Assembly& assembly, std::size_t ind
   }
 }
 
+namespace {
+
+// A ring round the shaft on its foot, in the first body.
+void draw_bearing(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
+  const Force& force = assembly.mechanism.forces[index];
+  const auto [first, second] = assembly.force_bodies[index];
+  const double u = assembly.scale.unit;
+  const Mat3 drawn = bearing_axes(force);
+  const Vec3 at = assembly.point(second, force.at.value_or(Vec3::Zero()));
+  const Vec3 axis = assembly.vector(first, drawn.col(2));
+  const Vec3 x = assembly.vector(first, drawn.col(0)), y = assembly.vector(first, drawn.col(1));
+  sketch.pen.color = colors.metal_dark;
+  sketch.disc(at - 0.5 * u * axis, axis, 1.1 * u, 1.9 * u, 0.9 * u);
+  sketch.pen.role = Role::spring;
+  sketch.pen.color = colors.slack;
+  for (const Vec3& out : {x, y, Vec3(-x), Vec3(-y)})
+    sketch.coil(at + 1.9 * u * out, at + 3.4 * u * out, axis, 0.5 * u, 0.12 * u, false);
+}
+
+} // namespace
+
 void draw_force(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
   const Force& force = assembly.mechanism.forces[index];
   sketch.pen = {colors.force, Surface::metal, Role::force, {PartKind::force, static_cast<int>(index)}};
   if (force.type == ForceType::spring) return draw_spring(sketch, assembly, index, colors);
+  if (force.type == ForceType::bearing) return draw_bearing(sketch, assembly, index, colors);
   const int body = assembly.force_bodies[index][0];
   if (body < 0) return;
   const double u = assembly.scale.unit;

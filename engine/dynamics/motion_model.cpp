@@ -39,7 +39,7 @@ bool is_tree(const System& system) {
 } // namespace
 
 bool has_pairs(const System& system) {
-  return !system.springs.empty() || !system.cut_dampers.empty();
+  return !system.springs.empty() || !system.cut_dampers.empty() || !system.bearings.empty();
 }
 
 MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
@@ -50,7 +50,7 @@ MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   bind(m.system, mechanism, m.parameters);
   set_scaling(m.system, m.parameters, m.scaling);
   m.parameters.moving = true;
-  const bool torques = !m.system.torques.empty(); // which only the matrices know
+  const bool torques = !m.system.torques.empty() || !m.system.bearings.empty(); // only the matrices know
   m.along_tree = is_tree(m.system) && m.system.nv > few && !torques;
   m.sparse = no_drive_rides(m.system) && m.system.nv > few_of_bodies && !torques;
   if (damped) return m;
@@ -59,6 +59,8 @@ MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
       f.remove_damper();
   for (PointSpringParameters& s : m.parameters.springs)
     s.remove_damper();
+  for (BearingParameters& b : m.parameters.bearings)
+    b.damping.setZero();
   for (CutDamperParameters& d : m.parameters.cut_dampers)
     d.damping = 0;
   return m;

@@ -142,7 +142,7 @@ std::span<const std::string_view> words_of(JointType) {
   return words<JointType, 10>();
 }
 std::span<const std::string_view> words_of(ForceType) {
-  return words<ForceType, 4>();
+  return words<ForceType, 5>();
 }
 std::span<const std::string_view> words_of(ShapeType) {
   return words<ShapeType, 4>();

@@ -83,7 +83,8 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
   for (std::size_t i = 0; i < a.forces.size(); ++i) {
     const Force &x = a.forces[i], &y = b.forces[i];
     if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.body != y.body ||
-        x.frame != y.frame || (x.damping != 0) != (y.damping != 0) || !same_laws(x, y))
+        x.frame != y.frame || (x.damping != 0) != (y.damping != 0) || !same_laws(x, y) ||
+        bearing_size(x) != bearing_size(y))
       return false;
   }
   return true;

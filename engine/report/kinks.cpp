@@ -36,11 +36,12 @@ void say(const std::optional<std::array<double, 2>>& jump, const std::string& wh
          std::string_view unit, Kinks& out) {
   if (!jump) return;
   (damper ? out.damper : out.spring) = true;
-  out.message += std::string(out.message.empty() ? "" : " ") + "The " + (damper ? "damper" : "spring") +
-                 " of " + whose + " stands on a kink of its law, where its " +
-                 (damper ? "damping" : "stiffness") + " jumps" + jump_text(*jump, unit) + ": " +
-                 (damper ? "eigenvalues hold on one side of it."
-                         : "rates and eigenvalues hold on one side of it, and whether it is stable stays open.");
+  out.message +=
+      std::string(out.message.empty() ? "" : " ") + "The " + (damper ? "damper" : "spring") + " of " + whose +
+      " stands on a kink of its law, where its " + (damper ? "damping" : "stiffness") + " jumps" +
+      jump_text(*jump, unit) + ": " +
+      (damper ? "eigenvalues hold on one side of it."
+              : "rates and eigenvalues hold on one side of it, and whether it is stable stays open.");
 }
 
 } // namespace

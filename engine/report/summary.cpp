@@ -47,6 +47,10 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   say(std::ranges::any_of(p.links, has_elastic), "springs and stops in joints");
   if (has_friction(mechanism)) out.in.emplace_back("dry friction in joints: the steady state is a band");
   say(!system.springs.empty(), "springs between points");
+  if (!system.bearings.empty())
+    out.in.emplace_back(system.conservative
+                            ? "bearings: stiffness and damping matrices"
+                            : "bearings: matrices that feed whirl, or dampers between drives");
   say(!system.body_forces.empty(), "forces, torques and drag");
   const bool damped =
       std::ranges::any_of(p.links,

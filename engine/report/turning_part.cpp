@@ -34,6 +34,10 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
   }
   for (PointSpringParameters& s : only.springs)
     s.remove();
+  for (BearingParameters& b : only.bearings) {
+    b.stiffness.setZero();
+    b.damping.setZero();
+  }
   for (BodyForceParameters& f : only.body_forces) {
     f.vector.setZero();
     f.linear = f.quadratic = 0;
@@ -75,6 +79,8 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
     if (system.links[l].body >= 0 && (real.mass != 0 || real.has_inertia)) bodies.push_back(l);
   }
   std::iota(springs.begin(), springs.end(), std::size_t{0});
+  std::vector<std::size_t> bearings(only.bearings.size());
+  std::iota(bearings.begin(), bearings.end(), std::size_t{0});
   std::iota(forces.begin(), forces.end(), std::size_t{0});
   const auto body_name = [&](std::size_t l) {
     return mechanism.bodies[static_cast<std::size_t>(system.links[l].body)].name;
@@ -102,6 +108,17 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
       },
       [&](std::size_t i) {
         return "the spring " + mechanism.forces[static_cast<std::size_t>(system.springs[i].force)].name;
+      });
+  search(
+      bearings,
+      [&](std::size_t i, bool on) {
+        only.bearings[i] = problem.parameters.bearings[i];
+        if (on) return;
+        only.bearings[i].stiffness.setZero();
+        only.bearings[i].damping.setZero();
+      },
+      [&](std::size_t i) {
+        return "the bearing " + mechanism.forces[static_cast<std::size_t>(system.bearings[i].force)].name;
       });
   search(
       forces,

@@ -39,13 +39,18 @@ bool places_parts(const BasicParameters<Dual>& p) {
     return moves(l.offset, l.axis, l.drawn, l.com, l.start, l.drawn_rotation.coeffs());
   };
   const auto spring = [](const BasicPointSpringParameters<Dual>& s) { return s.damped() && moves(s.a, s.b); };
+  const auto bearing = [](const BasicBearingParameters<Dual>& b) {
+    return std::ranges::any_of(b.damping.reshaped(), [](const Dual& c) { return c.value != 0; }) &&
+           moves(b.a, b.b, b.axes.reshaped());
+  };
   const auto damper = [](const BasicCutDamperParameters<Dual>& d) { return moves(d.a, d.b, d.axis); };
   const auto cut = [](const BasicCutParameters<Dual>& c) {
     return moves(c.a, c.b, c.drawn, c.constant, c.ratio) ||
            std::ranges::any_of(c.frame, [](const Vec3T<Dual>& x) { return moves(x); });
   };
   return std::ranges::any_of(p.links, link) || std::ranges::any_of(p.springs, spring) ||
-         std::ranges::any_of(p.cut_dampers, damper) || std::ranges::any_of(p.cuts, cut);
+         std::ranges::any_of(p.bearings, bearing) || std::ranges::any_of(p.cut_dampers, damper) ||
+         std::ranges::any_of(p.cuts, cut);
 }
 
 // What is the same at every phase: which coordinates are the model's, and names.

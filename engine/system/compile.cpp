@@ -290,7 +290,7 @@ class Compiler {
     for (int j = 0; j < joint_count(); ++j)
       if (joint(j).type != JointType::gear) connections_.push_back(ends(j));
     for (const Force& f : m_.forces)
-      if (f.type == ForceType::spring)
+      if (acts_between(f.type))
         connections_.push_back(
             {body_of(f.bodies[0], "forces." + f.name), body_of(f.bodies[1], "forces." + f.name)});
     connections_at_.resize(m_.bodies.size() + 1);
@@ -479,6 +479,10 @@ class Compiler {
       if (x.type == ForceType::spring) {
         s_.springs.push_back(
             {f, ends_between(link_of(body_of(x.bodies[0], path)), link_of(body_of(x.bodies[1], path)))});
+      } else if (x.type == ForceType::bearing) {
+        s_.bearings.push_back(
+            {f, ends_between(link_of(body_of(x.bodies[0], path)), link_of(body_of(x.bodies[1], path))),
+             bearing_size(x)});
       } else {
         s_.body_forces.push_back({f, link_of(body_of(x.body, path))});
       }
@@ -634,6 +638,8 @@ class Compiler {
         s_.conservative = false;
     for (const CutDamperElement& e : s_.cut_dampers)
       if (moving_frame(e.ends.a) != moving_frame(e.ends.b)) s_.conservative = false;
+    // A bearing's matrices may be symmetric, but the next number may change that.
+    s_.conservative = s_.conservative && s_.bearings.empty();
     if (!s_.coordinate_laws.empty() || !s_.spring_laws.empty())
       s_.conservative = s_.conservative && !some_damper_may_drive();
     s_.conserves = s_.conservative && std::ranges::all_of(s_.torques, &DriveTorqueElement::keeps_momentum);
@@ -645,7 +651,8 @@ class Compiler {
     // Without a potential stability asks for eigenvalues, and so for the matrices, as far as those are found.
     constexpr int few = 8, few_for_bodies = 60, few_without_potential = 200;
     const bool potential = s_.conservative && s_.single_drives;
-    if (!s_.torques.empty() || !no_drive_rides(s_) || s_.nv <= (potential ? few : few_without_potential))
+    if (!s_.torques.empty() || !s_.bearings.empty() || !no_drive_rides(s_) ||
+        s_.nv <= (potential ? few : few_without_potential))
       return;
     if (is_plain_tree(s_))
       s_.kkt_form = KktForm::tree;
@@ -688,7 +695,8 @@ bool no_drive_rides(const System& system) {
 }
 
 bool is_plain_tree(const System& system) {
-  return system.rows == 0 && system.springs.empty() && system.cut_dampers.empty() && no_drive_rides(system);
+  return system.rows == 0 && system.springs.empty() && system.cut_dampers.empty() &&
+         system.bearings.empty() && no_drive_rides(system);
 }
 
 System compile(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven) {

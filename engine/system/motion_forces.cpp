@@ -1,3 +1,4 @@
+#include "engine/system/bearing.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/motion.hpp"
 #include "engine/system/pair_stiffness.hpp"
@@ -83,6 +84,9 @@ ForcePowers force_powers(const System& system, const Parameters& p, const Eigen:
                                            : Vec3(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b)));
     out.dissipated += p.cut_dampers[i].damping * rate * rate;
   }
+  const BearingPowers bearings = bearing_powers(system, p, k);
+  out.dissipated += bearings.dissipated;
+  out.applied += bearings.applied;
   for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
     const BodyForceElement& e = system.body_forces[i];
     const BodyForceParameters& f = p.body_forces[i];
@@ -118,6 +122,7 @@ double potential_energy(const System& system, const Parameters& p, const Eigen::
   }
   for (std::size_t i = 0; i < system.springs.size(); ++i)
     energy += p.springs[i].energy(spring_state(system.springs[i], p.springs[i], k).length);
+  energy += bearing_energy(system, p, k);
   for (std::size_t i = 0; i < system.body_forces.size(); ++i)
     if (p.body_forces[i].type == ForceType::force && p.body_forces[i].frame == ForceFrame::world)
       energy -= p.body_forces[i].vector.dot(k.point(system.body_forces[i].link, p.body_forces[i].at));

@@ -1,32 +1,11 @@
 #include "engine/system/pair_stiffness.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/system/bearing.hpp"
+#include "engine/system/pair_hessian.hpp"
 
 namespace flyball {
 namespace {
-
-// A coordinate of an element's support with its column, and which end it moves.
-struct Part {
-  int v, link;
-  bool second;
-  const Column<double>& column;
-};
-
-Part part(const SupportColumn& s, const Kinematics<double>& k) {
-  return {s.v, s.link, s.second, k.columns[static_cast<std::size_t>(s.v)]};
-}
-
-// Of two coordinates of one side, j carries i's axis if it lies strictly nearer the root (links are numbered
-// from the root outwards); the columns of one spherical link stay put.
-bool carries(const Part& j, const Part& i) {
-  return j.link < i.link;
-}
-
-// d/dq_j of i's motion of a point carried by both: the outer one turns the inner one's motion.
-Vec3 moved_motion(const Part& i, const Part& j, const Vec3& point) {
-  return carries(j, i) ? Vec3(j.column.turn().cross(i.column.at(point)))
-                       : Vec3(i.column.turn().cross(j.column.at(point)));
-}
 
 // Second derivative of tension x length between points a and b: the geometric stiffness of a stretched link.
 // `along` is the stiffness along the line (N/m), `tension` in N; `direction` is the unit vector a to b.
@@ -35,7 +14,7 @@ struct Line {
   double length, along, tension;
 };
 
-double line_hessian(const Line& line, const Part& i, const Part& j) {
+double line_hessian(const Line& line, const PairPart& i, const PairPart& j) {
   const Vec3& pi = i.second ? line.b : line.a;
   const Vec3& pj = j.second ? line.b : line.a;
   const Vec3 ji = i.column.at(pi) * (i.second ? 1. : -1.), jj = j.column.at(pj) * (j.second ? 1. : -1.);
@@ -49,18 +28,8 @@ double line_hessian(const Line& line, const Part& i, const Part& j) {
   return h;
 }
 
-// Second derivative of u_A . (p_B - p_A).
-double point_hessian(const Vec3& u, const Vec3& b, const Part& i, const Part& j) {
-  if (i.second && j.second) return u.dot(moved_motion(i, j, b));
-  if (i.second) return -u.dot(j.column.turn().cross(i.column.at(b)));
-  if (j.second) return -u.dot(i.column.turn().cross(j.column.at(b)));
-  // Both carry u and neither the point: the deeper one turns the motion that the other makes.
-  return carries(j, i) ? u.dot(i.column.turn().cross(j.column.at(b)))
-                       : u.dot(j.column.turn().cross(i.column.at(b)));
-}
-
 // Second derivative of u_A . w_B.
-double direction_hessian(const Vec3& u, const Vec3& w, const Part& i, const Part& j) {
+double direction_hessian(const Vec3& u, const Vec3& w, const PairPart& i, const PairPart& j) {
   const Vec3 ti = i.column.turn(), tj = j.column.turn();
   if (i.second != j.second) return ti.cross(i.second ? w : u).dot(tj.cross(j.second ? w : u));
   const Vec3& moved = i.second ? w : u;
@@ -72,12 +41,7 @@ template <class Entry>
 void for_pairs(const Support& support, const Kinematics<double>& k, Eigen::MatrixXd& out, Entry entry) {
   for (const SupportColumn& si : support)
     for (const SupportColumn& sj : support)
-      out(si.v, sj.v) += entry(part(si, k), part(sj, k));
-}
-
-// Change of a carried point's velocity as coordinate j moves, at the point's own new place.
-Vec3 velocity_change(const Part& j, const ScrewRates& s, const Vec3& point, const Vec3& velocity) {
-  return s.dv + s.dw.cross(point - j.column.o) + j.column.turn().cross(velocity);
+      out(si.v, sj.v) += entry(pair_part(si, k), pair_part(sj, k));
 }
 
 void add_springs(const System& system, const Parameters& p, const Kinematics<double>& k,
@@ -88,7 +52,7 @@ void add_springs(const System& system, const Parameters& p, const Kinematics<dou
     const PointSpringParameters& f = p.springs[n];
     const SpringState<double> s = spring_state(e, f, k);
     if (f.without_length()) { // k d: no direction needed, points may meet
-      for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) {
+      for_pairs(e.ends.support, k, out, [&](const PairPart& i, const PairPart& j) {
         const Vec3& pi = i.second ? s.b : s.a;
         const Vec3& pj = j.second ? s.b : s.a;
         double h = i.column.at(pi).dot(j.column.at(pj)) * (i.second == j.second ? 1. : -1.);
@@ -98,11 +62,12 @@ void add_springs(const System& system, const Parameters& p, const Kinematics<dou
       continue;
     }
     const Line line{s.a, s.b, s.direction, s.length, f.pull_slope(s.length), s.tension};
-    for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) { return line_hessian(line, i, j); });
+    for_pairs(e.ends.support, k, out,
+              [&](const PairPart& i, const PairPart& j) { return line_hessian(line, i, j); });
     if (!f.damped() || !p.moving) continue;
     const double damping = f.resistance_slope(stretching(e, s, k));
     const Vec3 va = k.velocity(e.ends.a, s.a), vb = k.velocity(e.ends.b, s.b);
-    for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) {
+    for_pairs(e.ends.support, k, out, [&](const PairPart& i, const PairPart& j) {
       const Vec3 motion = j.column.at(j.second ? s.b : s.a) * (j.second ? 1. : -1.);
       const Vec3 turned = (motion - s.direction * s.direction.dot(motion)) / s.length;
       const Vec3 change =
@@ -114,7 +79,7 @@ void add_springs(const System& system, const Parameters& p, const Kinematics<dou
 }
 
 // Generalised direction of a damper in a cut joint: the rate is the sum of this times q'.
-double damper_gradient(const CutDamperElement& e, const Vec3& axis, const Vec3& b, const Part& i) {
+double damper_gradient(const CutDamperElement& e, const Vec3& axis, const Vec3& b, const PairPart& i) {
   return (i.second ? 1. : -1.) * axis.dot(e.angular ? i.column.turn() : i.column.at(b));
 }
 
@@ -128,7 +93,7 @@ void add_cut_dampers(const System& system, const Parameters& p, const Kinematics
     const Vec3 axis = la.R * p.cut_dampers[n].axis, b = k.point(e.ends.b, p.cut_dampers[n].b);
     const Vec3 va = k.velocity(e.ends.a, b), vb = k.velocity(e.ends.b, b);
     const double rate = axis.dot(e.angular ? Vec3(lb.w - la.w) : Vec3(vb - va));
-    for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) {
+    for_pairs(e.ends.support, k, out, [&](const PairPart& i, const PairPart& j) {
       const ScrewRates& s = screws[static_cast<std::size_t>(j.v)];
       const Vec3 turn = j.column.turn();
       double drate = 0;
@@ -171,7 +136,7 @@ void add_constraint_forces(const System& system, const Parameters& p, const Eige
       const Vec3 w = k.at(cut.ends.b).R * f.frame[static_cast<std::size_t>(row.w)];
       const double length = (b - a).norm();
       const Line line{a, b, (b - a) / length, length, 0, multiplier};
-      for_pairs(cut.ends.support, k, out, [&](const Part& i, const Part& j) {
+      for_pairs(cut.ends.support, k, out, [&](const PairPart& i, const PairPart& j) {
         switch (row.type) {
         case RowType::distance: return line_hessian(line, i, j);
         case RowType::point: return multiplier * point_hessian(u, b, i, j);
@@ -191,6 +156,7 @@ void add_pair_stiffness(const System& system, const Parameters& parameters, cons
                         Eigen::MatrixXd& stiffness) {
   add_springs(system, parameters, kinematics, screws, stiffness);
   add_cut_dampers(system, parameters, kinematics, screws, stiffness);
+  add_bearing_stiffness(system, parameters, kinematics, screws, stiffness);
   add_constraint_forces(system, parameters, lambda, kinematics, stiffness);
 }
 
@@ -202,20 +168,21 @@ void add_pair_damping(const System& system, const Parameters& p, const Kinematic
     const PointSpringElement& e = system.springs[n];
     const SpringState<double> s = spring_state(e, p.springs[n], k);
     const double damping = p.springs[n].resistance_slope(stretching(e, s, k));
-    const auto along = [&](const Part& i) {
+    const auto along = [&](const PairPart& i) {
       return (i.second ? 1. : -1.) * s.direction.dot(i.column.at(i.second ? s.b : s.a));
     };
     for_pairs(e.ends.support, k, velocity,
-              [&](const Part& i, const Part& j) { return damping * along(i) * along(j); });
+              [&](const PairPart& i, const PairPart& j) { return damping * along(i) * along(j); });
   }
   for (std::size_t n = 0; n < system.cut_dampers.size(); ++n) {
     interruption_point();
     const CutDamperElement& e = system.cut_dampers[n];
     const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[n].axis, b = k.point(e.ends.b, p.cut_dampers[n].b);
-    for_pairs(e.ends.support, k, velocity, [&](const Part& i, const Part& j) {
+    for_pairs(e.ends.support, k, velocity, [&](const PairPart& i, const PairPart& j) {
       return p.cut_dampers[n].damping * damper_gradient(e, axis, b, i) * damper_gradient(e, axis, b, j);
     });
   }
+  add_bearing_damping(system, p, k, velocity);
 }
 
 } // namespace flyball

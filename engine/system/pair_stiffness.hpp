@@ -1,4 +1,4 @@
-// Second derivatives of what acts between two bodies: point springs, dampers in cut joints, and the
+// Second derivatives of what acts between two bodies: point springs, dampers in cut joints, bearings, and the
 // constraint forces' (Phi_q^T lambda)_q. Only coordinates between the two bodies take part.
 #pragma once
 

@@ -230,6 +230,9 @@ class Binder {
       }
       out.laws = std::make_shared<const BasicForceLaws<N>>(std::move(laws));
     }
+    p_.bearings.resize(s_.bearings.size());
+    for (std::size_t i = 0; i < s_.bearings.size(); ++i)
+      bind_bearing(s_.bearings[i], p_.bearings[i]);
     p_.body_forces.resize(s_.body_forces.size());
     for (std::size_t i = 0; i < s_.body_forces.size(); ++i) {
       const BodyForceElement& e = s_.body_forces[i];
@@ -271,6 +274,34 @@ class Binder {
     p_.cuts.resize(s_.cuts.size());
     for (std::size_t i = 0; i < s_.cuts.size(); ++i)
       bind_cut(s_.cuts[i], p_.cuts[i]);
+  }
+
+  // See bearing_axes.
+  Tensor axes_of(const Force& bearing) const {
+    const Vector z = read_(bearing.axis).normalized();
+    Vector towards = bearing_axes(bearing).col(0).template cast<N>();
+    if (bearing.x_axis) towards = read_(*bearing.x_axis);
+    Tensor axes;
+    axes.col(0) = (towards - z * z.dot(towards)).normalized();
+    axes.col(1) = z.cross(axes.col(0));
+    axes.col(2) = z;
+    return axes;
+  }
+
+  void bind_bearing(const BearingElement& e, BasicBearingParameters<N>& out) const {
+    const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
+    const Vector at = read_(f.at, Vector(Vector::Zero()));
+    const auto matrix = [&](const BearingMatrix& entries, Eigen::Matrix<N, 6, 6>& to) {
+      to.setZero();
+      const int size = entries.size() > 4 ? 6 : 2;
+      for (int i = 0; i < static_cast<int>(entries.size()); ++i)
+        to(i / size, i % size) = read_(entries[static_cast<std::size_t>(i)]);
+    };
+    out.a = in_link(at, e.ends.a);
+    out.b = in_link(at, e.ends.b);
+    out.axes = axes_of(f);
+    matrix(f.bearing_stiffness, out.stiffness);
+    matrix(f.bearing_damping, out.damping);
   }
 
   void bind_law(const DriveLaw& law, const std::optional<double>& value,
@@ -353,6 +384,8 @@ bool phase_free(const System& system, const Parameters& p) {
   for (const CutJoint& c : system.cuts)
     if (c.type != JointType::gear && apart(c.ends)) return false;
   for (const CutDamperElement& e : system.cut_dampers)
+    if (apart(e.ends)) return false;
+  for (const BearingElement& e : system.bearings)
     if (apart(e.ends)) return false;
   for (std::size_t i = 0; i < system.body_forces.size(); ++i)
     if (turns(system.body_forces[i].link) && p.body_forces[i].type != ForceType::drag &&

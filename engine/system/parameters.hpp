@@ -139,6 +139,13 @@ struct BasicPointSpringParameters {
 };
 
 template <class N>
+struct BasicBearingParameters {
+  BasicOffset<N> a, b;                       // the bearing's point in either
+  Mat3T<N> axes;                             // x, y, z as columns, drawn pose
+  Eigen::Matrix<N, 6, 6> stiffness, damping; // of two rows: those of x and y, else zero
+};
+
+template <class N>
 struct BasicBodyForceParameters {
   ForceType type = ForceType::force;
   ForceFrame frame = ForceFrame::world;
@@ -186,6 +193,7 @@ struct BasicParameters {
   bool moving = false; // any drive turns
   std::vector<BasicLinkParameters<N>> links;
   std::vector<BasicPointSpringParameters<N>> springs;
+  std::vector<BasicBearingParameters<N>> bearings;
   std::vector<BasicBodyForceParameters<N>> body_forces;
   std::vector<BasicCutDamperParameters<N>> cut_dampers;
   std::vector<BasicDriveTorqueParameters<N>> torques;
@@ -200,6 +208,7 @@ using CoordinateForces = BasicCoordinateForces<double>;
 using LinkParameters = BasicLinkParameters<double>;
 using Offset = BasicOffset<double>;
 using PointSpringParameters = BasicPointSpringParameters<double>;
+using BearingParameters = BasicBearingParameters<double>;
 using BodyForceParameters = BasicBodyForceParameters<double>;
 using CutDamperParameters = BasicCutDamperParameters<double>;
 using DriveLawParameters = BasicDriveLawParameters<double>;
@@ -214,6 +223,8 @@ template <class S>
 using OffsetOf = BasicOffset<NumberOf<S>>;
 template <class S>
 using PointSpringParametersOf = BasicPointSpringParameters<NumberOf<S>>;
+template <class S>
+using BearingParametersOf = BasicBearingParameters<NumberOf<S>>;
 template <class S>
 using BodyForceParametersOf = BasicBodyForceParameters<NumberOf<S>>;
 template <class S>

@@ -1,6 +1,6 @@
 #include "engine/system/potential.hpp"
 
-#include "engine/system/residual.hpp"
+#include "engine/system/bearing.hpp"
 
 namespace flyball {
 
@@ -39,6 +39,7 @@ Potential amended_potential(const System& system, const Parameters& p, const Eig
     const SpringState<double> s = spring_state(system.springs[i], p.springs[i], k);
     add(p.springs[i].energy(s.length));
   }
+  if (!system.bearings.empty()) add(bearing_energy(system, p, k));
   for (std::size_t i = 0; i < system.body_forces.size(); ++i)
     if (p.body_forces[i].type == ForceType::force && p.body_forces[i].frame == ForceFrame::world)
       add(-p.body_forces[i].vector.dot(k.point(system.body_forces[i].link, p.body_forces[i].at)));

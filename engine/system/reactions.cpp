@@ -1,5 +1,6 @@
 #include "engine/system/reactions.hpp"
 
+#include "engine/system/bearing.hpp"
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/drive_torque.hpp"
 
@@ -86,6 +87,12 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     add(e.ends.b, b, e.angular ? Vec3(Vec3::Zero()) : force, e.angular ? torque : Vec3(Vec3::Zero()));
     add(e.ends.a, b, e.angular ? Vec3(Vec3::Zero()) : Vec3(-force),
         e.angular ? Vec3(-torque) : Vec3(Vec3::Zero()));
+  }
+  for (std::size_t i = 0; i < system.bearings.size(); ++i) {
+    const PairEnds& ends = system.bearings[i].ends;
+    const BearingState<double> s = bearing_state<double>(system.bearings[i], p.bearings[i], k);
+    add(ends.b, s.point, s.force, s.moment);
+    add(ends.a, s.point, -s.force, -s.moment);
   }
   out.cuts.resize(system.cuts.size());
   std::size_t damper = 0;

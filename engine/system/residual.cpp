@@ -1,5 +1,6 @@
 #include "engine/system/residual.hpp"
 
+#include "engine/system/bearing.hpp"
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/extended.hpp"
@@ -192,6 +193,7 @@ struct ResidualPass {
     add_in_parts(system, *this);
     for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
       add_cut_damper(system, p, k, i, out.f);
+    add_bearings<S>(system, p, k, out.f);
     add_drive_torques(system, p, q, k, out.f);
     set_kept_momenta<S>(system, p, k, out);
     evaluate_constraints(system, p, q, k, out.phi);
@@ -206,6 +208,7 @@ void add_pair_forces(const System& system, const Parameters& p, const Kinematics
     add_spring(system, p, k, i, f);
   for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
     add_cut_damper(system, p, k, i, f);
+  add_bearings<double>(system, p, k, f);
 }
 
 template <class S>
@@ -410,6 +413,7 @@ struct MagnitudesPass {
 void evaluate_magnitudes(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& lambda, const Kinematics<double>& k, Magnitudes& out) {
   MagnitudesPass{system, p, q, lambda, k, out}.run();
+  add_bearing_sizes(system, p, k, out.force);
   add_drive_torque_sizes(system, p, q, k, out.force);
   set_kept_momentum_sizes(system, p, k, out);
 }

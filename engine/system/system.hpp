@@ -101,6 +101,13 @@ struct ForceLawElement {
   std::shared_ptr<const ForceLaw> spring, damper;
 };
 
+// A bearing's matrices, of two rows or six.
+struct BearingElement {
+  int force = 0; // in the mechanism
+  PairEnds ends;
+  int size = 2;
+};
+
 // A force, torque or drag on one body.
 struct BodyForceElement {
   int force = 0;
@@ -181,6 +188,7 @@ struct System {
   std::vector<ReportedCoordinate> reported; // of all joints, in the same order
   std::vector<PointSpringElement> springs;
   std::vector<ForceLawElement> coordinate_laws, spring_laws;
+  std::vector<BearingElement> bearings; // which the matrices of all coordinates alone know
   std::vector<BodyForceElement> body_forces;
   std::vector<CutDamperElement> cut_dampers;
   std::vector<DriveTorqueElement> torques;

@@ -67,7 +67,9 @@ inline constexpr std::string_view everything = R"({
      "points": [[0, 2, 0], [1, 1, 0]], "stiffness": 120, "free_length": 0.9, "damping": 1.5},
     {"name": "push", "type": "force", "body": "arm", "at": [1, 2, 3], "vector": [4, 5, 6], "frame": "body"},
     {"name": "turn", "type": "torque", "body": "arm", "vector": [7, 8, 9]},
-    {"name": "air", "type": "drag", "body": "ball", "at": [0, 0, 5.5], "linear": 0.125, "quadratic": 0.375}
+    {"name": "air", "type": "drag", "body": "ball", "at": [0, 0, 5.5], "linear": 0.125, "quadratic": 0.375},
+    {"name": "journal", "description": "oil", "type": "bearing", "bodies": ["ground", "drone"], "at": [0, 0, 7.5],
+     "axis": [0, 0, 4], "x_axis": [1, 0, 0.5], "stiffness": [["=8 N / L", 17], [-17, 18]], "damping": [[3, 0], [0, 3]]}
   ],
   "measures": {
     "gap": {"description": "between two", "value": "=distance(ball, drone) - half", "unit": "m"},
@@ -210,7 +212,7 @@ inline constexpr Mistake mistakes_of_form[] = {
      "gear, found "
      "\"plannar\"; did you mean \"planar\"?"},
     {R"("type": "planar")", R"("type": 5)", "joints.ice.type", "found 5"},
-    {R"("type": "drag")", R"("type": "wind")", "forces.air.type", "expected spring, force, torque or drag"},
+    {R"("type": "drag")", R"("type": "wind")", "forces.air.type", "expected spring, force, torque, drag or bearing"},
     {R"("type": "box")", R"("type": "cube")", "bodies.table.shapes[1].type",
      "expected sphere, box, cylinder or capsule"},
     {R"("frame": "body")", R"("frame": "Body")", "forces.push.frame", "did you mean \"body\"?"},

@@ -110,13 +110,27 @@ Force RandomMechanism::force() {
   Force force;
   force.name = text();
   force.description = description();
-  force.type = static_cast<ForceType>(below(4));
+  force.type = static_cast<ForceType>(below(5));
   if (force.type == ForceType::spring) {
     force.bodies = {text(), text()};
     force.points = {vector(), vector()};
-    force.stiffness = number();
+    if (maybe())
+      force.force = number();
+    else
+      force.stiffness = number();
     if (maybe()) force.free_length = number();
     force.damping = number();
+    return force;
+  }
+  if (force.type == ForceType::bearing) {
+    force.bodies = {text(), text()};
+    force.at = vector();
+    force.axis = vector();
+    if (maybe()) force.x_axis = vector();
+    const int entries = maybe() ? 4 : 36;
+    for (int i = 0; i < entries; ++i)
+      force.bearing_stiffness.push_back(number());
+    if (maybe()) force.bearing_damping = force.bearing_stiffness;
     return force;
   }
   force.body = text();

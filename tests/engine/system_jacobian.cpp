@@ -251,6 +251,23 @@ std::vector<std::pair<std::string, Force>> forces() {
     each->damping_force = 0;
     each->formulas.push_back({"damping_force", "3*rate + 2*rate^3"});
   }
+  Force bearing, full;
+  bearing.name = full.name = "force";
+  bearing.type = full.type = ForceType::bearing;
+  bearing.bodies = {"table", "sled"};
+  full.bodies = {"arm", "tool"};
+  bearing.at = Vec3(0.6, 0.2, 0.1);
+  full.at = Vec3(0.5, 0.8, 0.2);
+  bearing.axis = full.axis = Vec3(0.3, 1, -0.4);
+  full.x_axis = Vec3(1, 0.2, 0);
+  bearing.bearing_stiffness = {200, 90, -70, 120};
+  bearing.bearing_damping = {5, 2, -3, 7};
+  for (int i = 0; i < 36; ++i) {
+    full.bearing_stiffness.push_back(60 * std::sin(1.0 + 2.3 * i) + (i % 7 == 0 ? 150 : 0));
+    full.bearing_damping.push_back(3 * std::cos(0.7 * i) + (i % 7 == 0 ? 5 : 0));
+  }
+  Force full_across = full;
+  full_across.bodies = {"sled", "arm"};
   Force constant = spring_between("ground", "tool", {2, 0.3, 0}, {0.8, 0.8, 0.4});
   constant.force = 30;
   Force drag = on_tool(ForceType::drag, ForceFrame::world), quadratic = drag, both = drag;
@@ -268,6 +285,9 @@ std::vector<std::pair<std::string, Force>> forces() {
           {"damper by a law between drives", damper_law},
           {"spring and damper by laws between drives", both_laws},
           {"spring of constant force", constant},
+          {"bearing of two rows between drives", bearing},
+          {"bearing of six rows", full},
+          {"bearing of six rows between drives", full_across},
           {"world force", on_tool(ForceType::force, ForceFrame::world)},
           {"body force", on_tool(ForceType::force, ForceFrame::body)},
           {"world torque", on_tool(ForceType::torque, ForceFrame::world)},

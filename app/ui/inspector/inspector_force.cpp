@@ -1,6 +1,8 @@
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 
+#include "engine/mechanism/fields.hpp"
+
 #include <array>
 
 namespace flyball {
@@ -84,6 +86,71 @@ void spring_rows(App& app, const Force& force) {
                 .address = address_of(force, "damping")});
 }
 
+constexpr double bearing_stiffness = 1e5, bearing_damping = 100; // N/m, N s/m; where there was none
+
+// One number each, by what moves and what feels it.
+void matrix_rows(App& app, const Force& force, const std::string& key, const BearingMatrix& matrix,
+                 std::string_view unit, double usual, BearingMatrix Force::*member) {
+  const std::string title = key == "stiffness" ? "Stiffness" : "Damping";
+  if (check_row(app, "inspector/" + key, title, !matrix.empty(), "A matrix by rows, in the bearing's axes."))
+    edit_force(app, title + " of " + force.name, force.name, [member, usual](Force& same) {
+      const std::size_t size = bearing_size(same) == 6 ? 6 : 2;
+      BearingMatrix& entries = same.*member;
+      const bool had = !entries.empty();
+      entries.assign(had ? 0 : size * size, 0);
+      for (std::size_t i = 0; i < entries.size() && i / size < 2; i += size + 1)
+        entries[i] = usual;
+    });
+  constexpr std::array<const char*, 6> names{"x", "y", "z", "turn x", "turn y", "turn z"};
+  const std::size_t size = matrix.size() > 4 ? 6 : 2;
+  for (std::size_t i = 0; i < matrix.size(); ++i) {
+    const std::string entry = std::to_string(i / size) + "." + std::to_string(i % size);
+    quantity_row(
+        app, std::string(names[i / size]) + " by " + names[i % size],
+        {.name = "inspector/" + key + "/" + std::to_string(i / size) + "/" + std::to_string(i % size),
+         .value = matrix[i],
+         .unit = std::string(fields::bearing_unit(unit, size, i / size, i % size)),
+         .help = "What resists along the first, by what happens along the second.",
+         .address = address_of(force, key + "." + entry)});
+  }
+}
+
+void bearing_rows(App& app, const Force& force) {
+  const Part part{PartKind::force, force.name};
+  for (std::size_t end = 0; end < 2; ++end)
+    body_end_row(app, part, force.bodies, end, end == 0 ? "In" : "Holds");
+  vector_rows(app, "Point",
+              {.name = "inspector/at",
+               .value = force.at.value_or(Vec3::Zero()),
+               .unit = "m",
+               .help = "Where it is, in the world, as drawn.",
+               .address = address_of(force, "at")});
+  vector_rows(app, "Axis",
+              {.name = "inspector/axis",
+               .value = force.axis,
+               .help = "Of what turns in it; x and y are across.",
+               .address = address_of(force, "axis")});
+  constexpr std::array<std::string_view, 2> sizes{"2 rows", "6 rows"};
+  const bool full = bearing_size(force) == 6;
+  if (const auto chosen = choice_row(app, "inspector/rows", "Matrices", sizes, full ? 1 : 0,
+                                     "Of the shifts along x and y; or of three shifts and three turns.");
+      chosen && (*chosen == 1) != full)
+    edit_force(app, "Rows of " + force.name, force.name, [](Force& same) {
+      for (BearingMatrix* matrix : {&same.bearing_stiffness, &same.bearing_damping}) {
+        if (matrix->empty()) continue;
+        const std::size_t from = matrix->size() > 4 ? 6 : 2, to = 8 - from;
+        BearingMatrix resized(to * to, 0);
+        for (std::size_t i = 0; i < 4; ++i)
+          resized[i / 2 * to + i % 2] = (*matrix)[i / 2 * from + i % 2];
+        *matrix = std::move(resized);
+      }
+    });
+  matrix_rows(app, force, "stiffness", force.bearing_stiffness, "N/m", bearing_stiffness,
+              &Force::bearing_stiffness);
+  matrix_rows(app, force, "damping", force.bearing_damping, "N s/m", bearing_damping,
+              &Force::bearing_damping);
+}
+
 void point_rows(App& app, const Force& force) {
   const int body = body_index(app.mechanism(), force.body);
   const Vec3 centre =
@@ -149,6 +216,7 @@ void force_inspector(App& app, const Force& force) {
              edit_force(changed, "Describe " + name, name, [text](Force& same) { same.description = text; });
            });
   if (force.type == ForceType::spring) return spring_rows(app, force);
+  if (force.type == ForceType::bearing) return bearing_rows(app, force);
   const std::vector<std::string> choices = body_choices(app.mechanism(), false);
   if (const auto chosen =
           name_choice_row(app, "inspector/body", "Body", choices, force.body, "The body it acts on."))

@@ -1,0 +1,232 @@
+// Bearings: statics, frequencies and the onset of whirl that have a formula; energies; motions that settle.
+#include "engine/continuation/branches.hpp"
+#include "engine/dynamics/settled.hpp"
+#include "engine/dynamics/simulator.hpp"
+#include "engine/linear/spectral.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
+#include "tests/engine/dynamics_runs.hpp"
+#include "tests/support/dice.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <complex>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinRel;
+using Complex = std::complex<double>;
+
+namespace {
+
+Force bearing(const std::string& a, const std::string& b, const Vec3& at, BearingMatrix stiffness,
+              BearingMatrix damping = {}) {
+  Force f;
+  f.name = "bearing";
+  f.type = ForceType::bearing;
+  f.bodies = {a, b};
+  f.at = at;
+  f.bearing_stiffness = std::move(stiffness);
+  f.bearing_damping = std::move(damping);
+  return f;
+}
+
+// A Jeffcott rotor: a disc turns about z on a journal that shifts along x and y, held at its middle.
+Mechanism jeffcott(double mass, BearingMatrix stiffness, BearingMatrix damping, double speed = 30) {
+  Mechanism m;
+  m.bodies = {body("cross", 0), body("journal", 0), body("disc", mass, {0, 0, 0}, {0.02, 0.02, 0.03})};
+  m.joints = {prismatic("x", "ground", "cross", {0, 0, 0}, {1, 0, 0}),
+              prismatic("y", "cross", "journal", {0, 0, 0}, {0, 1, 0}),
+              driven(revolute("spin", "journal", "disc", {0, 0, 0}), speed)};
+  m.forces = {bearing("ground", "disc", {0, 0, 0}, std::move(stiffness), std::move(damping))};
+  return m;
+}
+
+Solution solved(const Mechanism& m) {
+  validate(m);
+  Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  return s;
+}
+
+// Each of `expected` is among those found.
+void check_eigenvalues(const Solution& s, const std::vector<Complex>& expected, double tolerance) {
+  REQUIRE(s.eigenvalues);
+  REQUIRE(s.eigenvalues->size() == expected.size());
+  for (const Complex& e : expected) {
+    double nearest = 1e300;
+    for (const Complex& found : *s.eigenvalues)
+      nearest = std::min(nearest, std::abs(found - e));
+    CAPTURE(e);
+    CHECK(nearest < tolerance * std::abs(e));
+  }
+}
+
+} // namespace
+
+TEST_CASE("a rotor sinks as its bearing's matrix says, cross terms and all", "[bearings]") {
+  Mechanism m = jeffcott(12, {8e4, 5e4, -3e4, 2e5}, {900, 0, 0, 900}, 3);
+  m.gravity = {0, -standard_gravity, 0};
+  const Solution s = solved(m);
+  Eigen::Matrix2d k;
+  k << 8e4, 5e4, -3e4, 2e5;
+  const Eigen::Vector2d at = k.inverse() * Eigen::Vector2d(0, -12 * standard_gravity);
+  CHECK_THAT(value(s, "x"), WithinRel(at.x(), 1e-13));
+  CHECK_THAT(value(s, "y"), WithinRel(at.y(), 1e-13));
+  const Run run = simulate(m, lasting(1.5, Integrator::automatic, 1e-11));
+  check_sound(run, 1e-6);
+  CHECK(find_settled(run, s, 1e-8).time.has_value());
+}
+
+TEST_CASE("an anisotropic bearing has two frequencies", "[bearings]") {
+  const Solution s = solved(jeffcott(5, {2e4, 0, 0, 9e4}, {}));
+  check_eigenvalues(
+      s,
+      {{0, std::sqrt(2e4 / 5)}, {0, -std::sqrt(2e4 / 5)}, {0, std::sqrt(9e4 / 5)}, {0, -std::sqrt(9e4 / 5)}},
+      1e-12);
+  // In axes turned by 30 degrees it is the same bearing.
+  const double c = std::cos(0.5), n = std::sin(0.5);
+  Mechanism turned = jeffcott(5, {2e4, 0, 0, 9e4}, {});
+  turned.forces[0].x_axis = Vec3(c, n, 0);
+  turned.gravity = {0, -standard_gravity, 0};
+  const Solution t = solved(turned);
+  CHECK_THAT(value(t, "x"), WithinRel(-5 * standard_gravity * c * n * (1 / 2e4 - 1 / 9e4), 1e-12));
+}
+
+TEST_CASE("cross stiffness drives whirl where it exceeds damping times frequency", "[bearings]") {
+  const double mass = 3, k = 3e4, c = 40, onset = c * std::sqrt(k / mass);
+  for (const double cross : {0., 0.5 * onset, 0.999 * onset, 1.001 * onset, 2 * onset}) {
+    CAPTURE(cross / onset);
+    const Solution s = solved(jeffcott(mass, {k, cross, -cross, k}, {c, 0, 0, c}));
+    // m s^2 + c s + k = +-i kc.
+    std::vector<Complex> expected;
+    for (const double sign : {1., -1.}) {
+      const Complex root = std::sqrt(Complex(c * c - 4 * mass * k, 4 * mass * cross * sign));
+      expected.push_back((-c + root) / (2 * mass));
+      expected.push_back((-c - root) / (2 * mass));
+    }
+    check_eigenvalues(s, expected, 1e-10);
+    CHECK(s.stable == (cross < onset));
+    CHECK(s.stability_reason != StabilityReason::minimum);
+  }
+  // Which way round: forwards, with the sense of kxy > 0 and so of the rotor.
+  const Run run = simulate(jeffcott(mass, {k, 1.2 * onset, -1.2 * onset, k}, {c, 0, 0, c}),
+                           kicked(lasting(2), "x", 1e-3));
+  const CoordinateTrack &x = track(run, "x"), &y = track(run, "y");
+  const std::size_t n = run.time.size() - 1;
+  CHECK(x.value[n] * y.rate[n] - y.value[n] * x.rate[n] > 0);
+  CHECK(std::hypot(x.value[n], y.value[n]) > 3e-5);
+}
+
+TEST_CASE("oil whip: the branch over the speed finds its onset at twice the frequency",
+          "[bearings][branches]") {
+  Mechanism m = jeffcott(3, {3e4, 0, 0, 3e4}, {40, 0, 0, 40});
+  m.parameters = {{"w", "", 100, "rad/s", {}}};
+  m.joints[2].formulas.push_back({"drive.speed", "w"});
+  m.forces[0].formulas = {{"stiffness.0.1", "40 N s/m*w/2"}, {"stiffness.1.0", "-40 N s/m*w/2"}};
+  set_parameter(m, "parameters.w", 100);
+  const ResponseDiagram d = follow_branches(m, "parameters.w", 10, 400);
+  INFO(d.message);
+  REQUIRE(d.special.size() == 1);
+  CHECK(d.special[0].type == SpecialPointType::hopf);
+  CHECK_THAT(d.special[0].at.parameter, WithinRel(2 * std::sqrt(3e4 / 3), 1e-9));
+  for (const ResponsePoint& p : d.branches[0].points)
+    if (std::abs(p.parameter - 200) > 0.01) CHECK(p.stable == (p.parameter < 200));
+}
+
+TEST_CASE("six rows hold a body in all its motions, at the frequencies of its pencil", "[bearings]") {
+  Eigen::Matrix<double, 6, 6> root;
+  root.setZero();
+  Dice dice(5);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      root(i, j) = (i == j ? 1 : 0.2) * dice.between(0.5, 1.5) * (i < 3 ? 200 : 20);
+  const Eigen::Matrix<double, 6, 6> k = root * root.transpose();
+  BearingMatrix entries;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      entries.push_back(k(std::min(i, j), std::max(i, j)));
+  Mechanism m;
+  const Vec3 arm(0.1, -0.05, 0.2); // from the bearing to the mass centre
+  m.bodies = {body("block", 2, arm, {0.1, 0.15, 0.2})};
+  m.forces = {bearing("ground", "block", {0, 0, 0}, entries)};
+  const Solution s = solved(m);
+  // M of shifts of the bearing's point and turns, in its axes: x, y, z by default.
+  Eigen::Matrix<double, 6, 6> mass;
+  Mat3 cross;
+  cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
+  mass << 2 * Mat3::Identity(), -2 * cross, 2 * cross,
+      Mat3(Vec3(0.1, 0.15, 0.2).asDiagonal()) - 2 * cross * cross;
+  const Mat3 axes = bearing_axes(m.forces[0]);
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = axes;
+  const Eigen::Matrix<double, 6, 6> in_world = turn * k * turn.transpose();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(in_world, mass);
+  std::vector<Complex> expected;
+  for (const double square : eigen.eigenvalues())
+    for (const double sign : {1., -1.})
+      expected.emplace_back(0, sign * std::sqrt(square));
+  check_eigenvalues(s, expected, 1e-9);
+  // Its potential is exact at any turn: energy stays in large motions.
+  const Run run =
+      simulate(m, undamped(kicked(kicked(lasting(2, Integrator::automatic, 1e-12), "block.free.3", 9),
+                                  "block.free.4", -7)));
+  check_sound(run, 1e-7);
+  double largest = 0;
+  for (const double x : track(run, "block.free", 3).value)
+    largest = std::max(largest, std::abs(x));
+  CHECK(largest > 0.1);
+}
+
+TEST_CASE("sensitivities to a bearing's numbers are those of the closed form", "[bearings]") {
+  Mechanism m = jeffcott(12, {8e4, 5e4, -3e4, 2e5}, {900, 0, 0, 900}, 3);
+  m.gravity = {0, -standard_gravity, 0};
+  for (const char* entry : {"0.0", "0.1", "1.0", "1.1"})
+    m.sliders.push_back({std::string("forces.bearing.stiffness.") + entry, 0, 1e6, SliderScale::linear, ""});
+  const Solution s = solved(m);
+  Eigen::Matrix2d k;
+  k << 8e4, 5e4, -3e4, 2e5;
+  const Eigen::Vector2d at = k.inverse() * Eigen::Vector2d(0, -12 * standard_gravity);
+  REQUIRE(s.sensitivities.size() == 4);
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) {
+      const Eigen::Vector2d rate = -k.inverse().col(i) * at[j];
+      const Sensitivity& found = s.sensitivities[static_cast<std::size_t>(2 * i + j)];
+      CHECK_THAT(found.rates[0].value, WithinRel(rate.x(), 1e-11));
+      CHECK_THAT(found.rates[1].value, WithinRel(rate.y(), 1e-11));
+    }
+}
+
+TEST_CASE("oil whip of a hanging rotor: it whirls at half its speed", "[bearings][branches]") {
+  const Mechanism m = stored_case("oil_whip");
+  validate(m);
+  const Body& rotor = m.bodies[1];
+  // I_t z'' + (c L^2 - i I_p w) z' + (k L^2 + m g l - i c w L^2 / 2) z = 0 has the root z = exp(i w t / 2)
+  // there.
+  const double below = 1 - rotor.position.y(), arm = 0.6;
+  const double across = rotor.inertia[0] + rotor.mass * below * below, along = rotor.inertia[1];
+  const double onset =
+      std::sqrt((4e4 * arm * arm + rotor.mass * standard_gravity * below) / (across / 4 - along / 2));
+  const ResponseDiagram d = follow_branches(m, "parameters.speed", 100, 450);
+  INFO(d.message);
+  std::vector<double> found;
+  for (const SpecialPoint& s : d.special)
+    if (s.type == SpecialPointType::hopf) found.push_back(s.at.parameter);
+  REQUIRE(found.size() == 1);
+  CHECK_THAT(found[0], WithinRel(onset, 1e-8));
+  const Solution s = solved([&] {
+    Mechanism at = m;
+    set_parameter(at, "parameters.speed", onset);
+    return at;
+  }());
+  double nearest = 1e300;
+  for (const Complex& e : *s.eigenvalues)
+    nearest = std::min(nearest, std::abs(e - Complex(0, onset / 2)));
+  CHECK(nearest < 1e-5 * onset);
+}
