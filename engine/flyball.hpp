@@ -23,5 +23,6 @@
 #include "engine/study/compare.hpp"
 #include "engine/study/design.hpp"
 #include "engine/study/fold_curve.hpp"
+#include "engine/study/hopf_curve.hpp"
 #include "engine/study/linear_model.hpp"
 #include "engine/study/sweep.hpp"

@@ -1,6 +1,7 @@
 #include "app/cli/branch_over.hpp"
 #include "app/cli/branch_rows.hpp"
 #include "app/cli/command.hpp"
+#include "app/cli/hunting_told.hpp"
 #include "app/cli/output.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/scene_argument.hpp"
@@ -11,7 +12,7 @@
 #include "app/plot/svg.hpp"
 #include "app/render/offscreen.hpp"
 #include "app/ui/plots/plot_picture.hpp"
-#include "engine/continuation/branches.hpp"
+#include "engine/continuation/branch_follower.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
@@ -58,7 +59,24 @@ Ribbons follow_ribbons(const Mechanism& mechanism, const std::string& address, R
   return out;
 }
 
-std::string diagram_text(const Mechanism& m, const std::string& address, const ResponseDiagram& d) {
+// Of each special point that is a Hopf point of a motion that does not turn with the drives.
+using Hunting = std::vector<std::optional<HopfPoint>>;
+
+Hunting describe_hunting(const Mechanism& mechanism, const std::string& address, ResponseDiagram& diagram) {
+  const auto begin = std::chrono::steady_clock::now();
+  Hunting out;
+  for (const SpecialPoint& s : diagram.special) {
+    std::optional<HopfPoint>& point = out.emplace_back();
+    if (s.type == SpecialPointType::hopf && !s.at.floquet)
+      point = describe_hopf(with_parameter(mechanism, address, s.at.parameter), s.at,
+                            hopf_frequency(s.at.eigenvalues));
+  }
+  diagram.run_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+std::string diagram_text(const Mechanism& m, const std::string& address, const ResponseDiagram& d,
+                         const Hunting& hunting) {
   std::string out = fmt::format("{}: {}\n", printable(m.name), printable(d.message));
   const std::string unit = parameter_unit(m, address);
   for (std::size_t b = 0; b < d.branches.size(); ++b) {
@@ -67,12 +85,14 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
                        points.front().parameter, points.back().parameter, unit, d.branches[b].end,
                        d.branches[b].connected ? "" : ", not connected");
   }
-  for (const SpecialPoint& s : d.special) {
+  for (std::size_t i = 0; i < d.special.size(); ++i) {
+    const SpecialPoint& s = d.special[i];
     out += fmt::format("  {} on branch {} at {:.12g} {}:", word(s.type), s.branch, s.at.parameter, unit);
     for (const CoordinateSolution& c : s.at.coordinates)
       if (const auto found = found_number(c))
         out += fmt::format("  {} = {:.9g} {}", printable(found->name), found->value, found->unit);
     out += "\n";
+    if (hunting[i]) out += "    " + hunting_text(*hunting[i]) + "\n";
   }
   return out + fmt::format("  {:.1f} ms\n", d.run_time_s * 1e3);
 }
@@ -130,6 +150,7 @@ void add_branch(CLI::App& app, Ending& ending) {
     const Mechanism mechanism = options->scene.load();
     ResponseDiagram diagram;
     Ribbons ribbons;
+    Hunting hunting;
     try {
       BranchOptions follow;
       follow.all = options->all;
@@ -137,6 +158,7 @@ void add_branch(CLI::App& app, Ending& ending) {
       diagram = follow_branches(mechanism, range.address, range.from, range.to, follow);
       if (has_friction(mechanism))
         ribbons = follow_ribbons(mechanism, range.address, diagram, follow.progress);
+      hunting = describe_hunting(mechanism, range.address, diagram);
     } catch (const SceneError& error) {
       throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
     }
@@ -158,10 +180,12 @@ void add_branch(CLI::App& app, Ending& ending) {
       write_bytes(options->csv, diagram_csv(mechanism, range.address, diagram, ribbons));
     if (options->json) {
       nlohmann::ordered_json told = diagram_json(diagram, ribbons);
+      for (std::size_t i = 0; i < hunting.size(); ++i)
+        if (hunting[i]) told["special"][i]["hunting"] = hunting_json(*hunting[i]);
       told["run_time_s"] = diagram.run_time_s;
       print_json(with_warnings(std::move(told), mechanism));
     } else if (options->csv.empty() && options->svg != "-" && options->png != "-") // else it is theirs
-      print_text(diagram_text(mechanism, range.address, diagram));
+      print_text(diagram_text(mechanism, range.address, diagram, hunting));
     ending = end_with(any, options->scene.file, diagram.message);
   });
 }

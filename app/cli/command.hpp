@@ -35,6 +35,7 @@ void add_sweep(CLI::App& app, Ending& ending);
 void add_merge(CLI::App& app, Ending& ending);
 void add_branch(CLI::App& app, Ending& ending);
 void add_modes(CLI::App& app, Ending& ending);
+void add_hunting(CLI::App& app, Ending& ending);
 void add_campbell(CLI::App& app, Ending& ending);
 void add_design(CLI::App& app, Ending& ending);
 void add_spread(CLI::App& app, Ending& ending);

@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   add_merge(app, ending);
   add_branch(app, ending);
   add_modes(app, ending);
+  add_hunting(app, ending);
   add_campbell(app, ending);
   add_design(app, ending);
   add_spread(app, ending);

@@ -77,6 +77,7 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
   for (const PlotLegendEntry& entry : layout.legend) {
     if (entry.band) continue;
     std::optional<double> best;
+    std::string note;
     double least = 0;
     for (const PlotCurve& curve : plot.curves) {
       if (curve.name != entry.name || !is_shown(curve, look) || curve.line == PlotLine::none ||
@@ -91,9 +92,12 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
         if (best && distance >= least) continue;
         best = y;
         least = distance;
+        if (const std::size_t near = std::abs(x - a[0]) < std::abs(x - b[0]) ? i - 1 : i;
+            near < curve.notes.size())
+          note = curve.notes[near];
       }
     }
-    if (best) readings.push_back({entry.curve, *best});
+    if (best) readings.push_back({entry.curve, *best, std::move(note)});
   }
   return readings;
 }

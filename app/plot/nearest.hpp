@@ -22,6 +22,7 @@ std::optional<PlotNear> nearest_along(const Plot& plot, const PlotLook& look, co
 struct PlotReading {
   std::size_t curve = 0; // the first of its name
   double y = 0;
+  std::string note{}; // of the nearest point
 };
 
 // What each name of the legend says at `x`; of several crossings the one nearest to pixel `py`.

@@ -44,6 +44,7 @@ struct PlotCurve {
   double shape_size = 6;             // points across
   bool hidden = false;               // neither drawn nor in the legend
   bool hatching = false;             // marks an area: nothing is read off it, nor is it data for a CSV file
+  std::vector<std::string> notes{};  // by point, or none: what is said beside the value read off there
 };
 
 // An area between two values over x, such as a range that most keep to, or the bars of a histogram.

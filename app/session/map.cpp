@@ -15,7 +15,7 @@ namespace {
 
 // What the cells depend on, and what the curves do.
 MapChoice of_cells(MapChoice choice) {
-  choice.folds = false;
+  choice.folds = choice.hunting = false;
   choice.level.reset();
   return choice;
 }
@@ -62,14 +62,21 @@ MapCurves find_curves(const Mechanism& mechanism, const MapChoice& choice,
   std::array<PlaneAxis, 2> axes;
   for (std::size_t i = 0; i < 2; ++i)
     axes[i] = {choice.axes[i].address, choice.axes[i].from, choice.axes[i].to};
-  const double share = choice.folds && choice.level ? 0.5 : 1;
+  const double share = 1. / std::max(1, choice.folds + choice.hunting + choice.level.has_value());
+  double before = 0;
   PlaneOptions options;
   options.cancel = &context.cancel;
-  options.progress = [&](const Progress& now) { context.progress({now.phase, share * now.part}); };
-  if (choice.folds) found.folds = fold_curves(mechanism, axes[0], axes[1], options);
   options.progress = [&](const Progress& now) {
-    context.progress({now.phase, 1 - share + share * std::max(0., now.part)});
+    context.progress({now.phase, before + share * std::max(0., now.part)});
   };
+  if (choice.folds) {
+    found.folds = fold_curves(mechanism, axes[0], axes[1], options);
+    before += share;
+  }
+  if (choice.hunting) {
+    found.hunting = hopf_curves(mechanism, axes[0], axes[1], options);
+    before += share;
+  }
   if (choice.level)
     found.level = value_curves(mechanism, axes[0], axes[1], choice.shown, *choice.level, options);
   return found;
@@ -94,7 +101,7 @@ void compute_cells(Session& session) {
 void compute_curves(Session& session) {
   MapState& map = session.study.map;
   MapRequest request{of_curves(map.choice), without_place(session)};
-  if (!map.choice.folds && !map.choice.level) {
+  if (!map.choice.folds && !map.choice.hunting && !map.choice.level) {
     map.curves = {};
     map.curves.asked = std::move(request); // and answered
     return;
@@ -149,11 +156,13 @@ bool choose(Session& session) {
 std::vector<std::string> map_addresses(const Session& session) {
   constexpr std::size_t many = 60; // bodies
   std::vector<std::string> all;
+  // Dampers move no steady state, but what hunts.
+  const bool dampers = session.study.map.choice.hunting;
   for (const ParameterControl& control : session.parameters)
-    if (control.group != ParameterGroup::dampers) all.push_back(control.address);
+    if (dampers || control.group != ParameterGroup::dampers) all.push_back(control.address);
   if (session.mechanism().bodies.size() > many) return all;
   for (const std::string& address : parameter_addresses(session.mechanism()))
-    if (!address.starts_with("simulation.") && address.find(".damping") == std::string::npos &&
+    if (!address.starts_with("simulation.") && (dampers || address.find(".damping") == std::string::npos) &&
         std::ranges::find(all, address) == all.end())
       all.push_back(address);
   return all;

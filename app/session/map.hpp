@@ -6,6 +6,7 @@
 #include "app/session/varied_mechanism.hpp"
 #include "engine/solve/solution.hpp"
 #include "engine/study/fold_curve.hpp"
+#include "engine/study/hopf_curve.hpp"
 
 #include <array>
 #include <memory>
@@ -29,6 +30,7 @@ struct MapChoice {
   std::array<MapAxis, 2> axes;
   std::string shown; // name of the quantity
   bool folds = true;
+  bool hunting = false;          // where a pair of eigenvalues crosses the axis (Hopf)
   std::optional<double> level{}; // SI: the curve on which the quantity keeps this value
   bool operator==(const MapChoice&) const = default;
 };
@@ -47,7 +49,7 @@ struct MapCell {
 using MapCells = std::vector<MapCell>; // the first axis fastest
 
 struct MapCurves {
-  std::optional<PlaneCurves> folds, level;
+  std::optional<PlaneCurves> folds, hunting, level;
 };
 
 struct MapState {

@@ -21,6 +21,7 @@ struct ExtendedState {
   Unknowns z;
   Eigen::VectorXd parameters; // in their units
   double unfolding = 0;       // see ExtendedBalance; zero in an equilibrium
+  double pair = 0;            // 1/s^2: see crossing_pair.hpp
 };
 
 class ExtendedBalance;

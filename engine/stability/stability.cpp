@@ -109,9 +109,18 @@ bool is_minimum(const Eigen::MatrixXd& hessian) {
   return potential.positive_definite();
 }
 
-// On the null space `basis`, at the momenta that are kept.
-std::optional<LinearPencil> motion_with_found_speeds(const Problem& problem, const Eigen::MatrixXd& basis,
-                                                     LinearPencil motion) {
+// On the null space of the constraints, at the momenta that are kept: of a dense problem that is factored at
+// z.
+std::optional<LinearPencil> steady_motion(const Problem& problem, const Unknowns& z, Workspace& w) {
+  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
+  const Eigen::MatrixXd& basis = w.dense.constraints().basis();
+  const auto s = problem.scaling.column.asDiagonal();
+  LinearPencil motion{large::projected(s * w.dense.linearization.mass * s, basis),
+                      large::projected(s * w.dense.linearization.velocity * s, basis),
+                      w.dense.reduced(),
+                      {}};
+  if (problem.system.torques.empty()) return motion;
+  motion.stiffness = stiffness_of_motion(problem, w.dense.stiffness(), basis);
   motion.directions = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
   if (!keeps_momentum(problem.system)) return motion;
   return at_given_momenta(motion.mass, motion.velocity, motion.stiffness,
@@ -136,7 +145,20 @@ std::optional<std::vector<Complex>> eigenvalues_with_found_speeds(const Problem&
   return out;
 }
 
+std::optional<std::vector<Complex>> eigenvalues_of(const Problem& problem, const Eigen::MatrixXd& basis,
+                                                   const LinearPencil& motion) {
+  if (!problem.system.torques.empty()) return eigenvalues_with_found_speeds(problem, basis, motion);
+  return pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel);
+}
+
 } // namespace
+
+std::optional<std::vector<Complex>> motion_eigenvalues(const Problem& problem, const Unknowns& z,
+                                                       Workspace& w) {
+  const auto motion = steady_motion(problem, z, w);
+  if (!motion) return {};
+  return eigenvalues_of(problem, w.dense.constraints().basis(), *motion);
+}
 
 Eigen::MatrixXd stiffness_of_motion(const Problem& problem, const Eigen::MatrixXd& jacobian,
                                     const Eigen::MatrixXd& basis) {
@@ -232,30 +254,16 @@ Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
   }
   if (minimum && !with_eigenvalues) return out;
 
-  linearize_motion(problem.system, problem.parameters, at.z.q, w.kinematics, w.dense.linearization);
-  const auto& s = problem.scaling.column;
-  Eigen::MatrixXd mass =
-      large::projected(s.asDiagonal() * w.dense.linearization.mass * s.asDiagonal(), basis);
-  Eigen::MatrixXd velocity =
-      large::projected(s.asDiagonal() * w.dense.linearization.velocity * s.asDiagonal(), basis);
-  Eigen::MatrixXd stiffness = reduced;
-  if (potential) stiffness = (reduced + reduced.transpose()) / 2;
-  if (problem.system.torques.empty()) {
-    out.eigenvalues = pencil_eigenvalues(mass, velocity, stiffness, problem.cancel);
-  } else {
-    auto motion = motion_with_found_speeds(
-        problem, basis, {mass, velocity, stiffness_of_motion(problem, w.dense.stiffness(), basis), {}});
-    if (!motion) return out;
-    out.eigenvalues = eigenvalues_with_found_speeds(problem, basis, *motion);
-    if (problem.system.conserves && is_minimum(motion->stiffness)) {
-      out.stable = true;
-      out.reason = StabilityReason::minimum;
-      return out;
-    }
-    mass = std::move(motion->mass);
-    velocity = std::move(motion->velocity);
-    stiffness = std::move(motion->stiffness);
+  auto motion = steady_motion(problem, at.z, w);
+  if (!motion) return out;
+  if (potential && problem.system.torques.empty()) motion->stiffness = (reduced + reduced.transpose()) / 2;
+  out.eigenvalues = eigenvalues_of(problem, basis, *motion);
+  if (!problem.system.torques.empty() && problem.system.conserves && is_minimum(motion->stiffness)) {
+    out.stable = true;
+    out.reason = StabilityReason::minimum;
+    return out;
   }
+  const Eigen::MatrixXd &mass = motion->mass, &velocity = motion->velocity, &stiffness = motion->stiffness;
   if (minimum || !out.eigenvalues) return out;
 
   // Eigenvalues that belong to null directions are zero but for rounding: leave the smallest out.

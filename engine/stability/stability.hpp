@@ -42,6 +42,12 @@ bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<doubl
 Eigen::MatrixXd stiffness_of_motion(const Problem& problem, const Eigen::MatrixXd& jacobian,
                                     const Eigen::MatrixXd& basis);
 
+// Eigenvalues (1/s) of the motion linearised at the drawn phase, whatever it is at others: of a dense problem
+// that is evaluated and factored at z in the workspace, with its best multipliers. Nothing where they cannot
+// be found.
+std::optional<std::vector<std::complex<double>>> motion_eigenvalues(const Problem& problem, const Unknowns& z,
+                                                                    Workspace& w);
+
 // Of a steady state. Of a dense problem `with_eigenvalues` asks for the full picture, else only the sign of a
 // minimum is found; of others the signs of the pivots decide (pivot_stability.hpp).
 Stability find_stability(const FactoredState& at, bool with_eigenvalues);

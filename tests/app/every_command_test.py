@@ -87,6 +87,8 @@ def commands(path):
     yield ["solve", "--all", "--json"]
     yield ["branch", "--all", *vary, "--json"]
     yield ["campbell", *vary, "--json"]
+    if scene["name"] == "Governor with engine":
+        yield ["hunting", "--vary", "joints.slide.damping=5:60", "--vary", "parameters.gain=1000:20000", "--json"]
     yield ["sweep", "--all", "--search-time", "0.05", "--vary", f"{address}={low!r}:{high!r}:2", "--csv", "OUT"]
     over = "gravity.0=0:1:2" if address == "gravity.1" else "gravity.1=0:-10:2"
     yield ["branch", *vary, "--over", over, "--csv", "OUT"]

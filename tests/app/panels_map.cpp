@@ -291,3 +291,35 @@ TEST_CASE("a map in the background tells its progress, can be stopped, and goes 
   open_study(app, StudyKind::none); // does not wait for the end
   CHECK_FALSE(app.study.map.cells.asked);
 }
+
+TEST_CASE("the boundary of hunting shows in the map, hard parts told from soft ones, with the frequency") {
+  MapRobot robot("governor_engine");
+  App& app = robot.app;
+  const std::vector<std::string> before = map_addresses(app);
+  CHECK(std::ranges::find(before, "joints.slide.damping") == before.end());
+  robot.click("map/hunting");
+  robot.frames(2);
+  // Dampers can be varied now.
+  const std::vector<std::string> after = map_addresses(app);
+  CHECK(std::ranges::find(after, "joints.slide.damping") != after.end());
+  robot.map().choice.axes = {MapAxis{"joints.slide.damping", 5, 60, 9},
+                             MapAxis{"parameters.gain", 1000, 20000, 9}};
+  robot.frames(3);
+  REQUIRE(robot.map().curves.found);
+  REQUIRE(robot.map().curves.found->result.hunting);
+  const PlaneCurves& found = *robot.map().curves.found->result.hunting;
+  REQUIRE(found.curves.size() == 1);
+  const Plot& plot = app.plots.map.plot;
+  const auto drawn = std::ranges::find(plot.curves, std::string("hunting begins hard"), &PlotCurve::name);
+  REQUIRE(drawn != plot.curves.end());
+  REQUIRE(drawn->points.size() == found.curves[0].points.size());
+  REQUIRE(drawn->notes.size() == drawn->points.size());
+  CHECK(drawn->notes[3] == "6.55583 rad/s (1.04339 Hz)");
+  for (const auto& [damping, gain] : drawn->points)
+    CHECK(gain / damping == Approx(7500 / 21.5343400233).epsilon(1e-9));
+  // On the unstable side of it the cells are hatched.
+  CHECK(std::ranges::any_of(plot.curves, &PlotCurve::hatching));
+  robot.click("map/hunting");
+  robot.frames(3);
+  CHECK_FALSE(robot.map().curves.found->result.hunting);
+}

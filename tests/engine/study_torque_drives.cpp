@@ -11,6 +11,7 @@
 #include "engine/report/analysis.hpp"
 #include "engine/study/compare.hpp"
 #include "engine/study/design.hpp"
+#include "engine/study/hopf_curve.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/support/mechanisms.hpp"
@@ -140,6 +141,17 @@ TEST_CASE("hunting of Haug's governor begins where Routh's criterion says", "[to
   const auto p = Governor::at_collar(0.15).characteristic(1, 1);
   CHECK_THAT(hopf("joints.slide.damping", 60, 5), WithinRel(7500 * p[3] * p[0] / (p[1] * p[2]), 1e-9));
   CHECK_THAT(hopf("parameters.gain", 5000, 15000), WithinRel(30 * p[1] * p[2] / (p[3] * p[0]), 1e-9));
+
+  // Vyshnegradsky's diagram over the load, which moves the collar.
+  const PlaneCurves plane = hopf_curves(shipped("governor_engine"), {"joints.slide.damping", 5, 60},
+                                        {"joints.spin.drive.load", -25, 25});
+  REQUIRE(plane.curves.size() == 1);
+  CHECK(plane.curves[0].points.size() > 20);
+  for (const PlanePoint& at : plane.curves[0].points) {
+    const auto there = Governor::at_collar(0.15 + at.y / 7500).characteristic(1, 7500);
+    CHECK_THAT(at.x, WithinRel(there[3] * there[0] / (there[1] * there[2]), 1e-10));
+    CHECK_THAT(at.hopf->frequency, WithinRel(std::sqrt(there[2] / there[0]), 1e-10));
+  }
 
   const Solution hunting = Analysis(shipped("governor_engine", {{"joints.slide.damping", 20.}})).solve();
   CHECK(hunting.stable == false);

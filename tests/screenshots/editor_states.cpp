@@ -222,6 +222,18 @@ TEST_CASE("the landscape is drawn below the view") {
   }
 }
 
+TEST_CASE("the boundary of hunting is drawn in the map: Vyshnegradsky's diagram") {
+  Hand hand("governor_engine.json");
+  set_mode(hand.app, Mode::explore);
+  open_study(hand.app, StudyKind::map);
+  hand.frames(2);
+  MapChoice& choice = hand.app.study.map.choice;
+  choice.hunting = true;
+  choice.axes = {MapAxis{"joints.slide.damping", 5, 60, 23}, MapAxis{"parameters.gain", 1000, 20000, 23}};
+  choice.shown = "spin.speed";
+  hand.check("study-hunting");
+}
+
 TEST_CASE("how the governor scatters is drawn below the view, and around its response") {
   Hand hand("governor_parametric.json");
   set_mode(hand.app, Mode::explore);

@@ -74,6 +74,7 @@ std::vector<ReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& at) 
     const double pixel = layout.y.pixel(r.y);
     lines.push_back(
         {frame.plot.curves[r.curve].name, value_at(layout.y, r.y), frame.plot.y.unit, color_of(r.curve)});
+    if (!r.note.empty()) lines.push_back({r.note, "", ""});
     if (pixel >= layout.area.top && pixel <= layout.area.bottom) dot(frame, at[0], pixel, color_of(r.curve));
   }
   const std::vector<BandReading> bands = bands_at(frame.plot, frame.view.look, layout, x, at[1]);

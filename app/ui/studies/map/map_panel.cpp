@@ -102,6 +102,11 @@ void curve_choices(App& app) {
   if (check_row(app, "map/folds", "Folds and crossings", choice.folds,
                 "The curves on which equilibria meet and vanish, or branches cross."))
     choice.folds = !choice.folds;
+  if (check_row(
+          app, "map/hunting", "Boundary of hunting", choice.hunting,
+          "The curves on which a steady state begins to hunt, softly or hard: a damped pair of eigenvalues "
+          "crosses the imaginary axis (Hopf). Dampers can be varied, too."))
+    choice.hunting = !choice.hunting;
   const std::optional<MapQuantity> shown = map_quantity(app);
   if (shown && !shown->followed) return; // what follows from the others cannot be asked for
   if (check_row(app, "map/level", "Curve of a constant value", choice.level.has_value(),
@@ -138,6 +143,8 @@ void map_words(App& app) {
   const auto& curves = map.curves.found;
   if (curves && map.choice.folds && curves->result.folds && curves->result.folds->curves.empty())
     paragraph(curves->result.folds->message, colors.dim);
+  if (curves && map.choice.hunting && curves->result.hunting && curves->result.hunting->curves.empty())
+    paragraph(curves->result.hunting->message, colors.dim);
   if (!map.cells.found) return;
   const MapCells& cells = map.cells.found->result;
   std::size_t unsolved = 0, unstable = 0;

@@ -1,5 +1,6 @@
 #include "app/ui/studies/map/map_plot.hpp"
 
+#include "app/plot/hunting_plot.hpp"
 #include "app/session/number_text.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "engine/mechanism/address.hpp"
@@ -58,6 +59,7 @@ void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level)
       line.name = level;
       line.color = plot_color::orange;
       break;
+    case PlaneCurveType::hopf: continue; // see add_hunting_curves
     }
     line.width = 2.2;
     PlotCurve unstable = line;
@@ -136,6 +138,7 @@ void draw_map(App& app) {
   plot.heat = std::move(heat);
   const auto& curves = map.curves.found;
   if (curves && curves->result.folds) add_curves(plot, *curves->result.folds, "");
+  if (curves && curves->result.hunting) add_hunting_curves(plot, *curves->result.hunting);
   if (curves && curves->result.level && map.choice.level)
     add_curves(plot, *curves->result.level,
                choice.shown + " = " + short_text(unit.shown(*map.choice.level), 5) + " " + unit.text);

@@ -1,0 +1,142 @@
+#include "engine/study/plane_search.hpp"
+
+#include "engine/continuation/branch_follower.hpp"
+#include "engine/linear/interruption.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/solve/drive_cuts.hpp"
+
+#include <algorithm>
+
+namespace flyball {
+
+std::string_view word(PlaneCurveType type) {
+  switch (type) {
+  case PlaneCurveType::fold: return "fold";
+  case PlaneCurveType::branch_point: return "branch_point";
+  case PlaneCurveType::value: return "value";
+  case PlaneCurveType::hopf: return "hopf";
+  }
+  return "";
+}
+
+PlaneSearch::PlaneSearch(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
+                         const PlaneOptions& options)
+    : mechanism_(mechanism), x_(x), y_(y), options_(options), begin_(std::chrono::steady_clock::now()),
+      system_(compile_for_drives(at_corner())) {
+  if (!options.at.empty()) {
+    for (const double value : options.at)
+      lines_.push_back({0, value});
+    return;
+  }
+  const double present = std::clamp(get_parameter(mechanism, y.address), y.from, y.to);
+  for (const double value : {present, y.from, y.to})
+    if (std::ranges::find(lines_, value, &Line::value) == lines_.end()) lines_.push_back({0, value});
+  lines_.push_back({1, x.from});
+  lines_.push_back({1, x.to});
+}
+
+Mechanism PlaneSearch::on(const Line& line) const {
+  return with_parameter(mechanism_, line.varied == 0 ? y_.address : x_.address, line.value);
+}
+
+void PlaneSearch::for_lines(const std::function<void(const Line&)>& search) {
+  const Interruptible scope(options_.cancel);
+  try {
+    for (std::size_t i = 0; i < lines_.size() && !cancelled(); ++i) {
+      line_ = i;
+      report_progress(options_.progress, "following", part_before());
+      search(lines_[i]);
+    }
+  } catch (const Interrupted&) {
+  }
+}
+
+ReportProgress PlaneSearch::along_line() const {
+  return [this](const Progress& now) {
+    const double share = std::clamp(now.part, 0., 1.) / static_cast<double>(lines_.size());
+    report_progress(options_.progress, now.phase, part_before() + share);
+  };
+}
+
+ExtendedBalance PlaneSearch::balance(std::vector<Condition> conditions, bool unfolded) const {
+  return {system_,
+          at_corner(),
+          {x_.address, y_.address},
+          Eigen::Vector2d(x_.to - x_.from, y_.to - y_.from),
+          std::move(conditions),
+          unfolded};
+}
+
+std::optional<PlaneSearch::Added> PlaneSearch::add(ExtendedBalance& balance, PlaneCurveType type,
+                                                   const Line& line, double varied,
+                                                   const std::vector<CoordinateSolution>& coordinates,
+                                                   double pair) {
+  if (static_cast<int>(out_.curves.size()) >= options_.max_curves || cancelled()) return {};
+  PlaneTracer tracer(balance, x_, y_, type, options_);
+  ExtendedState state;
+  state.parameters =
+      line.varied == 0 ? Eigen::Vector2d(varied, line.value) : Eigen::Vector2d(line.value, varied);
+  state.pair = pair;
+  balance.set(state.parameters);
+  state.z.q = configuration_of(balance.problem(), coordinates);
+  if (!tracer.start(state, 1 - line.varied)) return {};
+  for (std::size_t i = 0; i < traced_.size(); ++i)
+    if (out_.curves[i].type == type && tracer.lies_on(state, traced_[i])) return {};
+  PlaneCurve curve;
+  curve.type = type;
+  TracedCurve traced = tracer.both_ways(state, 1 - line.varied, curve.begin);
+  if (traced.states.empty()) return {};
+  curve.closed = traced.closed;
+  curve.end = traced.end;
+  for (const ExtendedState& s : traced.states)
+    curve.points.push_back(point(balance, type, s));
+  for (const ExtendedState& s : traced.cusps)
+    curve.cusps.push_back(point(balance, type, s));
+  for (const ExtendedState& s : traced.takens)
+    curve.takens.push_back(point(balance, type, s));
+  traced_.push_back(std::move(traced));
+  out_.curves.push_back(std::move(curve));
+  return Added{traced_.back(), out_.curves.back()};
+}
+
+void PlaneSearch::heard(Status status, const std::string& message) {
+  if (out_.status == Status::converged) return;
+  out_.status = status;
+  out_.message = message;
+}
+
+PlaneCurves PlaneSearch::finish(const std::string& what, const std::string& left_out) {
+  if (out_.status == Status::converged) {
+    const std::size_t n = out_.curves.size();
+    out_.message = (n == 0 ? "No " + what + " curve"
+                           : std::to_string(n) + " " + what + (n == 1 ? " curve" : " curves")) +
+                   " through the " + std::to_string(lines_.size()) +
+                   " lines searched; there may be others between.";
+    if (left_out_ > 0) out_.message += " " + left_out + " at " + std::to_string(left_out_) + " more points.";
+    if (cancelled()) out_.message = "Cancelled. " + out_.message;
+  } else if (out_.message.empty()) { // before anything was found
+    out_.message = "Cancelled.";
+  }
+  out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  return std::move(out_);
+}
+
+Mechanism PlaneSearch::at_corner() const {
+  return with_parameter(with_parameter(mechanism_, x_.address, x_.from), y_.address,
+                        std::clamp(get_parameter(mechanism_, y_.address), y_.from, y_.to));
+}
+
+ResponsePoint PlaneSearch::response(ExtendedBalance& balance, PlaneCurveType type, const ExtendedState& s) {
+  balance.set(s.parameters);
+  return response_point(balance.mechanism(), balance.judged(), s.z, {}, {type == PlaneCurveType::hopf, false},
+                        balance.workspace());
+}
+
+PlanePoint PlaneSearch::point(ExtendedBalance& balance, PlaneCurveType type, const ExtendedState& s) {
+  ResponsePoint p = response(balance, type, s);
+  PlanePoint out{s.parameters[0], s.parameters[1], std::move(p.coordinates), {}};
+  if (type == PlaneCurveType::value) out.stable = p.stable;
+  return out;
+}
+
+} // namespace flyball
