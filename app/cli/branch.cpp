@@ -46,15 +46,10 @@ PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, c
 Ribbons follow_ribbons(const Mechanism& mechanism, const std::string& address, ResponseDiagram& diagram,
                        const ReportProgress& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  Ribbons out;
-  for (const ResponseBranch& branch : diagram.branches) {
-    std::vector<RibbonPlace> places;
-    for (const ResponsePoint& point : branch.points)
-      places.push_back({point.parameter, start_values(point.coordinates)});
-    out.push_back(friction_ribbon(mechanism, address, places, nullptr, [&](std::size_t done) {
-      report_progress(progress, "friction", static_cast<double>(done) / static_cast<double>(places.size()));
-    }));
-  }
+  Ribbons out =
+      friction_ribbons(mechanism, address, diagram, nullptr, [&](std::size_t done, std::size_t all) {
+        report_progress(progress, "friction", static_cast<double>(done) / static_cast<double>(all));
+      });
   diagram.run_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }

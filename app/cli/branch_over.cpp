@@ -37,7 +37,7 @@ void branch_over(const SceneArgument& scene, const BranchOver& wanted, Ending& e
     throw SceneError(scene.file.string() + ": " + error.where(), error.expected());
   }
 
-  const BranchColumns columns{over, wanted.vary.address, value_columns(mechanism)};
+  const BranchColumns columns{over, wanted.vary.address, value_columns(mechanism), has_friction(mechanism)};
   StudyPart part = part_of("branch", mechanism,
                            {{"variation", {wanted.vary.address, wanted.vary.from, wanted.vary.to}},
                             {"grid", std::move(asked)},

@@ -123,6 +123,8 @@ std::vector<Column> BranchColumns::columns() const {
     out.push_back({value.name});
   out.insert(out.end(),
              {{"stable", CellKind::verdict}, {"special", CellKind::word}, {"note", CellKind::text}});
+  for (std::size_t i = 0; bands && i < values.size(); ++i)
+    out.insert(out.end(), {{values[i].name + ".low"}, {values[i].name + ".high"}});
   return out;
 }
 
@@ -133,16 +135,19 @@ std::string csv_rows(const BranchColumns& columns, const GridBranches& place) {
     grid += csv_number(value) + ",";
   grid += word(d.status);
   if (d.branches.empty())
-    return grid + std::string(columns.values.size() + 5, ',') + csv_field(printable(d.message)) + "\n";
-  const auto add = [&](int branch, const ResponsePoint& p, std::string_view special,
-                       const std::string& words) {
-    out += grid + "," + point_cells(columns.values, branch, p, special) + "," + words + "\n";
+    return grid + std::string(columns.values.size() + 5, ',') + csv_field(printable(d.message)) +
+           std::string(columns.bands ? 2 * columns.values.size() : 0, ',') + "\n";
+  const auto add = [&](int branch, const ResponsePoint& p, std::string_view special, const std::string& words,
+                       const RibbonPoint& band) {
+    out += grid + "," + point_cells(columns.values, branch, p, special) + "," + words +
+           (columns.bands ? band_cells(columns.values, band) : "") + "\n";
   };
   for (std::size_t b = 0; b < d.branches.size(); ++b)
     for (std::size_t i = 0; i < d.branches[b].points.size(); ++i)
-      add(static_cast<int>(b), d.branches[b].points[i], "", note(d.branches[b], i));
+      add(static_cast<int>(b), d.branches[b].points[i], "", note(d.branches[b], i),
+          columns.bands ? place.ribbons[b][i] : RibbonPoint{});
   for (const SpecialPoint& s : d.special)
-    add(s.branch, s.at, word(s.type), "");
+    add(s.branch, s.at, word(s.type), "", {});
   return out;
 }
 
@@ -150,7 +155,7 @@ std::string json_rows(const BranchColumns& columns, const GridBranches& place) {
   Json row;
   for (std::size_t v = 0; v < columns.over.size(); ++v)
     row["parameters"][columns.over[v].address] = place.parameters[v];
-  row.update(diagram_json(place.diagram));
+  row.update(diagram_json(place.diagram, place.ribbons));
   return json_row(row.dump(2));
 }
 

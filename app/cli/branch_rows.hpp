@@ -27,12 +27,14 @@ struct BranchColumns {
   std::vector<Variation> over;
   std::string address; // of the number that is varied along branches
   std::vector<ValueColumn> values;
+  bool bands = false; // of dry friction, of each value
 
   std::vector<Column> columns() const;
 };
 
 // Of one place, as row_output.hpp wants them. A row each point and special point, or one that says why there
-// is none. `note`: why a branch begins or ends, in words, at its ends.
+// is none. `note`: why a branch begins or ends, in words, at its ends. With bands then `NAME.low` and
+// `NAME.high` of each value.
 std::string csv_rows(const BranchColumns& columns, const GridBranches& place);
 std::string json_rows(const BranchColumns& columns, const GridBranches& place);
 // One row, with how many branches there are and how many special points of each kind.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace flyball::cli {
 namespace {
@@ -60,10 +61,13 @@ std::string to_text(const FrictionReport& f) {
   for (const HeldJoint& joint : f.drawn.joints)
     width = std::max(width, coordinate_label(joint).size());
   std::string out = "\nband within which friction holds it\n";
+  const auto bound = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:.12g}", value) : std::string("no bound");
+  };
   for (const BandExtent& extent : f.band.extents)
-    out +=
-        fmt::format("  {:{}}  {:>18.12g} to {:<18.12g} {}{}\n", printable(extent.name), width, extent.low,
-                    extent.high, extent.unit, extent.error ? fmt::format("  ± {:.1g}", *extent.error) : "");
+    out += fmt::format("  {:{}}  {:>18} to {:<18} {}{}\n", printable(extent.name), width, bound(extent.low),
+                       bound(extent.high), extent.unit,
+                       extent.error ? fmt::format("  ± {:.1g}", *extent.error) : "");
   if (!f.band.message.empty()) out += "  " + printable(f.band.message) + "\n";
   if (f.band.found)
     out += "  Within it the joints with friction stand still until something pushes them beyond their "

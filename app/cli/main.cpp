@@ -29,9 +29,11 @@ int report_slip(const CLI::App& app, const std::string& scene) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Builds mechanisms, drives some of their joints at constant speed and shows at once where "
-               "everything else settles.\nWithout a subcommand it opens the window.",
-               "flyball");
+  CLI::App app(
+      "Builds mechanisms, drives some of their joints at constant speeds, given or found from torques "
+      "and momenta, and shows at once where everything else settles.\nWithout a subcommand it opens "
+      "the window.",
+      "flyball");
   app.set_version_flag("--version", "flyball " FLYBALL_VERSION);
   app.footer("Example: flyball governor.json");
   app.require_subcommand(0, 1);

@@ -382,8 +382,8 @@ void add_simulate(CLI::App& app, Ending& ending) {
       command
           ->add_option(
               "--start", options->start,
-              "rest: the drawn pose carried along by the drives; drawn: standing still in the world; "
-              "equilibrium: the steady state")
+              "rest: the drawn pose carried along by the drives; drawn: standing still in the world, but for "
+              "shafts left to themselves, which have their momentum; equilibrium: the steady state")
           ->check(CLI::IsMember(keys_of(starts)))
           ->capture_default_str();
   command->add_option("--at", options->at, "Start elsewhere than drawn: joint=value (rad, m)")

@@ -107,6 +107,8 @@ ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const
   solve.progress = options.progress;
   out.solution = analysis.solve(solve);
   const auto cancelled = [&] { return options.cancel && *options.cancel; };
+  if (has_friction(*out.mechanism) && !cancelled())
+    out.friction = report_friction(*out.mechanism, out.solution, options.cancel);
   if (out.solution.status == Status::converged) {
     out.modes = analysis.modes(most_modes);
     out.evidence = analysis.stability_evidence();

@@ -6,6 +6,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/periodic/periodic_state.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/study/friction_report.hpp"
 
 #include <functional>
 #include <memory>
@@ -38,6 +39,7 @@ struct ReportContents {
   std::optional<PeriodicState> periodic; // where the balance turns with the drives
   std::vector<VibrationMode> modes;
   std::optional<StabilityEvidence> evidence;
+  std::optional<FrictionReport> friction; // of a scene that has some
   std::vector<SpringLoad> springs;
   std::vector<ReportCurve> curves;
   bool cut_short = false; // by ReportOptions::cancel: curves may be missing

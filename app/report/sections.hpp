@@ -16,6 +16,7 @@ using OptionalSection = std::optional<ReportSection>;
 OptionalSection steady_state_section(const ReportContents& contents);
 OptionalSection periodic_section(const ReportContents& contents); // where there is none
 OptionalSection stability_section(const ReportContents& contents);
+OptionalSection friction_section(const ReportContents& contents); // of scenes that have some
 OptionalSection loads_section(const ReportContents& contents);
 OptionalSection curves_section(const ReportContents& contents);
 OptionalSection sliders_section(const ReportContents& contents);

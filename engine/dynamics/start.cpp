@@ -139,26 +139,43 @@ void turn_on(const MotionModel& model, Eigen::VectorXd& u) {
   }
 }
 
-// What is left to itself turns so that it has the momentum it keeps, wherever the motion begins.
-void keep_momenta(const MotionModel& model, double t, const Eigen::VectorXd& q, Eigen::VectorXd& u) {
+// The rates of what is left to itself, and what its momenta, as kept, are more than those at rates u.
+std::vector<int> kept_entries(const MotionModel& model) {
   std::vector<int> entries;
-  std::vector<double> wanted;
-  for (std::size_t i = 0; i < model.system.torques.size(); ++i) {
-    const DriveTorqueElement& drive = model.system.torques[i];
-    if (!drive.keeps_momentum) continue;
-    entries.push_back(model.system.links[static_cast<std::size_t>(drive.link)].v);
-    wanted.push_back(model.parameters.torques[i].momentum);
-  }
-  if (entries.empty()) return;
+  for (const DriveTorqueElement& drive : model.system.torques)
+    if (drive.keeps_momentum) entries.push_back(model.system.links[static_cast<std::size_t>(drive.link)].v);
+  return entries;
+}
+Eigen::VectorXd missing_momenta(const MotionModel& model, double t, const Eigen::VectorXd& q,
+                                const Eigen::VectorXd& u) {
+  const std::vector<int> entries = kept_entries(model);
   const ReleasedMotion moving(model, t, q, u);
   MassMatrix m;
   evaluate_mass(model.released, model.parameters, moving.k, m);
-  const auto count = static_cast<Eigen::Index>(entries.size());
-  const Eigen::VectorXd missing =
-      Eigen::Map<const Eigen::VectorXd>(wanted.data(), count) - m.mass(entries, Eigen::all) * moving.all_u;
-  const auto change = least_squares(m.mass(entries, entries), missing);
-  if (!change) throw SceneError("", "the forces are too large for the computer's numbers");
-  u(entries) += *change;
+  Eigen::VectorXd missing = -(m.mass(entries, Eigen::all) * moving.all_u);
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < model.system.torques.size(); ++i)
+    if (model.system.torques[i].keeps_momentum) missing[row++] += model.parameters.torques[i].momentum;
+  return missing;
+}
+
+// What is left to itself turns so that it has the momentum it keeps, wherever the motion begins; `moved` has
+// the rates of all where it turns at these: nothing else changes, or what stands still in the world goes on
+// doing so.
+template <class Moved>
+Eigen::VectorXd with_momenta(const MotionModel& model, double t, const Eigen::VectorXd& q,
+                             const Moved& moved) {
+  const auto count = static_cast<Eigen::Index>(kept_entries(model).size());
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd u = moved(none);
+  if (count == 0) return u;
+  const Eigen::VectorXd missing = missing_momenta(model, t, q, u);
+  Eigen::MatrixXd by_rate(count, count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    by_rate.col(i) = missing - missing_momenta(model, t, q, moved(Eigen::VectorXd::Unit(count, i)));
+  const auto rates = least_squares(by_rate, missing);
+  if (!rates) throw SceneError("", "the forces are too large for the computer's numbers");
+  return moved(*rates);
 }
 
 // The same where speeds are found.
@@ -293,9 +310,14 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
     if (!options.at.empty() && model.system.rows > 0) close_around(options, model, q);
     u.setZero(model.system.nv);
   }
+  const std::vector<int> kept = kept_entries(model);
   if (options.start == Start::rest) {
     turn_on(model, u);
-    keep_momenta(model, t, q, u);
+    u = with_momenta(model, t, q, [&](const Eigen::VectorXd& rates) {
+      Eigen::VectorXd turned = u;
+      turned(kept) = rates;
+      return turned;
+    });
   }
   if (options.start == Start::equilibrium) start_at_equilibrium(options, model, q, u);
   Workspace w;
@@ -329,16 +351,19 @@ void find_start(const SimulationOptions& options, MotionModel& model, Eigen::Vec
       if (const int v = model.system.links[static_cast<std::size_t>(drive.link)].v;
           std::ranges::find(prescribed, v) == prescribed.end())
         prescribed.push_back(v);
-  if (from_rest && !prescribed.empty()) {
-    // At rest first, then the kick on top.
-    Eigen::VectorXd still = Eigen::VectorXd::Zero(model.system.nv);
-    move_on({}, true, still);
-    u += still;
-  }
-  if (model.system.rows > 0 || (from_rest && prescribed.empty())) {
+  const bool two_steps = from_rest && !(prescribed.empty() && kept.empty());
+  if (two_steps) // at rest first, but for what is left to itself, which has its momentum; then the kick on
+                 // top
+    u += with_momenta(model, t, q, [&](const Eigen::VectorXd& rates) {
+      Eigen::VectorXd still = Eigen::VectorXd::Zero(model.system.nv);
+      still(kept) = rates;
+      move_on(kept, true, still);
+      return still;
+    });
+  if (model.system.rows > 0 || (from_rest && !two_steps)) {
     const Eigen::VectorXd asked = u;
     try {
-      move_on(prescribed, from_rest && prescribed.empty(), u);
+      move_on(prescribed, from_rest && !two_steps, u);
     } catch (const SceneError&) {
       // Drives by torque that loops or gears tie together begin as near as they can to where they should.
       if (prescribed.size() == kicked.size()) throw;

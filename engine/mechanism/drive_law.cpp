@@ -6,6 +6,7 @@
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/given_names.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/mechanism/unit_hint.hpp"
 
 #include <algorithm>
 
@@ -90,7 +91,7 @@ const double& named_number(const Mechanism& mechanism, std::string_view name) {
   for (const NamedPoint& point : mechanism.points)
     for (const int i : {0, 1, 2})
       if (point_coordinate(point.name, i) == name) return point.at[i];
-  throw ExpressionError("there is no parameter \"" + std::string(name) + "\"");
+  throw ExpressionError("there is no parameter \"" + std::string(name) + "\"" + unit_hint(name));
 }
 
 } // namespace flyball

@@ -3,6 +3,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/mechanism/unit_hint.hpp"
 
 #include <algorithm>
 
@@ -49,7 +50,8 @@ std::size_t GivenNames::find(const std::string& name) const {
   for (const auto& [each, number] : numbers_)
     known.push_back(each);
   std::ranges::sort(known);
-  throw ExpressionError("there is no parameter \"" + name + "\"" + did_you_mean(name, known) +
+  throw ExpressionError("there is no parameter \"" + name + "\"" + unit_hint(name) +
+                        did_you_mean(name, known) +
                         (known.empty() ? "" : "; expected one of " + word_list(known)));
 }
 

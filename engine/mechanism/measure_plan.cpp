@@ -4,6 +4,7 @@
 #include "engine/mechanism/given_names.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/mechanism/unit_hint.hpp"
 
 #include <algorithm>
 #include <unordered_map>
@@ -247,7 +248,7 @@ class MeasureCompiler {
     const bool part = joint_index(m_, name) >= 0 || body_index(m_, name) >= 0 || force_index(m_, name) >= 0;
     throw ExpressionError("there is no parameter or measure \"" + name + "\"" +
                           (part ? "; of a part results are asked for, as in coordinate(slide) or x(ball)"
-                                : did_you_mean(name, known)));
+                                : unit_hint(name) + did_you_mean(name, known)));
   }
 
   void put_in_order(MeasurePlan& plan) {

@@ -81,10 +81,12 @@ class DrivenCoordinates {
       if (source.found != target.found) {
         if (is_reported(g)) continue;
         reported_.push_back(g);
+        const Joint& found = mechanism_.joints[source.found ? source.joint : target.joint];
+        const Joint& given = mechanism_.joints[source.found ? target.joint : source.joint];
         mistakes.add(joint_path(mechanism_, g),
-                     "expected drives of one kind: the gear gives a speed to " +
-                         mechanism_.joints[source.found ? source.joint : target.joint].name +
-                         ", whose speed is found");
+                     "expected drives of one kind: the gear determines the speed of " + found.name +
+                         " by that of " + given.name + ", so that none is to be found; what " + found.name +
+                         " gives would only load the drive of " + given.name);
         continue;
       }
       constexpr double round_off = 1e-9;

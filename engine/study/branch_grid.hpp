@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/continuation/branches.hpp"
+#include "engine/study/friction_ribbon.hpp"
 #include "engine/study/sweep.hpp"
 
 namespace flyball {
@@ -10,6 +11,8 @@ struct GridBranches {
   std::vector<double> parameters; // by variation
   // As of follow_branches; where no mechanism can be made of the numbers, `infeasible` and the reason.
   ResponseDiagram diagram;
+  // The bands of dry friction at the points of each branch; empty without.
+  std::vector<std::vector<RibbonPoint>> ribbons;
 };
 
 // Follows branches at places of a grid, in any order: each is made by itself. For any number of threads.

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace flyball {
 namespace {
@@ -211,6 +212,17 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   const auto diagram =
       follow_branches_through(mechanism, share.address, share.from, share.to, point, options);
   if (!diagram || diagram->branches.empty()) return false;
+  // An end that is none of the share's: it goes on, as a pendulum does that friction holds at any angle.
+  std::vector<const ResponsePoint*> open;
+  std::string why;
+  for (const ResponseBranch& branch : diagram->branches)
+    for (const bool last : {false, true}) {
+      const ResponsePoint& end = last ? branch.points.back() : branch.points.front();
+      if (!branch.connected || end.parameter == share.from || end.parameter == share.to) continue;
+      open.push_back(&end);
+      why = last || branch.begin.empty() ? branch.end : branch.begin;
+    }
+  std::vector<std::string_view> round, farther;
   for (BandExtent& extent : band.extents) {
     extent.low = extent.high = extent.value;
     extent.error.reset();
@@ -226,12 +238,21 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
       std::ranges::for_each(branch.points, take);
     for (const SpecialPoint& special : diagram->special)
       take(special.at);
+    const double width = extent.high - extent.low;
+    bool unbounded = false;
+    for (const ResponsePoint* end : open) {
+      const double value = value_of(*end, extent.name);
+      if (value == extent.low && width > 0) extent.low = -std::numeric_limits<double>::infinity();
+      if (value == extent.high && width > 0) extent.high = std::numeric_limits<double>::infinity();
+      unbounded = unbounded || !std::isfinite(extent.low) || !std::isfinite(extent.high);
+    }
+    if (unbounded)
+      (extent.unit == "rad" && width > 2 * std::numbers::pi ? round : farther).push_back(extent.name);
   }
-  // It may go on and on: a pendulum that friction holds at any angle.
-  for (const ResponseBranch& branch : diagram->branches)
-    for (const ResponsePoint* end : {&branch.points.front(), &branch.points.back()})
-      if (end->parameter != share.from && end->parameter != share.to && branch.connected)
-        band.message = "Friction holds it farther than the band was followed: " + branch.end + ".";
+  if (!round.empty()) band.message = "Friction holds it at any angle: " + word_list(round) + " can go round.";
+  if (!farther.empty())
+    band.message += (band.message.empty() ? "" : " ") + ("Friction holds " + word_list(farther)) +
+                    " farther than the band was followed, so that no bound is told: " + why + ".";
   return true;
 }
 

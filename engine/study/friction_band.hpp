@@ -11,7 +11,7 @@ namespace flyball {
 struct BandExtent {
   std::string name, unit;         // of a found number or a measure; "rad", "m", or the measure's
   double value = 0;               // of the state it is about
-  double low = 0, high = 0;       // over the band
+  double low = 0, high = 0;       // over the band; infinite where nothing was found that bounds it
   std::optional<double> error;    // of both, estimated; none where the curve was followed through folds
   std::vector<double> shares_low, // of the joints with friction there; empty where the curve was followed
       shares_high;                // through folds

@@ -20,10 +20,11 @@ FrictionReport report_friction(const Mechanism& mechanism,
   return out;
 }
 
-FrictionReport report_friction(const Mechanism& mechanism, const Solution& solution) {
+FrictionReport report_friction(const Mechanism& mechanism, const Solution& solution,
+                               const std::atomic<bool>* cancel) {
   std::optional<std::vector<std::pair<std::string, double>>> steady;
   if (solution.status == Status::converged) steady = start_values(solution.coordinates);
-  return report_friction(mechanism, steady);
+  return report_friction(mechanism, steady, cancel);
 }
 
 } // namespace flyball

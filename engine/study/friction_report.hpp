@@ -20,6 +20,7 @@ FrictionReport report_friction(const Mechanism& mechanism,
                                const std::optional<std::vector<std::pair<std::string, double>>>& steady,
                                const std::atomic<bool>* cancel = nullptr);
 // The same of what a solve answered.
-FrictionReport report_friction(const Mechanism& mechanism, const Solution& solution);
+FrictionReport report_friction(const Mechanism& mechanism, const Solution& solution,
+                               const std::atomic<bool>* cancel = nullptr);
 
 } // namespace flyball

@@ -26,6 +26,22 @@ std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::
   return out;
 }
 
+std::vector<std::vector<RibbonPoint>>
+friction_ribbons(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,
+                 const std::atomic<bool>* cancel,
+                 const std::function<void(std::size_t, std::size_t)>& progress) {
+  std::vector<std::vector<RibbonPoint>> out;
+  for (const ResponseBranch& branch : diagram.branches) {
+    std::vector<RibbonPlace> places;
+    for (const ResponsePoint& point : branch.points)
+      places.push_back({point.parameter, start_values(point.coordinates)});
+    out.push_back(friction_ribbon(mechanism, address, places, cancel, [&](std::size_t done) {
+      if (progress) progress(done, places.size());
+    }));
+  }
+  return out;
+}
+
 const BandExtent* find_extent(const RibbonPoint& point, std::string_view name) {
   const auto found = std::ranges::find(point.extents, name, &BandExtent::name);
   return found == point.extents.end() ? nullptr : &*found;

@@ -3,6 +3,7 @@
 // along the upper.
 #pragma once
 
+#include "engine/continuation/branches.hpp"
 #include "engine/study/friction_band.hpp"
 
 #include <functional>
@@ -25,6 +26,12 @@ std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::
                                          std::span<const RibbonPlace> places,
                                          const std::atomic<bool>* cancel = nullptr,
                                          const std::function<void(std::size_t done)>& progress = {});
+
+// The same at all points of each branch that was followed over this number.
+std::vector<std::vector<RibbonPoint>>
+friction_ribbons(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,
+                 const std::atomic<bool>* cancel = nullptr,
+                 const std::function<void(std::size_t done, std::size_t all)>& progress = {});
 
 // Null where it has none of this name.
 const BandExtent* find_extent(const RibbonPoint& point, std::string_view name);

@@ -56,24 +56,36 @@ bool places_parts(const BasicParameters<Dual>& p) {
 // What is the same at every phase: which coordinates are the model's, and names.
 struct Chosen {
   std::vector<int> coordinates; // entries of q_R, ascending
-  std::vector<bool> phase;      // of these: a torque drives it, and it is no state
+  std::vector<bool> phase;      // of these: it turns at a speed that is found, and is no state
 };
 
-std::vector<bool> torque_driven(const System& system) {
-  std::vector<bool> out(static_cast<std::size_t>(system.nv), false);
-  for (const DriveTorqueElement& torque : system.torques)
-    out[static_cast<std::size_t>(system.links[static_cast<std::size_t>(torque.link)].v)] = true;
+// The entries of q_R that turn in the steady state, at speeds that are found.
+std::vector<bool> turning(const System& steady) {
+  std::vector<bool> out(static_cast<std::size_t>(steady.nv), false);
+  for (const DriveTorqueElement& torque : steady.torques)
+    out[static_cast<std::size_t>(steady.links[static_cast<std::size_t>(torque.link)].v)] = true;
   return out;
+}
+
+// Nothing acts along what is left to itself: as it moves it is what a torque of nothing drives.
+Mechanism with_momenta_free(Mechanism mechanism) {
+  for (Joint& joint : mechanism.joints)
+    for (Coordinate& coordinate : joint.coordinates)
+      if (coordinate.drive && coordinate.drive->keeps == DriveKeeps::momentum) {
+        coordinate.drive->keeps = DriveKeeps::speed;
+        coordinate.drive->torque = 0;
+      }
+  return mechanism;
 }
 
 // Independent coordinates: phases first, then by pivots of the rest (Golub and Van Loan, Matrix Computations,
 // section 5.4).
-Chosen choose_coordinates(const System& system, const Eigen::MatrixXd& basis, bool phases) {
+Chosen choose_coordinates(const System& steady, const Eigen::MatrixXd& basis, bool phases) {
   Chosen out;
-  const std::vector<bool> driven = torque_driven(system);
+  const std::vector<bool> driven = turning(steady);
   const Eigen::Index k = basis.cols();
   Eigen::MatrixXd rest = basis.transpose();
-  for (int v = 0; v < system.nv; ++v) {
+  for (int v = 0; v < steady.nv; ++v) {
     if (!driven[static_cast<std::size_t>(v)]) continue;
     Eigen::VectorXd along = rest.col(v);
     const double size = along.norm();
@@ -118,7 +130,7 @@ class Builder {
   Builder(const Mechanism& mechanism, std::span<const std::string> inputs,
           std::span<const std::string> outputs, const LinearModelOptions& options)
       : signals_(read_signals(mechanism, inputs, outputs)), options_(options),
-        mechanism_(signals_.mechanism) {
+        mechanism_(with_momenta_free(signals_.mechanism)) {
     for (const LinearInput& input : signals_.inputs)
       if (!input.address.empty()) {
         numbers_.push_back(static_cast<int>(addresses_.size()));
@@ -139,17 +151,12 @@ class Builder {
     const auto begin = std::chrono::steady_clock::now();
     const Interruptible scope(options_.cancel);
     check(out.steady);
-    model_ = make_motion_model(signals_.mechanism, true);
-    steady_system_ = compile_for_drives(signals_.mechanism);
-    if (std::ranges::any_of(steady_system_.torques, [](const DriveTorqueElement& torque) {
-          return torque.keeps_momentum || torque.implied;
-        }))
-      throw Refusal{"A drive is left to itself, or loops and gears make something turn at a rate of its own: "
-                    "linear models of such are not made yet."};
-    bind(steady_system_, signals_.mechanism, steady_parameters_);
+    model_ = make_motion_model(mechanism_, true);
+    steady_system_ = compile_for_drives(mechanism_);
+    bind(steady_system_, mechanism_, steady_parameters_);
     place(out.steady);
     const MotionAt drawn(model_, at_phase(0));
-    chosen_ = choose_coordinates(model_.system, drawn.basis(), options_.phases);
+    chosen_ = choose_coordinates(steady_system_, drawn.basis(), options_.phases);
     Matrices here = matrices(drawn, 0);
     for (std::size_t i = 0; i < signals_.outputs.size(); ++i)
       signals_.outputs[i].value = here.values[static_cast<Eigen::Index>(i)];
@@ -198,7 +205,7 @@ class Builder {
     find_start(start, model_, q_, u_);
     // What the balance takes: speeds in the place of angles.
     balance_q_ = q_;
-    for (const DriveTorqueElement& torque : model_.system.torques) {
+    for (const DriveTorqueElement& torque : steady_system_.torques) {
       const Link& link = model_.system.links[static_cast<std::size_t>(torque.link)];
       balance_q_[link.q] = u_[link.v];
     }
@@ -214,7 +221,7 @@ class Builder {
     out.q.head(model_.system.nq) = q_;
     out.u.head(model_.system.nv) = u_;
     set_drives(model_.system, model_.parameters, t, out.q, out.u);
-    for (const DriveTorqueElement& torque : model_.system.torques) {
+    for (const DriveTorqueElement& torque : steady_system_.torques) {
       const Link& link = model_.system.links[static_cast<std::size_t>(torque.link)];
       out.q[link.q] += u_[link.v] * t;
     }
@@ -229,15 +236,34 @@ class Builder {
     return {0.83 / fastest, 2.31 / fastest, 4.17 / fastest};
   }
 
+  // Whether a number that changes is the speed with which something left to itself begins.
+  bool begins_with(const NumberRates& rates) const {
+    for (std::size_t j = 0; j < mechanism_.joints.size(); ++j)
+      for (std::size_t i = 0; i < mechanism_.joints[j].coordinates.size(); ++i) {
+        const auto& drive = signals_.mechanism.joints[j].coordinates[i].drive;
+        if (drive && drive->keeps == DriveKeeps::momentum &&
+            rates.find(place_of(mechanism_.joints[j].coordinates[i].drive->speed)).value_or(0) != 0)
+          return true;
+      }
+    return false;
+  }
+
   InputEffect effect(const MotionAt& motion, std::size_t i, double t) {
     const LinearInput& input = signals_.inputs[i];
     Eigen::VectorXd none = Eigen::VectorXd::Zero(model_.system.rows),
                     still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model_.system.drives.size()));
     try {
       if (input.address.empty()) return motion.effect(-torque_direction(input, motion), none, still);
+      if (std::ranges::any_of(steady_system_.torques, &DriveTorqueElement::implied))
+        throw Refusal{
+            "where loops and gears make something turn at a rate of its own, inputs are torques and "
+            "forces, as torque(joint) and force_x(body)"};
       NumberRates rates;
       const VariedNumbers numbers(mechanism_, addresses_);
       numbers.rates(static_cast<std::size_t>(numbers_[i]), rates);
+      if (begins_with(rates))
+        throw Refusal{"it is the speed with which something left to itself begins, and acts on nothing "
+                      "later; a torque(joint) does"};
       BalanceRate balance;
       balance.evaluate(steady_system_, mechanism_, rates, steady_parameters_, balance_q_, motion.at.lambda,
                        t);
@@ -461,7 +487,7 @@ class Builder {
       refuse(q, zero(), zero(), [&](const std::string& name) {
         return "The output " + name + " depends on the angle of " +
                name_state(model_, chosen_.coordinates[i], false).name +
-               ", which a torque drives: it grows without end.";
+               ", which turns: it grows without end.";
       });
     }
   }
@@ -481,7 +507,7 @@ class Builder {
         throw Refusal{"The input " + signals_.inputs[static_cast<std::size_t>(j)].name +
                       " acts otherwise at every phase of the drives: no constant matrices tell of it."};
     }
-    const bool turn = options_.phases && !model_.system.torques.empty(); // the angles themselves are states
+    const bool turn = options_.phases && !steady_system_.torques.empty(); // the angles themselves are states
     for (Eigen::Index i = 0; i < a.values.size(); ++i) {
       const double size = same_phase * a.most[i];
       bool same =
@@ -514,7 +540,7 @@ class Builder {
     StateSpace direct{{}, x.a, x.b, x.c, x.d};
     direct.a.bottomRightCorner(k, k) = m.explicit_velocity;
     direct.b.bottomRows(k) = m.explicit_b;
-    const std::vector<bool> turned = torque_driven(model_.system);
+    const std::vector<bool> turned = turning(steady_system_);
     for (Eigen::Index i = 0; i < np; ++i) {
       const Eigen::Index p = positions[static_cast<std::size_t>(i)];
       const auto v = static_cast<std::size_t>(chosen_.coordinates[static_cast<std::size_t>(p)]);
@@ -566,7 +592,7 @@ class Builder {
   std::vector<std::string> addresses_;
   std::vector<int> numbers_; // by input, in addresses_; -1: none
   MotionModel model_;
-  System steady_system_; // what torques drive turns steadily
+  System steady_system_; // what turns at speeds that are found does so steadily
   Parameters steady_parameters_;
   Eigen::VectorXd q_, u_, balance_q_;
   Chosen chosen_;

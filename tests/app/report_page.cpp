@@ -199,6 +199,26 @@ TEST_CASE("a report of what moves periodically tells its ranges and multipliers"
   CHECK_FALSE(contents_of("pendulum").periodic);
 }
 
+TEST_CASE("a report tells of dry friction where there is some") {
+  const std::string page = report_page(contents_of("governor_friction"));
+  check_page(page);
+  const std::string friction = section(page, "friction");
+  CHECK(friction.find("Insensitivity") != std::string::npos);
+  CHECK(friction.find("First to slip") != std::string::npos);
+  CHECK(friction.find("lift") != std::string::npos);
+  CHECK(section(report_page(contents_of("governor")), "friction").empty());
+  // What nothing bounds has no number.
+  const Mechanism held = read_scene(R"({"flyball": 1, "name": "Pendulum", "gravity": [0, -10, 0],
+    "bodies": [{"name": "bob", "mass": 2, "position": [0, -0.5, 0]}],
+    "joints": [{"name": "hinge", "type": "revolute", "bodies": ["ground", "bob"], "at": [0, 0, 0],
+      "axis": [0, 0, 1], "friction": {"limit": 12}}]})");
+  const std::string everywhere =
+      section(report_page(report_contents(std::make_shared<const Mechanism>(held), {})), "friction");
+  CHECK(everywhere.find("no bound") != std::string::npos);
+  CHECK(everywhere.find("can go round") != std::string::npos);
+  CHECK(everywhere.find("Margin") != std::string::npos);
+}
+
 TEST_CASE("numbers in a report are set as in print") {
   CHECK(written_number("-1.2e-07").text() == "−1.2\u202f×\u202f10<sup>−7</sup>");
   CHECK(quantity(-2.5, "m/s^2").text() == "−2.5\u00a0m/s²");

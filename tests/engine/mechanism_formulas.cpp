@@ -131,6 +131,9 @@ TEST_CASE("What is wrong with an expression is said by its place") {
   CHECK_THAT(mistake_in("2^L", ""), ContainsSubstring("as an exponent, found m"));
   CHECK_THAT(mistake_in("L^n", "m"), ContainsSubstring("expected a number as the exponent of m"));
   CHECK_THAT(mistake_in("l", "m"), ContainsSubstring("there is no parameter \"l\"; did you mean \"L\"?"));
+  CHECK_THAT(mistake_in("2 N*m", "N m"),
+             ContainsSubstring(
+                 "there is no parameter \"m\"; units follow their number without a sign, as in 2 N m"));
   CHECK_THAT(mistake_in("A", "m"), ContainsSubstring("A.x, A.y or A.z"));
   CHECK_THAT(mistake_in("sinus(a)", ""), ContainsSubstring("no function \"sinus\"; did you mean \"sin\"?"));
   CHECK_THAT(mistake_in("1/0", ""), ContainsSubstring("not finite"));

@@ -140,3 +140,33 @@ TEST_CASE("all equilibria over a grid are those of each point by itself") {
   CHECK(none.front().solution.status == Status::infeasible);
   CHECK_FALSE(none.front().solution.message.empty());
 }
+
+TEST_CASE("branches over a grid have the bands of dry friction at all their points") {
+  const std::vector<Variation> over{{"parameters.F", 6, 12, 2}};
+  const GridFollower follower(shipped("governor_friction"), over, "parameters.w", 15.5, 16.5, {});
+  std::array<double, 2> width{};
+  for (std::size_t place = 0; place < 2; ++place) {
+    const GridBranches at = follower.follow(place);
+    REQUIRE(at.diagram.branches.size() == 1);
+    REQUIRE(at.ribbons.size() == 1);
+    const ResponseBranch& branch = at.diagram.branches[0];
+    REQUIRE(at.ribbons[0].size() == branch.points.size());
+    const std::size_t middle = branch.points.size() / 2;
+    const BandExtent* lift = find_extent(at.ribbons[0][middle], "lift");
+    REQUIRE(lift);
+    // As of that mechanism by itself.
+    const FrictionBand band =
+        find_friction_band(shipped("governor_friction", {{"parameters.F", at.parameters[0]},
+                                                         {"parameters.w", branch.points[middle].parameter}}));
+    const auto alone = std::ranges::find(band.extents, "lift", &BandExtent::name);
+    REQUIRE(alone != band.extents.end());
+    CHECK(std::abs(lift->low - alone->low) < 1e-10);
+    CHECK(std::abs(lift->high - alone->high) < 1e-10);
+    width[place] = lift->high - lift->low;
+  }
+  CHECK(width[1] > 1.9 * width[0]);
+  CHECK(GridFollower(shipped("governor"), std::array{Variation{"gravity.1", -10, -9, 2}},
+                     "joints.spin.drive.speed", 10, 12, {})
+            .follow(0)
+            .ribbons.empty());
+}

@@ -414,3 +414,80 @@ TEST_CASE("what is left to itself and pushed is refused with the reason", "[mome
     CHECK_THROWS_WITH(Analysis(m), ContainsSubstring("expected speed, or no drive by torque"));
   }
 }
+
+TEST_CASE("a motion that begins standing still in the world begins with the momentum that is kept",
+          "[momentum]") {
+  // A rod with a ball on a hinge along the same axis, right above this: the ball stands, the rod has it all.
+  constexpr double hub = 0.3, far = 0.4, drawn = 5;
+  Mechanism m;
+  m.bodies = {body("rod", 2, {0, 0, 0}, {0.1, hub, 0.1}), body("ball", 1, {far, 0, 0})};
+  m.joints = {left_to_itself(revolute("spin", "ground", "rod", {0, 0, 0}, {0, 1, 0}), drawn),
+              revolute("hinge", "rod", "ball", {0, 0, 0}, {0, 1, 0})};
+  m.joints[1].coordinates[0].spring = CoordinateSpring{3, 0};
+  m.joints[1].coordinates[0].damping = 0.2;
+  SimulationOptions options;
+  options.start = Start::drawn;
+  options.duration = 60;
+  const Run run = simulate(m, options);
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  const double momentum = (hub + far * far) * drawn;
+  CHECK_THAT(run.coordinates[0].rate.front(), WithinRel(momentum / hub, 1e-13));
+  CHECK_THAT(run.coordinates[1].rate.front(), WithinRel(-momentum / hub, 1e-13)); // the ball stands
+  // It settles in the state that a solve finds.
+  CHECK_THAT(run.coordinates[0].rate.back(), WithinRel(found_speed(Analysis(m).solve(), "spin"), 1e-6));
+  // A kick comes on top.
+  options.duration = 0.01;
+  options.kick = {{"spin", 2}};
+  CHECK_THAT(simulate(m, options).coordinates[0].rate.front(), WithinRel(momentum / hub + 2, 1e-13));
+}
+
+TEST_CASE("a gear between what a shaft left to itself carries keeps its momentum, one on the shaft does not",
+          "[momentum]") {
+  // Two rings of 1 kg that a gear keeps at one radius, a spring at one of them: k (r - free) = 2 r w^2.
+  constexpr double hub = 0.3, stiffness = 100, free = 0.2, drawn = 0.25, begun = 4;
+  Mechanism m;
+  m.bodies = {body("rod", 2, {0, 0, 0}, {0.1, hub, 0.1}), body("one", 1, {drawn, 0, 0}),
+              body("other", 1, {-drawn, 0, 0})};
+  m.joints = {left_to_itself(revolute("spin", "ground", "rod", {0, 0, 0}, {0, 1, 0}), begun),
+              joint(JointType::prismatic, "out", "rod", "one", {drawn, 0, 0}, {1, 0, 0}),
+              joint(JointType::prismatic, "back", "rod", "other", {-drawn, 0, 0}, {-1, 0, 0})};
+  for (const std::size_t j : {1, 2})
+    m.joints[j].coordinates[0].drawn = drawn;
+  m.joints[1].coordinates[0].spring = CoordinateSpring{stiffness, free};
+  m.joints[2].coordinates[0].damping = 8;
+  Joint mesh;
+  mesh.name = "mesh";
+  mesh.type = JointType::gear;
+  mesh.joints = {"out", "back"};
+  mesh.ratio = 1;
+  m.joints.push_back(mesh);
+  validate(m);
+  const double momentum = (hub + 2 * drawn * drawn) * begun;
+  const auto speed = [&](double r) { return momentum / (hub + 2 * r * r); };
+  double low = free, high = 1;
+  for (int i = 0; i < 200; ++i) {
+    const double r = (low + high) / 2;
+    (stiffness * (r - free) < 2 * r * speed(r) * speed(r) ? low : high) = r;
+  }
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(value(s, "out"), WithinRel(low, 1e-12));
+  CHECK_THAT(value(s, "back"), WithinRel(low, 1e-12));
+  CHECK_THAT(found_speed(s, "spin"), WithinRel(speed(low), 1e-12));
+  SimulationOptions options;
+  options.duration = 30;
+  const Run run = simulate(m, options);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK_THAT(run.coordinates[0].rate.back(), WithinRel(speed(low), 1e-8));
+  // Through a gear on the shaft itself momentum would pass to what stands.
+  m.bodies.push_back(body("wheel", 1, {0, 0, 1}, {0.1, 0.2, 0.1}));
+  m.joints.push_back(revolute("wheel", "ground", "wheel", {0, 0, 1}, {0, 1, 0}));
+  mesh.name = "beside";
+  mesh.joints = {"spin", "wheel"};
+  m.joints.push_back(mesh);
+  const auto found = find_mistakes(m);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].where() == "joints.beside.joints[0]");
+}

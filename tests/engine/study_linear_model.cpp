@@ -521,3 +521,69 @@ TEST_CASE("loops that hold nothing leave the coordinates free", "[linear-model]"
   CHECK((*model.gain)(0, 0) > 0);
   CHECK((*model.gain)(1, 0) == Approx((*model.gain)(0, 0)).epsilon(1e-11));
 }
+
+TEST_CASE("a shaft left to itself has the transfer functions of its two equations", "[linear-model]") {
+  // A ring of 1 kg on a rod: r'' = r w^2 - k (r - free) - c r' + F, ((hub + r^2) w)' = torque.
+  constexpr double hub = 0.3, k = 100, free = 0.2, drawn = 0.25, c = 4;
+  Mechanism m;
+  m.bodies = {body("rod", 2, {0, 0, 0}, {0.1, hub, 0.1}), body("ring", 1, {drawn, 0, 0})};
+  m.joints = {revolute("spin", "ground", "rod", {0, 0, 0}, {0, 1, 0}),
+              joint(JointType::prismatic, "slide", "rod", "ring", {drawn, 0, 0}, {1, 0, 0})};
+  Drive& drive = m.joints[0].coordinates[0].drive.emplace();
+  drive.speed = 7;
+  drive.keeps = DriveKeeps::momentum;
+  Coordinate& slide = m.joints[1].coordinates[0];
+  slide.drawn = drawn;
+  slide.damping = c;
+  slide.spring = CoordinateSpring{k, free};
+  const LinearModel model =
+      made(m, {"torque(spin)", "torque(slide)", "joints.slide.spring.stiffness"}, {"slide", "rate(spin)"});
+  REQUIRE(model.states.size() == 3); // the angle is none
+  const double r = value(model.steady, "slide"), w = coordinate(model.steady, "spin").speed.value(),
+               j = hub + r * r;
+  for (const Complex s : {Complex(0.3, 0), Complex(0, 5), Complex(0.7, 11), Complex(-2, 30)}) {
+    const Complex d = s * s + c * s + k - w * w + 4 * r * r * w * w / j;
+    const std::array forces{2 * r * w / (j * s), Complex(1), Complex(free - r)};
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const Complex moved = forces[static_cast<std::size_t>(i)] / d;
+      check_transfer(model, 0, i, s, moved);
+      check_transfer(model, 1, i, s, (i == 0 ? 1. / (j * s) : 0.) - 2 * r * w / j * moved, 1e-9);
+    }
+  }
+  // Other momenta are states of their own: one pole at zero.
+  CHECK(std::ranges::count_if(model.poles, [](Complex p) { return std::abs(p) < 1e-9; }) == 1);
+  CHECK_THAT(refusal(m, {"joints.spin.drive.speed"}, {"slide"}), ContainsSubstring("left to itself begins"));
+}
+
+TEST_CASE("the wheels of a differential answer torques as its steady states do", "[linear-model]") {
+  const Mechanism m = shipped("differential");
+  const Names wheels{"left", "right", "planet1"};
+  const LinearModel model =
+      made(m, {"torque(left)", "torque(right)"}, {"rate(left)", "rate(right)", "rate(planet1)"});
+  REQUIRE(model.gain);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const auto speeds = [&](double torque) {
+      Mechanism pushed = m;
+      Force force;
+      force.name = "push";
+      force.type = ForceType::torque;
+      force.body = wheels[static_cast<std::size_t>(i)];
+      force.frame = ForceFrame::world;
+      const int wheel = joint_index(m, force.body);
+      force.vector = torque * m.joints[static_cast<std::size_t>(wheel)].axis.normalized();
+      pushed.forces.push_back(force);
+      const Solution s = Analysis(pushed).solve();
+      REQUIRE(s.status == Status::converged);
+      Eigen::Vector3d out;
+      for (int wheel_at = 0; wheel_at < 3; ++wheel_at)
+        out[wheel_at] = coordinate(s, wheels[static_cast<std::size_t>(wheel_at)]).speed.value();
+      return out;
+    };
+    constexpr double step = 1e-3;
+    const Eigen::Vector3d wanted = (speeds(step) - speeds(-step)) / (2 * step);
+    CAPTURE(i, wanted.transpose(), model.gain->col(i).transpose());
+    CHECK((model.gain->col(i) - wanted).norm() < 1e-7 * wanted.norm());
+  }
+  CHECK_THAT(refusal(m, {"joints.left.damping"}, {"rate(left)"}),
+             ContainsSubstring("inputs are torques and forces"));
+}

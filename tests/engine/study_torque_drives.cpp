@@ -498,3 +498,46 @@ TEST_CASE("laws of torque that mean nothing are mistakes with their place", "[to
   CHECK(write_scene(shipped("governor_engine")) ==
         write_scene(read_scene(write_scene(shipped("governor_engine")))));
 }
+
+TEST_CASE("a centrifugal clutch engages at its speed, slips, and where it would lock creeps", "[torque]") {
+  // Of the scene, in its words.
+  constexpr double m = 0.1, r = 0.05, gap = 0.002, radius = r + gap + 0.01, k = 8000, preload = 80,
+                   hardness = 1e6, mu = 0.3, creep = 1, slope = 0.2, resistance = 0.05;
+  const auto at = [](double idle) {
+    const Solution s = Analysis(shipped("centrifugal_clutch", {{"parameters.idle", idle}})).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stable == true);
+    return s;
+  };
+  // m (r + x) w^2 = preload + k x + hardness (x - gap).
+  const auto capacity = [&](double w) {
+    const double x = (m * r * w * w - preload + hardness * gap) / (k + hardness - m * w * w);
+    return 3 * mu * radius * hardness * (x - gap);
+  };
+  const double engages = std::sqrt((preload + k * gap) / (m * (r + gap)));
+  CHECK(std::abs(capacity(engages)) < 1e-9);
+  const Solution below = at(engages * (1 - 1e-6)), above = at(engages * (1 + 1e-6));
+  CHECK_THAT(speed(below, "motor"), WithinRel(engages * (1 - 1e-6), 1e-13));
+  CHECK(speed(below, "drum") == 0);
+  CHECK(speed(above, "drum") > 0);
+  // Slipping: slope (idle - w) = capacity(w), halved into; far from locking friction is all of mu.
+  for (const double idle : {150., 200., 240., 280.}) {
+    CAPTURE(idle);
+    double low = engages, high = idle;
+    for (int i = 0; i < 100; ++i) {
+      const double w = (low + high) / 2;
+      (slope * (idle - w) > capacity(w) ? low : high) = w;
+    }
+    const Solution s = at(idle);
+    CHECK_THAT(speed(s, "motor"), WithinRel(low, 1e-11));
+    CHECK_THAT(speed(s, "drum"), WithinRel(capacity(low) / resistance, 1e-9));
+    CHECK(speed(s, "motor") - speed(s, "drum") > 20 * creep);
+  }
+  // Locked: what the drum resists with is a part of what friction could give.
+  const Solution locked = at(400);
+  const double motor = speed(locked, "motor"), drum = speed(locked, "drum");
+  CHECK_THAT(resistance * drum, WithinRel(capacity(motor) * std::tanh((motor - drum) / creep), 1e-9));
+  CHECK_THAT(resistance * drum, WithinRel(slope * (400 - motor), 1e-12));
+  CHECK(motor - drum < creep);
+}

@@ -14,7 +14,10 @@ namespace {
 constexpr int digits = 5; // an extent is looked at, not copied
 
 std::string range_words(const ShownUnit& unit, double low, double high) {
-  return short_text(unit.shown(low), digits) + " … " + short_text(unit.shown(high), digits);
+  const auto bound = [&](double value, const char* none) {
+    return std::isfinite(value) ? short_text(unit.shown(value), digits) : std::string(none);
+  };
+  return bound(low, "-∞") + " … " + bound(high, "∞");
 }
 
 std::string percent_words(double part) {
