@@ -143,6 +143,8 @@ std::string copy_text(const Mechanism& mechanism, const Selection& selection) {
       bodies.insert(body.name);
       parts.bodies.push_back(body);
     }
+  parts.air = mechanism.air;
+  if (!bodies.contains(parts.air.turns_with)) parts.air.turns_with.clear();
   // Held to ground and to one another, with a body among them.
   const auto is_held = [&](std::span<const std::string> names) {
     const auto copied = [&](const std::string& name) { return bodies.contains(name); };

@@ -1,4 +1,5 @@
 #include "app/document/coordinate_image.hpp"
+#include "app/document/gear_kinds.hpp"
 #include "app/document/references.hpp"
 
 #include <algorithm>
@@ -47,7 +48,7 @@ void move_end(Joint& gear, std::size_t end, const Joint& joint, int coordinate,
   const bool stays = image.mixed;
   gear.joints[end] = coordinate_name(joint, stays ? coordinate : static_cast<int>(image.index));
   if (stays || image.sign > 0) return;
-  gear.ratio = -gear.ratio;
+  reverse_ratio(gear);
   if (end == 1 && gear.offset) gear.offset = 0.0 - *gear.offset;
 }
 

@@ -1,5 +1,6 @@
 #include "app/document/create.hpp"
 
+#include "app/document/gear_kinds.hpp"
 #include "app/document/names.hpp"
 #include "engine/mechanism/mass_properties.hpp"
 
@@ -103,12 +104,14 @@ std::string add_distance(Mechanism& mechanism, const std::array<std::string, 2>&
   return add(mechanism, std::move(joint), "link");
 }
 
-std::string add_gear(Mechanism& mechanism, const std::array<std::string, 2>& coordinates, double ratio) {
+std::string add_gear(Mechanism& mechanism, const std::array<std::string, 2>& coordinates, double ratio,
+                     GearKind kind) {
   Joint joint;
   joint.type = JointType::gear;
   joint.joints = coordinates;
   joint.ratio = ratio;
-  return add(mechanism, std::move(joint), "gear");
+  if (kind != GearKind::gear) change_gear_kind(mechanism, joint, kind);
+  return add(mechanism, std::move(joint), type_name(kind));
 }
 
 std::string add_spring(Mechanism& mechanism, const std::array<std::string, 2>& bodies,
@@ -130,10 +133,14 @@ std::string add_force(Mechanism& mechanism, ForceType type, const std::string& b
   force.type = type;
   force.body = body;
   force.at = at;
-  if (type == ForceType::drag)
-    force.linear = 1;
-  else
-    force.vector = vector;
+  switch (type) {
+  case ForceType::drag: force.linear = 1; break;
+  case ForceType::vane:
+    force.area = 0.01;
+    force.normal = vector;
+    break;
+  default: force.vector = vector;
+  }
   return add(mechanism, std::move(force), type_name(type));
 }
 

@@ -32,12 +32,14 @@ std::string add_joint(Mechanism& mechanism, JointType type, const std::array<std
                       const Vec3& at, const Vec3& axis, const Vec3& axis2 = Vec3::UnitX());
 std::string add_distance(Mechanism& mechanism, const std::array<std::string, 2>& bodies,
                          const std::array<Vec3, 2>& points);
-// Between coordinates as find_coordinate knows them.
-std::string add_gear(Mechanism& mechanism, const std::array<std::string, 2>& coordinates, double ratio);
+// Between coordinates as find_coordinate knows them, which suit the kind.
+std::string add_gear(Mechanism& mechanism, const std::array<std::string, 2>& coordinates, double ratio,
+                     GearKind kind = GearKind::gear);
 // Slack as drawn, and of no length between points that coincide. A damper is a spring without stiffness.
 std::string add_spring(Mechanism& mechanism, const std::array<std::string, 2>& bodies,
                        const std::array<Vec3, 2>& points, double stiffness, double damping);
-// ForceType force, torque or drag (then `vector` does not count and the linear coefficient is 1 N s/m).
+// Every type but spring. Of drag `vector` does not count and the linear coefficient is 1 N s/m, of a vane of
+// 1 dm^2 it is the normal.
 std::string add_force(Mechanism& mechanism, ForceType type, const std::string& body, const Vec3& at,
                       const Vec3& vector);
 

@@ -132,6 +132,11 @@ void turn_bearing(const Force& bearing, const Isometry& isometry, Force& image) 
 
 } // namespace
 
+void turn_vane(Force& vane, const Isometry& isometry) {
+  vane.normal = isometry.vector(vane.normal);
+  if (vane.chord) vane.chord = isometry.vector(*vane.chord);
+}
+
 Force image_of(const Force& force, const Isometry& isometry, const Quat& body, bool body_too) {
   Force image = force;
   if (force.type == ForceType::spring) {
@@ -140,7 +145,8 @@ Force image_of(const Force& force, const Isometry& isometry, const Quat& body, b
     return image;
   }
   if (force.at) image.at = isometry.point(*force.at);
-  if (force.type == ForceType::drag) return image;
+  if (force.type == ForceType::vane) turn_vane(image, isometry);
+  if (is_of_air(force.type)) return image;
   if (force.type == ForceType::bearing) {
     turn_bearing(force, isometry, image);
     return image;

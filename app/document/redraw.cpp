@@ -81,13 +81,17 @@ class Redraw {
       carry_ends(force.bodies, force.points);
       if (!force.free_length && std::abs(drawn_distance(force.points) - length) > no_motion * length)
         force.free_length = length;
-    } else if (force.type == ForceType::bearing) { // of which the first body keeps the axes
+      return;
+    }
+    if (force.type == ForceType::bearing) { // of which the first body keeps the axes
       if (force.at) carry_point(force.bodies[1], *force.at);
       carry_axis(force.bodies[0], force.axis);
       if (force.x_axis) carry_axis(force.bodies[0], *force.x_axis);
-    } else if (force.at) {
-      carry_point(force.body, *force.at);
+      return;
     }
+    if (force.at) carry_point(force.body, *force.at);
+    if (force.type == ForceType::vane)
+      if (const Isometry* by = motion(force.body)) turn_vane(force, *by);
   }
 
   void carry(Joint& joint, const std::array<double, 6>& labels) {

@@ -47,6 +47,7 @@ void remove_parts(Mechanism& mechanism, const Selection& selection) {
   std::erase_if(mechanism.bodies, gone(PartKind::body));
   std::erase_if(mechanism.joints, gone(PartKind::joint));
   std::erase_if(mechanism.forces, gone(PartKind::force));
+  if (body_index(mechanism, mechanism.air.turns_with) < 0) mechanism.air.turns_with.clear();
   std::erase_if(mechanism.sliders, [&](const Slider& slider) {
     return std::ranges::any_of(all.parts, [&](const Part& part) { return is_of(slider.parameter, part); });
   });

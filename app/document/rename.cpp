@@ -33,6 +33,7 @@ void follow_body(Mechanism& mechanism, const std::string& from, const std::strin
   };
   follow(mechanism.joints);
   follow(mechanism.forces);
+  if (mechanism.air.turns_with == from) mechanism.air.turns_with = to;
 }
 
 void follow_joint(Mechanism& mechanism, const std::string& from, const std::string& to) {

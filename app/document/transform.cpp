@@ -78,8 +78,9 @@ class Transform {
       const Body* body = b < 0 ? nullptr : &mechanism_.bodies[static_cast<std::size_t>(b)];
       if (!with_body && body && !force.at) force.at = body->position;
       force = image_of(force, isometry_, body ? body->rotation : Quat::Identity(), with_body);
-    } else if (with_body && force.at) {
-      force.at = isometry_.point(*force.at);
+    } else if (with_body) {
+      if (force.at) force.at = isometry_.point(*force.at);
+      if (force.type == ForceType::vane) turn_vane(force, isometry_);
     }
   }
 

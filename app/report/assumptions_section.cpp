@@ -41,13 +41,19 @@ bool damped(const Mechanism& m) {
   return std::ranges::any_of(m.joints,
                              [&](const Joint& j) { return std::ranges::any_of(j.coordinates, damper); }) ||
          std::ranges::any_of(m.forces, [](const Force& f) {
-           return f.type == ForceType::drag || (f.type == ForceType::spring && is_damped(f)) ||
+           return is_of_air(f.type) || (f.type == ForceType::spring && is_damped(f)) ||
                   std::ranges::any_of(f.bearing_damping, [](double c) { return c != 0; });
          });
 }
 
 bool dragged(const Mechanism& m) {
-  return std::ranges::any_of(m.forces, [](const Force& f) { return f.type == ForceType::drag; });
+  return std::ranges::any_of(m.forces, [](const Force& f) { return is_of_air(f.type); });
+}
+
+Html air_of(const Mechanism& m) {
+  if (!m.air.turns_with.empty()) return Html("Turns with ") + m.air.turns_with + ", as if fixed in it.";
+  if (m.air.wind.isZero(0)) return Html("At rest in the world.");
+  return Html("A wind of ") + vector_quantity(m.air.wind, "m/s", 9) + ", the same everywhere.";
 }
 
 } // namespace
@@ -80,7 +86,7 @@ OptionalSection assumptions_section(const ReportContents& contents) {
                             ? "Viscous dampers count in stability and modes; they move no steady state of "
                               "coordinates that stand still."
                             : "None.");
-  if (dragged(m)) terms.term("Air", "At rest in the world.");
+  if (dragged(m)) terms.term("Air", air_of(m));
   terms.term("Size", std::to_string(system.bodies) + (system.bodies == 1 ? " body, " : " bodies, ") +
                          std::to_string(system.free_coordinates) + " free and " +
                          std::to_string(system.driven_coordinates) + " driven coordinates, " +

@@ -55,6 +55,15 @@ bool tool_chosen(const App& app) {
   return app.tool.tool == tool;
 }
 
+template <GearKind kind>
+void gear(App& app) {
+  gear_selected(app, kind);
+}
+template <GearKind kind>
+bool can_gear(const App& app) {
+  return can_gear_selected(app, kind);
+}
+
 template <auto which, auto unit>
 void show_in(App& app) {
   DisplayUnits units = app.units;
@@ -219,9 +228,25 @@ const std::array all_commands{
             .enabled = any_selected},
     Command{.id = "edit.gear",
             .title = "Join by a gear",
-            .help = "Couple the two selected joints: the second turns as the first does.",
-            .run = gear_selected,
-            .enabled = [](const App& app) { return app.selection().names(PartKind::joint).size() == 2; }},
+            .help = "Couple the selected joints: the second turns as the first does.",
+            .run = gear<GearKind::gear>,
+            .enabled = can_gear<GearKind::gear>},
+    Command{.id = "edit.belt",
+            .title = "Join by a belt",
+            .help =
+                "A belt or chain over wheels on the selected joints; over more wheels from one to the next.",
+            .run = gear<GearKind::belt>,
+            .enabled = can_gear<GearKind::belt>},
+    Command{.id = "edit.rack",
+            .title = "Join by a rack",
+            .help = "A pinion on the selected joint that turns moves a rack along the one that slides.",
+            .run = gear<GearKind::rack>,
+            .enabled = can_gear<GearKind::rack>},
+    Command{.id = "edit.screw",
+            .title = "Join by a screw",
+            .help = "A thread: the selected joint that slides moves by the lead as the other makes a turn.",
+            .run = gear<GearKind::screw>,
+            .enabled = can_gear<GearKind::screw>},
     Command{.id = "edit.settle",
             .title = "Draw as it settles",
             .help = "The steady state becomes the drawn pose; the mechanism stays the same.",
@@ -320,10 +345,16 @@ const std::array all_commands{
             .checked = tool_chosen<Tool::torque>},
     Command{.id = "insert.drag",
             .title = "Air drag",
-            .help = "The drag of air at rest, at a point of a body.",
+            .help = "The drag of the air, at a point of a body.",
             .key = shift('A'),
             .run = choose_tool<Tool::drag>,
             .checked = tool_chosen<Tool::drag>},
+    Command{.id = "insert.vane",
+            .title = "Vane",
+            .help = "A plate or blade in the air: drag and lift by the direction of the flow.",
+            .key = shift('V'),
+            .run = choose_tool<Tool::vane>,
+            .checked = tool_chosen<Tool::vane>},
 
     Command{.id = "view.mode",
             .title = "Build",

@@ -4,6 +4,7 @@
 #include "app/document/copies.hpp"
 #include "app/document/create.hpp"
 #include "app/document/formula_edits.hpp"
+#include "app/document/gear_kinds.hpp"
 #include "app/document/remove.hpp"
 #include "app/document/transform.hpp"
 #include "app/ui/tools/named_points.hpp"
@@ -13,7 +14,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string_view>
 #include <unordered_set>
@@ -141,18 +144,29 @@ void select_all(App& app) {
   select(app, std::move(all));
 }
 
-void gear_selected(App& app) {
+bool can_gear_selected(const App& app, GearKind kind) {
+  return gear_ends(app.mechanism(), app.selection().names(PartKind::joint), kind).has_value();
+}
+
+void gear_selected(App& app, GearKind kind) {
   const std::vector<std::string> joints = app.selection().names(PartKind::joint);
-  if (joints.size() != 2) return;
-  edit(app, "Gear " + joints[0] + " and " + joints[1], [&](Mechanism& mechanism, Selection& selection) {
-    std::array<std::string, 2> ends;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const Joint& joint = mechanism.joints[static_cast<std::size_t>(joint_index(mechanism, joints[i]))];
-      if (joint.coordinates.empty()) throw SceneError(joint.name, "a gear needs a joint with a coordinate");
-      ends[i] = coordinate_name(joint, 0);
+  const auto ends = gear_ends(app.mechanism(), joints, kind);
+  if (!ends) return;
+  const auto first_ratio = [kind] { // wheels that mesh, or of one size; 50 mm; 5 mm a turn
+    switch (kind) {
+    case GearKind::gear: return -1.;
+    case GearKind::belt: return 1.;
+    case GearKind::rack: return 0.05;
+    case GearKind::screw: return 0.005 / (2 * std::numbers::pi);
     }
-    selection.set({PartKind::joint, add_gear(mechanism, ends, -1)});
-  });
+    return 1.;
+  };
+  std::string word(type_name(kind));
+  word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+  edit(app, word + " of " + joints.front() + (joints.size() > 1 ? " and " + joints.back() : ""),
+       [&](Mechanism& mechanism, Selection& selection) {
+         selection.set({PartKind::joint, add_gear(mechanism, *ends, first_ratio(), kind)});
+       });
 }
 
 } // namespace flyball

@@ -13,8 +13,10 @@ void paste_parts(App& app);
 void select_all(App& app);
 void show_mirror_dialog(App& app);
 void show_circular_dialog(App& app);
-// Joins the two selected joints by a gear, or the selected coordinates' first ones.
-void gear_selected(App& app);
+// Joins the selected joints by a gear, belt, rack or screw: the first coordinates of two, or of one, that
+// this can tie.
+void gear_selected(App& app, GearKind kind);
+bool can_gear_selected(const App& app, GearKind kind);
 
 void mirror_dialog(App& app);
 void circular_dialog(App& app);

@@ -30,6 +30,7 @@ enum class Tool {
   force,
   torque,
   drag,
+  vane,
   point, // a named one, where a vector shall stand
 };
 

@@ -39,7 +39,7 @@ struct Assembly {
   std::vector<double>
       balls; // m, by body: radius of the ball drawn about its mass centre, 0 for none; empty until then
   double middle_mass = 0;                  // kg, the median of the bodies that have mass
-  std::array<double, 5> largest_vectors{}; // N or N m, by type of force
+  std::array<double, 6> largest_vectors{}; // N or N m, by type of force
 
   Assembly(const Mechanism& built, std::span<const Pose> in_poses);
 

@@ -180,6 +180,14 @@ void draw_force(Sketch& sketch, const Assembly& assembly, std::size_t index, con
     sketch.pen.color = colors.slack;
     return sketch.bowl(at, assembly.scale.up.unitOrthogonal(), 2.4 * u);
   }
+  if (force.type == ForceType::vane) {
+    const Vec3 normal = assembly.vector(body, force.normal.stableNormalized()),
+               chord = assembly.vector(body, force.chord.value_or(force.normal.unitOrthogonal()));
+    const double side = 0.5 * std::sqrt(std::max(force.area, 0.0));
+    sketch.pen.color = colors.slack;
+    return sketch.box(at, frame_along(normal, chord), {std::max(side, u), std::max(side, u), 0.12 * u},
+                      0.05 * u);
+  }
   const Vec3 vector = force.frame == ForceFrame::world
                           ? force.vector
                           : Vec3(assembly.poses[static_cast<std::size_t>(body)].rotation * force.vector);

@@ -7,6 +7,7 @@
 namespace flyball {
 
 void draw_joint(Sketch& sketch, const Assembly& assembly, std::size_t joint, const Palette& colors);
+void draw_gear(Sketch& sketch, const Assembly& assembly, std::size_t joint, const Palette& colors);
 void draw_cut_mark(Sketch& sketch, const Assembly& assembly, std::size_t joint, const Palette& colors);
 void draw_drives(Sketch& sketch, const Assembly& assembly, std::size_t joint, const Palette& colors);
 // The springs and dampers that act on a joint's coordinates.

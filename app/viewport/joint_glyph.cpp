@@ -181,23 +181,6 @@ void draw_distance(Sketch& sketch, const Assembly& assembly, std::size_t index, 
   }
 }
 
-void draw_gear(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
-  const double u = assembly.scale.unit;
-  std::array<Vec3, 2> ends;
-  for (std::size_t e = 0; e < 2; ++e) {
-    const int other = find_coordinate(assembly.mechanism, assembly.mechanism.joints[index].joints[e]).joint;
-    if (other < 0 || assembly.joint(other).type == JointType::gear) return;
-    const Place p = place_of(assembly, static_cast<std::size_t>(other));
-    ends[e] = p.at + 1.7 * u * p.axis;
-    sketch.pen.color = colors.metal_dark;
-    sketch.gear(ends[e], p.axis, 0.28 * u, 2.1 * u);
-  }
-  // Dots tell which two joints turn together.
-  const int dots = std::clamp(static_cast<int>((ends[1] - ends[0]).norm() / (1.3 * u)), 0, 60);
-  for (int i = 1; i < dots; ++i)
-    sketch.sphere(ends[0] + (ends[1] - ends[0]) * (double(i) / dots), 0.2 * u);
-}
-
 } // namespace
 
 void draw_anchor(Sketch& sketch, const Vec3& at, const Vec3& normal, double radius, double unit,

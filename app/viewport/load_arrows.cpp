@@ -10,7 +10,7 @@ namespace {
 constexpr double load_rounding = 1e-9; // beside the largest
 
 constexpr std::array all_kinds{LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::weight,
-                               LoadKind::applied,  LoadKind::drag,  LoadKind::inertia};
+                               LoadKind::applied,  LoadKind::air,   LoadKind::inertia};
 
 } // namespace
 
@@ -89,7 +89,7 @@ Color load_color(LoadKind kind, const Palette& colors) {
   case LoadKind::spring: return okabe_ito::green;
   case LoadKind::weight: return colors.slack;
   case LoadKind::applied: return colors.force;
-  case LoadKind::drag: return okabe_ito::sky_blue;
+  case LoadKind::air: return okabe_ito::sky_blue;
   case LoadKind::inertia: return okabe_ito::orange;
   }
   return colors.force;

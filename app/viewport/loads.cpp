@@ -1,6 +1,7 @@
 #include "app/viewport/loads.hpp"
 
 #include "engine/mechanism/damped.hpp"
+#include "engine/system/air_force.hpp"
 #include "engine/system/elastic_force.hpp"
 
 #include <algorithm>
@@ -102,14 +103,24 @@ class Collector {
     }
   }
 
-  void drag() {
+  // What turns the air feels the opposite at the same points.
+  void air() {
+    const Air& air = mechanism_.air;
+    const int turner = air.turns_with.empty() ? -1 : body_index(mechanism_, air.turns_with);
     for (std::size_t f = 0; f < mechanism_.forces.size(); ++f) {
       const Force& force = mechanism_.forces[f];
       const int body = assembly_.force_bodies[f][0];
-      if (force.type != ForceType::drag || body < 0 || !of_body(body)) continue;
-      const Vec3 at = acts_at(force, body), v = velocity(body, at);
-      add(LoadKind::drag, false, at, -(force.linear + force.quadratic * v.stableNorm()) * v,
-          part_at(PartKind::force, f));
+      if (!is_of_air(force.type) || body < 0) continue;
+      const auto b = static_cast<std::size_t>(body);
+      const Vec3 at = acts_at(force, body),
+                 flow = (turner < 0 ? air.wind : velocity(turner, at)) - velocity(body, at);
+      const Quat turned =
+          assembly_.poses[b].rotation * mechanism_.bodies[b].rotation.normalized().conjugate();
+      BodyForceParameters numbers;
+      set_air_force(force, air, NumberReader<double>(), numbers);
+      const Vec3 push = air_force<double>(numbers, turned.toRotationMatrix(), flow);
+      if (of_body(body)) add(LoadKind::air, false, at, push, part_at(PartKind::force, f));
+      if (turner >= 0 && of_body(turner)) add(LoadKind::air, false, at, -push, part_at(PartKind::force, f));
     }
   }
 
@@ -212,7 +223,7 @@ std::vector<Load> loads_of(const Assembly& assembly, const Solution& solution,
     collector.applied(); // of the mechanism they are drawn as parts of it
     collector.weight();
   }
-  collector.drag();
+  collector.air();
   collector.inertia();
   return std::move(collector.loads);
 }

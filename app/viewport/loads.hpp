@@ -1,4 +1,4 @@
-// What acts on the bodies of a steady state: reactions, drives, springs, weights, applied loads, drag and
+// What acts on the bodies of a steady state: reactions, drives, springs, weights, applied loads, the air and
 // inertial loads, each as a force or a moment at a point. No OpenGL.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace flyball {
 
-enum class LoadKind { reaction, drive, spring, weight, applied, drag, inertia };
+enum class LoadKind { reaction, drive, spring, weight, applied, air, inertia };
 inline constexpr std::size_t load_kinds = 7;
 
 struct Load {
@@ -31,7 +31,7 @@ std::optional<Quat> common_turn(const Mechanism& mechanism, const Solution& solu
 // `turn` since then.
 //   body < 0: of the mechanism. What each joint's parent exerts on its child; of that, what drives, springs
 //   and
-//     stops exert along the joints' coordinates; springs between bodies, on both; drag; inertial loads.
+//     stops exert along the joints' coordinates; springs between bodies, on both; the air; inertial loads.
 //   a body: its free-body diagram, which is complete: its forces, -m a of the mass centre included, add up to
 //     zero, and so do their moments with the couples, -d(I w)/dt included (d'Alembert).
 std::vector<Load> loads_of(const Assembly& assembly, const Solution& solution,

@@ -118,15 +118,24 @@ void Equations::choose_kinds() {
   const auto count = static_cast<Eigen::Index>(idle_.size());
   if (count == 0) return;
   // Drag that grows with the square of the speed alone holds nothing at rest.
-  std::vector<BodyForceParameters> drags = parameters_.body_forces;
-  for (BodyForceParameters& f : parameters_.body_forces)
-    f.quadratic = 0;
+  const std::vector<BodyForceParameters> forces = parameters_.body_forces, turning = parameters_.turning_air;
+  const auto change_air = [&](const auto& change) {
+    for (BodyForceParameters& f : parameters_.body_forces)
+      if (is_of_air(f.type)) change(f);
+    std::ranges::for_each(parameters_.turning_air, change);
+  };
+  change_air([](BodyForceParameters& f) { f.quadratic = f.normal_quadratic = 0; });
   evaluate_damping(damping_);
-  for (std::size_t i = 0; i < drags.size(); ++i)
-    parameters_.body_forces[i].linear = drags[i].linear + drags[i].quadratic * (drags[i].linear == 0);
+  parameters_.body_forces = forces;
+  parameters_.turning_air = turning;
+  change_air([](BodyForceParameters& f) {
+    f.type = ForceType::drag;
+    if (f.linear == 0) f.linear = f.quadratic + f.normal_quadratic;
+  });
   Eigen::MatrixXd any_drag;
   evaluate_damping(any_drag);
-  parameters_.body_forces = std::move(drags);
+  parameters_.body_forces = forces;
+  parameters_.turning_air = turning;
   const Eigen::MatrixXd motion = model_.scaling.column.asDiagonal() * null_;
   if (!sort_kinds(motion.transpose() * damping_.topLeftCorner(n_, n_) * motion)) refuse_numbers();
   while (damped_ < count && kind_sizes_[damped_] > 1e-12 * kind_sizes_[0] && kind_sizes_[damped_] > 0)

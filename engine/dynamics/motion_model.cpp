@@ -39,7 +39,8 @@ bool is_tree(const System& system) {
 } // namespace
 
 bool has_pairs(const System& system) {
-  return !system.springs.empty() || !system.cut_dampers.empty() || !system.bearings.empty();
+  return !system.springs.empty() || !system.cut_dampers.empty() || !system.bearings.empty() ||
+         !system.turning_air.empty();
 }
 
 MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
@@ -50,9 +51,10 @@ MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   bind(m.system, mechanism, m.parameters);
   set_scaling(m.system, m.parameters, m.scaling);
   m.parameters.moving = true;
-  const bool torques = !m.system.torques.empty() || !m.system.bearings.empty(); // only the matrices know
-  m.along_tree = is_tree(m.system) && m.system.nv > few && !torques;
-  m.sparse = no_drive_rides(m.system) && m.system.nv > few_of_bodies && !torques;
+  const bool dense = !m.system.torques.empty() || !m.system.bearings.empty() ||
+                     !m.system.turning_air.empty(); // the matrices alone know
+  m.along_tree = is_tree(m.system) && m.system.nv > few && !dense;
+  m.sparse = no_drive_rides(m.system) && m.system.nv > few_of_bodies && !dense;
   if (damped) return m;
   for (LinkParameters& l : m.parameters.links)
     for (CoordinateForce& f : l.force)

@@ -94,12 +94,16 @@ bool NewtonElimination::linearise(const MotionPoint& point) {
     const BodyForceParameters& f = point.parameters.body_forces[i];
     if (e.link < 0) continue;
     change.setZero();
-    const bool drag = f.type == ForceType::drag;
-    if (drag)
-      add_body_drag(e, f, k, change);
-    else
+    Mat618& own = nodes_[static_cast<std::size_t>(e.link)].own;
+    if (is_of_air(f.type)) {
+      add_air_damping(e, f, k, change);
+      own.middleCols<6>(6) += change;
+      change.setZero();
+      add_wind(e, f, k, change);
+    } else {
       add_body_force(e, f, k, change);
-    nodes_[static_cast<std::size_t>(e.link)].own.middleCols<6>(drag ? 6 : 0) += change;
+    }
+    own.leftCols<6>() += change;
   }
   return finite;
 }

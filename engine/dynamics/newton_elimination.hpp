@@ -9,8 +9,8 @@
 // dV = Y + X x V and dA = Z + Y x V + X x A, and what the body asks for changes by
 //   dF = X x* F + B Y + I Z,   B x = -I (V x x) + x x* I V + V x* I x
 // (the terms of engine/system/linearization.hpp; Echeandia and Wensing, 2021). Weight is in A. A force that
-// keeps its direction in the world adds K X, drag adds D Y, as in body_stiffness.hpp. So a body feels 18
-// numbers xi = gamma (X, Y, Z) of its own motion, where bodies at rest in a turning frame
+// keeps its direction in the world adds K X, one of the air D Y and in a wind K X, as in body_stiffness.hpp.
+// So a body feels 18 numbers xi = gamma (X, Y, Z) of its own motion, where bodies at rest in a turning frame
 // (tree_kkt.hpp) feel 6, and all of them are handed on from body to body as they are. With
 // dq = gamma N x + b_q and gamma da = x - b_s for the unknown x = ds
 //   xi = xi_p + sigma x + tau,  sigma = gamma^2 P N + gamma W + E,  tau = gamma P b_q - E b_s,

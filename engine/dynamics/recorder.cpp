@@ -169,7 +169,8 @@ bool Recorder::has_jacobi() {
     const Force& f = model_->mechanism.forces[index(e.force)];
     if (e.link >= 0 && (f.type != ForceType::force || f.frame != ForceFrame::world)) return false;
   }
-  if (!system.torques.empty() || !list_frictions(*model_).empty()) return false;
+  if (!system.turning_air.empty() || !system.torques.empty() || !list_frictions(*model_).empty())
+    return false;
   if (system.drives.empty() || p.phase_free) return true;
   Eigen::VectorXd q, all_q(model_->released.nq), all_u(model_->released.nv), step(system.nv);
   drawn_configuration(system, p, q);

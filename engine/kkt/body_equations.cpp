@@ -183,10 +183,10 @@ void BodyEquations::add_body_forces(const Problem& problem, const Kinematics<dou
     Mat6 change = Mat6::Zero();
     add_body_force(e, f, k, change);
     change *= weights_.stiffness;
-    if (weights_.velocity != 0 && f.type == ForceType::drag) {
-      Mat6 drag = Mat6::Zero();
-      add_body_drag(e, f, k, drag);
-      change += weights_.velocity * drag;
+    if (weights_.velocity != 0 && is_of_air(f.type)) {
+      Mat6 air = Mat6::Zero();
+      add_air_damping(e, f, k, air);
+      change += weights_.velocity * air;
     }
     sums_[static_cast<std::size_t>(n)].stiffness += change;
   }

@@ -1,14 +1,18 @@
 #include "engine/kkt/body_stiffness.hpp"
 
+#include "engine/system/air_force.hpp"
+
 namespace flyball {
 namespace {
 
-// How drag changes with the velocity of its point.
-Mat3 drag_slope(const BodyForceParameters& f, const Vec3& velocity) {
-  const double speed = velocity.norm();
-  Mat3 j = (f.linear + f.quadratic * speed) * Mat3::Identity();
-  if (speed > 0) j += f.quadratic / speed * velocity * velocity.transpose();
-  return j;
+// Of a force of the air: its point from the link's origin, and how it changes with the flow there.
+struct AirSlope {
+  Mat3 armx, slope;
+};
+AirSlope air_slope(const BodyForceElement& e, const BodyForceParameters& f, const Kinematics<double>& k) {
+  const Vec3 point = k.point(e.link, f.at);
+  return {skew<double>(point - k.at(e.link).o),
+          air_force_slope(f, k.at(e.link).R, f.wind - k.velocity(e.link, point))};
 }
 
 } // namespace
@@ -55,18 +59,17 @@ void set_body_stiffness(const Parameters& p, std::size_t l, const Kinematics<dou
 void add_body_force(const BodyForceElement& e, const BodyForceParameters& f, const Kinematics<double>& k,
                     Mat6& own) {
   // A force fixed in the body turns with it, as F_b does by itself.
-  if (f.type != ForceType::drag && f.frame == ForceFrame::body) return;
+  const bool air = is_of_air(f.type);
+  if (!air && f.frame == ForceFrame::body) return;
   const LinkState<double>& x = k.links[static_cast<std::size_t>(e.link)];
-  const AppliedForce<double> a = applied_force(e, f, k);
-  const Vec3 arm = a.point - x.o;
-  const Mat3 armx = skew(arm);
-  if (f.type != ForceType::drag) {
+  if (!air) {
+    const AppliedForce<double> a = applied_force(e, f, k);
     const Mat3 fx = skew(a.force);
-    own.topLeftCorner<3, 3>() -= armx * fx + skew(a.torque);
+    own.topLeftCorner<3, 3>() -= skew<double>(a.point - x.o) * fx + skew(a.torque);
     own.bottomLeftCorner<3, 3>() -= fx;
     return;
   }
-  const Mat3 j = drag_slope(f, k.velocity(e.link, a.point));
+  const auto& [armx, j] = air_slope(e, f, k);
   // Velocity at the point of V x X, whose parts are w x theta and v x theta + w x x.
   const Mat3 wx = skew(x.w);
   const Mat3 by_turn = j * (skew(x.v) - armx * wx), by_shift = j * wx;
@@ -74,6 +77,16 @@ void add_body_force(const BodyForceElement& e, const BodyForceParameters& f, con
   own.topRightCorner<3, 3>() += armx * by_shift;
   own.bottomLeftCorner<3, 3>() += by_turn;
   own.bottomRightCorner<3, 3>() += by_shift;
+  add_wind(e, f, k, own);
+}
+
+void add_wind(const BodyForceElement& e, const BodyForceParameters& f, const Kinematics<double>& k,
+              Mat6& own) {
+  if (f.wind.isZero(0)) return;
+  const auto& [armx, j] = air_slope(e, f, k);
+  const Mat3 by_turn = -j * skew(f.wind);
+  own.topLeftCorner<3, 3>() += armx * by_turn;
+  own.bottomLeftCorner<3, 3>() += by_turn;
 }
 
 // A particle at r with the velocity v + w' x r in the frame feels 2 w x that by its mass, and its wrench is r
@@ -90,11 +103,9 @@ Mat6 coriolis_matrix(const BodyInertia& n, const Vec3& w) {
   return d;
 }
 
-void add_body_drag(const BodyForceElement& e, const BodyForceParameters& f, const Kinematics<double>& k,
-                   Mat6& damping) {
-  const Vec3 point = k.point(e.link, f.at);
-  const Mat3 j = drag_slope(f, k.velocity(e.link, point));
-  const Mat3 armx = skew<double>(point - k.at(e.link).o);
+void add_air_damping(const BodyForceElement& e, const BodyForceParameters& f, const Kinematics<double>& k,
+                     Mat6& damping) {
+  const auto& [armx, j] = air_slope(e, f, k);
   damping.topLeftCorner<3, 3>() -= armx * j * armx;
   damping.topRightCorner<3, 3>() += armx * j;
   damping.bottomLeftCorner<3, 3>() -= j * armx;

@@ -27,15 +27,18 @@ void set_body_inertia(const Parameters& parameters, std::size_t link, const Kine
 void set_body_stiffness(const Parameters& parameters, std::size_t link, const Kinematics<double>& kinematics,
                         BodyInertia& out, Mat6& own);
 
-// Adds a force, torque or drag on the body.
+// Adds a force, torque or force of the air on the body.
 void add_body_force(const BodyForceElement& element, const BodyForceParameters& force,
                     const Kinematics<double>& kinematics, Mat6& own);
 
 // How the wrench changes with the body's velocity in a frame that turns with w (rad/s): Coriolis forces.
 Mat6 coriolis_matrix(const BodyInertia& body, const Vec3& w);
-// Adds what drag does.
-void add_body_drag(const BodyForceElement& element, const BodyForceParameters& drag,
-                   const Kinematics<double>& kinematics, Mat6& damping);
+// Adds how a force of the air changes with the body's velocity; and, a part of add_body_force, with its turn
+// in a wind, which does not turn with it.
+void add_air_damping(const BodyForceElement& element, const BodyForceParameters& air,
+                     const Kinematics<double>& kinematics, Mat6& damping);
+void add_wind(const BodyForceElement& element, const BodyForceParameters& air,
+              const Kinematics<double>& kinematics, Mat6& own);
 
 // The metric as a matrix; and applied to a motion.
 Mat6 inertia_matrix(const BodyInertia& body);

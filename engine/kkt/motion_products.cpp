@@ -114,8 +114,8 @@ void MotionProducts::add_body_forces(const Problem& problem, const Kinematics<do
     Node& n = node(at);
     add_body_force(e, f, k, n.stiffness);
     n.stiff = true;
-    if (f.type != ForceType::drag) continue;
-    add_body_drag(e, f, k, n.damping);
+    if (!is_of_air(f.type)) continue;
+    add_air_damping(e, f, k, n.damping);
     n.damped = has_dampers_ = true;
   }
 }

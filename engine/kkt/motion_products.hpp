@@ -4,9 +4,9 @@
 //
 // Derivation. Beyond a drive that rides on no free coordinate everything stands still in the drive's frame,
 // which turns with w. There a body's small motion X (a twist) asks for the wrench M_b X'' + D_b X' + K_b X +
-// X x* F_b: M_b its inertia, D_b of Coriolis and drag forces, K_b and F_b those of tree_kkt.hpp. The
-// coordinates feel what is summed up beyond them, as derived there; K x is needed beside elimination to tell
-// how good a solution is.
+// X x* F_b: M_b its inertia, D_b of Coriolis forces and those of the air, K_b and F_b those of tree_kkt.hpp.
+// The coordinates feel what is summed up beyond them, as derived there; K x is needed beside elimination to
+// tell how good a solution is.
 #pragma once
 
 #include "engine/kkt/pair_blocks.hpp"

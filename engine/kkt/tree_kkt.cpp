@@ -132,9 +132,9 @@ void TreeKkt::add_motion(const Problem& problem, const Kinematics<double>& k) {
     const BodyForceElement& e = problem.system.body_forces[i];
     const BodyForceParameters& f = problem.parameters.body_forces[i];
     const int at = e.link < 0 ? -1 : node_of_link_[static_cast<std::size_t>(e.link)];
-    if (at < 0 || f.type != ForceType::drag) continue;
+    if (at < 0 || !is_of_air(f.type)) continue;
     Mat6 damping = Mat6::Zero();
-    add_body_drag(e, f, k, damping);
+    add_air_damping(e, f, k, damping);
     nodes_[static_cast<std::size_t>(at)].own += rate_ * damping;
   }
 }

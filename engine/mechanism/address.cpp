@@ -106,6 +106,10 @@ Number find_number(AMechanism& mechanism, std::string_view address) {
     auto&& gravity = changeable(mechanism.gravity);
     return find_number("", address, numbers_of_gravity(gravity));
   }
+  if (list == "air") {
+    auto&& air = changeable(mechanism.air);
+    return find_number("", address, numbers_of(air));
+  }
   if (list == "simulation") {
     auto&& simulation = changeable(mechanism.simulation);
     return find_number("", address, numbers_of(simulation));
@@ -120,8 +124,8 @@ Number find_number(AMechanism& mechanism, std::string_view address) {
     auto&& point = changeable(find_part(list, name, mechanism.points));
     return find_number(path, key, numbers_of(point));
   }
-  constexpr std::array<std::string_view, 7> starts{"parameters", "points", "gravity",   "bodies",
-                                                   "joints",     "forces", "simulation"};
+  constexpr std::array<std::string_view, 8> starts{"parameters", "points", "gravity", "air",
+                                                   "bodies",     "joints", "forces",  "simulation"};
   throw SceneError(std::string(address),
                    "expected an address that begins with " + word_list(starts) + did_you_mean(list, starts));
 }
@@ -192,6 +196,7 @@ std::vector<std::string> parameter_addresses(const Mechanism& mechanism) {
   for (NamedPoint& point : copy.points)
     append_addresses(all, "points." + point.name + ".", numbers_of(point), point.formulas);
   append_addresses(all, "", numbers_of_gravity(copy.gravity), copy.formulas);
+  append_addresses(all, "", numbers_of(copy.air), copy.formulas);
   for (Body& body : copy.bodies)
     append_addresses(all, "bodies." + body.name + ".", numbers_of(body), body.formulas);
   for (Joint& joint : copy.joints)

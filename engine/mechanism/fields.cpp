@@ -23,8 +23,8 @@ std::string_view bearing_unit(std::string_view of, std::size_t size, std::size_t
   if (size == 2) return of;
   constexpr std::array<std::string_view, 4> by_shift{"N/m", "N", "N m/m", "N m/rad"},
       by_rate{"N s/m", "N s", "N m s/m", "N m s/rad"};
-  const std::size_t kind = (row < 3 ? 0U : 2U) + (column < 3 ? 0U : 1U);
-  return of == by_shift[0] ? by_shift[kind] : by_rate[kind];
+  const std::size_t quantity = (row < 3 ? 0U : 2U) + (column < 3 ? 0U : 1U);
+  return of == by_shift[0] ? by_shift[quantity] : by_rate[quantity];
 }
 
 Vec3 mass_centre(const Mechanism& mechanism, std::string_view body) {

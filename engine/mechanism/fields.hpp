@@ -50,7 +50,8 @@ inline constexpr bool required = true;
 inline constexpr Field name{"name", expected::word, "", required}, type{"type", expected::word, "", required},
     bodies{"bodies", expected::two_bodies, "", required},
     points{"points", expected::two_points, "m", required}, gravity{"gravity", expected::point, "m/s^2"},
-    simulation{"simulation", expected::object}, density{"density", expected::number, "kg/m^3"},
+    air{"air", expected::object}, simulation{"simulation", expected::object},
+    kind{"kind", "gear, belt, rack or screw"}, density{"density", expected::number, "kg/m^3"},
     mass{"mass", expected::number, "kg"}, position{"position", expected::point, "m"},
     inertia{"inertia", "three numbers [xx, yy, zz] or six [xx, yy, zz, xy, xz, yz]", "kg m^2"},
     value{"value", expected::number, "", required}, stiffness{"stiffness", expected::number, "N/m"};
@@ -194,7 +195,17 @@ void visit_fields(Visitor& v, Part& joint, const Mechanism* of = nullptr) {
   if (joint.type == JointType::gear) {
     const fields::GearUnits unit = of ? fields::gear_units(*of, joint) : fields::GearUnits{};
     v.field({"joints", "two names [a, b]", "", required}, joint.joints);
-    v.field({"ratio", expected::number, unit.ratio, required}, joint.ratio);
+    v.field(fields::kind, joint.kind, GearKind::gear);
+    switch (joint.kind) {
+    case GearKind::gear: v.field({"ratio", expected::number, unit.ratio, required}, joint.ratio); break;
+    case GearKind::belt:
+      v.pair({"radii", "two numbers, the radii of the wheels a and b", "m", required}, joint.radii[0],
+             joint.radii[1]);
+      v.field({"crossed", expected::boolean}, joint.crossed, false);
+      break;
+    case GearKind::rack: v.field({"radius", expected::number, "m", required}, joint.radii[0]); break;
+    case GearKind::screw: v.field({"lead", expected::number, "m", required}, joint.lead); break;
+    }
     v.field({"offset", expected::number, unit.offset}, joint.offset, of ? drawn_offset(*of, joint) : 0);
   } else {
     v.field(fields::bodies, joint.bodies);
@@ -246,11 +257,25 @@ void visit_fields(Visitor& v, Part& force, const Mechanism* of = nullptr) {
   if (force.type == ForceType::drag) {
     v.field({"linear", expected::number, "N s/m"}, force.linear, 0);
     v.field({"quadratic", expected::number, "N s^2/m^2"}, force.quadratic, 0);
+  } else if (force.type == ForceType::vane) {
+    v.field({"area", expected::number, "m^2", required}, force.area);
+    v.field({"normal", expected::direction, "", required}, force.normal);
+    v.field({"chord", expected::direction}, force.chord);
+    v.field({"cn", expected::number}, force.cn, Force().cn);
+    v.field({"cd", expected::number}, force.cd, 0);
   } else {
     v.field({"vector", expected::point, force.type == ForceType::torque ? "N m" : "N", required},
             force.vector);
     v.field({"frame", "world or body"}, force.frame, ForceFrame::world);
   }
+}
+
+template <class Visitor, PartOf<Air> Part>
+void visit_fields(Visitor& v, Part& air) {
+  v.describe(air.description);
+  v.field({"density", expected::number, "kg/m^3"}, air.density, Air().density);
+  v.field({"wind", expected::point, "m/s"}, air.wind, Vec3::Zero());
+  v.field({"turns_with", expected::word}, air.turns_with, {});
 }
 
 template <class Visitor, PartOf<Slider> Part>
@@ -292,6 +317,7 @@ void visit_fields(Visitor& v, Part& mechanism) {
   v.field({"parameters", expected::named_objects}, mechanism.parameters, {});
   v.field({"points", expected::named_points}, mechanism.points, {});
   v.field(fields::gravity, mechanism.gravity, Vec3::Zero());
+  v.field(fields::air, mechanism.air, {});
   v.field({"bodies", expected::list, "", required}, mechanism.bodies);
   v.field({"joints", expected::list, "", required}, mechanism.joints);
   v.field({"forces", expected::list}, mechanism.forces, {});

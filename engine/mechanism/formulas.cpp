@@ -75,6 +75,7 @@ void visit_parts(Mechanism& m, const PartVisitor& visit) {
   if (!m.formulas.empty())
     visit("", m.formulas, [&] {
       std::vector<Number> all = numbers_of_gravity(m.gravity);
+      std::ranges::move(numbers_of(m.air), std::back_inserter(all));
       std::ranges::move(numbers_of(m.simulation), std::back_inserter(all));
       return all;
     });
@@ -284,7 +285,7 @@ FormulaPlace formula_place(Mechanism& mechanism, std::string_view address) {
     return segment;
   };
   const std::string_view whole = address, list = next();
-  if (list == "gravity" || list == "simulation") return {&mechanism.formulas, whole};
+  if (list == "gravity" || list == "air" || list == "simulation") return {&mechanism.formulas, whole};
   const std::string_view name = next();
   const auto of = [&](auto& parts) -> FormulaPlace {
     const int i = index_of_named(parts, name);
@@ -445,6 +446,7 @@ std::string used_of_version_2(const Mechanism& mechanism) {
   if (!mechanism.points.empty()) return "points";
   if (!mechanism.measures.empty()) return "measures";
   if (!mechanism.formulas.empty()) return first(mechanism, "");
+  if (mechanism.air != Air()) return "air";
   for (const Body& body : mechanism.bodies) {
     const std::string path = "bodies." + body.name;
     if (body.density) return path + ".density";
@@ -454,6 +456,7 @@ std::string used_of_version_2(const Mechanism& mechanism) {
   }
   for (const Joint& joint : mechanism.joints) {
     if (!joint.formulas.empty()) return first(joint, "joints." + joint.name);
+    if (joint.kind != GearKind::gear) return "joints." + joint.name + ".kind";
     for (const Coordinate& c : joint.coordinates) {
       if (c.drive && (c.drive->load || finds_speed(*c.drive)))
         return "joints." + joint.name +
@@ -466,7 +469,8 @@ std::string used_of_version_2(const Mechanism& mechanism) {
   for (const Force& force : mechanism.forces)
     if (!force.formulas.empty())
       return first(force, "forces." + force.name);
-    else if (force.force || force.damping_force || force.type == ForceType::bearing)
+    else if (force.force || force.damping_force || force.type == ForceType::bearing ||
+             force.type == ForceType::vane)
       return "forces." + force.name;
   return {};
 }

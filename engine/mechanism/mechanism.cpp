@@ -1,7 +1,8 @@
-#include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/gear_ratio.hpp"
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace flyball {
 namespace {
@@ -65,9 +66,22 @@ std::string_view type_name(JointType type) {
   return traits(type).name;
 }
 
+std::string_view type_name(GearKind kind) {
+  constexpr std::array<std::string_view, 4> names{"gear", "belt", "rack", "screw"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+bool turns_into_slide(GearKind kind) {
+  return kind == GearKind::rack || kind == GearKind::screw;
+}
+
 std::string_view type_name(ForceType type) {
-  constexpr std::array<std::string_view, 5> names{"spring", "force", "torque", "drag", "bearing"};
+  constexpr std::array<std::string_view, 6> names{"spring", "force", "torque", "drag", "vane", "bearing"};
   return names[static_cast<std::size_t>(type)];
+}
+
+bool is_of_air(ForceType type) {
+  return type == ForceType::drag || type == ForceType::vane;
 }
 
 std::string_view type_name(ShapeType type) {
@@ -171,7 +185,8 @@ double drawn_offset(const Mechanism& mechanism, const Joint& gear) {
     const std::vector<Coordinate>& all = mechanism.joints[static_cast<std::size_t>(joint)].coordinates;
     if (static_cast<std::size_t>(i) < all.size()) drawn[end] = all[static_cast<std::size_t>(i)].drawn;
   }
-  return drawn[1] - gear.ratio * drawn[0];
+  const double ratio = gear_ratio(gear);
+  return std::isfinite(ratio) ? drawn[1] - ratio * drawn[0] : drawn[1]; // a mistake of the radii alone
 }
 
 } // namespace flyball

@@ -105,7 +105,15 @@ enum class JointType {
   free,        // [translation, rotation vector]
   fixed,       // none
   distance,    // points, length; always cut
-  gear,        // joints, ratio, offset: q_b = ratio q_a + offset; always cut
+  gear,        // joints, kind, offset: q_b = ratio q_a + offset; always cut
+};
+
+// What a gear is made of, and so what its ratio is given by (see gear_ratio.hpp).
+enum class GearKind {
+  gear,  // ratio
+  belt,  // radii of the wheels a and b, crossed or not
+  rack,  // radius of the pinion: a turns, b slides
+  screw, // lead: a turns, b slides
 };
 
 // Pulls its coordinate back by stiffness times deflection, or by a force (N m or N, against the deflection)
@@ -181,13 +189,20 @@ struct Joint {
   std::array<Vec3, 2> points{Vec3::Zero(), Vec3::Zero()}; // m; distance: on the first body, on the second
   std::optional<double> length;                           // m; distance; default the drawn distance
   std::array<std::string, 2> joints; // gear: a, b ("name", or "name.index" where a joint has several)
-  double ratio = 1;                  // gear: q_b = ratio q_a + offset
   std::optional<double> offset;      // gear; default from the drawn values
+  GearKind kind = GearKind::gear;
+  double ratio = 1;                  // gear of its own kind: q_b = ratio q_a + offset
+  std::array<double, 2> radii{1, 1}; // m; belt: of the wheels a and b; rack: the first, below zero on the
+                                     // pinion's other side
+  bool crossed = false;              // belt: the wheels turn against each other
+  double lead = 0;                   // m a turn; screw, left-handed below zero
   Formulas formulas{};
   bool operator==(const Joint&) const = default;
 };
 
-enum class ForceType { spring, force, torque, drag, bearing };
+// A vane is a plate or blade in the air, on which the force depends on the direction of the flow (see
+// air_force.hpp).
+enum class ForceType { spring, force, torque, drag, vane, bearing };
 enum class ForceFrame { world, body };
 
 // Stiffness or damping of a bearing by rows, entries of its own axes: 2 x 2 of the shifts along x and y (N/m,
@@ -206,18 +221,31 @@ struct Force {
   std::optional<double> free_length;                      // m; spring; default the drawn distance
   double damping = 0;                                     // N s/m; spring, along its line
   std::optional<double> force{}, damping_force{}; // N; spring: in place of these, see CoordinateSpring
-  std::string body;                               // force, torque, drag
-  std::optional<Vec3> at;               // m; force, torque, drag; default the mass centre; bearing, required
-  Vec3 vector = Vec3::Zero();           // N or N m; force, torque
+  std::string body;                               // force, torque, drag, vane
+  std::optional<Vec3> at;     // m; force, torque, drag, vane; default the mass centre; bearing, required
+  Vec3 vector = Vec3::Zero(); // N or N m; force, torque
   ForceFrame frame = ForceFrame::world; // whether `vector` is in world or in body axes
-  double linear = 0;                    // N s/m; drag, in air at rest in the world
+  double linear = 0;                    // N s/m; drag
   double quadratic = 0;                 // N s^2/m^2; drag
   Vec3 axis = Vec3::UnitZ();            // bearing, any length: of what turns in it
   std::optional<Vec3>
       x_axis{}; // bearing, any length: its x in the plane across; default as bearing_axes says
   BearingMatrix bearing_stiffness{}, bearing_damping{};
+  double area = 0;             // m^2; vane
+  Vec3 normal = Vec3::UnitZ(); // any length, fixed in the body; vane
+  std::optional<Vec3> chord;   // any length; vane: a blade along the flow, across which flow does nothing
+  double cn = 1.2, cd = 0;     // vane: coefficients of the force along the normal and along the flow
   Formulas formulas{};
   bool operator==(const Force&) const = default;
+};
+
+// The air that drag and vanes are in: at rest in the world, a wind, or turning with a body as if solid.
+struct Air {
+  double density = 1.225;   // kg/m^3; of vanes
+  Vec3 wind = Vec3::Zero(); // m/s, the same everywhere
+  std::string turns_with;   // a body; empty: none
+  std::string description{};
+  bool operator==(const Air&) const = default;
 };
 
 enum class SliderScale { linear, log };
@@ -261,6 +289,7 @@ struct Mechanism {
   std::vector<NamedParameter> parameters;
   std::vector<NamedPoint> points;
   Vec3 gravity = Vec3::Zero(); // m/s^2
+  Air air;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
   std::vector<Force> forces;
@@ -268,7 +297,7 @@ struct Mechanism {
   std::vector<Slider> sliders;
   Simulation simulation;
   View view;
-  Formulas formulas{}; // of gravity and of the simulation, by whole addresses
+  Formulas formulas{}; // of gravity, of the air and of the simulation, by whole addresses
   bool operator==(const Mechanism&) const = default;
 };
 
@@ -278,6 +307,7 @@ int coordinate_count(JointType type);
 bool is_angle(JointType type, int i);
 // The word used for a type in scene files and messages.
 std::string_view type_name(JointType type);
+std::string_view type_name(GearKind kind);
 std::string_view type_name(ForceType type);
 std::string_view type_name(ShapeType type);
 std::string_view type_name(ForceFrame frame);
@@ -292,6 +322,10 @@ Mat3 bearing_axes(const Force& bearing);
 // 2 or 6: the larger of its matrices.
 int bearing_size(const Force& bearing);
 
+// Whether a rack or screw, whose first coordinate is a turn and whose second a slide.
+bool turns_into_slide(GearKind kind);
+// Whether the air exerts it: drag or a vane.
+bool is_of_air(ForceType type);
 // Whether the speed is found rather than given: by a torque, or where momentum is kept.
 bool finds_speed(const Drive& drive);
 // Whether coordinate `i` is a component of a rotation vector, whose rate is no angular velocity and so can

@@ -40,11 +40,13 @@ void find_body_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
 void find_body_warnings(const Mechanism& mechanism, Mistakes& warnings);
 void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
 void find_force_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
+void find_air_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
 // Of one of them by itself, whatever the names of other parts.
 void find_mistakes_of(const Body& body, const std::string& path, Mistakes& mistakes);
 void find_mistakes_of_joint(const Mechanism& mechanism, std::size_t joint, Mistakes& mistakes);
 void find_mistakes_of(const Mechanism& mechanism, const Force& force, const std::string& path,
                       Mistakes& mistakes);
+void find_mistakes_of(const Air& air, Mistakes& mistakes);
 // Of a force or joint between two bodies.
 void find_two_body_mistakes(const Mechanism& mechanism, const BodyNumbers& numbers,
                             const std::array<std::string, 2>& bodies, const std::string& path,

@@ -29,6 +29,7 @@ class Collector {
                     [&place](double v) { place = v; }});
   }
   void field(const Field& field, Vec3& place) { add(key(field), field, place); }
+  void field(const Field& field, Vec3& place, const Vec3&) { add(key(field), field, place); }
   void field(const Field& field, std::optional<Vec3>& place) {
     if (centre_) return this->field(field, place, *centre_);
     if (place) add(key(field), field, *place);
@@ -54,6 +55,10 @@ class Collector {
       add(key(field) + "." + std::to_string(i / size) + "." + std::to_string(i % size), entry, places[i]);
     }
   }
+  void pair(const Field& field, double& a, double& b) {
+    add(key(field) + ".0", field, a);
+    add(key(field) + ".1", field, b);
+  }
   void pair(const Field& field, Vec3& a, Vec3& b) {
     add(key(field) + ".0", field, a);
     add(key(field) + ".1", field, b);
@@ -64,6 +69,7 @@ class Collector {
   void field(const Field&, const std::optional<bool>&) {}
   void field(const Field&, bool, bool) {}
   void field(const Field&, ForceFrame, ForceFrame) {}
+  void field(const Field&, GearKind, GearKind) {}
   void field(const Field&, DriveKeeps, DriveKeeps) {}
   void field(const Field&, const std::string&, const std::string&) {}
   void field(const Field&, const std::optional<std::array<double, 2>>&) {}
@@ -172,6 +178,12 @@ std::vector<Number> numbers_of(const Mechanism& mechanism, Force& force) {
 std::vector<Number> numbers_of_gravity(Vec3& gravity) {
   Collector all;
   all.field(fields::gravity, gravity);
+  return all.take();
+}
+
+std::vector<Number> numbers_of(Air& air) {
+  Collector all(std::string(fields::air.key) + ".");
+  visit_fields(all, air);
   return all.take();
 }
 

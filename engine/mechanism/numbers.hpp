@@ -28,6 +28,7 @@ std::vector<Number> all_numbers_of(Body& body);                     // "rotation
 std::vector<Number> all_numbers_of(Shape& shape, const Body& body); // "at.0" also where it is absent
 // The parts without a name, whose keys are whole addresses.
 std::vector<Number> numbers_of_gravity(Vec3& gravity);
+std::vector<Number> numbers_of(Air& air);
 std::vector<Number> numbers_of(Simulation& simulation);
 
 } // namespace flyball

@@ -106,6 +106,9 @@ Keys of(const Friction&) {
 Keys of(const Drive&) {
   return of_only_type<Drive>();
 }
+Keys of(const Air&) {
+  return of_only_type<Air>();
+}
 Keys of(const Slider&) {
   return of_only_type<Slider>();
 }
@@ -122,7 +125,18 @@ Keys of(const Shape& shape) {
   return of_its_type(shape);
 }
 Keys of(const Joint& joint) {
-  return of_its_type(joint);
+  if (joint.type != JointType::gear) return of_its_type(joint);
+  static const auto of_each_kind = [] {
+    std::array<std::vector<Field>, 4> all;
+    Joint gear;
+    gear.type = JointType::gear;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      gear.kind = static_cast<GearKind>(i);
+      all[i] = KeyList::of(gear);
+    }
+    return all;
+  }();
+  return of_each_kind[static_cast<std::size_t>(joint.kind)];
 }
 Keys of(const Force& force) {
   return of_its_type(force);
@@ -132,7 +146,18 @@ std::span<const Keys> of_all_types(const Shape&) {
   return of_each_type<Shape>();
 }
 std::span<const Keys> of_all_types(const Joint&) {
-  return of_each_type<Joint>();
+  static const std::vector<Keys> all = [] {
+    const std::span<const Keys> types = of_each_type<Joint>();
+    std::vector<Keys> with_kinds(types.begin(), types.end());
+    Joint gear;
+    gear.type = JointType::gear;
+    for (std::size_t i = 0; i < words_of(gear.kind).size(); ++i) {
+      gear.kind = static_cast<GearKind>(i);
+      with_kinds.push_back(of(gear));
+    }
+    return with_kinds;
+  }();
+  return all;
 }
 std::span<const Keys> of_all_types(const Force&) {
   return of_each_type<Force>();
@@ -141,8 +166,11 @@ std::span<const Keys> of_all_types(const Force&) {
 std::span<const std::string_view> words_of(JointType) {
   return words<JointType, 10>();
 }
+std::span<const std::string_view> words_of(GearKind) {
+  return words<GearKind, 4>();
+}
 std::span<const std::string_view> words_of(ForceType) {
-  return words<ForceType, 5>();
+  return words<ForceType, 6>();
 }
 std::span<const std::string_view> words_of(ShapeType) {
   return words<ShapeType, 4>();

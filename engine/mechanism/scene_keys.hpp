@@ -27,6 +27,7 @@ Keys of(const Stop& stop);
 Keys of(const Friction& friction);
 Keys of(const Drive& drive);
 Keys of(const Force& force);
+Keys of(const Air& air);
 Keys of(const Slider& slider);
 Keys of(const Simulation& simulation);
 Keys of(const View& view);
@@ -39,6 +40,7 @@ std::span<const Keys> of_all_types(const Shape& shape);
 
 // The words of an enumeration, in its order.
 std::span<const std::string_view> words_of(JointType any);
+std::span<const std::string_view> words_of(GearKind);
 std::span<const std::string_view> words_of(ForceType any);
 std::span<const std::string_view> words_of(ShapeType any);
 std::span<const std::string_view> words_of(ForceFrame any);

@@ -30,6 +30,8 @@ std::string noun(const Shape& shape) {
   return "a " + std::string(type_name(shape.type));
 }
 std::string noun(const Joint& joint) {
+  if (joint.type == JointType::gear && joint.kind != GearKind::gear)
+    return "a " + std::string(type_name(joint.kind));
   return "a " + std::string(type_name(joint.type)) + " joint";
 }
 std::string noun(const Force& force) {
@@ -58,6 +60,9 @@ std::string noun(const Friction&) {
 }
 std::string noun(const Drive&) {
   return "a drive";
+}
+std::string noun(const Air&) {
+  return "the air";
 }
 std::string noun(const Slider&) {
   return "a slider";
@@ -290,6 +295,10 @@ Part read_object(const ValueReader& value) {
     part.type = static_cast<decltype(part.type)>(read_type(value, keys::words_of(part.type), noun(&part)));
     relatives = keys::of_all_types(part);
   }
+  if constexpr (std::is_same_v<Part, Joint>) // on which the other keys of a gear depend
+    if (part.type == JointType::gear && value.json().contains(fields::kind.key))
+      read(ValueReader(value.json().at(fields::kind.key), key_path(value.path(), fields::kind.key), ""),
+           part.kind);
   FormulaSink sink = value.sink();
   if constexpr (requires { part.formulas; }) sink = {&part.formulas, value.path().size()};
   if constexpr (std::is_same_v<Part, Slider> || std::is_same_v<Part, Camera>) sink = {};

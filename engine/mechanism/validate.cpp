@@ -77,7 +77,7 @@ class NumberCheck {
   void field(const Field&, const std::optional<Value>& value, const Value& stands_for) {
     check(value.value_or(stands_for));
   }
-  void pair(const Field&, const Vec3& a, const Vec3& b) {
+  void pair(const Field&, const auto& a, const auto& b) {
     check(a);
     check(b);
   }
@@ -138,6 +138,12 @@ void expect_finite(const std::vector<Number>& numbers, const std::string& prefix
 void find_non_finite(Vec3 gravity, Mistakes& mistakes) {
   if (!gravity.allFinite() || gravity.cwiseAbs().maxCoeff() > largest_number)
     expect_finite(numbers_of_gravity(gravity), "", mistakes);
+}
+
+void find_non_finite(const Air& air, Mistakes& mistakes) {
+  if (has_right_numbers(air)) return;
+  Air copy = air;
+  expect_finite(numbers_of(copy), "", mistakes);
 }
 
 void find_non_finite(const Body& body, const std::string& path, Mistakes& mistakes) {
@@ -203,6 +209,7 @@ void find_non_finite(const Mechanism& mechanism, Mistakes& mistakes) {
   for (const NamedMeasure& measure : mechanism.measures)
     find_measure_name_mistakes(mechanism, measure, mistakes);
   find_non_finite(mechanism.gravity, mistakes);
+  find_non_finite(mechanism.air, mistakes);
   for (std::size_t i = 0; i < mechanism.bodies.size(); ++i)
     find_non_finite(mechanism.bodies[i], part_path("bodies", i, mechanism.bodies[i].name), mistakes);
   for (std::size_t i = 0; i < mechanism.joints.size(); ++i)
@@ -266,6 +273,9 @@ bool is_right_at(const Mechanism& mechanism, std::string_view address) {
   if (list == "parameters" || list == "points") return false; // any part may follow from it
   if (list == "gravity") {
     find_non_finite(mechanism.gravity, mistakes);
+  } else if (list == "air") {
+    find_non_finite(mechanism.air, mistakes);
+    find_mistakes_of(mechanism.air, mistakes);
   } else if (list == "simulation") {
     find_setting_mistakes(mechanism, mistakes);
   } else if (list == "bodies") {
@@ -344,6 +354,7 @@ std::vector<SceneError> find_mistakes(const Mechanism& mechanism) {
   find_body_mistakes(mechanism, mistakes);
   find_joint_mistakes(mechanism, mistakes);
   find_force_mistakes(mechanism, mistakes);
+  find_air_mistakes(mechanism, mistakes);
   find_measure_mistakes(mechanism, mistakes);
   find_slider_mistakes(mechanism, mistakes);
   find_setting_mistakes(mechanism, mistakes);
@@ -364,6 +375,8 @@ void validate_numbers(const Mechanism& mechanism) {
   for (const NamedPoint& point : mechanism.points)
     find_non_finite(point, mistakes);
   find_non_finite(mechanism.gravity, mistakes);
+  find_non_finite(mechanism.air, mistakes);
+  find_mistakes_of(mechanism.air, mistakes);
   bool geared = false;
   for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
     find_non_finite(mechanism.bodies[i], mechanism.bodies[i].name, mistakes);

@@ -1,4 +1,5 @@
 #include "engine/mechanism/body_groups.hpp"
+#include "engine/mechanism/gear_ratio.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -63,8 +64,9 @@ class DrivenCoordinates {
       const auto [joint, i] = find_coordinate(mechanism_, gear.joints[end]);
       ends[end] = first_[static_cast<std::size_t>(joint)] + static_cast<std::size_t>(i);
     }
-    neighbours_[ends[0]].push_back({ends[1], gear.ratio, g});
-    neighbours_[ends[1]].push_back({ends[0], 1 / gear.ratio, g});
+    const double ratio = gear_ratio(gear);
+    neighbours_[ends[0]].push_back({ends[1], ratio, g});
+    neighbours_[ends[1]].push_back({ends[0], 1 / ratio, g});
   }
 
   void spread(std::size_t from, std::deque<std::size_t>& waiting, Mistakes& mistakes) {
@@ -84,8 +86,9 @@ class DrivenCoordinates {
         const Joint& found = mechanism_.joints[source.found ? source.joint : target.joint];
         const Joint& given = mechanism_.joints[source.found ? target.joint : source.joint];
         mistakes.add(joint_path(mechanism_, g),
-                     "expected drives of one kind: the gear determines the speed of " + found.name +
-                         " by that of " + given.name + ", so that none is to be found; what " + found.name +
+                     "expected drives of one kind: the " + std::string(type_name(mechanism_.joints[g].kind)) +
+                         " determines the speed of " + found.name + " by that of " + given.name +
+                         ", so that none is to be found; what " + found.name +
                          " gives would only load the drive of " + given.name);
         continue;
       }

@@ -184,6 +184,35 @@ void find_length_mistakes(const Joint& joint, const std::string& path, Mistakes&
     mistakes.add(path + ".points", "expected two points apart, or `length` given");
 }
 
+// Of what its ratio is given by.
+void find_ratio_mistakes(const Joint& gear, const std::string& path, Mistakes& mistakes) {
+  constexpr const char* not_zero = "expected a number other than zero";
+  switch (gear.kind) {
+  case GearKind::gear: return mistakes.expect(gear.ratio != 0, path, ".ratio", not_zero);
+  case GearKind::rack: return mistakes.expect(gear.radii[0] != 0, path, ".radius", not_zero);
+  case GearKind::screw: return mistakes.expect(gear.lead != 0, path, ".lead", not_zero);
+  case GearKind::belt: break;
+  }
+  for (std::size_t end = 0; end < 2; ++end)
+    if (!(gear.radii[end] > 0))
+      mistakes.add(path + ".radii[" + std::to_string(end) + "]",
+                   "expected a number above zero, found " + number_text(gear.radii[end]));
+}
+
+// A belt turns both wheels; racks and screws turn the first coordinate into a slide.
+void find_kind_mistakes(const Joint& gear, std::size_t end, bool angle, const std::string& where,
+                        Mistakes& mistakes) {
+  if (gear.kind == GearKind::gear) return;
+  const bool expects_angle = gear.kind == GearKind::belt || end == 0;
+  if (angle != expects_angle)
+    mistakes.add(where,
+                 std::string(expects_angle ? "expected a turn" : "expected a slide") + ", found the " +
+                     (angle ? "turn " : "slide ") + gear.joints[end] + ": a " +
+                     std::string(type_name(gear.kind)) +
+                     (gear.kind == GearKind::belt ? " runs over two wheels"
+                                                  : " turns at its first joint and slides at its second"));
+}
+
 void find_gear_mistakes(const Mechanism& mechanism, const Joint& gear, const std::string& path,
                         Mistakes& mistakes) {
   for (std::size_t end = 0; end < 2; ++end) {
@@ -220,9 +249,11 @@ void find_gear_mistakes(const Mechanism& mechanism, const Joint& gear, const std
           "joints");
     else if (joint.cut == true)
       mistakes.add(where, "expected a joint that is not cut; a cut joint has no coordinate");
+    else
+      find_kind_mistakes(gear, end, is_angle(joint.type, coordinate.coordinate), where, mistakes);
   }
   if (gear.joints[0] == gear.joints[1]) mistakes.add(path + ".joints", "expected two different coordinates");
-  mistakes.expect(gear.ratio != 0, path, ".ratio", "expected a number other than zero");
+  find_ratio_mistakes(gear, path, mistakes);
 }
 
 } // namespace
@@ -296,8 +327,36 @@ void find_mistakes_of(const Mechanism& mechanism, const Force& force, const std:
     });
     return;
   }
-  not_negative(force.linear, "linear");
-  not_negative(force.quadratic, "quadratic");
+  if (force.type == ForceType::drag) {
+    not_negative(force.linear, "linear");
+    not_negative(force.quadratic, "quadratic");
+  }
+  if (force.type != ForceType::vane) return;
+  not_negative(force.area, "area");
+  not_negative(force.cn, "cn");
+  not_negative(force.cd, "cd");
+  constexpr const char* expected = "expected a direction, not zero";
+  const bool normal = has_direction(force.normal), chord = !force.chord || has_direction(*force.chord);
+  mistakes.expect(normal, path, ".normal", expected);
+  mistakes.expect(chord, path, ".chord", expected);
+  if (force.chord && normal && chord && parallel(force.normal, *force.chord))
+    mistakes.add(path + ".chord", "expected a direction that is not parallel to `normal`");
+}
+
+void find_mistakes_of(const Air& air, Mistakes& mistakes) {
+  if (air.density < 0)
+    mistakes.add("air.density", "expected zero or more, found " + number_text(air.density));
+  mistakes.expect(air.turns_with.empty() || air.wind.isZero(0), "air.wind",
+                  "expected none: air that turns with a body turns at rest with it");
+}
+
+void find_air_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
+  find_mistakes_of(mechanism.air, mistakes);
+  const std::string& body = mechanism.air.turns_with;
+  if (body == ground_name)
+    mistakes.add("air.turns_with", "expected a body, or the key left out: the air is at rest then");
+  else if (!body.empty() && body_index(mechanism, body) < 0)
+    add_unknown_body(mechanism, body, false, "air.turns_with", mistakes);
 }
 
 void find_force_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {

@@ -51,7 +51,7 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
     out.in.emplace_back(system.conservative
                             ? "bearings: stiffness and damping matrices"
                             : "bearings: matrices that feed whirl, or dampers between drives");
-  say(!system.body_forces.empty(), "forces, torques and drag");
+  say(!system.body_forces.empty() || !system.turning_air.empty(), "forces, torques and the air");
   const bool damped =
       std::ranges::any_of(p.links,
                           [](const LinkParameters& l) {

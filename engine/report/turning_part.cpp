@@ -40,8 +40,10 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
   }
   for (BodyForceParameters& f : only.body_forces) {
     f.vector.setZero();
-    f.linear = f.quadratic = 0;
+    f.linear = f.quadratic = f.normal_quadratic = 0;
   }
+  for (BodyForceParameters& f : only.turning_air)
+    f.linear = f.quadratic = f.normal_quadratic = 0;
   for (CutDamperParameters& d : only.cut_dampers)
     d.damping = 0;
   const Problem part{system, only, problem.scaling, problem.cancel, problem.form};
@@ -126,7 +128,7 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
         only.body_forces[i] = problem.parameters.body_forces[i];
         if (on) return;
         only.body_forces[i].vector.setZero();
-        only.body_forces[i].linear = only.body_forces[i].quadratic = 0;
+        only.body_forces[i].linear = only.body_forces[i].quadratic = only.body_forces[i].normal_quadratic = 0;
       },
       [&](std::size_t i) {
         const Force& f = mechanism.forces[static_cast<std::size_t>(system.body_forces[i].force)];

@@ -43,13 +43,15 @@ bool places_parts(const BasicParameters<Dual>& p) {
     return std::ranges::any_of(b.damping.reshaped(), [](const Dual& c) { return c.value != 0; }) &&
            moves(b.a, b.b, b.axes.reshaped());
   };
+  const auto air = [](const BasicBodyForceParameters<Dual>& f) { return is_of_air(f.type) && moves(f.at); };
   const auto damper = [](const BasicCutDamperParameters<Dual>& d) { return moves(d.a, d.b, d.axis); };
   const auto cut = [](const BasicCutParameters<Dual>& c) {
     return moves(c.a, c.b, c.drawn, c.constant, c.ratio) ||
            std::ranges::any_of(c.frame, [](const Vec3T<Dual>& x) { return moves(x); });
   };
   return std::ranges::any_of(p.links, link) || std::ranges::any_of(p.springs, spring) ||
-         std::ranges::any_of(p.bearings, bearing) || std::ranges::any_of(p.cut_dampers, damper) ||
+         std::ranges::any_of(p.bearings, bearing) || std::ranges::any_of(p.body_forces, air) ||
+         std::ranges::any_of(p.turning_air, air) || std::ranges::any_of(p.cut_dampers, damper) ||
          std::ranges::any_of(p.cuts, cut);
 }
 

@@ -473,19 +473,27 @@ class Compiler {
   }
 
   void add_forces() {
+    const std::string& turner = m_.air.turns_with;
+    const int air = turner.empty() ? -1 : link_of(body_of(turner, "air.turns_with"));
     for (int f = 0; f < static_cast<int>(m_.forces.size()); ++f) {
       const Force& x = m_.forces[static_cast<std::size_t>(f)];
       const std::string path = "forces." + x.name;
       if (x.type == ForceType::spring) {
         s_.springs.push_back(
             {f, ends_between(link_of(body_of(x.bodies[0], path)), link_of(body_of(x.bodies[1], path)))});
-      } else if (x.type == ForceType::bearing) {
+        continue;
+      }
+      if (x.type == ForceType::bearing) {
         s_.bearings.push_back(
             {f, ends_between(link_of(body_of(x.bodies[0], path)), link_of(body_of(x.bodies[1], path))),
              bearing_size(x)});
-      } else {
-        s_.body_forces.push_back({f, link_of(body_of(x.body, path))});
+        continue;
       }
+      const int on = link_of(body_of(x.body, path));
+      if (!is_of_air(x.type) || air < 0)
+        s_.body_forces.push_back({f, on});
+      else if (on != air) // else nothing flows
+        s_.turning_air.push_back({f, ends_between(air, on)});
     }
   }
 
@@ -638,6 +646,8 @@ class Compiler {
         s_.conservative = false;
     for (const CutDamperElement& e : s_.cut_dampers)
       if (moving_frame(e.ends.a) != moving_frame(e.ends.b)) s_.conservative = false;
+    for (const TurningAirElement& e : s_.turning_air) // takes energy alone, as dampers do
+      if (moving_frame(e.ends.a) != moving_frame(e.ends.b)) s_.conservative = false;
     // A bearing's matrices may be symmetric, but the next number may change that.
     s_.conservative = s_.conservative && s_.bearings.empty();
     if (!s_.coordinate_laws.empty() || !s_.spring_laws.empty())
@@ -651,7 +661,7 @@ class Compiler {
     // Without a potential stability asks for eigenvalues, and so for the matrices, as far as those are found.
     constexpr int few = 8, few_for_bodies = 60, few_without_potential = 200;
     const bool potential = s_.conservative && s_.single_drives;
-    if (!s_.torques.empty() || !s_.bearings.empty() || !no_drive_rides(s_) ||
+    if (!s_.torques.empty() || !s_.bearings.empty() || !s_.turning_air.empty() || !no_drive_rides(s_) ||
         s_.nv <= (potential ? few : few_without_potential))
       return;
     if (is_plain_tree(s_))
@@ -696,7 +706,7 @@ bool no_drive_rides(const System& system) {
 
 bool is_plain_tree(const System& system) {
   return system.rows == 0 && system.springs.empty() && system.cut_dampers.empty() &&
-         system.bearings.empty() && no_drive_rides(system);
+         system.bearings.empty() && system.turning_air.empty() && no_drive_rides(system);
 }
 
 System compile(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven) {

@@ -1,6 +1,7 @@
 #include "engine/system/linearization.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/system/air_force.hpp"
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/kept_momentum.hpp"
@@ -168,19 +169,18 @@ void add_body_forces(const System& system, const Parameters& p, const Kinematics
     const BodyForceElement& e = system.body_forces[n];
     const BodyForceParameters& f = p.body_forces[n];
     // A force fixed in the body turns with it, which is what the subtree sums assume.
-    if (e.link < 0 || (f.type != ForceType::drag && f.frame == ForceFrame::body)) continue;
+    const bool air = is_of_air(f.type);
+    if (e.link < 0 || (!air && f.frame == ForceFrame::body)) continue;
     const AppliedForce<double> a = applied_force(e, f, k);
-    const Vec3 v = f.type == ForceType::drag ? k.velocity(e.link, a.point) : Vec3(Vec3::Zero());
-    const double speed = v.norm();
+    const Mat3 slope =
+        air ? air_force_slope(f, k.at(e.link).R, f.wind - k.velocity(e.link, a.point)) : Mat3(Mat3::Zero());
     for_coordinates_of(system, e.link, [&](int vj) {
       const Column<double>& j = k.columns[static_cast<std::size_t>(vj)];
       Vec3 force = j.turn().cross(a.force);
       const Vec3 torque = j.turn().cross(a.torque);
-      if (f.type == ForceType::drag) {
+      if (air) { // turned with the body, which the wind is not
         const ScrewRates& s = screws[static_cast<std::size_t>(vj)];
-        const Vec3 dv = s.dv + s.dw.cross(a.point - j.o);
-        force = (f.linear + f.quadratic * speed) * dv;
-        if (speed > 0) force += f.quadratic / speed * v * v.dot(dv);
+        force = slope * (s.dv + s.dw.cross(a.point - j.o) + j.turn().cross(f.wind));
       }
       for_coordinates_of(system, e.link, [&](int vi) {
         const Column<double>& i = k.columns[static_cast<std::size_t>(vi)];
@@ -381,13 +381,11 @@ void add_damping(const System& system, const Parameters& p, const Eigen::VectorX
     interruption_point();
     const BodyForceElement& e = system.body_forces[n];
     const BodyForceParameters& f = p.body_forces[n];
-    if (e.link < 0 || f.type != ForceType::drag) continue;
-    const Vec3 point = k.point(e.link, f.at), v = k.velocity(e.link, point);
-    const double speed = v.norm();
+    if (e.link < 0 || !is_of_air(f.type)) continue;
+    const Vec3 point = k.point(e.link, f.at);
+    const Mat3 slope = air_force_slope(f, k.at(e.link).R, f.wind - k.velocity(e.link, point));
     for_coordinates_of(system, e.link, [&](int vj) {
-      const Vec3 dv = k.columns[static_cast<std::size_t>(vj)].at(point);
-      Vec3 force = (f.linear + f.quadratic * speed) * dv;
-      if (speed > 0) force += f.quadratic / speed * v * v.dot(dv);
+      const Vec3 force = slope * k.columns[static_cast<std::size_t>(vj)].at(point);
       for_coordinates_of(system, e.link, [&](int vi) {
         velocity(vi, vj) += k.columns[static_cast<std::size_t>(vi)].at(point).dot(force);
       });

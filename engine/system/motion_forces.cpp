@@ -1,3 +1,4 @@
+#include "engine/system/air_force.hpp"
 #include "engine/system/bearing.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/motion.hpp"
@@ -93,10 +94,14 @@ ForcePowers force_powers(const System& system, const Parameters& p, const Eigen:
     if (e.link < 0 || (f.type == ForceType::force && f.frame == ForceFrame::world)) continue;
     const AppliedForce<double> a = applied_force(e, f, k);
     const double power = a.force.dot(k.velocity(e.link, a.point)) + a.torque.dot(k.at(e.link).w);
-    if (f.type == ForceType::drag)
+    if (is_of_air(f.type))
       out.dissipated -= power;
     else
       out.applied += power;
+  }
+  for (std::size_t i = 0; i < system.turning_air.size(); ++i) {
+    const TurningAirForce<double> air = turning_air_force<double>(system.turning_air[i], p.turning_air[i], k);
+    out.dissipated += air.force.dot(air.flow);
   }
   for (std::size_t i = 0; i < system.torques.size(); ++i)
     out.applied += drive_torque(system, p, i, q, k) *

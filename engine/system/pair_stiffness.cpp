@@ -1,6 +1,7 @@
 #include "engine/system/pair_stiffness.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/system/air_force.hpp"
 #include "engine/system/bearing.hpp"
 #include "engine/system/pair_hessian.hpp"
 
@@ -120,6 +121,30 @@ void add_cut_dampers(const System& system, const Parameters& p, const Kinematics
   }
 }
 
+void add_turning_air(const System& system, const Parameters& p, const Kinematics<double>& k,
+                     const std::vector<ScrewRates>& screws, Eigen::MatrixXd& out) {
+  for (std::size_t n = 0; n < system.turning_air.size(); ++n) {
+    interruption_point();
+    const TurningAirElement& e = system.turning_air[n];
+    const TurningAirForce<double> air = turning_air_force<double>(e, p.turning_air[n], k);
+    const Mat3 slope = air_force_slope(p.turning_air[n], k.at(e.ends.b).R, air.flow);
+    const Vec3 va = k.velocity(e.ends.a, air.point), vb = k.velocity(e.ends.b, air.point);
+    for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) {
+      const ScrewRates& s = screws[static_cast<std::size_t>(j.v)];
+      const Vec3 turn = j.column.turn(), passing = k.at(e.ends.a).w.cross(j.column.at(air.point));
+      // As a carries it: the force turns with b, and point_hessian() has it turn with a.
+      Vec3 change;
+      if (j.second)
+        change = turn.cross(air.force) +
+                 slope * (passing - velocity_change(j, s, air.point, vb) - turn.cross(air.flow));
+      else
+        change = slope * (velocity_change(j, s, air.point, va) - passing) - turn.cross(air.force);
+      return (i.second ? -1. : 1.) * change.dot(i.column.at(air.point)) -
+             point_hessian(air.force, air.point, i, j);
+    });
+  }
+}
+
 void add_constraint_forces(const System& system, const Parameters& p, const Eigen::VectorXd& lambda,
                            const Kinematics<double>& k, Eigen::MatrixXd& out) {
   for (std::size_t c = 0; c < system.cuts.size(); ++c) {
@@ -156,6 +181,7 @@ void add_pair_stiffness(const System& system, const Parameters& parameters, cons
                         Eigen::MatrixXd& stiffness) {
   add_springs(system, parameters, kinematics, screws, stiffness);
   add_cut_dampers(system, parameters, kinematics, screws, stiffness);
+  add_turning_air(system, parameters, kinematics, screws, stiffness);
   add_bearing_stiffness(system, parameters, kinematics, screws, stiffness);
   add_constraint_forces(system, parameters, lambda, kinematics, stiffness);
 }
@@ -180,6 +206,15 @@ void add_pair_damping(const System& system, const Parameters& p, const Kinematic
     const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[n].axis, b = k.point(e.ends.b, p.cut_dampers[n].b);
     for_pairs(e.ends.support, k, velocity, [&](const PairPart& i, const PairPart& j) {
       return p.cut_dampers[n].damping * damper_gradient(e, axis, b, i) * damper_gradient(e, axis, b, j);
+    });
+  }
+  for (std::size_t n = 0; n < system.turning_air.size(); ++n) {
+    interruption_point();
+    const TurningAirElement& e = system.turning_air[n];
+    const TurningAirForce<double> air = turning_air_force<double>(e, p.turning_air[n], k);
+    const Mat3 slope = air_force_slope(p.turning_air[n], k.at(e.ends.b).R, air.flow);
+    for_pairs(e.ends.support, k, velocity, [&](const Part& i, const Part& j) {
+      return (i.second == j.second ? 1. : -1.) * i.column.at(air.point).dot(slope * j.column.at(air.point));
     });
   }
   add_bearing_damping(system, p, k, velocity);

@@ -1,5 +1,6 @@
-// Second derivatives of what acts between two bodies: point springs, dampers in cut joints, bearings, and the
-// constraint forces' (Phi_q^T lambda)_q. Only coordinates between the two bodies take part.
+// Derivatives of what acts between two bodies: point springs, dampers in cut joints, bearings, air that turns
+// with one of them, and the constraint forces' (Phi_q^T lambda)_q. Only coordinates between the two bodies
+// take part.
 #pragma once
 
 #include "engine/system/linearization.hpp"

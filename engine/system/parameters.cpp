@@ -1,6 +1,8 @@
 #include "engine/system/parameters.hpp"
 
 #include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/gear_ratio.hpp"
+#include "engine/system/air_force.hpp"
 #include "engine/system/implied_rates.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/kept_momentum.hpp"
@@ -159,7 +161,7 @@ class Binder {
       const CoordinateReference r = find_coordinate(m_, g.joints[static_cast<std::size_t>(end)]);
       return read_(joint(r.joint).coordinates[static_cast<std::size_t>(r.coordinate)].drawn);
     };
-    return read_(g.offset, drawn(1) - read_(g.ratio) * drawn(0));
+    return read_(g.offset, drawn(1) - gear_ratio(g, read_) * drawn(0));
   }
 
   bool is_end(const Joint& g, int end, const DrivenCoordinate& d) const {
@@ -186,12 +188,12 @@ class Binder {
         const Joint& g = joint(gear);
         const CoordinateReference a = find_coordinate(m_, g.joints[0]), b = find_coordinate(m_, g.joints[1]);
         if (a.joint == at.joint && a.coordinate == at.coordinate) {
-          ratio *= read_(g.ratio);
-          value = read_(g.ratio) * value + gear_offset(g);
+          ratio *= gear_ratio(g, read_);
+          value = gear_ratio(g, read_) * value + gear_offset(g);
           at = b;
         } else {
-          ratio /= read_(g.ratio);
-          value = (value - gear_offset(g)) / read_(g.ratio);
+          ratio /= gear_ratio(g, read_);
+          value = (value - gear_offset(g)) / gear_ratio(g, read_);
           at = a;
         }
       }
@@ -207,6 +209,21 @@ class Binder {
   BasicOffset<N> in_link(const Vector& drawn, int link) const {
     const Vector p = drawn - p_.origin;
     return link >= 0 ? Vector(p - p_.links[static_cast<std::size_t>(link)].origin) : p;
+  }
+
+  void bind_body_force(const Force& f, int link, BasicBodyForceParameters<N>& out) const {
+    const int b = link >= 0 ? s_.links[static_cast<std::size_t>(link)].body : -1;
+    const Vector centre =
+        b >= 0 ? Vector(read_(m_.bodies[static_cast<std::size_t>(b)].position)) : Vector(Vector::Zero());
+    Vector vector = read_(f.vector);
+    if (f.frame == ForceFrame::body && b >= 0)
+      vector = read_(m_.bodies[static_cast<std::size_t>(b)].rotation).normalized() * vector;
+    out = {};
+    out.type = f.type;
+    out.frame = f.frame;
+    out.at = in_link(read_(f.at, centre), link);
+    out.vector = vector;
+    if (is_of_air(f.type)) set_air_force(f, m_.air, read_, out);
   }
 
   void bind_elements() {
@@ -236,15 +253,12 @@ class Binder {
     p_.body_forces.resize(s_.body_forces.size());
     for (std::size_t i = 0; i < s_.body_forces.size(); ++i) {
       const BodyForceElement& e = s_.body_forces[i];
-      const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
-      const int b = e.link >= 0 ? s_.links[static_cast<std::size_t>(e.link)].body : -1;
-      const Vector centre =
-          b >= 0 ? Vector(read_(m_.bodies[static_cast<std::size_t>(b)].position)) : Vector(Vector::Zero());
-      Vector vector = read_(f.vector);
-      if (f.frame == ForceFrame::body && b >= 0)
-        vector = read_(m_.bodies[static_cast<std::size_t>(b)].rotation).normalized() * vector;
-      p_.body_forces[i] = {f.type, f.frame,         in_link(read_(f.at, centre), e.link),
-                           vector, read_(f.linear), read_(f.quadratic)};
+      bind_body_force(m_.forces[static_cast<std::size_t>(e.force)], e.link, p_.body_forces[i]);
+    }
+    p_.turning_air.resize(s_.turning_air.size());
+    for (std::size_t i = 0; i < s_.turning_air.size(); ++i) {
+      const TurningAirElement& e = s_.turning_air[i];
+      bind_body_force(m_.forces[static_cast<std::size_t>(e.force)], e.ends.b, p_.turning_air[i]);
     }
     p_.cut_dampers.resize(s_.cut_dampers.size());
     for (std::size_t i = 0; i < s_.cut_dampers.size(); ++i) {
@@ -317,7 +331,7 @@ class Binder {
     const Joint& j = joint(cut.joint);
     out = {};
     if (cut.type == JointType::gear) {
-      out.ratio = read_(j.ratio);
+      out.ratio = gear_ratio(j, read_);
       out.offset = gear_offset(j);
       return;
     }
@@ -387,10 +401,14 @@ bool phase_free(const System& system, const Parameters& p) {
     if (apart(e.ends)) return false;
   for (const BearingElement& e : system.bearings)
     if (apart(e.ends)) return false;
-  for (std::size_t i = 0; i < system.body_forces.size(); ++i)
-    if (turns(system.body_forces[i].link) && p.body_forces[i].type != ForceType::drag &&
-        p.body_forces[i].frame == ForceFrame::world)
+  // Air that turns with a body looks the same at every phase; a wind does along the axis alone.
+  const Vec3& axis = p.links[static_cast<std::size_t>(d)].axis;
+  for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
+    if (!turns(system.body_forces[i].link)) continue;
+    const BodyForceParameters& f = p.body_forces[i];
+    if (is_of_air(f.type) ? f.wind.cross(axis).norm() > 1e-14 * f.wind.norm() : f.frame == ForceFrame::world)
       return false;
+  }
   return true;
 }
 

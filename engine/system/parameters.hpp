@@ -149,9 +149,13 @@ template <class N>
 struct BasicBodyForceParameters {
   ForceType type = ForceType::force;
   ForceFrame frame = ForceFrame::world;
-  BasicOffset<N> at;
-  Vec3T<N> vector; // drawn-pose world axes
+  BasicOffset<N> at = BasicOffset<N>::Zero();
+  Vec3T<N> vector = Vec3T<N>::Zero(); // drawn-pose world axes
   N linear = 0, quadratic = 0;
+  // Of the air, see air_force.hpp: N s^2/m^2; units, drawn-pose world axes, the span zero but for a blade;
+  // m/s of the air where it does not turn.
+  N normal_quadratic = 0;
+  Vec3T<N> normal = Vec3T<N>::Zero(), span = Vec3T<N>::Zero(), wind = Vec3T<N>::Zero();
 };
 
 template <class N>
@@ -194,7 +198,7 @@ struct BasicParameters {
   std::vector<BasicLinkParameters<N>> links;
   std::vector<BasicPointSpringParameters<N>> springs;
   std::vector<BasicBearingParameters<N>> bearings;
-  std::vector<BasicBodyForceParameters<N>> body_forces;
+  std::vector<BasicBodyForceParameters<N>> body_forces, turning_air;
   std::vector<BasicCutDamperParameters<N>> cut_dampers;
   std::vector<BasicDriveTorqueParameters<N>> torques;
   std::vector<BasicCutParameters<N>> cuts;

@@ -1,5 +1,6 @@
 #include "engine/system/reactions.hpp"
 
+#include "engine/system/air_force.hpp"
 #include "engine/system/bearing.hpp"
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/drive_torque.hpp"
@@ -93,6 +94,12 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     const BearingState<double> s = bearing_state<double>(system.bearings[i], p.bearings[i], k);
     add(ends.b, s.point, s.force, s.moment);
     add(ends.a, s.point, -s.force, -s.moment);
+  }
+  for (std::size_t i = 0; i < system.turning_air.size(); ++i) {
+    const TurningAirElement& e = system.turning_air[i];
+    const TurningAirForce<double> air = turning_air_force<double>(e, p.turning_air[i], k);
+    add(e.ends.b, air.point, -air.force, Vec3::Zero());
+    add(e.ends.a, air.point, air.force, Vec3::Zero());
   }
   out.cuts.resize(system.cuts.size());
   std::size_t damper = 0;

@@ -1,5 +1,6 @@
 #include "engine/system/residual.hpp"
 
+#include "engine/system/air_force.hpp"
 #include "engine/system/bearing.hpp"
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/drive_torque.hpp"
@@ -15,9 +16,9 @@ template <class S>
 AppliedForce<S> applied_force(const BodyForceElement& e, const BodyForceParametersOf<S>& p,
                               const Kinematics<S>& k) {
   AppliedForce<S> a{k.point(e.link, p.at), Vec3T<S>::Zero(), Vec3T<S>::Zero()};
-  if (p.type == ForceType::drag) {
-    const Vec3T<S> v = k.velocity(e.link, a.point);
-    a.force = -(S(p.linear) + S(p.quadratic) * v.norm()) * v;
+  if (is_of_air(p.type)) {
+    const Vec3T<S> flow = p.wind.template cast<S>() - k.velocity(e.link, a.point);
+    a.force = air_force<S>(p, k.at(e.link).R, flow);
     return a;
   }
   Vec3T<S> vector = p.vector.template cast<S>();
@@ -123,6 +124,17 @@ void add_cut_damper(const System& system, const ParametersOf<S>& p, const Kinema
   }
 }
 
+template <class S>
+void add_turning_air(const System& system, const ParametersOf<S>& p, const Kinematics<S>& k, std::size_t i,
+                     Configuration<S>& f) {
+  const TurningAirElement& e = system.turning_air[i];
+  const TurningAirForce<S> air = turning_air_force<S>(e, p.turning_air[i], k);
+  for (const SupportColumn& c : e.ends.support) {
+    const S g = air.force.dot(k.columns[static_cast<std::size_t>(c.v)].at(air.point));
+    f[c.v] += c.second ? -g : g;
+  }
+}
+
 // A pass over the mechanism that adds up what acts on it.
 template <class S>
 struct ResidualPass {
@@ -193,6 +205,8 @@ struct ResidualPass {
     add_in_parts(system, *this);
     for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
       add_cut_damper(system, p, k, i, out.f);
+    for (std::size_t i = 0; i < system.turning_air.size(); ++i)
+      add_turning_air(system, p, k, i, out.f);
     add_bearings<S>(system, p, k, out.f);
     add_drive_torques(system, p, q, k, out.f);
     set_kept_momenta<S>(system, p, k, out);
@@ -208,6 +222,8 @@ void add_pair_forces(const System& system, const Parameters& p, const Kinematics
     add_spring(system, p, k, i, f);
   for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
     add_cut_damper(system, p, k, i, f);
+  for (std::size_t i = 0; i < system.turning_air.size(); ++i)
+    add_turning_air(system, p, k, i, f);
   add_bearings<double>(system, p, k, f);
 }
 
@@ -313,6 +329,15 @@ struct MagnitudesPass {
     }
   }
 
+  void add_turning_air(std::size_t i) const {
+    const TurningAirElement& e = system.turning_air[i];
+    const TurningAirForce<double> air = turning_air_force<double>(e, p.turning_air[i], k);
+    for (const SupportColumn& c : e.ends.support) {
+      const Column<double>& column = k.columns[static_cast<std::size_t>(c.v)];
+      out.force[c.v] += air.force.norm() * (column.angular ? (air.point - column.o).norm() : 1.);
+    }
+  }
+
   // Multipliers are solved for together, so each carries the rounding of the largest and of what they
   // balance: compared as forces, moments at the arm of the mechanism's reach.
   double coordinate_arm(int v) const {
@@ -395,6 +420,8 @@ struct MagnitudesPass {
     out.force.resize(system.nv);
     out.phi.resize(system.rows);
     add_in_parts(system, *this);
+    for (std::size_t i = 0; i < system.turning_air.size(); ++i)
+      add_turning_air(i);
     if (system.rows == 0) return;
     out.largest.assign(division.parts.size(), 0);
     for_parts(division,

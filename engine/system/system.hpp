@@ -108,10 +108,16 @@ struct BearingElement {
   int size = 2;
 };
 
-// A force, torque or drag on one body.
+// A force, torque or force of the air on one body.
 struct BodyForceElement {
   int force = 0;
   int link = -1;
+};
+
+// A force of the air on a body, in air that turns with another: the first end.
+struct TurningAirElement {
+  int force = 0;
+  PairEnds ends;
 };
 
 // Damping in a cut joint that slides or turns about `axis` (prismatic, revolute, cylindrical).
@@ -190,6 +196,7 @@ struct System {
   std::vector<ForceLawElement> coordinate_laws, spring_laws;
   std::vector<BearingElement> bearings; // which the matrices of all coordinates alone know
   std::vector<BodyForceElement> body_forces;
+  std::vector<TurningAirElement> turning_air;
   std::vector<CutDamperElement> cut_dampers;
   std::vector<DriveTorqueElement> torques;
   std::vector<CutJoint> cuts;

@@ -4,9 +4,11 @@
 #include "app/document/create.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/session/quantity.hpp"
+#include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/layout.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/gear_ratio.hpp"
 #include "engine/mechanism/mass_properties.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
@@ -411,6 +413,49 @@ TEST_CASE("distance joints and gears are edited") {
   CHECK(hand.joint(gear.c_str()).offset == Approx(1.5707963267948966));
 }
 
+TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and rack or a screw") {
+  Hand hand;
+  const auto join = [&](std::vector<Part> parts, const char* command) {
+    select(hand.app, {std::move(parts)});
+    hand.frames(2);
+    run_command(hand.app, command);
+    hand.frames(2);
+    return hand.app.selection().parts.front().name;
+  };
+  const Part arm1{PartKind::joint, "arm1"}, arm2{PartKind::joint, "arm2"}, slide{PartKind::joint, "slide"};
+  SECTION("a gear that becomes a belt of its ratio") {
+    const std::string gear = join({arm1, arm2}, "edit.gear");
+    CHECK(gear == "gear1");
+    hand.one_step([&] { hand.fill("inspector/ratio", "-1/2"); });
+    hand.one_step([&] { hand.choose_from("inspector/kind", "belt"); });
+    CHECK(hand.joint("gear1").kind == GearKind::belt);
+    CHECK(hand.joint("gear1").crossed);
+    CHECK(gear_ratio(hand.joint("gear1")) == -0.5);
+    hand.one_step([&] { hand.fill("inspector/radii/1", "20 mm"); });
+    CHECK(hand.joint("gear1").radii[1] == 0.02);
+    hand.one_step([&] { hand.press_widget("inspector/crossed"); });
+    CHECK(gear_ratio(hand.joint("gear1")) == Approx(1.25));
+  }
+  SECTION("a rack whose pinion is the one that turns, and the screw of its ratio") {
+    CHECK(join({slide, arm1}, "edit.rack") == "rack1");
+    CHECK(hand.joint("rack1").joints == std::array<std::string, 2>{"arm1", "slide"});
+    hand.one_step([&] { hand.fill("inspector/radius", "-30 mm"); });
+    CHECK(hand.joint("rack1").radii[0] == -0.03);
+    hand.one_step([&] { hand.choose_from("inspector/kind", "screw"); });
+    CHECK(gear_ratio(hand.joint("rack1")) == Approx(-0.03));
+    hand.one_step([&] { hand.fill("inspector/lead", "2 mm"); });
+    CHECK(hand.joint("rack1").lead == 0.002);
+  }
+  SECTION("only what suits them is offered") {
+    select(hand.app, {{arm1, arm2}});
+    CHECK(is_enabled(hand.app, command("edit.belt")));
+    CHECK_FALSE(is_enabled(hand.app, command("edit.rack")));
+    select(hand.app, {{slide}});
+    CHECK_FALSE(is_enabled(hand.app, command("edit.gear")));
+    CHECK_FALSE(is_enabled(hand.app, command("edit.screw")));
+  }
+}
+
 TEST_CASE("forces of every type are edited") {
   Hand hand;
   const auto add = [&](const auto& make) {
@@ -468,6 +513,36 @@ TEST_CASE("forces of every type are edited") {
     hand.one_step([&] { hand.fill("inspector/linear", "0.5"); });
     CHECK(hand.force(name.c_str()).linear == 0.5);
   }
+}
+
+TEST_CASE("a vane and the air are edited") {
+  Hand hand;
+  edit(hand.app, "Add", [&](Mechanism& m, Selection& s) {
+    s.set({PartKind::force, add_force(m, ForceType::vane, "ball1", {-0.16, 0.2, 0}, {0, 0, 1})});
+  });
+  hand.frames(2);
+  const auto vane = [&]() -> const Force& { return hand.force("vane1"); };
+  hand.one_step([&] { hand.fill("inspector/area", "20 cm * 5 cm"); });
+  CHECK(vane().area == Approx(0.01));
+  hand.one_step([&] { hand.fill("inspector/normal/x", "1"); });
+  CHECK(vane().normal == Vec3(1, 0, 1));
+  hand.one_step([&] { hand.fill("inspector/cn", "2"); });
+  hand.one_step([&] { hand.fill("inspector/cd", "0.1"); });
+  CHECK(vane().cn == 2);
+  CHECK(vane().cd == 0.1);
+  hand.one_step([&] { hand.choose_from("inspector/form", "blade"); });
+  REQUIRE(vane().chord);
+  hand.one_step([&] { hand.fill("inspector/chord/y", "0.5"); });
+  CHECK(vane().chord->y() == 0.5);
+  hand.one_step([&] { hand.choose_from("inspector/form", "plate"); });
+  CHECK_FALSE(vane().chord);
+  select(hand.app, {});
+  hand.frames(2);
+  hand.one_step([&] { hand.fill("inspector/wind/x", "3 km/h"); });
+  CHECK(hand.mechanism().air.wind.x() == Approx(3 / 3.6));
+  hand.one_step([&] { hand.choose_from("inspector/turns_with", "spindle"); });
+  CHECK(hand.mechanism().air.turns_with == "spindle");
+  CHECK(hand.mechanism().air.wind.isZero(0));
 }
 
 TEST_CASE("the scene's own numbers are there while nothing is selected") {

@@ -333,6 +333,13 @@ TEST_CASE("forces, torques and drag act on the body that is clicked") {
     REQUIRE(d.m().forces.size() == 1);
     CHECK(d.m().forces[0].linear == 1);
   }
+  SECTION("a vane, square to the line of sight") {
+    d.click("tools/vane");
+    d.click_at({0.2, 0, 0});
+    REQUIRE(d.m().forces.size() == 1);
+    CHECK(d.m().forces[0].type == ForceType::vane);
+    CHECK(d.m().forces[0].normal == Vec3(0, 0, 1));
+  }
   SECTION("not on nothing") {
     d.click("tools/force");
     d.click_at({-0.2, 0, 0});

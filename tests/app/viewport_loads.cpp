@@ -114,7 +114,7 @@ TEST_CASE("gears, drag, dampers and applied loads are parts of the diagram") {
   const Assembly assembly(steady.mechanism, steady.solution.poses);
   const std::vector<Load> loads = loads_of(assembly, steady.solution, steady.turning, 2);
   for (const LoadKind kind : {LoadKind::reaction, LoadKind::spring, LoadKind::weight, LoadKind::applied,
-                              LoadKind::drag, LoadKind::inertia})
+                              LoadKind::air, LoadKind::inertia})
     CHECK(std::ranges::count(loads, kind, &Load::kind) >= 1);
   CHECK(worst_of(steady, steady.solution.poses, Quat::Identity()) < 1e-9);
   // Without any one of them it does not add up.

@@ -20,6 +20,7 @@ RandomOptions options_of(std::uint32_t seed) {
   o.parallel_axes = seed % 5 == 0;
   o.massless = seed / 2 % 2 == 1;
   o.stops = seed / 4 % 2 == 1;
+  o.air = seed % 4 == 1;
   return o;
 }
 

@@ -15,7 +15,8 @@ inline const std::vector<std::string> shipped_names{
     "ball_on_string",    "chain20",           "conical_pendulum", "fourbar_turntable", "governor",
     "governor_bearing",  "pendulum",          "rate_gyro",        "watt_governor",     "governor_parametric",
     "governor_engine",   "governor_hartnell", "governor_porter",  "governor_proell",   "governor_watt",
-    "governor_friction", "free_top",          "differential",     "horizontal_rotor",  "centrifugal_clutch"};
+    "governor_friction", "free_top",          "differential",     "horizontal_rotor",  "centrifugal_clutch",
+    "fan_governor",      "windmill"};
 
 // A drive makes its balance turn: it moves periodically and has no steady state.
 inline bool moves_periodically(const std::string& shipped) {

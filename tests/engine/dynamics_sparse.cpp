@@ -19,6 +19,7 @@ RandomOptions loops(std::uint32_t seed) {
   o.massless = false;
   o.parallel_axes = seed % 2 == 0;
   o.drives = static_cast<RandomDrives>(seed % 3);
+  o.air = seed % 4 == 1;
   return o;
 }
 

@@ -25,6 +25,7 @@ RandomOptions trees(std::uint32_t seed) {
   o.steady = false;
   o.massless = false;
   o.drives = static_cast<RandomDrives>(seed % 3);
+  o.air = seed % 4 == 1;
   return o;
 }
 

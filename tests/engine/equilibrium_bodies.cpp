@@ -126,6 +126,7 @@ Tried try_random(const ref::RandomOptions& sort, std::uint32_t seeds) {
   for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
     ref::RandomOptions options = sort;
     options.conservative = seed % 2 == 0;
+    options.air = seed % 4 == 1;
     options.drives = seed % 3 == 0 ? ref::RandomDrives::several : ref::RandomDrives::root;
     Case x(ref::random_mechanism(seed, options));
     if (x.system.nv == 0 || !no_drive_rides(x.system)) continue;

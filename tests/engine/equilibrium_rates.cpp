@@ -106,6 +106,7 @@ TEST_CASE("the balance's rates are exact in every number of random mechanisms", 
     options.loops = static_cast<int>(seed % 3);
     options.steady = false;
     options.skew_universals = true;
+    options.air = seed % 2 == 1;
     options.drives = seed % 4 == 0 ? ref::RandomDrives::several : ref::RandomDrives::root;
     const Compared one = compare_all(ref::random_mechanism(seed, options), random);
     all.numbers += one.numbers;

@@ -93,6 +93,13 @@ TEST_CASE("Addresses reach the fields they name, with units") {
       {"forces.turn.at.0", 1, "m"}, // the mass centre
       {"forces.air.linear", 0.125, "N s/m"},
       {"forces.air.quadratic", 0.375, "N s^2/m^2"},
+      {"joints.strap.radii.1", 0.5, "m"},
+      {"joints.bar.radius", -0.125, "m"},
+      {"joints.bolt.lead", 0.0625, "m"},
+      {"forces.sail.normal.2", 2, ""},
+      {"forces.sail.cn", 3, ""},
+      {"air.density", 1.5, "kg/m^3"},
+      {"air.wind.0", 1, "m/s"},
       {"simulation.duration", 20, "s"},
   };
   const std::vector<std::string> addresses = parameter_addresses(m);
@@ -133,7 +140,7 @@ TEST_CASE("An address that names nothing is answered with what exists") {
     CHECK_THROWS_AS(get_parameter(m, address), SceneError);
     CHECK_THROWS_AS(parameter_unit(m, address), SceneError);
   };
-  check("", "", "begins with parameters, points, gravity, bodies, joints, forces or simulation");
+  check("", "", "begins with parameters, points, gravity, air, bodies, joints, forces or simulation");
   check("joint.spin.drive.speed", "joint.spin.drive.speed", "did you mean \"joints\"?");
   check("joints", "joints", "expected one of spin, hinge");
   check("joints.spn.drive.speed", "joints.spn", "did you mean \"spin\"?");

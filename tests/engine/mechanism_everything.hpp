@@ -17,6 +17,7 @@ inline constexpr std::string_view everything = R"({
     "half": {"value": "=L/2", "unit": "m"}},
   "points": {"W": [0, 0, 8], "E": ["=L", "=W.y", 0.5]},
   "gravity": [0, -9.80665, 0],
+  "air": {"description": "cold", "density": 1.5, "wind": [1, "=half / 1 s", 0]},
   "bodies": [
     {"name": "table", "description": "turns", "mass": 2, "position": [0, 0.5, 0], "inertia": [1, 1.5, 1],
      "rotation": [0.6, 0, 0.8, 0],
@@ -60,7 +61,11 @@ inline constexpr std::string_view everything = R"({
     {"name": "axle", "type": "revolute", "bodies": ["table", "pinion"], "at": [0, 0, 9], "axis": [0, 1, 0]},
     {"name": "tie", "type": "distance", "bodies": ["arm", "ball"], "points": [[1, 0, 0], [0, 0, 5]], "length": 5.5},
     {"name": "teeth", "type": "gear", "joints": ["hinge", "axle"], "ratio": -2, "offset": 0.75},
-    {"name": "worm", "type": "gear", "joints": ["hinge", "cardan.1"], "ratio": 3}
+    {"name": "worm", "type": "gear", "joints": ["hinge", "cardan.1"], "ratio": 3},
+    {"name": "strap", "type": "gear", "kind": "belt", "joints": ["hinge", "cardan.0"], "radii": [0.75, 0.5],
+     "crossed": true},
+    {"name": "bar", "type": "gear", "kind": "rack", "joints": ["axle", "ice.0"], "radius": -0.125},
+    {"name": "bolt", "type": "gear", "kind": "screw", "joints": ["cardan.0", "ice.1"], "lead": 0.0625}
   ],
   "forces": [
     {"name": "coil", "description": "holds", "type": "spring", "bodies": ["ground", "arm"],
@@ -69,7 +74,9 @@ inline constexpr std::string_view everything = R"({
     {"name": "turn", "type": "torque", "body": "arm", "vector": [7, 8, 9]},
     {"name": "air", "type": "drag", "body": "ball", "at": [0, 0, 5.5], "linear": 0.125, "quadratic": 0.375},
     {"name": "journal", "description": "oil", "type": "bearing", "bodies": ["ground", "drone"], "at": [0, 0, 7.5],
-     "axis": [0, 0, 4], "x_axis": [1, 0, 0.5], "stiffness": [["=8 N / L", 17], [-17, 18]], "damping": [[3, 0], [0, 3]]}
+     "axis": [0, 0, 4], "x_axis": [1, 0, 0.5], "stiffness": [["=8 N / L", 17], [-17, 18]], "damping": [[3, 0], [0, 3]]},
+    {"name": "sail", "type": "vane", "body": "puck", "at": [0, 0.5, 6], "area": "=L * 2 cm", "normal": [0, 1, 2],
+     "chord": [1, 0, 0], "cn": 3, "cd": 0.0625}
   ],
   "measures": {
     "gap": {"description": "between two", "value": "=distance(ball, drone) - half", "unit": "m"},
@@ -150,7 +157,12 @@ inline constexpr Mistake mistakes_of_form[] = {
     {R"("quadratic": 0.375)", R"("vector": [1, 0, 0])", "forces.air.vector", "does not belong to a drag"},
     {R"("size": [0.1, 0.2, 0.3])", R"("size": [0.1, 0.2, 0.3], "radius": 1)", "bodies.table.shapes[1].radius",
      "does not belong to a box"},
+    {R"("lead": 0.0625)", R"("lead": 0.0625, "radius": 1)", "joints.bolt.radius",
+     "does not belong to a screw"},
+    {R"("wind": [1,)", R"("winds": [1,)", "air.winds", "did you mean \"wind\"?"},
     // missing keys
+    {R"("radii": [0.75, 0.5],)", "", "joints.strap.radii", "missing; a belt needs it"},
+    {R"("kind": "rack")", R"("kind": "rock")", "joints.bar.kind", "did you mean \"rack\"?"},
     {R"("name": "Everything",)", "", "name", "missing; a scene needs it"},
     {R"("mass": 2, )", "", "bodies.table.mass", "missing; a body needs it, or a density: a number"},
     {R"("name": "slider", )", "", "bodies[2].name", "missing"},
@@ -212,7 +224,8 @@ inline constexpr Mistake mistakes_of_form[] = {
      "gear, found "
      "\"plannar\"; did you mean \"planar\"?"},
     {R"("type": "planar")", R"("type": 5)", "joints.ice.type", "found 5"},
-    {R"("type": "drag")", R"("type": "wind")", "forces.air.type", "expected spring, force, torque, drag or bearing"},
+    {R"("type": "drag")", R"("type": "wind")", "forces.air.type",
+     "expected spring, force, torque, drag, vane or bearing"},
     {R"("type": "box")", R"("type": "cube")", "bodies.table.shapes[1].type",
      "expected sphere, box, cylinder or capsule"},
     {R"("frame": "body")", R"("frame": "Body")", "forces.push.frame", "did you mean \"body\"?"},

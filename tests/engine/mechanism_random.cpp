@@ -88,7 +88,16 @@ Joint RandomMechanism::joint() {
   joint.type = static_cast<JointType>(below(10));
   if (joint.type == JointType::gear) {
     joint.joints = {text(), text()};
-    joint.ratio = number();
+    joint.kind = static_cast<GearKind>(below(4));
+    switch (joint.kind) {
+    case GearKind::gear: joint.ratio = number(); break;
+    case GearKind::belt:
+      joint.radii = {number(), number()};
+      joint.crossed = maybe();
+      break;
+    case GearKind::rack: joint.radii[0] = number(); break;
+    case GearKind::screw: joint.lead = number(); break;
+    }
     if (maybe()) joint.offset = number();
   } else {
     joint.bodies = {text(), text()};
@@ -110,7 +119,7 @@ Force RandomMechanism::force() {
   Force force;
   force.name = text();
   force.description = description();
-  force.type = static_cast<ForceType>(below(5));
+  force.type = static_cast<ForceType>(below(6));
   if (force.type == ForceType::spring) {
     force.bodies = {text(), text()};
     force.points = {vector(), vector()};
@@ -138,6 +147,12 @@ Force RandomMechanism::force() {
   if (force.type == ForceType::drag) {
     force.linear = number();
     force.quadratic = number();
+  } else if (force.type == ForceType::vane) {
+    force.area = number();
+    force.normal = vector();
+    if (maybe()) force.chord = vector();
+    force.cn = number();
+    force.cd = number();
   } else {
     force.vector = vector();
     force.frame = static_cast<ForceFrame>(below(2));
@@ -150,6 +165,7 @@ Mechanism RandomMechanism::operator()() {
   m.name = text();
   m.description = description();
   if (maybe()) m.gravity = vector();
+  if (maybe()) m.air = {number(), vector(), maybe() ? text() : "", description()};
   for (int i = below(4); i > 0; --i)
     m.bodies.push_back(body());
   for (int i = below(6); i > 0; --i)

@@ -98,6 +98,13 @@ TEST_CASE("Every key is read into its field") {
   CHECK(m.forces.at(2).frame == ForceFrame::world);
   CHECK_FALSE(m.forces.at(2).at.has_value());
   CHECK(m.forces.at(3).quadratic == 0.375);
+  CHECK(m.joints.at(13).radii == std::array{0.75, 0.5});
+  CHECK(m.joints.at(13).crossed);
+  CHECK(m.joints.at(14).radii[0] == -0.125);
+  CHECK(m.joints.at(15).lead == 0.0625);
+  CHECK(m.forces.at(5).chord == Vec3(1, 0, 0));
+  CHECK(m.forces.at(5).area == 0.1);
+  CHECK(m.air == Air{1.5, Vec3(1, 2.5, 0), "", "cold"});
   CHECK(m.sliders.at(0).description == "main");
   CHECK(m.sliders.at(1).scale == SliderScale::log);
   CHECK(m.simulation == Simulation{20, false, "long"});
@@ -110,7 +117,7 @@ TEST_CASE("What is read is written back, descriptions too") {
   const std::string text = write_scene(m);
   CHECK(read_scene(text) == m);
   for (const char* description : {"all kinds of parts", "turns", "knob", "motor", "sprung", "coil", "rubber",
-                                  "dry", "holds", "main", "long", "side", "near"})
+                                  "dry", "holds", "main", "long", "side", "near", "cold"})
     CHECK_THAT(text, ContainsSubstring("\"description\": \"" + std::string(description) + "\""));
 }
 

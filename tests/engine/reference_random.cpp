@@ -174,6 +174,7 @@ TEST_CASE("the balance does not change with the phase of a root drive") {
     CAPTURE(seed);
     RandomOptions options;
     options.loops = static_cast<int>(seed % 3);
+    options.air = seed % 2 == 1;
     const Mechanism m = random_mechanism(seed, options);
     const std::vector<std::string> cuts = default_cuts(m);
     ReferenceState s = random_state(m, cuts, seed, 0.3L);

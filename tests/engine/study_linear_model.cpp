@@ -258,6 +258,7 @@ TEST_CASE("A, B, C and D are the derivatives of the motion's accelerations and m
     o.stops = false;
     o.loops = static_cast<int>(seed % 3);
     o.spring_share = 1;
+    o.air = seed % 3 == 1;
     o.tree_types = {JointType::revolute,  JointType::prismatic, JointType::cylindrical,
                     JointType::universal, JointType::planar,    JointType::spherical};
     Mechanism m = reference::random_mechanism(seed, o);

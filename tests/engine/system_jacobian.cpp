@@ -1,6 +1,7 @@
 // f_z against derivatives of the extended residual that owe nothing to its formulas, for each type of
 // joint and force by itself and for random mechanisms; the matrices of the motion against the reference.
 #include "engine/mechanism/address.hpp"
+#include "engine/system/air_force.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/engine/system_model.hpp"
@@ -108,8 +109,15 @@ Mechanism without_slow_drag(Mechanism m, const Eigen::VectorXd& q, double t) {
   for (std::size_t i = 0; i < model.system.body_forces.size(); ++i) {
     const BodyForceElement& e = model.system.body_forces[i];
     const Vec3 at = p.kinematics.point(e.link, model.parameters.body_forces[i].at);
-    if (p.kinematics.velocity(e.link, at).norm() < 0.5)
-      m.forces[static_cast<std::size_t>(e.force)].quadratic = 0;
+    if ((p.kinematics.velocity(e.link, at) - m.air.wind).norm() < 0.5)
+      m.forces[static_cast<std::size_t>(e.force)].quadratic =
+          m.forces[static_cast<std::size_t>(e.force)].area = 0;
+  }
+  for (std::size_t i = 0; i < model.system.turning_air.size(); ++i) {
+    const TurningAirElement& e = model.system.turning_air[i];
+    Force& force = m.forces[static_cast<std::size_t>(e.force)];
+    if (turning_air_force<double>(e, model.parameters.turning_air[i], p.kinematics).flow.norm() < 0.5)
+      force.quadratic = force.area = 0;
   }
   return m;
 }
@@ -371,11 +379,41 @@ TEST_CASE("the Jacobian is exact for each type of force") {
       }
 }
 
+TEST_CASE("the Jacobian is exact for drag, plates and blades in all air") {
+  Force drag = on_tool(ForceType::drag, ForceFrame::world),
+        plate = on_tool(ForceType::vane, ForceFrame::world);
+  drag.linear = 2;
+  drag.quadratic = 1.5;
+  plate.area = 0.8;
+  plate.normal = {0.4, -1, 0.3};
+  plate.cd = 0.3;
+  Force blade = plate;
+  blade.chord = Vec3(1, 0.2, -0.5);
+  for (const JointType type : {JointType::universal, JointType::planar, JointType::free})
+    for (const Use use : {Use::tree, Use::reversed, Use::cut})
+      for (const Force& force : {drag, plate, blade})
+        for (const std::string air : {"at rest", "wind", "table", "sled", "arm", "tool"}) {
+          if (type == JointType::free && use == Use::cut) continue;
+          INFO((force.chord ? "blade" : type_name(force.type))
+               << ", " << air << ", " << type_name(type) << " " << static_cast<int>(use));
+          Mechanism m = rig(type, use);
+          m.forces.push_back(force);
+          if (air == "wind") m.air.wind = {2, -1, 3};
+          if (body_index(m, air) >= 0) m.air.turns_with = air;
+          Model model(m);
+          CHECK(model.system.turning_air.empty() == (air == "at rest" || air == "wind" || air == "tool"));
+          Dice dice(9);
+          check_jacobian(model, dice, 0.5);
+        }
+}
+
 TEST_CASE("the Jacobian is exact for random mechanisms with several drives") {
   int drives = 0, twins = 0, dampers = 0;
   for (std::uint32_t seed = 0; seed < 240; ++seed) {
     INFO("seed " << seed);
-    Model model(reference::random_mechanism(seed, several(seed)));
+    RandomOptions options = several(seed);
+    options.air = seed % 5 == 4;
+    Model model(reference::random_mechanism(seed, options));
     Dice dice(seed);
     check_jacobian(model, dice, 0.5);
     drives += model.system.drives.size() > 1;
@@ -393,6 +431,7 @@ TEST_CASE("mass and velocity matrices are the reference's") {
     INFO("seed " << seed);
     RandomOptions options = several(seed);
     options.bodies = 1 + static_cast<int>(seed % 5);
+    options.air = seed % 5 == 4;
     Mechanism mechanism = reference::random_mechanism(seed, options);
     // A damper in a loop joint acts at the joint, or at its twin: only for closed loops the same (see below).
     for (Joint& joint : mechanism.joints)

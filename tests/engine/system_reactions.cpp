@@ -96,6 +96,7 @@ TEST_CASE("reactions hold each body in its motion") {
     options.loops = static_cast<int>(seed % 4);
     options.drives = static_cast<RandomDrives>(seed / 4 % 3);
     options.steady = false;
+    options.air = seed % 5 == 1;
     const Model model(reference::random_mechanism(seed, options));
     Dice dice(seed);
     Eigen::VectorXd lambda(model.system.rows);
@@ -172,6 +173,7 @@ TEST_CASE("a solved mechanism reports the reactions and drive torques of the ref
     options.loops = static_cast<int>(seed % 3);
     options.parallel_axes = seed % 2 == 0;
     options.spring_share = 1;
+    options.air = seed % 5 == 1;
     const Mechanism m = reference::random_mechanism(seed, options);
     const Solution s = Analysis(m).solve();
     if (s.status != Status::converged) continue;

@@ -170,6 +170,7 @@ RandomOptions kind(std::uint32_t seed) {
   options.parallel_axes = seed % 7 == 1;
   options.skew_universals = seed % 2 == 0;
   options.mark_cuts = seed % 11 == 3;
+  options.air = seed % 3 == 1;
   return options;
 }
 

@@ -195,16 +195,64 @@ void drag_rows(App& app, const Force& force) {
                {.name = "inspector/linear",
                 .value = force.linear,
                 .unit = "N s/m",
-                .help = "Force by the speed through air at rest.",
+                .help = "Force by the speed through the air.",
                 .least = Least::zero,
                 .address = address_of(force, "linear")});
   quantity_row(app, "Quadratic",
                {.name = "inspector/quadratic",
                 .value = force.quadratic,
                 .unit = "N s^2/m^2",
-                .help = "Force by the square of the speed through air at rest.",
+                .help = "Force by the square of the speed through the air.",
                 .least = Least::zero,
                 .address = address_of(force, "quadratic")});
+}
+
+void vane_rows(App& app, const Force& vane) {
+  quantity_row(app, "Area",
+               {.name = "inspector/area",
+                .value = vane.area,
+                .unit = "m^2",
+                .help = "Of one side.",
+                .least = Least::zero,
+                .address = address_of(vane, "area")});
+  vector_rows(app, "Normal",
+              {.name = "inspector/normal",
+               .value = vane.normal,
+               .help = "Square to the plate, as drawn; of any length, either way.",
+               .address = address_of(vane, "normal")});
+  constexpr std::array<std::string_view, 2> forms{"plate", "blade"};
+  const auto chosen = choice_row(app, "inspector/form", "Form", forms, vane.chord ? 1 : 0,
+                                 "On a blade flow along its span does nothing; a plate is alike all round.");
+  if (chosen)
+    edit_later(app, "Form of " + vane.name,
+               [name = vane.name, blade = *chosen == 1](Mechanism& m, Selection&) {
+                 const int f = force_index(m, name);
+                 if (f < 0) return;
+                 Force& same = m.forces[static_cast<std::size_t>(f)];
+                 same.chord = blade ? std::optional<Vec3>(same.normal.unitOrthogonal()) : std::nullopt;
+               });
+  if (vane.chord)
+    vector_rows(app, "Chord",
+                {.name = "inspector/chord",
+                 .value = *vane.chord,
+                 .help = "Along the flow over the blade, as drawn; of any length.",
+                 .address = address_of(vane, "chord")});
+  quantity_row(app, "Normal coefficient",
+               {.name = "inspector/cn",
+                .value = vane.cn,
+                .unit = "",
+                .help =
+                    "Of the force square to the plate, times the sine of the angle of attack; a plate in a "
+                    "stream 1.2, a thin blade up to 2 pi.",
+                .least = Least::zero,
+                .address = address_of(vane, "cn")});
+  quantity_row(app, "Drag coefficient",
+               {.name = "inspector/cd",
+                .value = vane.cd,
+                .unit = "",
+                .help = "Of the force along the flow that is there at any angle.",
+                .least = Least::zero,
+                .address = address_of(vane, "cd")});
 }
 
 } // namespace
@@ -225,6 +273,8 @@ void force_inspector(App& app, const Force& force) {
   point_rows(app, force);
   if (force.type == ForceType::drag)
     drag_rows(app, force);
+  else if (force.type == ForceType::vane)
+    vane_rows(app, force);
   else
     vector_field(app, force);
 }

@@ -179,47 +179,4 @@ void distance_rows(App& app, const Joint& joint) {
                reset);
 }
 
-void gear_rows(App& app, const Joint& joint) {
-  std::vector<std::string> choices;
-  for (const Joint& other : app.mechanism().joints)
-    for (int i = 0; i < coordinate_count(other.type); ++i)
-      if (!is_rotation_vector(other.type, i)) choices.push_back(coordinate_name(other, i));
-  constexpr std::array<const char*, 2> labels{"Joint a", "Joint b"};
-  for (std::size_t end = 0; end < 2; ++end) {
-    const std::string name = "inspector/joints/" + std::to_string(end);
-    const auto chosen = name_choice_row(app, name, labels[end], choices, joint.joints[end],
-                                        "A coordinate the gear couples: b = ratio a + offset.");
-    if (chosen)
-      edit_joint(app, "Joints of " + joint.name, joint.name, [end, chosen = *chosen](Joint& same) {
-        if (same.joints[1 - end] == chosen) same.joints[1 - end] = same.joints[end];
-        same.joints[end] = chosen;
-      });
-  }
-  const auto unit_of = [&](std::size_t end) -> std::string {
-    const auto [other, i] = find_coordinate(app.mechanism(), joint.joints[end]);
-    if (other < 0) return "";
-    return is_angle(app.mechanism().joints[static_cast<std::size_t>(other)].type, i) ? "rad" : "m";
-  };
-  const std::string a = unit_of(0), b = unit_of(1);
-  quantity_row(app, "Ratio",
-               {.name = "inspector/ratio",
-                .value = joint.ratio,
-                .unit = a == b ? "" : b + "/" + a,
-                .help = "How far b moves while a moves by one; negative where they turn against each other.",
-                .address = address_of(joint, "ratio")});
-  std::function<void(App&)> reset;
-  if (joint.offset)
-    reset = [name = joint.name](App& changed) {
-      edit_joint(changed, "Offset of " + name + " as drawn", name, [](Joint& same) { same.offset.reset(); });
-    };
-  quantity_row(app, "Offset",
-               {.name = "inspector/offset",
-                .value = joint.offset.value_or(drawn_offset(app.mechanism(), joint)),
-                .unit = b,
-                .help = "Where b stands while a is zero.",
-                .address = address_of(joint, "offset"),
-                .standard = !joint.offset},
-               reset);
-}
-
 } // namespace flyball

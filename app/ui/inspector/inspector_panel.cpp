@@ -1,4 +1,5 @@
 // What is known of the selected part, to be read and edited.
+#include "app/document/gear_kinds.hpp"
 #include "app/render/icons.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
@@ -19,7 +20,7 @@ std::string title_of(const App& app) {
   const PartId id = find_part(app.mechanism(), selection.parts.front());
   const auto i = static_cast<std::size_t>(id.index);
   std::string word = "body";
-  if (id.kind == PartKind::joint) word = std::string(type_name(app.mechanism().joints[i].type)) + " joint";
+  if (id.kind == PartKind::joint) word = joint_noun(app.mechanism().joints[i]);
   if (id.kind == PartKind::force) word = type_name(app.mechanism().forces[i].type);
   word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
   return word;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace flyball {
@@ -38,6 +39,42 @@ void gravity_buttons(App& app) {
 
 std::string counted(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+// Where there is something for the air to act on.
+void air_rows(App& app) {
+  const Mechanism& mechanism = app.mechanism();
+  const Air& air = mechanism.air;
+  const auto of_air = [](const Force& force) { return is_of_air(force.type); };
+  if (air == Air() && std::ranges::none_of(mechanism.forces, of_air)) return;
+  if (!inspector_section(app, "inspector/air section", "Air", true)) return;
+  const std::string nothing = "nothing";
+  std::vector<std::string> choices{nothing};
+  for (const Body& body : mechanism.bodies)
+    choices.push_back(body.name);
+  const auto chosen = name_choice_row(app, "inspector/turns_with", "Turns with", choices,
+                                      air.turns_with.empty() ? nothing : air.turns_with,
+                                      "A body that carries the air round as if it were fixed in it.");
+  if (chosen)
+    edit_later(app, "What the air turns with",
+               [body = *chosen == nothing ? "" : *chosen](Mechanism& m, Selection&) {
+                 m.air.turns_with = body;
+                 if (!body.empty()) m.air.wind.setZero();
+               });
+  if (air.turns_with.empty())
+    vector_rows(app, "Wind",
+                {.name = "inspector/wind",
+                 .value = air.wind,
+                 .unit = "m/s",
+                 .help = "The velocity of the air, the same everywhere, in the world's axes.",
+                 .address = "air.wind"});
+  quantity_row(app, "Density",
+               {.name = "inspector/density of air",
+                .value = air.density,
+                .unit = "kg/m^3",
+                .help = "Of the air, for vanes.",
+                .least = Least::zero,
+                .address = "air.density"});
 }
 
 void simulation_rows(App& app) {
@@ -76,6 +113,7 @@ void scene_inspector(App& app) {
                .help = "The acceleration of free fall, in the world's axes.",
                .address = "gravity"});
   gravity_buttons(app);
+  air_rows(app);
   named_sections(app);
   simulation_rows(app);
   ImGui::Dummy({0, 2 * app.scale});

@@ -91,7 +91,8 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
 }
 
 void actions(App& app) {
-  constexpr std::array ids{"edit.duplicate", "edit.mirror", "edit.circular", "edit.gear", "edit.delete"};
+  constexpr std::array ids{"edit.duplicate", "edit.mirror", "edit.circular", "edit.gear",
+                           "edit.belt",      "edit.rack",   "edit.screw",    "edit.delete"};
   const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
   bool first = true;
   for (const char* id : ids) {

@@ -1,6 +1,8 @@
 #include "app/ui/panels/context_menu.hpp"
 
+#include "app/document/gear_kinds.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/edit_commands.hpp"
 #include "app/ui/inspector/coordinate_drive.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
@@ -48,7 +50,7 @@ void menu_title(Ui& ui, const std::string& name, const std::string& what) {
 
 std::string menu_kind(const Mechanism& mechanism, PartId part) {
   const auto i = static_cast<std::size_t>(part.index);
-  if (part.kind == PartKind::joint) return std::string(type_name(mechanism.joints[i].type)) + " joint";
+  if (part.kind == PartKind::joint) return joint_noun(mechanism.joints[i]);
   if (part.kind == PartKind::force) return std::string(type_name(mechanism.forces[i].type));
   return "body";
 }
@@ -125,6 +127,10 @@ void part_items(App& app) {
   command_items(app, {"edit.duplicate", "edit.copy", "edit.delete"});
   if (selection.has(PartKind::body)) command_items(app, {"edit.mirror", "edit.circular"});
   if (selection.names(PartKind::joint).size() == 2) command_item(app, "edit.gear");
+  for (const auto& [kind, command_id] : {std::pair(GearKind::belt, "edit.belt"),
+                                         {GearKind::rack, "edit.rack"},
+                                         {GearKind::screw, "edit.screw"}})
+    if (can_gear_selected(app, kind)) command_item(app, command_id);
   ImGui::Separator();
   if (alone && id.kind == PartKind::joint)
     drive_items(app, mechanism.joints[static_cast<std::size_t>(id.index)]);

@@ -40,7 +40,7 @@ std::string long_load_name(const Mechanism& mechanism, const Load& load) {
   case LoadKind::spring: return "Spring of " + name;
   case LoadKind::weight: return "Weight of " + name;
   case LoadKind::applied: return name;
-  case LoadKind::drag: return "Drag of " + name;
+  case LoadKind::air: return "Air on " + name;
   case LoadKind::inertia: return "Inertial load of " + name;
   }
   return name;

@@ -33,7 +33,7 @@ const char* load_help(LoadKind kind, bool moment, bool diagram) {
                    : "Springs between bodies, and springs and stops of joints (part of the reactions)";
   case LoadKind::weight: return "Mass times gravity, at the mass centre";
   case LoadKind::applied: return "Forces and torques that are given";
-  case LoadKind::drag: return "What the air exerts";
+  case LoadKind::air: return "What the air exerts";
   case LoadKind::inertia:
     return moment ? "Minus the rate of the angular momentum about the mass centre"
                   : "Minus mass times acceleration, at the mass centre";
@@ -74,7 +74,7 @@ const char* load_name(LoadKind kind) {
   case LoadKind::spring: return "springs";
   case LoadKind::weight: return "weight";
   case LoadKind::applied: return "applied";
-  case LoadKind::drag: return "drag";
+  case LoadKind::air: return "air";
   case LoadKind::inertia: return "inertial loads";
   }
   return "";
@@ -95,7 +95,7 @@ void add_load_rows(App& app, std::vector<LegendRow>& rows) {
          ", adds up to zero");
   const std::size_t before = rows.size();
   for (const LoadKind kind : {LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::weight,
-                              LoadKind::applied, LoadKind::drag, LoadKind::inertia})
+                              LoadKind::applied, LoadKind::air, LoadKind::inertia})
     for (const bool moment : {false, true})
       if (scene.arrows.scales.largest(kind, moment) > 0)
         rows.push_back(load_row(app, scene.arrows.scales, kind, moment, pixel, diagram));

@@ -77,7 +77,10 @@ const std::string& name_of(const Mechanism& mechanism, PartId id) {
 // "revolute", "1 kg"
 std::string kind_words(const Mechanism& mechanism, PartId id) {
   const auto i = static_cast<std::size_t>(id.index);
-  if (id.kind == PartKind::joint) return std::string(type_name(mechanism.joints[i].type));
+  if (id.kind == PartKind::joint) {
+    const Joint& joint = mechanism.joints[i];
+    return std::string(joint.type == JointType::gear ? type_name(joint.kind) : type_name(joint.type));
+  }
   if (id.kind == PartKind::body) return short_text(mechanism.bodies[i].mass, 4) + " kg";
   const Force& force = mechanism.forces[i];
   const bool damper = force.type == ForceType::spring && is_damper_alone(force);

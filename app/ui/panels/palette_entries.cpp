@@ -1,5 +1,6 @@
 #include "app/ui/panels/palette_entries.hpp"
 
+#include "app/document/gear_kinds.hpp"
 #include "app/session/number_text.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/session/quantity.hpp"
@@ -43,8 +44,7 @@ void read_mechanism(const Session& session, PaletteIndex& index) {
   for (const Body& body : mechanism.bodies)
     index.entries.push_back(part_entry(PartKind::body, body.name, "body"));
   for (const Joint& joint : mechanism.joints)
-    index.entries.push_back(
-        part_entry(PartKind::joint, joint.name, std::string(type_name(joint.type)) + " joint"));
+    index.entries.push_back(part_entry(PartKind::joint, joint.name, joint_noun(joint)));
   for (const Force& force : mechanism.forces)
     index.entries.push_back(part_entry(PartKind::force, force.name, std::string(type_name(force.type))));
   for (const std::string& address : parameter_addresses(mechanism)) {

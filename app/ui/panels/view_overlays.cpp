@@ -1,6 +1,7 @@
 // What is written over the 3-D view: what the picture shows, what lies under the cursor, what to do next.
 #include "app/ui/panels/view_overlays.hpp"
 
+#include "app/document/gear_kinds.hpp"
 #include "app/render/icons.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/tools/tools.hpp"
@@ -54,7 +55,7 @@ void part_label(App& app) {
            (m.bodies[i].mass > 0 ? short_text(m.bodies[i].mass) + " kg" : std::string("without mass"));
   } else if (part.kind == PartKind::joint && i < m.joints.size()) {
     name = m.joints[i].name;
-    what = std::string(type_name(m.joints[i].type)) + " joint";
+    what = joint_noun(m.joints[i]);
   } else if (part.kind == PartKind::force && i < m.forces.size()) {
     name = m.forces[i].name;
     what = type_name(m.forces[i].type);

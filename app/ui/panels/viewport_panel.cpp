@@ -32,7 +32,8 @@ void use_tool(App& app, const ViewInput& input) {
   case Tool::joint: return use_joining(app, input);
   case Tool::force:
   case Tool::torque:
-  case Tool::drag: return use_forces(app, input);
+  case Tool::drag:
+  case Tool::vane: return use_forces(app, input);
   case Tool::point: return pick_point(app, input);
   }
 }

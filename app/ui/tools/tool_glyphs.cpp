@@ -178,6 +178,14 @@ void draw_stream(const GlyphPen& pen) {
   pen.arc({0.2f, 0.67f}, 0.27f, -0.5f * pi, 0.85f * pi);
 }
 
+// A slanted plate that turns a stream.
+void draw_vane(const GlyphPen& pen) {
+  pen.line({{-0.45f, 0.75f}, {0.45f, -0.75f}});
+  pen.line({{-0.95f, 0.1f}, {-0.2f, 0.1f}, {0.1f, 0.8f}});
+  pen.line({{-0.95f, -0.35f}, {0.05f, -0.35f}});
+  pen.line({{0.4f, -0.35f}, {0.95f, -0.35f}});
+}
+
 } // namespace
 
 void draw_tool_glyph(ImDrawList& list, Tool tool, ImVec2 center, float half, ImU32 ink) {
@@ -198,6 +206,7 @@ void draw_tool_glyph(ImDrawList& list, Tool tool, ImVec2 center, float half, ImU
   case Tool::force: return draw_force(pen);
   case Tool::torque: return draw_torque(pen);
   case Tool::drag: return draw_stream(pen);
+  case Tool::vane: return draw_vane(pen);
   case Tool::point: return; // begun from a field, not from the strip
   }
 }

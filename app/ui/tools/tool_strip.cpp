@@ -34,6 +34,7 @@ constexpr std::array buttons{
     ToolButton{Tool::force, "tools/force", "insert.force", true},
     ToolButton{Tool::torque, "tools/torque", "insert.torque"},
     ToolButton{Tool::drag, "tools/drag", "insert.drag"},
+    ToolButton{Tool::vane, "tools/vane", "insert.vane"},
 };
 
 constexpr float top = 56, bottom = 92; // points of the view that the caption and the axes need

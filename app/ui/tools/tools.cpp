@@ -214,6 +214,7 @@ std::string hint_of_tool(const App& app) {
   case Tool::force: return "Click a point of a body: a force of 1 N downwards. Esc ends.";
   case Tool::torque: return "Click a body: a torque of 1 N m about the line of sight. Esc ends.";
   case Tool::drag: return "Click a point of a body that the air holds back. Esc ends.";
+  case Tool::vane: return "Click a point of a body to put a vane there, square to the view's axis. Esc ends.";
   case Tool::point:
     return "Click the named point where " + owner_of(tool.standing) + " shall stand. Esc ends.";
   }

@@ -28,7 +28,7 @@ std::optional<Hit> part_under_cursor(App& app, const ViewInput& input);
 void use_selecting(App& app, const ViewInput& input);
 void use_placing(App& app, const ViewInput& input);    // ball, block, plate
 void use_connecting(App& app, const ViewInput& input); // rod, link, spring, damper
-void use_forces(App& app, const ViewInput& input);     // force, torque, drag
+void use_forces(App& app, const ViewInput& input);     // force, torque, drag, vane
 void use_joining(App& app, const ViewInput& input);
 bool make_joint(App& app); // of app.tool.joint, and ends it; false where it cannot be made as it is
 

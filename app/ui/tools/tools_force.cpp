@@ -1,4 +1,4 @@
-// Forces, torques and drag: one click on a body.
+// Forces, torques, drag and vanes: one click on a body.
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/named_points.hpp"
@@ -11,10 +11,15 @@ namespace flyball {
 namespace {
 
 ForceType type_of(Tool tool) {
-  return tool == Tool::force ? ForceType::force : tool == Tool::torque ? ForceType::torque : ForceType::drag;
+  switch (tool) {
+  case Tool::torque: return ForceType::torque;
+  case Tool::drag: return ForceType::drag;
+  case Tool::vane: return ForceType::vane;
+  default: return ForceType::force;
+  }
 }
 
-// 1 N downwards, 1 N m about the world axis that points at the viewer.
+// 1 N downwards, 1 N m about the world axis that points at the viewer, a vane square to it.
 Vec3 first_vector(const App& app, const ViewInput& input, const Aim& aim) {
   if (app.tool.tool == Tool::force) return -up_axis(app.mechanism()).array() + 0.0;
   const int n = aim.plane.normal;

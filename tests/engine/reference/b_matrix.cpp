@@ -105,6 +105,11 @@ struct Carriers {
     return b < 0 ? MovingVector{drawn.cast<Real>(), Vec3R::Zero()}
                  : moving_point(motions[at(b)], drawn.cast<Real>());
   }
+  // Of a body, as a field at a point of the world.
+  Vec3R velocity(const std::string& body, const Vec3R& at_point) const {
+    const RigidMotion& motion = motions[at(body_index(mechanism, body))];
+    return (motion.x1 * motion.inverse().x * at_point.homogeneous()).head<3>();
+  }
   MovingVector attachment(const Force& force) const {
     return point(force.body,
                  force.at.value_or(mechanism.bodies[at(body_index(mechanism, force.body))].position));
@@ -128,6 +133,28 @@ void push(const Mechanism& mechanism, std::vector<ReferenceBody>& bodies, const 
   bodies[at(b)].applied.torque += (point - bodies[at(b)].position).cross(force);
 }
 
+// Lift and drag by the angle of attack of the flow in the plane of normal and chord, or of normal and flow.
+Vec3R vane_force(const Mechanism& mechanism, const Force& vane, const Mat3R& displacement,
+                 const Vec3R& flow) {
+  const Vec3R normal = displacement * vane.normal.cast<Real>().normalized();
+  Vec3R along = flow - normal * normal.dot(flow);
+  if (vane.chord) {
+    const Vec3R chord = displacement * vane.chord->cast<Real>(),
+                in_plate = chord - normal * normal.dot(chord);
+    along = in_plate.normalized();
+  } else if (along.norm() > 0) {
+    along.normalize();
+  }
+  const Real across = flow.dot(normal), past = flow.dot(along), speed = std::hypot(across, past);
+  if (speed == 0) return Vec3R::Zero();
+  const Real attack = std::atan2(across, past), pressure = Real(mechanism.air.density) / 2 * speed * speed;
+  const Real lift = Real(vane.cn) * std::sin(attack) * std::cos(attack),
+             drag = Real(vane.cn) * std::sin(attack) * std::sin(attack) + Real(vane.cd);
+  const Vec3R downstream = (across * normal + past * along) / speed,
+              lifting = (past * normal - across * along) / speed;
+  return pressure * Real(vane.area) * (lift * lifting + drag * downstream);
+}
+
 void apply(const Mechanism& mechanism, const Force& force, const Carriers& carriers,
            std::vector<ReferenceBody>& bodies) {
   if (force.type == ForceType::spring) {
@@ -149,9 +176,22 @@ void apply(const Mechanism& mechanism, const Force& force, const Carriers& carri
   case ForceType::force: push(mechanism, bodies, force.body, point.x, vector); break;
   case ForceType::torque: body.applied.torque += vector; break;
   case ForceType::drag:
-    push(mechanism, bodies, force.body, point.x,
-         -(Real(force.linear) + Real(force.quadratic) * point.v.norm()) * point.v);
+  case ForceType::vane: {
+    const std::string& turner = mechanism.air.turns_with;
+    const Vec3R air =
+        turner.empty() ? Vec3R(mechanism.air.wind.cast<Real>()) : Vec3R(carriers.velocity(turner, point.x));
+    const Vec3R flow = air - point.v;
+    const Mat3R drawn = mechanism.bodies[at(body_index(mechanism, force.body))]
+                            .rotation.cast<Real>()
+                            .normalized()
+                            .toRotationMatrix();
+    const Vec3R push_of_air = force.type == ForceType::vane
+                                  ? vane_force(mechanism, force, body.rotation * drawn.transpose(), flow)
+                                  : (Real(force.linear) + Real(force.quadratic) * flow.norm()) * flow;
+    push(mechanism, bodies, force.body, point.x, push_of_air);
+    if (!turner.empty()) push(mechanism, bodies, turner, point.x, -push_of_air);
     break;
+  }
   case ForceType::spring:
   case ForceType::bearing: break; // the reference knows none
   }
@@ -285,7 +325,7 @@ std::map<std::string, VectorR> generalized_forces(const Mechanism& mechanism,
 
 bool has_potential(const Mechanism& mechanism) {
   for (const Force& force : mechanism.forces) {
-    if (force.type == ForceType::torque || force.type == ForceType::drag) return false;
+    if (force.type == ForceType::torque || is_of_air(force.type)) return false;
     if (force.type == ForceType::force && force.frame == ForceFrame::body) return false;
   }
   return true;

@@ -39,6 +39,7 @@ class Builder {
     for (int i = 0; i < options_.loops; ++i)
       add_loop(i);
     if (options_.forces) add_forces();
+    if (options_.air && !options_.conservative) add_air();
     return mechanism_;
   }
 
@@ -226,6 +227,29 @@ class Builder {
       }
       mechanism_.forces.push_back(force);
     }
+  }
+
+  // In a wind, along the axis where the balance is to be steady, or with a body that turns the air.
+  void add_air() {
+    const int count = static_cast<int>(mechanism_.bodies.size());
+    for (int i = 0; i < 2; ++i) {
+      Force vane;
+      vane.name = numbered("vane", i);
+      vane.type = ForceType::vane;
+      vane.body = body_name(dice_.below(count));
+      vane.at = near(body_index(mechanism_, vane.body));
+      vane.area = dice_.between(0.2, 1);
+      vane.normal = dice_.direction();
+      if (dice_.chance(0.5)) vane.chord = vane.normal.cross(dice_.direction());
+      vane.cn = dice_.between(0.5, 3);
+      vane.cd = dice_.between(0, 0.5);
+      mechanism_.forces.push_back(vane);
+    }
+    mechanism_.air.density = dice_.between(1, 2);
+    if (dice_.chance(0.5))
+      mechanism_.air.turns_with = body_name(anchored() ? 0 : dice_.below(count));
+    else
+      mechanism_.air.wind = anchored() ? Vec3(main_axis_ * dice_.between(-3, 3)) : dice_.box(3);
   }
 
   void add_point_spring(Force& force, int count) {
