@@ -129,7 +129,7 @@ void add_turning_air(const System& system, const Parameters& p, const Kinematics
     const TurningAirForce<double> air = turning_air_force<double>(e, p.turning_air[n], k);
     const Mat3 slope = air_force_slope(p.turning_air[n], k.at(e.ends.b).R, air.flow);
     const Vec3 va = k.velocity(e.ends.a, air.point), vb = k.velocity(e.ends.b, air.point);
-    for_pairs(e.ends.support, k, out, [&](const Part& i, const Part& j) {
+    for_pairs(e.ends.support, k, out, [&](const PairPart& i, const PairPart& j) {
       const ScrewRates& s = screws[static_cast<std::size_t>(j.v)];
       const Vec3 turn = j.column.turn(), passing = k.at(e.ends.a).w.cross(j.column.at(air.point));
       // As a carries it: the force turns with b, and point_hessian() has it turn with a.
@@ -213,7 +213,7 @@ void add_pair_damping(const System& system, const Parameters& p, const Kinematic
     const TurningAirElement& e = system.turning_air[n];
     const TurningAirForce<double> air = turning_air_force<double>(e, p.turning_air[n], k);
     const Mat3 slope = air_force_slope(p.turning_air[n], k.at(e.ends.b).R, air.flow);
-    for_pairs(e.ends.support, k, velocity, [&](const Part& i, const Part& j) {
+    for_pairs(e.ends.support, k, velocity, [&](const PairPart& i, const PairPart& j) {
       return (i.second == j.second ? 1. : -1.) * i.column.at(air.point).dot(slope * j.column.at(air.point));
     });
   }
