@@ -295,13 +295,8 @@ TEST_CASE("a map in the background tells its progress, can be stopped, and goes 
 TEST_CASE("the boundary of hunting shows in the map, hard parts told from soft ones, with the frequency") {
   MapRobot robot("governor_engine");
   App& app = robot.app;
-  const std::vector<std::string> before = map_addresses(app);
-  CHECK(std::ranges::find(before, "joints.slide.damping") == before.end());
   robot.click("map/hunting");
   robot.frames(2);
-  // Dampers can be varied now.
-  const std::vector<std::string> after = map_addresses(app);
-  CHECK(std::ranges::find(after, "joints.slide.damping") != after.end());
   robot.map().choice.axes = {MapAxis{"joints.slide.damping", 5, 60, 9},
                              MapAxis{"parameters.gain", 1000, 20000, 9}};
   robot.frames(3);

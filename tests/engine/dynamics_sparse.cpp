@@ -134,6 +134,7 @@ TEST_CASE("the sparse matrix of implicit steps is the dense one of what stands s
     RandomOptions o = loops(seed);
     o.drives = RandomDrives::root;
     o.steady = true;
+    o.air = false; // with vanes the sparse matrix is another approximation of the motion's
     const Mechanism mechanism = reference::random_mechanism(seed, o);
     for (const double gamma : {1e-3, 3e-2}) {
       Motion dense(mechanism, Form::dense), sparse(mechanism, Form::sparse);

@@ -1,0 +1,16 @@
+// The engine's bearings once more, for further numbers: see wide_kinematics.cpp.
+#include "engine/system/bearing.cpp"
+
+#include "tests/stress/other_extended.hpp"
+#include "tests/stress/wide.hpp"
+
+namespace flyball {
+
+template void add_bearings<stress::Dual>(const System&, const Parameters&, const Kinematics<stress::Dual>&,
+                                         Configuration<stress::Dual>&);
+
+template void add_bearings<stress::OtherExtended>(const System&, const Parameters&,
+                                                  const Kinematics<stress::OtherExtended>&,
+                                                  Configuration<stress::OtherExtended>&);
+
+} // namespace flyball
