@@ -77,6 +77,8 @@ Mechanism alike(Mechanism m, double length, double mass, double time) {
   m = test::heavier(test::resized(std::move(m), length), mass);
   const double force = mass * length / (time * time);
   m.gravity *= length / (time * time);
+  m.air.wind *= length / time;
+  m.air.density *= mass / (length * length * length);
   for (Joint& j : m.joints)
     for (std::size_t i = 0; i < j.coordinates.size(); ++i) {
       Coordinate& c = j.coordinates[i];
@@ -89,7 +91,10 @@ Mechanism alike(Mechanism m, double length, double mass, double time) {
         if (!angle && c.stop->upper) *c.stop->upper *= length;
       }
       c.damping *= unit * time;
-      if (c.drive) c.drive->speed *= (angle ? 1 : length) / time;
+      if (!c.drive) continue;
+      c.drive->speed *= (angle ? 1 : length) / time;
+      for (std::optional<double>* torque : {&c.drive->torque, &c.drive->load})
+        if (*torque) **torque *= angle ? force * length : force;
     }
   for (Force& f : m.forces) {
     f.stiffness *= force / length;

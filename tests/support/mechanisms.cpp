@@ -49,6 +49,9 @@ Mechanism resized(Mechanism m, double factor) {
     for (Vec3& p : j.points)
       p *= factor;
     if (j.length) *j.length *= factor;
+    for (double& radius : j.radii)
+      radius *= factor;
+    j.lead *= factor;
     for (std::size_t i = 0; i < j.coordinates.size(); ++i) {
       if (is_angle(j.type, static_cast<int>(i))) continue;
       Coordinate& c = j.coordinates[i];
@@ -61,6 +64,7 @@ Mechanism resized(Mechanism m, double factor) {
       p *= factor;
     if (f.at) *f.at *= factor;
     if (f.free_length) *f.free_length *= factor;
+    f.area *= factor * factor;
   }
   return m;
 }
