@@ -433,7 +433,8 @@ void settle_formulas(const Mechanism& before, Mechanism& next) {
   for (const GivenNumber& given : all) {
     if (is_named(given) || is_of_state(given.text)) continue;
     const std::string part = owner(given.part);
-    const bool is_part = part.find('.') != std::string::npos && !part.starts_with("gravity") && !part.starts_with("air.");
+    const bool is_part =
+        part.find('.') != std::string::npos && !part.starts_with("gravity") && !part.starts_with("air.");
     if (is_part && !former.contains(part)) {
       bool same = false;
       try {

@@ -1,6 +1,7 @@
 #include "engine/continuation/branch_follower.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/infinite_rate.hpp"
 #include "engine/mechanism/validate.hpp"
@@ -142,21 +143,20 @@ Spectrum BranchFollower::spectrum(const BranchState& state) {
   return find_stability(at, true).eigenvalues.value_or(Spectrum{});
 }
 
-// Where `value` (of a state and its distance along the branch) changes its sign, by the Illinois method
-// (Dowell and Jarratt 1971), and how far along that is. `value` may be a step function: then this halves.
+// Where `value` (of a state and its distance along the branch, a step function maybe) changes its sign, and
+// how far along that is.
 template <class Value>
 std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, double low, double at_low,
                                                       double high, double at_high, const BranchState& beyond,
                                                       Value value) {
   BranchState at = beyond, probe;
   double found = high, previous = low;
-  int side = 0;
-  for (int i = 0; i < 80 && high - low > tolerance::special_point; ++i) {
-    double middle = low - at_low * (high - low) / (at_high - at_low);
-    if (!(middle > low && middle < high)) middle = (low + high) / 2;
+  RootBracket bracket(low, at_low, high, at_high);
+  for (int i = 0; i < 80 && bracket.width() > tolerance::special_point; ++i) {
+    double middle = bracket.next();
     // Right beside a crossing the corrector may fail; closer in from either end it need not.
     bool stepped = false;
-    for (const double there : {middle, (low + middle) / 2, (middle + high) / 2}) {
+    for (const double there : {middle, (bracket.low() + middle) / 2, (middle + bracket.high()) / 2}) {
       int iterations = 0;
       middle = there;
       stepped = continuation_.step(from, middle, probe, iterations);
@@ -168,17 +168,7 @@ std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, d
     found = middle;
     if (now == 0 || (std::abs(middle - previous) < 0.1 * tolerance::special_point && i > 3)) break;
     previous = middle;
-    if ((now < 0) == (at_high < 0)) {
-      high = middle;
-      at_high = now;
-      if (side == 1) at_low /= 2;
-      side = 1;
-    } else {
-      low = middle;
-      at_low = now;
-      if (side == -1) at_high /= 2;
-      side = -1;
-    }
+    bracket.take(middle, now);
   }
   return {std::move(at), found};
 }

@@ -2,6 +2,7 @@
 // Floquet multiplier leaves the unit circle.
 #include "engine/continuation/branch_follower.hpp"
 
+#include "engine/linear/root_bracket.hpp"
 #include "engine/stability/stability.hpp"
 
 namespace flyball {
@@ -31,16 +32,15 @@ void BranchFollower::find_multiplier_crossing(const BranchState& state, const Br
   // of the distance.
   const bool damped = std::min(at_start->growth, at_end->growth) < -tolerance::departed_multiplier;
   const double limit = damped ? 0 : tolerance::departed_multiplier;
-  double low = 0, high = length, at_low = at_start->growth - limit, at_high = at_end->growth - limit;
+  const double at_low = at_start->growth - limit, at_high = at_end->growth - limit;
   if (at_low * at_high >= 0) return;
+  RootBracket bracket(0, at_low, length, at_high);
   BranchState found = next;
   // The multiplier on the side that grows tells how it left.
   std::complex<double> grows = at_low > 0 ? at_start->value : at_end->value;
-  int side = 0;
-  for (int i = 0; i < 80 && high - low > tolerance::special_point && !cancelled(); ++i) {
-    // Illinois' method where the growth is smooth; halves where it begins like a root.
-    double middle = damped ? low - at_low * (high - low) / (at_high - at_low) : (low + high) / 2;
-    if (!(middle > low && middle < high)) middle = (low + high) / 2;
+  for (int i = 0; i < 80 && bracket.width() > tolerance::special_point && !cancelled(); ++i) {
+    // Where the growth begins like a root, halves do better.
+    const double middle = damped ? bracket.next() : bracket.middle();
     BranchState probe;
     int iterations = 0;
     if (!continuation_.step(state, middle, probe, iterations)) break;
@@ -50,17 +50,7 @@ void BranchFollower::find_multiplier_crossing(const BranchState& state, const Br
     if (value > 0) grows = here->value;
     found = std::move(probe);
     if (std::abs(value) < 1e-13) break;
-    if ((value > 0) == (at_high > 0)) {
-      high = middle;
-      at_high = value;
-      if (side == 1) at_low /= 2;
-      side = 1;
-    } else {
-      low = middle;
-      at_low = value;
-      if (side == -1) at_high /= 2;
-      side = -1;
-    }
+    bracket.take(middle, value);
   }
   const bool real = std::abs(grows.imag()) <= 1e-3 * std::abs(grows);
   out.special.emplace_back(real     ? SpecialPointType::parametric

@@ -1,5 +1,7 @@
 #include "engine/periodic/orbit_ranges.hpp"
 
+#include "engine/linear/golden_section.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -32,27 +34,7 @@ double extreme(std::span<const double> values, std::size_t stride, double sign) 
     }
     return sign * sum;
   };
-  // Golden sections.
-  constexpr double golden = 0.6180339887498949;
-  double low = -1, high = 1;
-  double x = high - golden * (high - low), y = low + golden * (high - low);
-  double fx = polynomial(x), fy = polynomial(y);
-  while (high - low > 1e-9) {
-    if (fx > fy) {
-      high = y;
-      y = x;
-      fy = fx;
-      x = high - golden * (high - low);
-      fx = polynomial(x);
-    } else {
-      low = x;
-      x = y;
-      fx = fy;
-      y = low + golden * (high - low);
-      fy = polynomial(y);
-    }
-  }
-  return sign * std::max({fx, fy, sign * values[best * stride]});
+  return sign * std::max(golden_section(-1, 1, 1e-9, polynomial).value, sign * values[best * stride]);
 }
 
 PeriodicRange range_with(std::span<const double> values, std::size_t stride) {

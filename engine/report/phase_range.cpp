@@ -1,5 +1,6 @@
 #include "engine/report/phase_range.hpp"
 
+#include "engine/linear/golden_section.hpp"
 #include "engine/report/report_forces.hpp"
 #include "engine/stability/floquet.hpp"
 #include "engine/system/reactions.hpp"
@@ -64,7 +65,6 @@ struct Grid {
 // sections, which needs no derivatives and cannot lose what it has.
 double refined(Torques& torques, Eigen::Index motor, double sign, Eigen::VectorXd angles, double step,
                double value) {
-  constexpr double golden = 0.6180339887498949;
   for (int sweep = 0; sweep < 12; ++sweep) {
     const double before = value;
     for (Eigen::Index d = 0; d < angles.size(); ++d) {
@@ -73,27 +73,10 @@ double refined(Torques& torques, Eigen::Index motor, double sign, Eigen::VectorX
         there[d] = x;
         return sign * torques.at(there)[motor];
       };
-      double low = angles[d] - step, high = angles[d] + step;
-      double x = high - golden * (high - low), y = low + golden * (high - low);
-      double fx = at(x), fy = at(y);
-      while (high - low > 1e-8) {
-        if (fx > fy) {
-          high = y;
-          y = x;
-          fy = fx;
-          x = high - golden * (high - low);
-          fx = at(x);
-        } else {
-          low = x;
-          x = y;
-          fx = fy;
-          y = low + golden * (high - low);
-          fy = at(y);
-        }
-      }
-      if (std::max(fx, fy) > value) {
-        value = std::max(fx, fy);
-        angles[d] = fx > fy ? x : y;
+      const Greatest found = golden_section(angles[d] - step, angles[d] + step, 1e-8, at);
+      if (found.value > value) {
+        value = found.value;
+        angles[d] = found.at;
       }
     }
     if (angles.size() == 1 || value - before <= 1e-13 * std::abs(value)) break;

@@ -59,6 +59,7 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
                                                        [](const CoordinateForce& f) { return f.damped(); });
                           }) ||
       !system.cut_dampers.empty() ||
+      std::ranges::any_of(p.bearings, [](const BearingParameters& b) { return !b.damping.isZero(0); }) ||
       std::ranges::any_of(p.springs, [](const PointSpringParameters& s) { return s.damped(); });
   say(damped, "dampers: in the eigenvalues, and in the balance where parts turn against each other");
   say(std::ranges::any_of(system.links,

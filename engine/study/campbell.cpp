@@ -1,6 +1,7 @@
 #include "engine/study/campbell.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/formulas.hpp"
@@ -227,33 +228,20 @@ class CrossingFinder {
         touches);
   }
 
-  // Between two places of unlike signs, by regula falsi that halves the end that stays (Illinois).
-  void add_crossing(const Way& way, Place low, Place high) {
-    if (low.speed == high.speed || (!way.a.mode->oscillates() && !way.b.mode->oscillates())) return;
-    const Place from = low, to = high;
-    const double width = std::abs(high.speed - low.speed);
+  // Between two places of unlike signs.
+  void add_crossing(const Way& way, const Place& from, const Place& to) {
+    if (from.speed == to.speed || (!way.a.mode->oscillates() && !way.b.mode->oscillates())) return;
+    RootBracket bracket(from.speed, from.off, to.speed, to.off);
+    const double narrow = 1e-14 * (bracket.width() + std::abs(from.speed) + std::abs(to.speed));
     std::optional<VibrationMode> last;
-    double speed = low.speed;
-    int kept = 0;
-    for (int i = 0; i < 60 && std::abs(high.speed - low.speed) >
-                                  1e-14 * (width + std::abs(low.speed) + std::abs(high.speed));
-         ++i) {
-      speed = low.speed + (high.speed - low.speed) * std::clamp(low.off / (low.off - high.off), 0.01, 0.99);
+    double speed = from.speed;
+    for (int i = 0; i < 60 && bracket.width() > narrow; ++i) {
+      speed = bracket.next();
       last = nearest(way, speed);
       if (!last) return;
       const double f = off(*last, speed);
-      if (f == 0) {
-        low.speed = high.speed = speed;
-      } else if ((f < 0) == (low.off < 0)) {
-        low = {speed, f};
-        if (kept == 1) high.off /= 2;
-        kept = 1;
-      } else {
-        high = {speed, f};
-        if (kept == -1) low.off /= 2;
-        kept = -1;
-      }
       if (std::abs(f) <= 1e-15 * std::max(last->natural_frequency, std::abs(order_ * speed))) break;
+      bracket.take(speed, f);
     }
     if (!last || !last->oscillates()) return;
     // Beside a double root the chord from there is the flatter one, half as steep as the line at the

@@ -2,6 +2,7 @@
 
 #include "engine/continuation/branches.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
@@ -156,33 +157,22 @@ class Box {
     return moved;
   }
 
-  // Where the rate with the share j has a root, between two places at which its signs differ: by regula falsi
-  // that halves the end that stays (Illinois). The output is flat there, so that half its digits do.
-  Place crest(Index output, Index j, Place low, Place high) {
-    double at_low = low.rates(output, j), at_high = high.rates(output, j);
+  // Where the rate with the share j has a root, between two places at which its signs differ. The output is
+  // flat there, so that half its digits do.
+  Place crest(Index output, Index j, const Place& low, const Place& high) {
+    const double at_low = low.rates(output, j), at_high = high.rates(output, j);
     const double flat = 1e-12 * std::max(std::abs(at_low), std::abs(at_high));
+    RootBracket bracket(low.state.p[j], at_low, high.state.p[j], at_high);
     Place middle = low;
-    int kept = 0;
-    for (int i = 0; i < most_iterations && std::abs(high.state.p[j] - low.state.p[j]) > 1e-8; ++i) {
+    for (int i = 0; i < most_iterations && bracket.width() > 1e-8; ++i) {
       interruption_point();
-      const double span = high.state.p[j] - low.state.p[j];
-      VectorXd p = low.state.p;
-      p[j] += span * std::clamp(at_low / (at_low - at_high), 0.01, 0.99);
+      VectorXd p = middle.state.p;
+      p[j] = bracket.next();
       if (!map_.walk_to(middle.state, p) || !map_.find_rates(middle.state)) break;
       middle.rates = map_.rates();
       const double rate = middle.rates(output, j);
       if (!(std::abs(rate) > flat)) break;
-      if ((rate > 0) == (at_low > 0)) {
-        low = middle;
-        at_low = rate;
-        if (kept == 1) at_high /= 2;
-        kept = 1;
-      } else {
-        high = middle;
-        at_high = rate;
-        if (kept == -1) at_low /= 2;
-        kept = -1;
-      }
+      bracket.take(p[j], rate);
     }
     return middle;
   }

@@ -1,6 +1,7 @@
 #include "engine/study/holding.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/root_bracket.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/frictions.hpp"
@@ -244,19 +245,13 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
 // Where the share that holding takes passes 1, between a speed at which it is below and one at which it is
 // above.
 double find_slip(const auto& takes, double below, double above) {
-  double low = takes(below) - 1, high = takes(above) - 1;
-  for (int i = 0; i < 100 && std::abs(above - below) > 1e-14 * std::abs(above); ++i) {
-    double middle = i % 3 == 2 || !std::isfinite(high) ? (below + above) / 2
-                                                       : below - low * (above - below) / (high - low);
-    if (middle == below || middle == above) middle = (below + above) / 2;
-    const double value = takes(middle) - 1;
-    if (value == 0) return middle;
-    if (value < 0)
-      below = middle, low = value;
-    else
-      above = middle, high = value;
+  RootBracket bracket(below, takes(below) - 1, above, takes(above) - 1);
+  for (int i = 0; i < 100 && bracket.width() > 1e-14 * std::abs(bracket.high()); ++i) {
+    const double speed = bracket.next(), value = takes(speed) - 1;
+    if (value == 0) return speed;
+    bracket.take(speed, value);
   }
-  return above;
+  return bracket.high();
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "engine/study/hopf_curve.hpp"
 
 #include "engine/continuation/crossing_pair.hpp"
+#include "engine/linear/root_bracket.hpp"
 #include "engine/study/plane_search.hpp"
 
 #include <algorithm>
@@ -42,43 +43,32 @@ class HopfTeller {
     return describe_hopf(balance_.mechanism(), here, frequency, unit_);
   }
 
-  // Where the coefficient goes through zero between two points: by the Illinois method.
+  // Where the coefficient goes through zero between two points.
   void find_bautin(const TracedCurve& traced, std::size_t i, PlaneCurve& curve) {
     const HopfPoint &first = *curve.points[i].hopf, &last = *curve.points[i + 1].hopf;
     const HopfLoss before = first.loss(), after = last.loss();
     if (before == HopfLoss::undecided || after == HopfLoss::undecided || before == after ||
         first.coordinate != last.coordinate)
       return;
-    double low = 0, high = traced.tangents[i].dot(tracer_.difference(traced.states[i], traced.states[i + 1]));
-    double at_low = *first.lyapunov, at_high = *last.lyapunov;
-    const double size = std::min(std::abs(at_low), std::abs(at_high));
-    int side = 0;
+    const double size = std::min(std::abs(*first.lyapunov), std::abs(*last.lyapunov));
+    RootBracket bracket(0, *first.lyapunov,
+                        traced.tangents[i].dot(tracer_.difference(traced.states[i], traced.states[i + 1])),
+                        *last.lyapunov);
     for (int k = 0; k < 60; ++k) {
-      double middle = low - at_low * (high - low) / (at_high - at_low);
-      if (!(middle > low && middle < high)) middle = (low + high) / 2;
+      const double middle = bracket.next();
       ExtendedState state;
       if (tracer_.step(traced.states[i], traced.tangents[i], middle, state) == 0) return;
       const HopfPoint here = at(state);
       if (!here.lyapunov || here.coordinate != first.coordinate) return;
       const double value = *here.lyapunov;
-      if (std::abs(value) <= here.error || high - low < 1e-11) {
+      if (std::abs(value) <= here.error || bracket.width() < 1e-11) {
         if (!(std::abs(value) < std::max(0.1 * size, here.error))) return; // it goes through infinity
         PlanePoint point = PlaneSearch::point(balance_, PlaneCurveType::hopf, state);
         point.hopf = here;
         curve.bautin.push_back(std::move(point));
         return;
       }
-      if ((value < 0) == (at_high < 0)) {
-        high = middle;
-        at_high = value;
-        if (side == 1) at_low /= 2;
-        side = 1;
-      } else {
-        low = middle;
-        at_low = value;
-        if (side == -1) at_high /= 2;
-        side = -1;
-      }
+      bracket.take(middle, value);
     }
   }
 

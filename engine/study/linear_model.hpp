@@ -9,9 +9,9 @@
 // does not enter, and b1 = -N^T (C + G) G. With w = p' - M^-1 b1 u no derivative is left (as in Ogata,
 // Modern Control Engineering, 5th ed., section 2-5):
 //     p' = w + M^-1 b1 u,   M w' = -K p - (C + G) w + (b0 - (C + G) M^-1 b1) u.
-// The coordinates p are coordinates of joints, as many as are independent. What turns at a speed that is found
-// has a rate, and no angle unless asked for: nothing depends on it. A shaft left to itself is one that a torque
-// of nothing drives; other momenta are states of their own, so that it has a pole at zero.
+// The coordinates p are coordinates of joints, as many as are independent. What turns at a speed that is
+// found has a rate, and no angle unless asked for: nothing depends on it. A shaft left to itself is one that
+// a torque of nothing drives; other momenta are states of their own, so that it has a pole at zero.
 #pragma once
 
 #include "engine/linear/state_space.hpp"

@@ -232,9 +232,10 @@ class Binder {
       const PointSpringElement& e = s_.springs[i];
       const Force& f = m_.forces[static_cast<std::size_t>(e.force)];
       const Vector a = read_(f.points[0]), b = read_(f.points[1]);
-      p_.springs[i] = {in_link(a, e.ends.a), in_link(b, e.ends.b),
-                       read_(f.stiffness),   read_(f.free_length, (b - a).norm()),
-                       read_(f.damping),     nullptr};
+      p_.springs[i] = {{read_(f.stiffness), read_(f.damping), nullptr},
+                       in_link(a, e.ends.a),
+                       in_link(b, e.ends.b),
+                       read_(f.free_length, (b - a).norm())};
     }
     for (const ForceLawElement& e : s_.spring_laws) {
       BasicPointSpringParameters<N>& out = p_.springs[static_cast<std::size_t>(e.at)];

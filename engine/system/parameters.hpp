@@ -9,19 +9,37 @@
 
 namespace flyball {
 
-// Spring, damper, stop and friction of one coordinate. In a steady state friction is a constant force, with
-// the potential of one.
+// A spring and a damper along one coordinate or length.
 template <class N>
-struct BasicCoordinateForce {
-  N stiffness = 0, free = 0, damping = 0;
-  N lower = 0, upper = 0, stop_stiffness = 0; // stop_stiffness 0: no stop
-  bool has_lower = false, has_upper = false;
-  N friction = 0; // what friction gives, N m or N, positive along the coordinate
+struct BasicSpringDamper {
+  N stiffness = 0, damping = 0;
   // In place of stiffness and damping, which then are 0 and that at rest; null: none.
   std::shared_ptr<const BasicForceLaws<N>> laws;
   bool has_spring() const { return stiffness != 0 || (laws && laws->spring); }
-  bool elastic() const { return has_spring() || stop_stiffness != 0; }
   bool damped() const { return damping != 0 || (laws && laws->damper); }
+
+  // What the damper resists a rate with, and how fast that changes with it.
+  template <class S>
+  S resistance(S rate) const {
+    return laws && laws->damper ? laws->damper.value(rate) : S(damping) * rate;
+  }
+  N resistance_slope(N rate) const { return laws && laws->damper ? laws->damper.slope(rate) : damping; }
+  void remove_damper() {
+    damping = 0;
+    if (laws) laws = std::make_shared<BasicForceLaws<N>>(laws->spring, BoundLaw(), laws->free);
+  }
+};
+
+// Spring, damper, stop and friction of one coordinate. In a steady state friction is a constant force, with
+// the potential of one.
+template <class N>
+struct BasicCoordinateForce : BasicSpringDamper<N> {
+  using BasicSpringDamper<N>::stiffness, BasicSpringDamper<N>::laws;
+  N free = 0;
+  N lower = 0, upper = 0, stop_stiffness = 0; // stop_stiffness 0: no stop
+  bool has_lower = false, has_upper = false;
+  N friction = 0; // what friction gives, N m or N, positive along the coordinate
+  bool elastic() const { return this->has_spring() || stop_stiffness != 0; }
 
   // Torque or force of the spring, stop and friction on the coordinate's own side: dV/dq at q.
   template <class S>
@@ -44,16 +62,6 @@ struct BasicCoordinateForce {
     if (has_upper && q > S(upper)) v += S(stop_stiffness) * (q - S(upper)) * (q - S(upper));
     v = v / 2 - S(friction) * q;
     return laws ? v + laws->spring.energy(q - laws->free) : v;
-  }
-  // What the damper resists a rate with, and how fast that changes with it.
-  template <class S>
-  S resistance(S rate) const {
-    return laws && laws->damper ? laws->damper.value(rate) : S(damping) * rate;
-  }
-  N resistance_slope(N rate) const { return laws && laws->damper ? laws->damper.slope(rate) : damping; }
-  void remove_damper() {
-    damping = 0;
-    if (laws) laws = std::make_shared<BasicForceLaws<N>>(laws->spring, BoundLaw(), laws->free);
   }
 };
 
@@ -103,11 +111,10 @@ template <class N>
 using BasicOffset = Vec3T<N>;
 
 template <class N>
-struct BasicPointSpringParameters {
+struct BasicPointSpringParameters : BasicSpringDamper<N> {
+  using BasicSpringDamper<N>::stiffness, BasicSpringDamper<N>::damping, BasicSpringDamper<N>::laws;
   BasicOffset<N> a, b;
-  N stiffness = 0, free_length = 0, damping = 0;
-  std::shared_ptr<const BasicForceLaws<N>> laws; // as of a coordinate
-  bool damped() const { return damping != 0 || (laws && laws->damper); }
+  N free_length = 0;
   // No force but k d between its points, which may meet.
   bool without_length() const { return free_length == N(0) && damping == N(0) && !laws; }
 
@@ -122,15 +129,6 @@ struct BasicPointSpringParameters {
   N energy(N length) const {
     const N stretch = length - free_length;
     return laws && laws->spring ? laws->spring.energy(stretch) : stiffness * stretch * stretch / 2;
-  }
-  template <class S>
-  S resistance(S rate) const {
-    return laws && laws->damper ? laws->damper.value(rate) : S(damping) * rate;
-  }
-  N resistance_slope(N rate) const { return laws && laws->damper ? laws->damper.slope(rate) : damping; }
-  void remove_damper() {
-    damping = 0;
-    if (laws) laws = std::make_shared<BasicForceLaws<N>>(laws->spring, BoundLaw(), laws->free);
   }
   void remove() {
     stiffness = damping = 0;
