@@ -130,23 +130,27 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   if (!s.points.empty()) heading("points, world axes at the drawn phase");
   for (const PointSolution& p : s.points)
     out += motion_text(point_label(p.point), width, p.motion);
-  if (!s.drive_torques.empty()) heading("drives");
-  for (const DriveTorque& d : s.drive_torques)
-    out += fmt::format("  {:{}}  {:>22.9g} {}{}{}\n", shown_label(d), width, d.value, unit_of(d.angle),
-                       range_text(d), d.nonunique ? "  (not unique)" : "");
-  if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
-  // What is rounding beside the largest reaction is shown as zero.
+  // What is rounding beside the largest load is shown as zero.
   double force = 0, torque = 0;
   for (const Reaction& r : s.reactions) {
     force = std::max(force, r.force.norm());
     torque = std::max(torque, r.torque.norm());
   }
-  const auto clean = [](const Vec3& v, double size) -> Vec3 {
-    return v.unaryExpr([&](double x) { return std::abs(x) < 1e-12 * size ? 0. : x; });
+  double load = std::max(force, torque);
+  for (const GearReaction& g : s.gears)
+    load = std::max({load, std::abs(g.a), std::abs(g.b)});
+  const auto clean = [](double x, double size) { return std::abs(x) < 1e-12 * size ? 0. : x; };
+  const auto clean_vector = [&](const Vec3& v, double size) -> Vec3 {
+    return v.unaryExpr([&](double x) { return clean(x, size); });
   };
+  if (!s.drive_torques.empty()) heading("drives");
+  for (const DriveTorque& d : s.drive_torques)
+    out += fmt::format("  {:{}}  {:>22.9g} {}{}{}\n", shown_label(d), width, clean(d.value, load),
+                       unit_of(d.angle), range_text(d), d.nonunique ? "  (not unique)" : "");
+  if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
   for (const Reaction& raw : s.reactions) {
-    const Reaction r{raw.joint, clean(raw.force, force), clean(raw.torque, std::max(torque, force)),
-                     raw.varying, raw.nonunique};
+    const Reaction r{raw.joint, clean_vector(raw.force, force),
+                     clean_vector(raw.torque, std::max(torque, force)), raw.varying, raw.nonunique};
     out += fmt::format("  {:{}}  force [{:.6g}, {:.6g}, {:.6g}] N  torque [{:.6g}, {:.6g}, {:.6g}] N m{}\n",
                        printable(r.joint), width, r.force.x(), r.force.y(), r.force.z(), r.torque.x(),
                        r.torque.y(), r.torque.z(), flags(r.varying, r.nonunique));
