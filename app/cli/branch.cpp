@@ -136,7 +136,6 @@ void add_branch(CLI::App& app, Ending& ending) {
     check_outputs(options->scene.file,
                   {{"--csv", options->csv}, {"--svg", options->svg}, {"--png", options->png}});
     const Range range = parse_range("--vary", options->vary);
-    if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
     if (!options->over.empty())
       return branch_over(options->scene,
                          {range, options->over, options->all, options->json, options->csv, options->shard},
@@ -155,7 +154,7 @@ void add_branch(CLI::App& app, Ending& ending) {
         ribbons = follow_ribbons(mechanism, range.address, diagram, follow.progress);
       hunting = describe_hunting(mechanism, range.address, diagram);
     } catch (const SceneError& error) {
-      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+      throw options->scene.in_file(error);
     }
     progress.reset();
     const bool any = diagram.status == Status::converged && !diagram.branches.empty();

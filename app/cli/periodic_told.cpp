@@ -115,7 +115,7 @@ std::string to_text(const PeriodicState& s) {
     rows.push_back(range_row(shown_label(t) + ", by the drive", t.range, t.angle ? "N m" : "N"));
   out += "\n" + aligned(rows, true);
   if (!s.floquet.multipliers.empty()) {
-    out += fmt::format("\nFloquet multipliers, to {:.1g}\n", s.floquet.error);
+    out += fmt::format("\nFloquet multipliers, to an estimated {:.1g}\n", s.floquet.error);
     for (std::size_t i = 0; i < s.floquet.growth.size(); ++i)
       out += fmt::format("  {:>+13.9f} {:>+13.9f} i  size {:.9g}, growth {:.6g} 1/s\n",
                          s.floquet.multipliers[i].real(), s.floquet.multipliers[i].imag(),

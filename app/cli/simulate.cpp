@@ -342,7 +342,7 @@ Ending run_simulate(const SimulateCommand& options) {
       steady.reset();
   } catch (const SceneError& error) {
     if (!error.where().empty())
-      throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
+      throw options.scene.in_file(error);
     run = {}; // nothing is wrong with the scene as it is written: it has no such motion
     run.status = RunStatus::diverged;
     run.message = "There is no motion: " + error.expected();

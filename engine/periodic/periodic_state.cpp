@@ -199,7 +199,7 @@ class Search {
     c.periods = periods;
     c.how = how;
     if (!flow_.pass(guess.front(), c.how.period / 16, settling)) { // finds the method
-      end_ = broken();
+      end_ = end_of(flow_);
       return {};
     }
     c.how.tolerance = tolerance_of(flow_);
@@ -213,7 +213,7 @@ class Search {
           segments > static_cast<int>(guess.size()))
         divide(c, segments, beside);
     if (!beside) {
-      end_ = broken();
+      end_ = end_of(flow_);
       return {};
     }
     c.beside = std::move(*beside);
@@ -231,7 +231,7 @@ class Search {
   }
 
   // A motion that nothing times may be anywhere along itself: that is no growth, and its multiplier 1 tells
-  // how well the others are known.
+  // about how well the others are known.
   static void leave_out_phase(Candidate& c) {
     auto& multipliers = c.beside.multipliers;
     const auto phase =
@@ -313,12 +313,6 @@ class Search {
       past.push_back(std::move(now));
     }
     return {past.back(), best};
-  }
-
-  ShootingEnd broken() const {
-    return flow_.cancelled() ? ShootingEnd::cancelled
-           : flow_.spent()   ? ShootingEnd::spent
-                             : ShootingEnd::no_motion;
   }
 
   void refuse_cycle(PeriodicState& out) const {

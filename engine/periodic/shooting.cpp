@@ -56,7 +56,7 @@ class Shooter {
   }
 
   Orbit run(const std::vector<MotionState>& guess) {
-    if (!place(guess)) return ended(broken());
+    if (!place(guess)) return ended(end_of(flow_));
     for (;;) {
       const double gap = largest_gap();
       orbit_.residual = gap;
@@ -64,13 +64,13 @@ class Shooter {
       const bool still = orbit_.iterations > 0 && gap > 0.5 * orbit_.history.end()[-2];
       if (gap <= closed || (gap <= nearly_closed && still)) return ended(ShootingEnd::converged);
       if (orbit_.iterations == options_.iterations) return ended(ShootingEnd::diverged);
-      if (!linearise()) return ended(broken());
+      if (!linearise()) return ended(end_of(flow_));
       Vector step;
       if (!solve(step)) return ended(ShootingEnd::pumped);
       if (!advance(step, gap))
         return ended(gap <= nearly_closed ? ShootingEnd::converged
                      : moved_             ? ShootingEnd::diverged
-                                          : broken());
+                                          : end_of(flow_));
       ++orbit_.iterations;
     }
   }
@@ -79,11 +79,6 @@ class Shooter {
   Orbit ended(ShootingEnd end) {
     orbit_.end = end;
     return std::move(orbit_);
-  }
-  ShootingEnd broken() const {
-    return flow_.cancelled() ? ShootingEnd::cancelled
-           : flow_.spent()   ? ShootingEnd::spent
-                             : ShootingEnd::no_motion;
   }
   std::size_t segments() const { return orbit_.nodes.size(); }
   double duration() const { return orbit_.period / static_cast<double>(segments()); }
@@ -239,6 +234,12 @@ std::optional<Extrapolated> extrapolate(Flow& flow, const StateChart& from, cons
 }
 
 } // namespace
+
+ShootingEnd end_of(const Flow& flow) {
+  return flow.cancelled() ? ShootingEnd::cancelled
+         : flow.spent()   ? ShootingEnd::spent
+                          : ShootingEnd::no_motion;
+}
 
 Orbit shoot(Flow& flow, const std::vector<MotionState>& guess, const ShootingOptions& options) {
   return Shooter(flow, options).run(guess);

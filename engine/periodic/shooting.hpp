@@ -28,6 +28,9 @@ enum class ShootingEnd {
   cancelled,
 };
 
+// Why a flow that leads nowhere does: it was cancelled, is spent, or a motion stops.
+ShootingEnd end_of(const Flow& flow);
+
 struct Orbit {
   ShootingEnd end = ShootingEnd::diverged;
   double period = 0;             // s
