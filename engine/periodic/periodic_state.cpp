@@ -9,6 +9,7 @@
 #include "engine/periodic/orbit_ranges.hpp"
 #include "engine/periodic/shooting.hpp"
 #include "engine/stability/floquet.hpp"
+#include "engine/system/dampers.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -28,6 +29,7 @@ constexpr double inexact = 1e-4;      // relative error of a multiplier: too muc
 constexpr double least_swing = 0.01;  // scaled, of the first guess around a stable steady state
 constexpr double furthest = 64;       // times as far is the last guess of a limit cycle
 constexpr double standing = 1e-6;     // scaled: what is no further away after half a period stands still
+constexpr int pulling_periods = 32;   // in which a push on and on is to outweigh what dies out
 constexpr int frozen_segments = 8;    // of a guess that stands as drawn
 constexpr int samples_a_turn = 64, least_samples = 256, most_samples = 8192;
 
@@ -205,6 +207,7 @@ class Search {
     c.how.tolerance = tolerance_of(flow_);
     c.orbit = shoot(flow_, guess, c.how);
     end_ = c.orbit.end;
+    if (end_ == ShootingEnd::pumped) pulled_along_ = pulled_along(c.orbit.nodes.front().base());
     if (c.orbit.end != ShootingEnd::converged) return {};
     auto beside = monodromy(flow_, c.orbit, c.how);
     // Where much grows within a segment, differences tell nothing: shorter ones keep the digits.
@@ -222,12 +225,13 @@ class Search {
     return c;
   }
 
-  static std::optional<bool> verdict(const Candidate& c) {
+  std::optional<bool> verdict(const Candidate& c) const {
     const auto& [matrix, multipliers, error] = c.beside;
     if (multipliers.empty()) return true;
     // Inexact ones, as of motions that pass singular positions, tell little.
     if (error > 1e-3 && std::abs(multipliers.front()) < 1 + 10 * error) return {};
-    return stable_by_multipliers(multipliers, error, c.orbit.neutral);
+    return stable_by_multipliers(multipliers, error, c.orbit.neutral,
+                                 is_hamiltonian(flow_.model().system, flow_.model().parameters));
   }
 
   // A motion that nothing times may be anywhere along itself: that is no growth, and its multiplier 1 tells
@@ -315,6 +319,32 @@ class Search {
     return {past.back(), best};
   }
 
+  // The coordinate on which something pulls on and on, so that the motion gains speed alike at every phase of
+  // the drives; empty where what grows swings, and gains the opposite half a swing later.
+  std::string pulled_along(const MotionState& start) {
+    const auto gain = [&](double phase) -> std::optional<Eigen::VectorXd> {
+      const auto from = flow_.pass(start, phase * drives_.period, settling),
+                 to = from ? flow_.pass(from->to, pulling_periods * drives_.period, settling) : std::nullopt;
+      if (!to) return {};
+      return (to->to.u - to->from.u).cwiseQuotient(flow_.model().scaling.column);
+    };
+    const auto first = gain(1);
+    if (!first) return {};
+    for (const double part : {0.5, 0.25, 0.125}) // a half of a swing once, twice, ... a period
+      if (const auto other = gain(1 + part); !other || (*other - *first).norm() > 0.3 * first->norm()) return {};
+    Eigen::Index most = 0;
+    first->cwiseAbs().maxCoeff(&most);
+    const System& system = flow_.model().system;
+    for (const CoordinateInfo& c : system.coordinates) {
+      const Link& link = system.links[static_cast<std::size_t>(c.link)];
+      const int count = link.type == LinkType::spherical ? 3 : 1;
+      if (link.v < 0 || most < link.v || most >= link.v + count) continue;
+      const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+      return count > 1 ? joint.name : coordinate_label(joint.name, c.index, coordinate_count(joint.type));
+    }
+    return {};
+  }
+
   void refuse_cycle(PeriodicState& out) const {
     if (flow_.cancelled())
       out.message = "Looking for a limit cycle was cancelled.";
@@ -334,6 +364,11 @@ class Search {
     switch (flow_.spent() ? ShootingEnd::spent : end_) {
     case ShootingEnd::pumped:
       out.status = PeriodicStatus::not_periodic;
+      if (!pulled_along_.empty()) {
+        out.message = "No periodic motion either: something pulls on and on along " + pulled_along_ +
+                      ", which nothing holds or damps, and the motion there gains speed without end.";
+        return;
+      }
       out.message = "No periodic motion either: the drives push in step with a motion that nothing damps or "
                     "holds, and it grows without end. Some damping, or another speed, gives it an end.";
       return;
@@ -457,7 +492,7 @@ class Search {
       text += " Nothing resists some direction, so that others lie beside it.";
     else if (!out.stable)
       text += " Whether it is stable is too close to tell.";
-    else if (out.floquet.growth.front() > -1e-7 / out.period)
+    else if (std::abs(c.beside.multipliers.front()) > 1 - 1e-7 - 10 * c.beside.error)
       text += " Motions beside it neither grow nor die out.";
     else
       text += " It is stable: motions beside it die out.";
@@ -482,6 +517,7 @@ class Search {
   ShootingEnd end_ = ShootingEnd::diverged; // of the last attempt
   bool left_first_ = false;
   bool around_stable_ = false; // a limit cycle was looked for around a stable steady state
+  std::string pulled_along_;   // the coordinate; empty where the drives pump up what swings
   std::string cycle_trouble_;  // why there is none: a sentence
 };
 

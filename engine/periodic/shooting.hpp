@@ -21,7 +21,7 @@ struct ShootingOptions {
 
 enum class ShootingEnd {
   converged,
-  pumped,   // what leads away in a period comes back to itself but for a push: resonance, or nothing holds it
+  pumped,   // no step closes the gap, and it is no rounding: a push in step with what nothing holds or damps
   diverged, // the iteration does not get nearer
   no_motion, // a motion stops within the period; Flow::trouble() says why
   spent,     // the flow's evaluations are
