@@ -233,11 +233,11 @@ class Shooter {
 // differences over the shortest step.
 struct Extrapolated {
   Matrix best, off;
+  double error = 0; // estimated, of each entry
 };
 std::optional<Extrapolated> extrapolate(Flow& flow, const StateChart& from, const StateChart& to,
                                         double duration, double tolerance) {
   std::optional<Extrapolated> out;
-  double least = 0;
   // Shorter steps where the map is too bent for longer ones.
   for (const double h : {multiplier_step, multiplier_step / 100}) {
     const auto map = [&](double step) {
@@ -248,12 +248,10 @@ std::optional<Extrapolated> extrapolate(Flow& flow, const StateChart& from, cons
     const Matrix once = (4 * *d2 - *d1) / 3, twice = (4 * *d3 - *d2) / 3, change = (twice - once) / 15;
     const double changed = largest_size(change), floor = noise * tolerance / (h / 4);
     const double error = std::max(changed, floor);
-    if (!out || error < least) {
-      least = error;
-      const Matrix best = twice + change;
-      out = Extrapolated{best, changed > 0 ? Matrix(best + error / changed * change) : best};
-    }
-    if (least <= std::max(floor, 1e-7 * std::max(1., largest_size(twice)))) break;
+    const Matrix best = twice + change;
+    if (!out || error < out->error)
+      out = {best, changed > 0 ? Matrix(best + error / changed * change) : best, error};
+    if (out->error <= std::max(floor, 1e-7 * std::max(1., largest_size(twice)))) break;
   }
   return out;
 }
@@ -274,6 +272,7 @@ std::optional<Monodromy> monodromy(Flow& flow, const Orbit& orbit, const Shootin
   const std::size_t m = orbit.nodes.size();
   const double duration = orbit.period / static_cast<double>(m);
   const Eigen::Index n = orbit.nodes.front().size();
+  Monodromy out;
   Matrix best = Matrix::Identity(n, n), off = best;
   for (std::size_t i = 0; i < m; ++i) {
     const auto segment =
@@ -281,8 +280,8 @@ std::optional<Monodromy> monodromy(Flow& flow, const Orbit& orbit, const Shootin
     if (!segment) return {};
     best = (segment->best * best).eval();
     off = (segment->off * off).eval();
+    out.error = std::max(out.error, segment->error);
   }
-  Monodromy out;
   out.matrix = best;
   if (n == 0) return out;
   auto multipliers = eigenvalues(best);
