@@ -5,6 +5,7 @@
 #include "engine/report/analysis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace flyball {
@@ -19,7 +20,8 @@ constexpr double returned = 0.03;       // of the way between: near enough
 constexpr double at_rest = 1e-6;        // scaled: what moves less does not
 constexpr double off_steady = 0.01;     // scaled, from a steady state
 constexpr double steadily = 0.01;       // of its size: what changes less in between has settled
-constexpr double alike = 1e-6;          // scaled, of motions from two angles
+constexpr double alike = 1e-6;          // scaled, of motions from two angles or phases
+constexpr double beside_steady = 0.05;  // scaled: where motions are compared, too
 
 // Of the drives by torque, and of what turns with them.
 Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
@@ -134,6 +136,21 @@ Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate) 
     out.col(out.cols() - 1) = way;
   }
   return out;
+}
+
+bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period) {
+  const double rate = turn / period, span = 0.1 / rate;
+  const StateChart chart(flow.problem(), state, rate, {});
+  MotionState beside = chart.displaced(Eigen::VectorXd::LinSpaced(chart.size(), beside_steady, -beside_steady));
+  beside.time = 0;
+  const auto here = flow.pass(beside, span, step_tolerance * 1e-3);
+  if (!here) return false;
+  const StateChart after(flow.problem(), here->to, rate, {});
+  return std::ranges::all_of(std::array{0.21, 0.56, 0.83}, [&](double part) {
+    beside.time = part * period;
+    const auto there = flow.pass(beside, span, step_tolerance * 1e-3);
+    return there && after.distance(there->to) < alike;
+  });
 }
 
 CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart start,

@@ -83,7 +83,7 @@ struct Candidate {
   Orbit orbit;
   Monodromy beside;
   ShootingOptions how;
-  int periods = 1; // of the drives
+  int periods = 1; // of the drives; 0: of a limit cycle
   std::optional<bool> stable;
 };
 
@@ -140,6 +140,12 @@ class Search {
     if ((!second || second->stable == false) && periods > 1) {
       if (auto longer = attempt({*state}, periods)) second = std::move(longer);
     }
+    if (first && (!second || second->stable == false) && stands(*first) &&
+        goes_alike_at_phases(flow_, first->orbit.nodes.front().base(), drives_.period))
+      if (auto cycle = find_cycle(CycleStart::steady)) {
+        left_first_ = true;
+        return cycle;
+      }
     if (!second || (first && second->stable == false)) return first;
     left_first_ = first.has_value();
     return second;
@@ -474,14 +480,15 @@ class Search {
   }
 
   std::string words(const Candidate& c, const PeriodicState& out) const {
-    std::string text = around_stable_ ? "Around its stable steady state lies a limit cycle, with a period of "
-                       : of_its_own() ? "It moves in a limit cycle, with a period of its own of "
+    const bool cycle = c.periods == 0;
+    std::string text = cycle && around_stable_ ? "Around its stable steady state lies a limit cycle, with a period of "
+                       : cycle        ? "It moves in a limit cycle, with a period of its own of "
                                       : "It moves periodically with the drives, with a period of ";
     text += rounded_text(out.period, 6) + " s";
     if (c.periods > 1) text += ", " + std::to_string(c.periods) + " times that of the drives";
     text += ".";
     if (c.beside.multipliers.empty())
-      text += of_its_own() ? "" : " Nothing moves freely: the drives prescribe all of it.";
+      text += cycle ? "" : " Nothing moves freely: the drives prescribe all of it.";
     else if (out.motion->statistics.singular_positions > 0)
       text +=
           " It passes positions in which linkages could part into branches: what is beside it is not known "
