@@ -1,8 +1,10 @@
 #include "engine/periodic/cycle_guess.hpp"
 
+#include "engine/kkt/constraint_space.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/periodic/shooting.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/stability/linear_motion.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,26 +25,25 @@ constexpr double steadily = 0.01;       // of its size: what changes less in bet
 constexpr double alike = 1e-6;          // scaled, of motions from two angles or phases
 constexpr double beside_steady = 0.05;  // scaled: where motions are compared, too
 
-// Of the drives by torque, and of what turns with them.
+// Of the drives by torque, with what loops and gears move along.
 Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
   const System& system = flow.model().system;
-  std::vector<int> columns;
-  for (const DriveTorqueElement& drive : system.torques) {
-    const Link& link = system.links[static_cast<std::size_t>(drive.link)];
-    if (link.type == LinkType::revolute) columns.push_back(link.v);
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(system.nv, system.nv);
+  if (system.rows > 0) {
+    Kinematics<double> k;
+    Linearization l;
+    forward<double>(system, flow.model().parameters, state.q, state.time, k);
+    linearize_constraints(system, flow.model().parameters, k, l);
+    const Scaling& scaling = flow.model().scaling;
+    ConstraintSpace space;
+    space.factor(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal(), 1e-9);
+    basis = space.basis();
   }
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(system.nv, static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    out(columns[i], static_cast<Eigen::Index>(i)) = 1;
-  if (columns.empty() || system.rows == 0) return out;
-  Kinematics<double> k;
-  Linearization l;
-  forward<double>(system, flow.model().parameters, state.q, state.time, k);
-  linearize_constraints(system, flow.model().parameters, k, l);
-  const Scaling& scaling = flow.model().scaling;
-  const auto together =
-      null_space(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal() * out);
-  return together ? Eigen::MatrixXd(out * *together) : Eigen::MatrixXd(system.nv, 0);
+  const Eigen::MatrixXd given = cyclic_directions(system, basis, false),
+                        kept = cyclic_directions(system, basis, true);
+  Eigen::MatrixXd out(system.nv, given.cols() + kept.cols());
+  out << basis * given, basis * kept;
+  return out;
 }
 
 // The least damped swing about the steady state.
