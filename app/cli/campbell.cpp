@@ -99,10 +99,9 @@ std::string diagram_csv(const CampbellDiagram& d, const std::string& address) {
 }
 
 std::string critical_text(const CriticalSpeed& c, const CampbellBranch& branch) {
-  const std::string who =
-      fmt::format("{} of branch {}, damping ratio {:.3g}{}",
-                  printable(branch.names[static_cast<std::size_t>(c.line)]), c.branch, c.damping_ratio,
-                  whirl_text(c.whirl));
+  const std::string who = fmt::format("{} of branch {}, damping ratio {:.3g}{}",
+                                      printable(branch.names[static_cast<std::size_t>(c.line)]), c.branch,
+                                      c.damping_ratio, whirl_text(c.whirl));
   const char* unstable = c.stable ? "" : ", unstable";
   if (c.until)
     return fmt::format("  {} from {:.9g} to {:.9g} rad/s (± {:.1g}): {} runs along the line{}\n",

@@ -142,7 +142,8 @@ Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate) 
 bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period) {
   const double rate = turn / period, span = 0.1 / rate;
   const StateChart chart(flow.problem(), state, rate, {});
-  MotionState beside = chart.displaced(Eigen::VectorXd::LinSpaced(chart.size(), beside_steady, -beside_steady));
+  MotionState beside =
+      chart.displaced(Eigen::VectorXd::LinSpaced(chart.size(), beside_steady, -beside_steady));
   beside.time = 0;
   const auto here = flow.pass(beside, span, step_tolerance * 1e-3);
   if (!here) return false;

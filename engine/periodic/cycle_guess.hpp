@@ -11,7 +11,8 @@ namespace flyball {
 Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate);
 
 // Whether motions from `state` and beside it go alike wherever the drives, whose period this is (s), stand:
-// then there may be limit cycles though drives turn at prescribed speeds, as of a pendulum on a turning shaft.
+// then there may be limit cycles though drives turn at prescribed speeds, as of a pendulum on a turning
+// shaft.
 bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period);
 
 struct CycleGuess {

@@ -337,7 +337,8 @@ class Search {
     const auto first = gain(1);
     if (!first) return {};
     for (const double part : {0.5, 0.25, 0.125}) // a half of a swing once, twice, ... a period
-      if (const auto other = gain(1 + part); !other || (*other - *first).norm() > 0.3 * first->norm()) return {};
+      if (const auto other = gain(1 + part); !other || (*other - *first).norm() > 0.3 * first->norm())
+        return {};
     Eigen::Index most = 0;
     first->cwiseAbs().maxCoeff(&most);
     const System& system = flow_.model().system;
@@ -481,9 +482,10 @@ class Search {
 
   std::string words(const Candidate& c, const PeriodicState& out) const {
     const bool cycle = c.periods == 0;
-    std::string text = cycle && around_stable_ ? "Around its stable steady state lies a limit cycle, with a period of "
-                       : cycle        ? "It moves in a limit cycle, with a period of its own of "
-                                      : "It moves periodically with the drives, with a period of ";
+    std::string text = cycle && around_stable_
+                           ? "Around its stable steady state lies a limit cycle, with a period of "
+                       : cycle ? "It moves in a limit cycle, with a period of its own of "
+                               : "It moves periodically with the drives, with a period of ";
     text += rounded_text(out.period, 6) + " s";
     if (c.periods > 1) text += ", " + std::to_string(c.periods) + " times that of the drives";
     text += ".";

@@ -167,8 +167,8 @@ class Shooter {
     return true;
   }
 
-  // Whether the part of the gaps that no step closes is no more than the error of the motion's steps: steps of
-  // a hundred times the tolerance change it by as much.
+  // Whether the part of the gaps that no step closes is no more than the error of the motion's steps: steps
+  // of a hundred times the tolerance change it by as much.
   bool is_rounding() {
     const Vector fine = unclosed_.transpose() * gaps_;
     if (fine.norm() <= 100 * options_.tolerance) return true;
@@ -224,7 +224,7 @@ class Shooter {
   std::vector<MotionState> ends_; // of the segments
   Matrix matrix_;
   Vector gaps_;
-  Matrix unclosed_; // by column: parts of the gaps that no step closes
+  Matrix unclosed_;    // by column: parts of the gaps that no step closes
   bool moved_ = false; // some part of the last step led to motions that last
 };
 

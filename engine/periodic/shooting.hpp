@@ -21,8 +21,8 @@ struct ShootingOptions {
 
 enum class ShootingEnd {
   converged,
-  pumped,   // no step closes the gap, and it is no rounding: a push in step with what nothing holds or damps
-  diverged, // the iteration does not get nearer
+  pumped,    // no step closes the gap, and it is no rounding: a push in step with what nothing holds or damps
+  diverged,  // the iteration does not get nearer
   no_motion, // a motion stops within the period; Flow::trouble() says why
   spent,     // the flow's evaluations are
   cancelled,

@@ -53,7 +53,8 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
                             ? "bearings: stiffness and damping matrices"
                             : "bearings: matrices that feed whirl, or dampers between drives");
   say(!system.body_forces.empty() || !system.turning_air.empty(), "forces, torques and the air");
-  say(has_dampers(system, p), "dampers: in the eigenvalues, and in the balance where parts turn against each other");
+  say(has_dampers(system, p),
+      "dampers: in the eigenvalues, and in the balance where parts turn against each other");
   say(std::ranges::any_of(system.links,
                           [](const Link& l) { return l.type == LinkType::spherical && l.v >= 0; }),
       "rotations as quaternions");

@@ -5,12 +5,9 @@
 namespace flyball {
 
 bool has_dampers(const System& system, const Parameters& parameters) {
-  return !system.cut_dampers.empty() ||
-         std::ranges::any_of(parameters.links,
-                             [](const LinkParameters& link) {
-                               return std::ranges::any_of(link.force, &CoordinateForce::damped);
-                             }) ||
-         std::ranges::any_of(parameters.springs, &PointSpringParameters::damped);
+  return !system.cut_dampers.empty() || std::ranges::any_of(parameters.links, [](const LinkParameters& link) {
+    return std::ranges::any_of(link.force, &CoordinateForce::damped);
+  }) || std::ranges::any_of(parameters.springs, &PointSpringParameters::damped);
 }
 
 bool is_hamiltonian(const System& system, const Parameters& parameters) {

@@ -250,8 +250,8 @@ namespace {
 Mechanism sledge(double speed, double e, double phase, double tilt) {
   Mechanism m;
   m.gravity = {0, -9.81, 0};
-  m.bodies = {body("sledge", 3),
-              body("disc", 1, e * Vec3(std::cos(tilt + phase), std::sin(tilt + phase), 0), {0.01, 0.01, 0.02})};
+  m.bodies = {body("sledge", 3), body("disc", 1, e * Vec3(std::cos(tilt + phase), std::sin(tilt + phase), 0),
+                                      {0.01, 0.01, 0.02})};
   m.joints = {prismatic("rail", "ground", "sledge", {0, 0, 0}, {std::cos(tilt), std::sin(tilt), 0}),
               driven(revolute("spin", "sledge", "disc", {0, 0, 0}, {0, 0, 1}), speed)};
   return m;

@@ -142,7 +142,6 @@ TEST_CASE("Froude's pendulum keeps swinging as averaging says, beyond the limit"
     CHECK(std::abs(s.period * frequency / (2 * std::numbers::pi) - 1) < square);
     // Motions beside it come to it at twice the rate at which small ones leave the steady state.
     REQUIRE(s.floquet.growth.size() == 1);
-    CHECK(s.floquet.growth[0] ==
-          Approx((c + sliding(w).first) / froude_inertia).epsilon(4 * square));
+    CHECK(s.floquet.growth[0] == Approx((c + sliding(w).first) / froude_inertia).epsilon(4 * square));
   }
 }
