@@ -54,24 +54,16 @@ Ribbons follow_ribbons(const Mechanism& mechanism, const std::string& address, R
   return out;
 }
 
-// Of each special point that is a Hopf point of a motion that does not turn with the drives.
-using Hunting = std::vector<std::optional<HopfPoint>>;
-
-Hunting describe_hunting(const Mechanism& mechanism, const std::string& address, ResponseDiagram& diagram) {
+HopfPoints describe_hunting(const Mechanism& mechanism, const std::string& address,
+                            ResponseDiagram& diagram) {
   const auto begin = std::chrono::steady_clock::now();
-  Hunting out;
-  for (const SpecialPoint& s : diagram.special) {
-    std::optional<HopfPoint>& point = out.emplace_back();
-    if (s.type == SpecialPointType::hopf && !s.at.floquet)
-      point = describe_hopf(with_parameter(mechanism, address, s.at.parameter), s.at,
-                            hopf_frequency(s.at.eigenvalues));
-  }
+  HopfPoints out = describe_hopf_points(mechanism, address, diagram);
   diagram.run_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }
 
 std::string diagram_text(const Mechanism& m, const std::string& address, const ResponseDiagram& d,
-                         const Hunting& hunting) {
+                         const HopfPoints& hunting) {
   std::string out = fmt::format("{}: {}\n", printable(m.name), printable(d.message));
   const std::string unit = parameter_unit(m, address);
   for (std::size_t b = 0; b < d.branches.size(); ++b) {
@@ -136,7 +128,6 @@ void add_branch(CLI::App& app, Ending& ending) {
     check_outputs(options->scene.file,
                   {{"--csv", options->csv}, {"--svg", options->svg}, {"--png", options->png}});
     const Range range = parse_range("--vary", options->vary);
-    if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
     if (!options->over.empty())
       return branch_over(options->scene,
                          {range, options->over, options->all, options->json, options->csv, options->shard},
@@ -145,7 +136,7 @@ void add_branch(CLI::App& app, Ending& ending) {
     const Mechanism mechanism = options->scene.load();
     ResponseDiagram diagram;
     Ribbons ribbons;
-    Hunting hunting;
+    HopfPoints hunting;
     try {
       BranchOptions follow;
       follow.all = options->all;
@@ -155,7 +146,7 @@ void add_branch(CLI::App& app, Ending& ending) {
         ribbons = follow_ribbons(mechanism, range.address, diagram, follow.progress);
       hunting = describe_hunting(mechanism, range.address, diagram);
     } catch (const SceneError& error) {
-      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+      throw options->scene.in_file(error);
     }
     progress.reset();
     const bool any = diagram.status == Status::converged && !diagram.branches.empty();
@@ -174,9 +165,7 @@ void add_branch(CLI::App& app, Ending& ending) {
     if (!options->csv.empty() && !diagram.branches.empty())
       write_bytes(options->csv, diagram_csv(mechanism, range.address, diagram, ribbons));
     if (options->json) {
-      nlohmann::ordered_json told = diagram_json(diagram, ribbons);
-      for (std::size_t i = 0; i < hunting.size(); ++i)
-        if (hunting[i]) told["special"][i]["hunting"] = hunting_json(*hunting[i]);
+      nlohmann::ordered_json told = diagram_json(diagram, ribbons, hunting);
       told["run_time_s"] = diagram.run_time_s;
       print_json(with_warnings(std::move(told), mechanism));
     } else if (options->csv.empty() && options->svg != "-" && options->png != "-") // else it is theirs

@@ -34,7 +34,7 @@ void branch_over(const SceneArgument& scene, const BranchOver& wanted, Ending& e
   try {
     follower.emplace(mechanism, over, wanted.vary.address, wanted.vary.from, wanted.vary.to, options);
   } catch (const SceneError& error) {
-    throw SceneError(scene.file.string() + ": " + error.where(), error.expected());
+    throw scene.in_file(error);
   }
 
   const BranchColumns columns{over, wanted.vary.address, value_columns(mechanism), has_friction(mechanism)};

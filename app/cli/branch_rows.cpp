@@ -1,5 +1,6 @@
 #include "app/cli/branch_rows.hpp"
 
+#include "app/cli/hunting_told.hpp"
 #include "app/cli/output.hpp"
 #include "app/cli/solution_json.hpp"
 #include "engine/mechanism/address.hpp"
@@ -63,7 +64,7 @@ std::string note(const ResponseBranch& branch, std::size_t point) {
 
 } // namespace
 
-Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons) {
+Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons, const HopfPoints& hunting) {
   Json out = {{"status", word(d.status)},
               {"message", d.message},
               {"branches", Json::array()},
@@ -81,9 +82,11 @@ Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons) {
     out["branches"].push_back(
         {{"points", std::move(points)}, {"connected", b.connected}, {"begin", b.begin}, {"end", b.end}});
   }
-  for (const SpecialPoint& s : d.special) {
+  for (std::size_t i = 0; i < d.special.size(); ++i) {
+    const SpecialPoint& s = d.special[i];
     Json entry = {{"type", word(s.type)}, {"branch", s.branch}};
     entry.update(point_json(s.at));
+    if (hunting[i]) entry["hunting"] = hunting_json(*hunting[i]);
     out["special"].push_back(std::move(entry));
   }
   out["search"] = d.searched.empty() ? Json(nullptr)
@@ -146,8 +149,11 @@ std::string csv_rows(const BranchColumns& columns, const GridBranches& place) {
     for (std::size_t i = 0; i < d.branches[b].points.size(); ++i)
       add(static_cast<int>(b), d.branches[b].points[i], "", note(d.branches[b], i),
           columns.bands ? place.ribbons[b][i] : RibbonPoint{});
-  for (const SpecialPoint& s : d.special)
-    add(s.branch, s.at, word(s.type), "", {});
+  for (std::size_t i = 0; i < d.special.size(); ++i) {
+    const std::optional<HopfPoint>& hunts = place.hunting[i];
+    add(d.special[i].branch, d.special[i].at, word(d.special[i].type),
+        hunts ? std::string(word(hunts->loss())) : "", {});
+  }
   return out;
 }
 
@@ -155,7 +161,7 @@ std::string json_rows(const BranchColumns& columns, const GridBranches& place) {
   Json row;
   for (std::size_t v = 0; v < columns.over.size(); ++v)
     row["parameters"][columns.over[v].address] = place.parameters[v];
-  row.update(diagram_json(place.diagram, place.ribbons));
+  row.update(diagram_json(place.diagram, place.ribbons, place.hunting));
   return json_row(row.dump(2));
 }
 

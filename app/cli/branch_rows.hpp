@@ -16,8 +16,10 @@ namespace flyball::cli {
 // Of each branch, where there is friction.
 using Ribbons = std::vector<std::vector<RibbonPoint>>;
 
-// Without its run time. With ribbons points have a "band": {name: [low, high]}.
-nlohmann::ordered_json diagram_json(const ResponseDiagram& diagram, const Ribbons& ribbons = {});
+// Without its run time. With ribbons points have a "band": {name: [low, high]}; special points of which
+// `hunting` tells have that as "hunting".
+nlohmann::ordered_json diagram_json(const ResponseDiagram& diagram, const Ribbons& ribbons,
+                                    const HopfPoints& hunting);
 // All of a table: branch, parameter, values, `stable`, `special`; with ribbons then `NAME.low` and
 // `NAME.high` of each value.
 std::string diagram_csv(const Mechanism& mechanism, const std::string& address,
@@ -33,7 +35,8 @@ struct BranchColumns {
 };
 
 // Of one place, as row_output.hpp wants them. A row each point and special point, or one that says why there
-// is none. `note`: why a branch begins or ends, in words, at its ends. With bands then `NAME.low` and
+// is none. `note`: why a branch begins or ends, in words, at its ends; at Hopf points "soft", "hard" or
+// "undecided". With bands then `NAME.low` and
 // `NAME.high` of each value.
 std::string csv_rows(const BranchColumns& columns, const GridBranches& place);
 std::string json_rows(const BranchColumns& columns, const GridBranches& place);

@@ -65,6 +65,7 @@ Json diagram_json(const CampbellDiagram& d, const std::string& unit) {
          {"line", d.branches[static_cast<std::size_t>(c.branch)].names[static_cast<std::size_t>(c.line)]},
          {"order", c.order},
          {"speed_rad_s", c.speed},
+         {"until_rad_s", c.until ? Json(*c.until) : Json(nullptr)},
          {"error_estimate", c.error},
          {"frequency_hz", hertz(c.frequency)},
          {"damping_ratio", c.damping_ratio},
@@ -97,6 +98,19 @@ std::string diagram_csv(const CampbellDiagram& d, const std::string& address) {
   return out;
 }
 
+std::string critical_text(const CriticalSpeed& c, const CampbellBranch& branch) {
+  const std::string who = fmt::format("{} of branch {}, damping ratio {:.3g}{}",
+                                      printable(branch.names[static_cast<std::size_t>(c.line)]), c.branch,
+                                      c.damping_ratio, whirl_text(c.whirl));
+  const char* unstable = c.stable ? "" : ", unstable";
+  if (c.until)
+    return fmt::format("  {} from {:.9g} to {:.9g} rad/s (± {:.1g}): {} runs along the line{}\n",
+                       order_text(c.order), c.speed, *c.until, c.error, who, unstable);
+  return fmt::format("  {} at {:.12g} rad/s (± {:.1g}, {:.9g} rpm), {:.9g} Hz: {}{}{}\n", order_text(c.order),
+                     c.speed, c.error, c.speed * 30 / std::numbers::pi, hertz(c.frequency), who,
+                     c.touches ? ", only touches the line" : "", unstable);
+}
+
 std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, const std::string& unit,
                          bool turns) {
   std::string out = fmt::format("{}: {}\n", printable(mechanism.name), printable(d.response.message));
@@ -124,13 +138,7 @@ std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, c
     }
   }
   for (const CriticalSpeed& c : d.critical)
-    out += fmt::format(
-        "  {} at {:.12g} rad/s (± {:.1g}, {:.9g} rpm), {:.9g} Hz: {} of branch {}, damping ratio "
-        "{:.3g}{}{}{}\n",
-        order_text(c.order), c.speed, c.error, c.speed * 30 / std::numbers::pi, hertz(c.frequency),
-        printable(d.branches[static_cast<std::size_t>(c.branch)].names[static_cast<std::size_t>(c.line)]),
-        c.branch, c.damping_ratio, whirl_text(c.whirl), c.touches ? ", only touches the line" : "",
-        c.stable ? "" : ", unstable");
+    out += critical_text(c, d.branches[static_cast<std::size_t>(c.branch)]);
   if (!turns)
     out += "  Critical speeds and whirl are not looked for: the number is not the speed of a drive that "
            "turns.\n";
@@ -159,7 +167,6 @@ void add_campbell(CLI::App& app, Ending& ending) {
   command->callback([options, &ending] {
     check_outputs(options->scene.file, {{"--csv", options->csv}, {"--svg", options->svg}});
     const Range range = parse_range("--vary", options->vary);
-    if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
     std::vector<double> orders = options->orders;
@@ -180,7 +187,7 @@ void add_campbell(CLI::App& app, Ending& ending) {
           campbell_diagram(mechanism, range.address,
                            follow_branches(mechanism, range.address, range.from, range.to, follow), orders);
     } catch (const SceneError& error) {
-      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+      throw options->scene.in_file(error);
     }
     progress.reset();
     const bool any = diagram.response.status == Status::converged && !diagram.branches.empty();

@@ -181,7 +181,7 @@ Ending run_compare(const CompareCommand& options) {
     };
     comparison = compare(mechanism, wanted);
   } catch (const SceneError& error) {
-    throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
+    throw options.scene.in_file(error);
   }
   progress.reset();
   // Files of earlier runs are not replaced by empty ones.

@@ -196,11 +196,8 @@ void add_design(CLI::App& app, Ending& ending) {
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = arguments->scene.load();
     std::vector<Range> ranges;
-    for (const std::string& text : arguments->vary) {
+    for (const std::string& text : arguments->vary)
       ranges.push_back(parse_range("--vary", text));
-      if (ranges.back().from == ranges.back().to)
-        throw SceneError("--vary " + ranges.back().address, "expected two different ends");
-    }
     std::vector<std::pair<std::string, double>> wants;
     for (const std::string& text : arguments->want)
       wants.push_back(parse_assignment("--want", text));
@@ -209,7 +206,7 @@ void add_design(CLI::App& app, Ending& ending) {
                    ? find_one(*arguments, mechanism, ranges[0], wants[0], progress)
                    : find_several(*arguments, mechanism, ranges, wants, progress);
     } catch (const SceneError& error) {
-      throw SceneError(arguments->scene.file.string() + ": " + error.where(), error.expected());
+      throw arguments->scene.in_file(error);
     }
   });
 }

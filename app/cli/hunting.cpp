@@ -34,7 +34,6 @@ using Axes = std::array<PlaneAxis, 2>;
 
 PlaneAxis plane_axis(const std::string& text) {
   const Range range = parse_range("--vary", text);
-  if (range.from == range.to) throw SceneError("--vary " + range.address, "expected two different ends");
   return {range.address, std::min(range.from, range.to), std::max(range.from, range.to)};
 }
 
@@ -149,7 +148,7 @@ void add_hunting(CLI::App& app, Ending& ending) {
       follow.progress = progress->reporter();
       found = hopf_curves(mechanism, axes[0], axes[1], follow);
     } catch (const SceneError& error) {
-      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+      throw options->scene.in_file(error);
     }
     progress.reset();
     const bool any = found.status == Status::converged;

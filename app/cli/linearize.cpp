@@ -98,7 +98,7 @@ void run(const LinearizeArguments& arguments, Ending& ending) {
   try {
     model = linearize(mechanism, arguments.inputs, arguments.outputs, options);
   } catch (const SceneError& error) {
-    throw SceneError(arguments.scene.file.string() + ": " + error.where(), error.expected());
+    throw arguments.scene.in_file(error);
   }
   progress.reset();
   const bool any = model.refusal.empty();
@@ -153,9 +153,7 @@ void add_linearize(CLI::App& app, Ending& ending) {
                           "Tell the frequency response at FROM:TO:COUNT (Hz, evenly on a logarithmic axis)");
   command->add_option("--csv", arguments->csv, "Write that to a file (-: standard output)")
       ->needs(frequencies);
-  command->add_option("--start", arguments->start, "Start elsewhere than drawn: joint=value (rad, m)")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_start(*command, arguments->start);
   command->add_flag("--nearest", arguments->nearest, "About the plain Newton-Raphson answer, stable or not");
   command->add_flag("--phases", arguments->phases,
                     "Angles of shafts that torques drive are states, too: they integrate");

@@ -114,11 +114,7 @@ void add_modes(CLI::App& app, Ending& ending) {
   auto options = std::make_shared<ModesArguments>();
   CLI::App* command = app.add_subcommand("modes", "Tell the modes of the steady state, or film one");
   options->scene.add_to(*command);
-  command
-      ->add_option("--start", options->start,
-                   "Start elsewhere than drawn: joint=value, or joint.index=value (rad, m)")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_start(*command, options->start);
   command->add_flag("--nearest", options->nearest, "Of the plain Newton-Raphson answer, stable or not");
   command
       ->add_option("--count", options->count,
@@ -175,7 +171,7 @@ void add_modes(CLI::App& app, Ending& ending) {
           told.mode = std::move(mode);
         }
     } catch (const SceneError& error) {
-      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+      throw options->scene.in_file(error);
     }
     progress.reset();
     const bool solved = solution.status == Status::converged;

@@ -115,11 +115,12 @@ std::string to_text(const PeriodicState& s) {
     rows.push_back(range_row(shown_label(t) + ", by the drive", t.range, t.angle ? "N m" : "N"));
   out += "\n" + aligned(rows, true);
   if (!s.floquet.multipliers.empty()) {
-    out += fmt::format("\nFloquet multipliers, to {:.1g}\n", s.floquet.error);
+    out += fmt::format("\nFloquet multipliers, to an estimated {:.1g}\n", s.floquet.error);
     for (std::size_t i = 0; i < s.floquet.growth.size(); ++i)
-      out += fmt::format("  {:>+13.9f} {:>+13.9f} i  size {:.9g}, growth {:.6g} 1/s\n",
+      out += fmt::format("  {:>+13.9f} {:>+13.9f} i  size {:.9g}, growth {:.6g} 1/s (± {:.1g})\n",
                          s.floquet.multipliers[i].real(), s.floquet.multipliers[i].imag(),
-                         std::abs(s.floquet.multipliers[i]), s.floquet.growth[i]);
+                         std::abs(s.floquet.multipliers[i]), s.floquet.growth[i],
+                         s.floquet.error / (std::abs(s.floquet.multipliers[i]) * s.period));
   }
   return out + fmt::format("\nresidual {:.1e}, {} iterations, {} {}, {} evaluations, {:.1f} ms\n", s.residual,
                            s.iterations, s.segments, s.segments == 1 ? "segment" : "segments", s.evaluations,

@@ -56,7 +56,7 @@ Ending run_report(const Options& options) {
     contents = report_contents(mechanism, wanted);
   } catch (const SceneError& error) {
     if (error.where().starts_with("--")) throw;
-    throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
+    throw options.scene.in_file(error);
   }
   progress->show({"drawing", -1});
   contents.picture = both_pictures(*mechanism, options);

@@ -84,6 +84,17 @@ void SceneArgument::add_to(CLI::App& command) {
       ->allow_extra_args(false);
 }
 
+CLI::Option* add_start(CLI::App& command, std::vector<std::string>& start) {
+  return command
+      .add_option("--start", start, "Start elsewhere than drawn: joint=value, or joint.index=value (rad, m)")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+SceneError SceneArgument::in_file(const SceneError& error) const {
+  return {file.string() + ": " + error.where(), error.expected()};
+}
+
 namespace {
 
 // A number in SI units, or an expression with units and the scene's parameters: "18 cm", "2*L".
@@ -112,7 +123,7 @@ Mechanism SceneArgument::load() const {
     }
     if (!settings.empty()) validate(mechanism);
   } catch (const SceneError& error) {
-    throw SceneError(file.string() + ": " + error.where(), error.expected());
+    throw in_file(error);
   }
   for (const SceneError& warning : find_warnings(mechanism))
     report_warning(file, warning);
@@ -144,6 +155,8 @@ Range parse_range(std::string_view option, std::string_view text, bool count) {
     if (n != std::floor(n) || n < 1 || n > 1e9)
       throw SceneError(where, "expected a whole number of values from 1 to 1000000000");
     range.count = static_cast<int>(n);
+  } else if (range.from == range.to) {
+    throw SceneError(where, "expected two different ends");
   }
   return range;
 }

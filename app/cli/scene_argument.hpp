@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/mechanism/body_point.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
 #include <filesystem>
@@ -12,6 +13,7 @@
 
 namespace CLI {
 class App;
+class Option;
 class Validator;
 } // namespace CLI
 
@@ -25,6 +27,8 @@ struct SceneArgument {
   // Reads, applies the settings and validates; warnings go to standard error. Throws SceneError that names
   // the file.
   Mechanism load() const;
+  // An error of the scene, with the file beside.
+  SceneError in_file(const SceneError& error) const;
 };
 
 // A check for options: a finite number above zero.
@@ -37,11 +41,13 @@ std::pair<std::string, double> parse_assignment(std::string_view option, std::st
 BodyPoint parse_point(std::string_view option, std::string_view text);
 // Adds the repeatable option --point.
 void add_points(CLI::App& command, std::vector<std::string>& points);
+// Adds the repeatable option --start.
+CLI::Option* add_start(CLI::App& command, std::vector<std::string>& start);
 // A finite number, all of the text. Throws SceneError naming the option.
 double parse_number(std::string_view option, std::string_view text);
 
-// "address=from:to" and, where `count` is wanted, ":count" (1 otherwise). Throws SceneError naming the
-// option.
+// "address=from:to", two different ends; or, where `count` is wanted, "address=from:to:count". Throws
+// SceneError naming the option.
 struct Range {
   std::string address;
   double from = 0, to = 0;

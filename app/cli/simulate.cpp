@@ -341,8 +341,7 @@ Ending run_simulate(const SimulateCommand& options) {
     else
       steady.reset();
   } catch (const SceneError& error) {
-    if (!error.where().empty())
-      throw SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
+    if (!error.where().empty()) throw options.scene.in_file(error);
     run = {}; // nothing is wrong with the scene as it is written: it has no such motion
     run.status = RunStatus::diverged;
     run.message = "There is no motion: " + error.expected();

@@ -29,12 +29,7 @@ void add_solve(CLI::App& app, Ending& ending) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("solve", "Find the steady state");
   options->scene.add_to(*command);
-  CLI::Option* start =
-      command
-          ->add_option("--start", options->start,
-                       "Start elsewhere than drawn: joint=value, or joint.index=value (rad, m)")
-          ->take_all()
-          ->allow_extra_args(false);
+  CLI::Option* start = add_start(*command, options->start);
   CLI::Option* nearest =
       command->add_flag("--nearest", options->nearest, "The plain Newton-Raphson answer, stable or not");
   CLI::Option* motion = command->add_flag(
@@ -103,7 +98,7 @@ void add_solve(CLI::App& app, Ending& ending) {
         periodic = find_periodic_state(mechanism, wanted);
       }
     } catch (const SceneError& error) {
-      throw SceneError(options->scene.file.string() + ": " + error.where(), error.expected());
+      throw options->scene.in_file(error);
     }
     progress.reset();
     if (options->json) {

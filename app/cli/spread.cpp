@@ -136,7 +136,7 @@ void run(const SpreadArguments& arguments, Ending& ending) {
       report.tolerances.push_back(parse_tolerance(mechanism, text));
     report.answer = spread_by_rates(mechanism, report.tolerances, {});
   } catch (const SceneError& error) {
-    throw SceneError(arguments.scene.file.string() + ": " + error.where(), error.expected());
+    throw arguments.scene.in_file(error);
   }
   const bool any = report.answer.status == Status::converged;
   if (any) {

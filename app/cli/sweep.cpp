@@ -68,9 +68,6 @@ void run(const SweepArguments& options, Ending& ending) {
   if (options.json) add(json_rows, json_output(mechanism));
   if (table) add(table_rows, table_output(table_head(columns, mechanism)));
 
-  const auto in_scene = [&options](const SceneError& error) {
-    return SceneError(options.scene.file.string() + ": " + error.where(), error.expected());
-  };
   SolveOptions search;
   search.search_time = options.search_time;
   rows.count = part.end() - part.begin();
@@ -89,7 +86,7 @@ void run(const SweepArguments& options, Ending& ending) {
               points.push_back(solver->solve(i));
           }
         } catch (const SceneError& error) {
-          throw in_scene(error);
+          throw options.scene.in_file(error);
         }
         block.answers = static_cast<std::uint64_t>(std::ranges::count(
             points, Status::converged, [](const SweepPoint& p) { return p.solution.status; }));
@@ -98,7 +95,7 @@ void run(const SweepArguments& options, Ending& ending) {
         return block;
       };
     } catch (const SceneError& error) {
-      throw in_scene(error);
+      throw options.scene.in_file(error);
     }
   };
   const std::uint64_t answers = put_out(rows, *sharing);

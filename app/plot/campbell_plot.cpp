@@ -112,7 +112,7 @@ void add_orders(Plot& plot, PlotRange speeds, std::span<const double> orders, do
 // Without labels: what they are is read off the lines that cross there, and listed.
 void add_critical(Plot& plot, const CampbellDiagram& diagram, std::size_t branch, double factor) {
   for (const CriticalSpeed& at : diagram.critical)
-    if (at.branch == static_cast<int>(branch))
+    if (at.branch == static_cast<int>(branch) && !at.until)
       plot.marks.push_back({.at = {at.speed, at.frequency * factor},
                             .label = {},
                             .shape = PlotShape::circle,

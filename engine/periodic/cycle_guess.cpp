@@ -1,10 +1,13 @@
 #include "engine/periodic/cycle_guess.hpp"
 
+#include "engine/kkt/constraint_space.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/periodic/shooting.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/stability/linear_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace flyball {
@@ -19,28 +22,28 @@ constexpr double returned = 0.03;       // of the way between: near enough
 constexpr double at_rest = 1e-6;        // scaled: what moves less does not
 constexpr double off_steady = 0.01;     // scaled, from a steady state
 constexpr double steadily = 0.01;       // of its size: what changes less in between has settled
-constexpr double alike = 1e-6;          // scaled, of motions from two angles
+constexpr double alike = 1e-6;          // scaled, of motions from two angles or phases
+constexpr double beside_steady = 0.05;  // scaled: where motions are compared, too
 
-// Of the drives by torque, and of what turns with them.
+// Of the drives by torque, with what loops and gears move along.
 Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
   const System& system = flow.model().system;
-  std::vector<int> columns;
-  for (const DriveTorqueElement& drive : system.torques) {
-    const Link& link = system.links[static_cast<std::size_t>(drive.link)];
-    if (link.type == LinkType::revolute) columns.push_back(link.v);
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(system.nv, system.nv);
+  if (system.rows > 0) {
+    Kinematics<double> k;
+    Linearization l;
+    forward<double>(system, flow.model().parameters, state.q, state.time, k);
+    linearize_constraints(system, flow.model().parameters, k, l);
+    const Scaling& scaling = flow.model().scaling;
+    ConstraintSpace space;
+    space.factor(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal(), 1e-9);
+    basis = space.basis();
   }
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(system.nv, static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    out(columns[i], static_cast<Eigen::Index>(i)) = 1;
-  if (columns.empty() || system.rows == 0) return out;
-  Kinematics<double> k;
-  Linearization l;
-  forward<double>(system, flow.model().parameters, state.q, state.time, k);
-  linearize_constraints(system, flow.model().parameters, k, l);
-  const Scaling& scaling = flow.model().scaling;
-  const auto together =
-      null_space(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal() * out);
-  return together ? Eigen::MatrixXd(out * *together) : Eigen::MatrixXd(system.nv, 0);
+  const Eigen::MatrixXd given = cyclic_directions(system, basis, false),
+                        kept = cyclic_directions(system, basis, true);
+  Eigen::MatrixXd out(system.nv, given.cols() + kept.cols());
+  out << basis * given, basis * kept;
+  return out;
 }
 
 // The least damped swing about the steady state.
@@ -134,6 +137,22 @@ Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate) 
     out.col(out.cols() - 1) = way;
   }
   return out;
+}
+
+bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period) {
+  const double rate = turn / period, span = 0.1 / rate;
+  const StateChart chart(flow.problem(), state, rate, {});
+  MotionState beside =
+      chart.displaced(Eigen::VectorXd::LinSpaced(chart.size(), beside_steady, -beside_steady));
+  beside.time = 0;
+  const auto here = flow.pass(beside, span, step_tolerance * 1e-3);
+  if (!here) return false;
+  const StateChart after(flow.problem(), here->to, rate, {});
+  return std::ranges::all_of(std::array{0.21, 0.56, 0.83}, [&](double part) {
+    beside.time = part * period;
+    const auto there = flow.pass(beside, span, step_tolerance * 1e-3);
+    return there && after.distance(there->to) < alike;
+  });
 }
 
 CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart start,

@@ -10,6 +10,11 @@ namespace flyball {
 // these need not return after a period.
 Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate);
 
+// Whether motions from `state` and beside it go alike wherever the drives, whose period this is (s), stand:
+// then there may be limit cycles though drives turn at prescribed speeds, as of a pendulum on a turning
+// shaft.
+bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period);
+
 struct CycleGuess {
   double period = 0;           // s
   Eigen::MatrixXd turns_alike; // angles_alike()

@@ -9,6 +9,7 @@
 #include "engine/periodic/orbit_ranges.hpp"
 #include "engine/periodic/shooting.hpp"
 #include "engine/stability/floquet.hpp"
+#include "engine/system/dampers.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -28,6 +29,7 @@ constexpr double inexact = 1e-4;      // relative error of a multiplier: too muc
 constexpr double least_swing = 0.01;  // scaled, of the first guess around a stable steady state
 constexpr double furthest = 64;       // times as far is the last guess of a limit cycle
 constexpr double standing = 1e-6;     // scaled: what is no further away after half a period stands still
+constexpr int pulling_periods = 32;   // in which a push on and on is to outweigh what dies out
 constexpr int frozen_segments = 8;    // of a guess that stands as drawn
 constexpr int samples_a_turn = 64, least_samples = 256, most_samples = 8192;
 
@@ -81,7 +83,7 @@ struct Candidate {
   Orbit orbit;
   Monodromy beside;
   ShootingOptions how;
-  int periods = 1; // of the drives
+  int periods = 1; // of the drives; 0: of a limit cycle
   std::optional<bool> stable;
 };
 
@@ -138,6 +140,12 @@ class Search {
     if ((!second || second->stable == false) && periods > 1) {
       if (auto longer = attempt({*state}, periods)) second = std::move(longer);
     }
+    if (first && (!second || second->stable == false) && stands(*first) &&
+        goes_alike_at_phases(flow_, first->orbit.nodes.front().base(), drives_.period))
+      if (auto cycle = find_cycle(CycleStart::steady)) {
+        left_first_ = true;
+        return cycle;
+      }
     if (!second || (first && second->stable == false)) return first;
     left_first_ = first.has_value();
     return second;
@@ -199,12 +207,13 @@ class Search {
     c.periods = periods;
     c.how = how;
     if (!flow_.pass(guess.front(), c.how.period / 16, settling)) { // finds the method
-      end_ = broken();
+      end_ = end_of(flow_);
       return {};
     }
     c.how.tolerance = tolerance_of(flow_);
     c.orbit = shoot(flow_, guess, c.how);
     end_ = c.orbit.end;
+    if (end_ == ShootingEnd::pumped) pulled_along_ = pulled_along(c.orbit.nodes.front().base());
     if (c.orbit.end != ShootingEnd::converged) return {};
     auto beside = monodromy(flow_, c.orbit, c.how);
     // Where much grows within a segment, differences tell nothing: shorter ones keep the digits.
@@ -213,7 +222,7 @@ class Search {
           segments > static_cast<int>(guess.size()))
         divide(c, segments, beside);
     if (!beside) {
-      end_ = broken();
+      end_ = end_of(flow_);
       return {};
     }
     c.beside = std::move(*beside);
@@ -222,16 +231,17 @@ class Search {
     return c;
   }
 
-  static std::optional<bool> verdict(const Candidate& c) {
+  std::optional<bool> verdict(const Candidate& c) const {
     const auto& [matrix, multipliers, error] = c.beside;
     if (multipliers.empty()) return true;
     // Inexact ones, as of motions that pass singular positions, tell little.
     if (error > 1e-3 && std::abs(multipliers.front()) < 1 + 10 * error) return {};
-    return stable_by_multipliers(multipliers, error, c.orbit.neutral);
+    return stable_by_multipliers(multipliers, error, c.orbit.neutral,
+                                 is_hamiltonian(flow_.model().system, flow_.model().parameters));
   }
 
   // A motion that nothing times may be anywhere along itself: that is no growth, and its multiplier 1 tells
-  // how well the others are known.
+  // about how well the others are known.
   static void leave_out_phase(Candidate& c) {
     auto& multipliers = c.beside.multipliers;
     const auto phase =
@@ -315,10 +325,31 @@ class Search {
     return {past.back(), best};
   }
 
-  ShootingEnd broken() const {
-    return flow_.cancelled() ? ShootingEnd::cancelled
-           : flow_.spent()   ? ShootingEnd::spent
-                             : ShootingEnd::no_motion;
+  // The coordinate on which something pulls on and on, so that the motion gains speed alike at every phase of
+  // the drives; empty where what grows swings, and gains the opposite half a swing later.
+  std::string pulled_along(const MotionState& start) {
+    const auto gain = [&](double phase) -> std::optional<Eigen::VectorXd> {
+      const auto from = flow_.pass(start, phase * drives_.period, settling),
+                 to = from ? flow_.pass(from->to, pulling_periods * drives_.period, settling) : std::nullopt;
+      if (!to) return {};
+      return (to->to.u - to->from.u).cwiseQuotient(flow_.model().scaling.column);
+    };
+    const auto first = gain(1);
+    if (!first) return {};
+    for (const double part : {0.5, 0.25, 0.125}) // a half of a swing once, twice, ... a period
+      if (const auto other = gain(1 + part); !other || (*other - *first).norm() > 0.3 * first->norm())
+        return {};
+    Eigen::Index most = 0;
+    first->cwiseAbs().maxCoeff(&most);
+    const System& system = flow_.model().system;
+    for (const CoordinateInfo& c : system.coordinates) {
+      const Link& link = system.links[static_cast<std::size_t>(c.link)];
+      const int count = link.type == LinkType::spherical ? 3 : 1;
+      if (link.v < 0 || most < link.v || most >= link.v + count) continue;
+      const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+      return count > 1 ? joint.name : coordinate_label(joint.name, c.index, coordinate_count(joint.type));
+    }
+    return {};
   }
 
   void refuse_cycle(PeriodicState& out) const {
@@ -340,6 +371,11 @@ class Search {
     switch (flow_.spent() ? ShootingEnd::spent : end_) {
     case ShootingEnd::pumped:
       out.status = PeriodicStatus::not_periodic;
+      if (!pulled_along_.empty()) {
+        out.message = "No periodic motion either: something pulls on and on along " + pulled_along_ +
+                      ", which nothing holds or damps, and the motion there gains speed without end.";
+        return;
+      }
       out.message = "No periodic motion either: the drives push in step with a motion that nothing damps or "
                     "holds, and it grows without end. Some damping, or another speed, gives it an end.";
       return;
@@ -445,14 +481,16 @@ class Search {
   }
 
   std::string words(const Candidate& c, const PeriodicState& out) const {
-    std::string text = around_stable_ ? "Around its stable steady state lies a limit cycle, with a period of "
-                       : of_its_own() ? "It moves in a limit cycle, with a period of its own of "
-                                      : "It moves periodically with the drives, with a period of ";
+    const bool cycle = c.periods == 0;
+    std::string text = cycle && around_stable_
+                           ? "Around its stable steady state lies a limit cycle, with a period of "
+                       : cycle ? "It moves in a limit cycle, with a period of its own of "
+                               : "It moves periodically with the drives, with a period of ";
     text += rounded_text(out.period, 6) + " s";
     if (c.periods > 1) text += ", " + std::to_string(c.periods) + " times that of the drives";
     text += ".";
     if (c.beside.multipliers.empty())
-      text += of_its_own() ? "" : " Nothing moves freely: the drives prescribe all of it.";
+      text += cycle ? "" : " Nothing moves freely: the drives prescribe all of it.";
     else if (out.motion->statistics.singular_positions > 0)
       text +=
           " It passes positions in which linkages could part into branches: what is beside it is not known "
@@ -463,7 +501,7 @@ class Search {
       text += " Nothing resists some direction, so that others lie beside it.";
     else if (!out.stable)
       text += " Whether it is stable is too close to tell.";
-    else if (out.floquet.growth.front() > -1e-7 / out.period)
+    else if (std::abs(c.beside.multipliers.front()) > 1 - 1e-7 - 10 * c.beside.error)
       text += " Motions beside it neither grow nor die out.";
     else
       text += " It is stable: motions beside it die out.";
@@ -488,6 +526,7 @@ class Search {
   ShootingEnd end_ = ShootingEnd::diverged; // of the last attempt
   bool left_first_ = false;
   bool around_stable_ = false; // a limit cycle was looked for around a stable steady state
+  std::string pulled_along_;   // the coordinate; empty where the drives pump up what swings
   std::string cycle_trouble_;  // why there is none: a sentence
 };
 

@@ -1,5 +1,6 @@
 #include "engine/periodic/shooting.hpp"
 
+#include "engine/linear/largest.hpp"
 #include "engine/linear/spectral.hpp"
 
 #include <algorithm>
@@ -15,6 +16,7 @@ constexpr double largest_step = 0.5;     // scaled, of the coordinates in an ite
 constexpr double singular = 1e-7;        // of the largest singular value: differences are no better
 constexpr double unreachable = 0.1;      // of the gap: so much of it is no step's to close
 constexpr double multiplier_step = 4e-3; // scaled, at first
+constexpr double noise = 1;              // of the tolerance over a step: what is left in the best differences
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
@@ -56,21 +58,26 @@ class Shooter {
   }
 
   Orbit run(const std::vector<MotionState>& guess) {
-    if (!place(guess)) return ended(broken());
+    if (!place(guess)) return ended(end_of(flow_));
     for (;;) {
       const double gap = largest_gap();
       orbit_.residual = gap;
       orbit_.history.push_back(gap);
       const bool still = orbit_.iterations > 0 && gap > 0.5 * orbit_.history.end()[-2];
-      if (gap <= closed || (gap <= nearly_closed && still)) return ended(ShootingEnd::converged);
+      // Without an iteration it is not known yet in how many directions others lie beside it.
+      if (orbit_.iterations > 0 && (gap <= closed || (gap <= nearly_closed && still)))
+        return ended(ShootingEnd::converged);
       if (orbit_.iterations == options_.iterations) return ended(ShootingEnd::diverged);
-      if (!linearise()) return ended(broken());
+      if (!linearise()) return ended(end_of(flow_));
       Vector step;
-      if (!solve(step)) return ended(ShootingEnd::pumped);
+      const bool reachable = solve(step);
+      if (gap <= closed) return ended(ShootingEnd::converged);
+      if (!reachable)
+        return ended(gap <= nearly_closed && is_rounding() ? ShootingEnd::converged : ShootingEnd::pumped);
       if (!advance(step, gap))
         return ended(gap <= nearly_closed ? ShootingEnd::converged
                      : moved_             ? ShootingEnd::diverged
-                                          : broken());
+                                          : end_of(flow_));
       ++orbit_.iterations;
     }
   }
@@ -79,11 +86,6 @@ class Shooter {
   Orbit ended(ShootingEnd end) {
     orbit_.end = end;
     return std::move(orbit_);
-  }
-  ShootingEnd broken() const {
-    return flow_.cancelled() ? ShootingEnd::cancelled
-           : flow_.spent()   ? ShootingEnd::spent
-                             : ShootingEnd::no_motion;
   }
   std::size_t segments() const { return orbit_.nodes.size(); }
   double duration() const { return orbit_.period / static_cast<double>(segments()); }
@@ -159,9 +161,25 @@ class Shooter {
     const Eigen::Index rank = (svd->values.array() > least).count();
     orbit_.neutral = static_cast<int>(svd->values.size() - rank);
     const Vector along = svd->left.transpose() * gaps_;
+    unclosed_ = svd->left.rightCols(along.size() - rank);
     if (along.tail(along.size() - rank).norm() > unreachable * gaps_.norm()) return false;
     step = -svd->right.leftCols(rank) * along.head(rank).cwiseQuotient(svd->values.head(rank));
     return true;
+  }
+
+  // Whether the part of the gaps that no step closes is no more than the error of the motion's steps: steps
+  // of a hundred times the tolerance change it by as much.
+  bool is_rounding() {
+    const Vector fine = unclosed_.transpose() * gaps_;
+    if (fine.norm() <= 100 * options_.tolerance) return true;
+    Vector coarse = Vector::Zero(gaps_.size());
+    const Eigen::Index n = orbit_.nodes.front().size();
+    for (std::size_t i = 0; i < segments(); ++i) {
+      const auto passage = flow_.pass(orbit_.nodes[i].base(), duration(), 100 * options_.tolerance);
+      if (!passage) return false;
+      coarse.segment(n * static_cast<Eigen::Index>(i), n) = after(i).coordinates(passage->to);
+    }
+    return (unclosed_.transpose() * coarse - fine).norm() >= 0.5 * fine.norm();
   }
 
   // The longest of the parts 1, 1/2, ... of a step after which the gaps are less.
@@ -206,17 +224,20 @@ class Shooter {
   std::vector<MotionState> ends_; // of the segments
   Matrix matrix_;
   Vector gaps_;
+  Matrix unclosed_;    // by column: parts of the gaps that no step closes
   bool moved_ = false; // some part of the last step led to motions that last
 };
 
-// Extrapolated differences of a segment, and the same a level coarser.
+// Extrapolated differences of a segment, and the same by as much off as their error may be, in the way in
+// which the last extrapolation changed them: by that, and by no less than the motion's tolerance leaves in
+// differences over the shortest step.
 struct Extrapolated {
-  Matrix best, coarser;
+  Matrix best, off;
+  double error = 0; // estimated, of each entry
 };
 std::optional<Extrapolated> extrapolate(Flow& flow, const StateChart& from, const StateChart& to,
                                         double duration, double tolerance) {
   std::optional<Extrapolated> out;
-  double least = 0;
   // Shorter steps where the map is too bent for longer ones.
   for (const double h : {multiplier_step, multiplier_step / 100}) {
     const auto map = [&](double step) {
@@ -224,21 +245,24 @@ std::optional<Extrapolated> extrapolate(Flow& flow, const StateChart& from, cons
     };
     const auto d1 = map(h), d2 = d1 ? map(h / 2) : std::nullopt, d3 = d2 ? map(h / 4) : std::nullopt;
     if (!d3) return out;
-    const Matrix once = (4 * *d2 - *d1) / 3, twice = (4 * *d3 - *d2) / 3;
-    Extrapolated now{twice + (twice - once) / 15, twice};
-    const double changed =
-        (now.best - now.coarser).size() > 0 ? (now.best - now.coarser).cwiseAbs().maxCoeff() : 0.;
-    const double size = now.best.size() > 0 ? std::max(1., now.best.cwiseAbs().maxCoeff()) : 1.;
-    if (!out || changed < least) {
-      least = changed;
-      out = std::move(now);
-    }
-    if (least <= 1e-7 * size) break;
+    const Matrix once = (4 * *d2 - *d1) / 3, twice = (4 * *d3 - *d2) / 3, change = (twice - once) / 15;
+    const double changed = largest_size(change), floor = noise * tolerance / (h / 4);
+    const double error = std::max(changed, floor);
+    const Matrix best = twice + change;
+    if (!out || error < out->error)
+      out = {best, changed > 0 ? Matrix(best + error / changed * change) : best, error};
+    if (out->error <= std::max(floor, 1e-7 * std::max(1., largest_size(twice)))) break;
   }
   return out;
 }
 
 } // namespace
+
+ShootingEnd end_of(const Flow& flow) {
+  return flow.cancelled() ? ShootingEnd::cancelled
+         : flow.spent()   ? ShootingEnd::spent
+                          : ShootingEnd::no_motion;
+}
 
 Orbit shoot(Flow& flow, const std::vector<MotionState>& guess, const ShootingOptions& options) {
   return Shooter(flow, options).run(guess);
@@ -248,19 +272,20 @@ std::optional<Monodromy> monodromy(Flow& flow, const Orbit& orbit, const Shootin
   const std::size_t m = orbit.nodes.size();
   const double duration = orbit.period / static_cast<double>(m);
   const Eigen::Index n = orbit.nodes.front().size();
-  Matrix best = Matrix::Identity(n, n), coarser = best;
+  Monodromy out;
+  Matrix best = Matrix::Identity(n, n), off = best;
   for (std::size_t i = 0; i < m; ++i) {
     const auto segment =
         extrapolate(flow, orbit.nodes[i], orbit.nodes[(i + 1) % m], duration, options.tolerance);
     if (!segment) return {};
     best = (segment->best * best).eval();
-    coarser = (segment->coarser * coarser).eval();
+    off = (segment->off * off).eval();
+    out.error = std::max(out.error, segment->error);
   }
-  Monodromy out;
   out.matrix = best;
   if (n == 0) return out;
   auto multipliers = eigenvalues(best);
-  const auto others = eigenvalues(coarser);
+  const auto others = eigenvalues(off);
   if (!multipliers || !others) return {};
   std::ranges::sort(*multipliers, [](const auto& a, const auto& b) {
     return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();

@@ -21,12 +21,15 @@ struct ShootingOptions {
 
 enum class ShootingEnd {
   converged,
-  pumped,   // what leads away in a period comes back to itself but for a push: resonance, or nothing holds it
-  diverged, // the iteration does not get nearer
+  pumped,    // no step closes the gap, and it is no rounding: a push in step with what nothing holds or damps
+  diverged,  // the iteration does not get nearer
   no_motion, // a motion stops within the period; Flow::trouble() says why
   spent,     // the flow's evaluations are
   cancelled,
 };
+
+// Why a flow that leads nowhere does: it was cancelled, is spent, or a motion stops.
+ShootingEnd end_of(const Flow& flow);
 
 struct Orbit {
   ShootingEnd end = ShootingEnd::diverged;

@@ -1,5 +1,6 @@
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
+#include "engine/system/dampers.hpp"
 
 #include <algorithm>
 
@@ -52,16 +53,8 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
                             ? "bearings: stiffness and damping matrices"
                             : "bearings: matrices that feed whirl, or dampers between drives");
   say(!system.body_forces.empty() || !system.turning_air.empty(), "forces, torques and the air");
-  const bool damped =
-      std::ranges::any_of(p.links,
-                          [](const LinkParameters& l) {
-                            return std::ranges::any_of(l.force,
-                                                       [](const CoordinateForce& f) { return f.damped(); });
-                          }) ||
-      !system.cut_dampers.empty() ||
-      std::ranges::any_of(p.bearings, [](const BearingParameters& b) { return !b.damping.isZero(0); }) ||
-      std::ranges::any_of(p.springs, [](const PointSpringParameters& s) { return s.damped(); });
-  say(damped, "dampers: in the eigenvalues, and in the balance where parts turn against each other");
+  say(has_dampers(system, p),
+      "dampers: in the eigenvalues, and in the balance where parts turn against each other");
   say(std::ranges::any_of(system.links,
                           [](const Link& l) { return l.type == LinkType::spherical && l.v >= 0; }),
       "rotations as quaternions");

@@ -161,7 +161,8 @@ std::optional<double> common_period(const std::vector<double>& speeds, int most)
   return {};
 }
 
-std::optional<bool> stable_by_multipliers(std::vector<Complex> counted, double error, int neutral) {
+std::optional<bool> stable_by_multipliers(std::vector<Complex> counted, double error, int neutral,
+                                          bool has_hamiltonian) {
   std::ranges::sort(counted, {}, [](Complex mu) { return std::abs(mu - 1.); });
   auto begin = counted.begin();
   for (int i = 0;
@@ -184,9 +185,9 @@ std::optional<bool> stable_by_multipliers(std::vector<Complex> counted, double e
     if (close) apart = false;
   }
   if (neutral > 0) return {};
-  // On the unit circle and apart from each other they cannot leave it: motions stay as small as they begin
-  // (Krein).
-  if (inside || apart) return true;
+  // Of a Hamiltonian system they are mirrored by the unit circle: on it and apart from each other they cannot
+  // leave it, and motions stay as small as they begin (Krein).
+  if (inside || (apart && has_hamiltonian)) return true;
   return {};
 }
 

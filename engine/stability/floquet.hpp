@@ -34,12 +34,13 @@ struct FloquetOutcome {
 // out, and where momentum is kept the one of other momenta.
 FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
 
-// Whether motions beside stay near, by the multipliers of a period; `error`: of the largest. False where one
-// lies outside the unit circle. Those of `neutral` directions (a rotation or shift that nothing resists, and
-// its rate) lie at 1 and do not count, but leave open what is true; so do those that rounding may have put on
-// either side.
+// Whether motions beside stay near, by the multipliers of a period; `error`: estimated, of the largest. False
+// where one lies outside the unit circle by more than some errors. Those of `neutral` directions (a rotation
+// or shift that nothing resists, and its rate) lie at 1 and do not count, but leave open what is true; so do
+// those that the error may have put on either side, except where the motion `has_hamiltonian`: then they
+// are on the circle and, apart from each other, stay there.
 std::optional<bool> stable_by_multipliers(std::vector<std::complex<double>> multipliers, double error,
-                                          int neutral);
+                                          int neutral, bool has_hamiltonian);
 
 // ln(mu) / T, 1/s: growth rates and frequencies, these but for whole turns a period, by size of the imaginary
 // part. Multipliers so small that they are rounding beside the largest are left out.

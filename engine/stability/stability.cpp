@@ -10,6 +10,7 @@
 #include "engine/stability/linear_motion.hpp"
 #include "engine/stability/pivot_stability.hpp"
 #include "engine/stability/routh.hpp"
+#include "engine/system/dampers.hpp"
 #include "engine/system/kept_momentum.hpp"
 
 #include <algorithm>
@@ -66,7 +67,8 @@ void classify_by_multipliers(const Problem& problem, const Unknowns& z, int neut
   out.eigenvalues = floquet_exponents(floquet);
   out.reason = StabilityReason::floquet;
   if (neutral > 0) out.reason = StabilityReason::neutral;
-  out.stable = stable_by_multipliers(floquet.multipliers, floquet.error, neutral);
+  out.stable = stable_by_multipliers(floquet.multipliers, floquet.error, neutral,
+                                     is_hamiltonian(problem.system, problem.parameters));
   if (out.stable == false) out.reason = StabilityReason::floquet;
 }
 

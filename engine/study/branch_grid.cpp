@@ -31,6 +31,7 @@ GridBranches GridFollower::follow(std::size_t i) const {
     set_parameters(there, numbers);
     validate(there);
     out.diagram = follow_branches(there, address_, from_, to_, options_);
+    out.hunting = describe_hopf_points(there, address_, out.diagram);
     if (has_friction(there)) out.ribbons = friction_ribbons(there, address_, out.diagram);
   } catch (const SceneError& error) {
     out.diagram.status = Status::infeasible;

@@ -3,6 +3,7 @@
 
 #include "engine/continuation/branches.hpp"
 #include "engine/study/friction_ribbon.hpp"
+#include "engine/study/hopf_point.hpp"
 #include "engine/study/sweep.hpp"
 
 namespace flyball {
@@ -13,6 +14,7 @@ struct GridBranches {
   ResponseDiagram diagram;
   // The bands of dry friction at the points of each branch; empty without.
   std::vector<std::vector<RibbonPoint>> ribbons;
+  HopfPoints hunting; // of each special point
 };
 
 // Follows branches at places of a grid, in any order: each is made by itself. For any number of threads.

@@ -17,6 +17,8 @@
 namespace flyball {
 namespace {
 
+constexpr double along = 1e-10; // of its frequency: a mode that is no further away runs along an order's line
+
 // How far apart two points of a branch are, by what moves: only ratios count.
 double apart(const ResponsePoint& a, const ResponsePoint& b, double range) {
   double sum = std::pow((b.parameter - a.parameter) / range, 2);
@@ -140,10 +142,11 @@ class CrossingFinder {
   }
 
   std::vector<CriticalSpeed> find() {
+    find_runs();
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      if (stands_on(i)) add_sample(i);
+      if (stands_on(i) && !samples_[i].runs) add_sample(i);
       if (i + 1 == samples_.size() || !samples_[i].mode || !samples_[i + 1].mode) continue;
-      if (stands_on(i) || stands_on(i + 1)) continue;
+      if (is_told(i) || is_told(i + 1)) continue;
       const Way way{samples_[i], samples_[i + 1]};
       if ((way.a.off < 0) != (way.b.off < 0))
         add_crossing(way, {way.a.speed(), way.a.off}, {way.b.speed(), way.b.off});
@@ -158,6 +161,7 @@ class CrossingFinder {
     const ResponsePoint* at = nullptr;
     const VibrationMode* mode = nullptr; // null: not known
     double off = 0;                      // rad/s, above the order's line
+    bool runs = false;                   // along it, from here or to here
     double speed() const { return at->parameter; }
   };
   // From one point of the branch to the next.
@@ -179,6 +183,48 @@ class CrossingFinder {
   bool stands_on(std::size_t i) const {
     const Sample& s = samples_[i];
     return s.mode && s.mode->oscillates() && std::abs(s.off) <= rounding(*s.mode);
+  }
+
+  bool is_told(std::size_t i) const { return samples_[i].runs || stands_on(i); }
+
+  bool runs_along(const VibrationMode& mode, double speed) const {
+    return mode.oscillates() && std::abs(off(mode, speed)) <= along * mode.natural_frequency;
+  }
+  bool runs_along(std::size_t i) const {
+    const Sample& s = samples_[i];
+    return s.mode && runs_along(*s.mode, s.speed());
+  }
+  bool runs_along(const Sample& a, const Sample& b) {
+    const double middle = (a.speed() + b.speed()) / 2;
+    const std::optional<VibrationMode> mode = nearest({a, b}, middle);
+    return mode && runs_along(*mode, middle);
+  }
+
+  // Where one point of the branch after another lies on the order's line, and what is between them, too.
+  void find_runs() {
+    for (std::size_t first = 0; first < samples_.size(); ++first) {
+      std::size_t last = first;
+      while (last + 1 < samples_.size() && runs_along(last) && runs_along(last + 1) &&
+             runs_along(samples_[last], samples_[last + 1]))
+        ++last;
+      if (last == first) continue;
+      add_run(first, last);
+      for (std::size_t i = first; i <= last; ++i)
+        samples_[i].runs = true;
+      first = last;
+    }
+  }
+
+  void add_run(std::size_t first, std::size_t last) {
+    // It leaves the line before the next point of the branch, if it does.
+    double error = 0;
+    if (first > 0) error = std::abs(samples_[first].speed() - samples_[first - 1].speed());
+    if (last + 1 < samples_.size())
+      error = std::max(error, std::abs(samples_[last + 1].speed() - samples_[last].speed()));
+    const auto [low, high] = std::minmax({samples_[first].speed(), samples_[last].speed()});
+    const VibrationMode& mode = *samples_[samples_[first].speed() == low ? first : last].mode;
+    add(mode, low, error, false);
+    found_.back().until = high;
   }
 
   // Whether the line may come nearest to the order's between points i and i + 1: its distance does not go on
@@ -348,12 +394,12 @@ CampbellBranch describe_branch(Describer& describer, const ResponseBranch& follo
   return branch;
 }
 
-// Not known to be unstable at a point of the branch beside the speed.
-bool stable_at(const ResponseBranch& followed, double speed) {
+// Not known to be unstable at a point of the branch beside the critical speed.
+bool stable_at(const ResponseBranch& followed, const CriticalSpeed& critical) {
   for (std::size_t i = 1; i < followed.points.size(); ++i) {
     const ResponsePoint &a = followed.points[i - 1], &b = followed.points[i];
-    const bool beside =
-        speed >= std::min(a.parameter, b.parameter) && speed <= std::max(a.parameter, b.parameter);
+    const bool beside = critical.until.value_or(critical.speed) >= std::min(a.parameter, b.parameter) &&
+                        critical.speed <= std::max(a.parameter, b.parameter);
     if (beside && (a.stable == false || b.stable == false)) return false;
   }
   return true;
@@ -367,7 +413,7 @@ void add_critical(Describer& describer, const ResponseBranch& followed, const Ca
       for (CriticalSpeed& found : CrossingFinder(describer, followed, branch, l, order).find()) {
         found.branch = number;
         found.line = static_cast<int>(l);
-        found.stable = stable_at(followed, found.speed);
+        found.stable = stable_at(followed, found);
         critical.push_back(std::move(found));
       }
   std::ranges::stable_sort(critical, {}, &CriticalSpeed::speed);

@@ -28,12 +28,15 @@ struct CampbellBranch {
   std::vector<std::string> names;
 };
 
-// A speed at which a mode swings `order` times a turn: its line crosses the order's, or only touches it.
+// A speed at which a mode swings `order` times a turn: its line crosses the order's, only touches it, or runs
+// along it, as that of a tuned centrifugal pendulum does.
 struct CriticalSpeed {
   int branch = 0, line = 0;
   double order = 1;
   double speed = 0, frequency = 0; // rad/s
-  double error = 0;                // rad/s, of the speed, estimated
+  // rad/s: the highest of the speeds, from `speed` on, at which the mode's line runs along the order's.
+  std::optional<double> until;
+  double error = 0; // rad/s, of the speed, estimated; of both ends where it runs along
   double damping_ratio = 0;
   bool touches = false;       // a double root: on either side the mode swings more often, or less
   bool stable = true;         // not known to be unstable there

@@ -22,14 +22,7 @@ PlaneCurves fold_curves(const Mechanism& mechanism, const PlaneAxis& x, const Pl
   ExtendedBalance folds = plane.balance({balance_is_singular()});
   plane.for_lines([&](const PlaneSearch::Line& line) {
     const PlaneAxis& along = plane.moving(line);
-    BranchOptions follow;
-    follow.largest_step = options.largest_step;
-    follow.eigenvalues = false;
-    follow.all = options.all;
-    follow.cancel = options.cancel;
-    follow.progress = plane.along_line();
-    const ResponseDiagram d = follow_branches(plane.on(line), along.address, along.from, along.to, follow);
-    plane.heard(d.status, d.message);
+    const ResponseDiagram d = plane.branches(line, false);
     ExtendedBalance crossings =
         plane.balance({balance_is_singular(), branches_cross(static_cast<std::size_t>(line.varied))}, true);
     for (const SpecialPoint& s : d.special) {

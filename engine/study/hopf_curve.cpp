@@ -39,7 +39,7 @@ class HopfTeller {
       out.reason = "cancelled";
       return out;
     }
-    const ResponsePoint here = PlaneSearch::response(balance_, PlaneCurveType::hopf, state);
+    const ResponsePoint here = PlaneSearch::response(balance_, state, true);
     return describe_hopf(balance_.mechanism(), here, frequency, unit_);
   }
 
@@ -84,15 +84,7 @@ PlaneCurves hopf_curves(const Mechanism& mechanism, const PlaneAxis& x, const Pl
                         const PlaneOptions& options) {
   PlaneSearch plane(mechanism, x, y, options);
   plane.for_lines([&](const PlaneSearch::Line& line) {
-    const PlaneAxis& along = plane.moving(line);
-    BranchOptions follow;
-    follow.largest_step = options.largest_step;
-    follow.all = options.all;
-    follow.cancel = options.cancel;
-    follow.progress = plane.along_line();
-    const ResponseDiagram d = follow_branches(plane.on(line), along.address, along.from, along.to, follow);
-    plane.heard(d.status, d.message);
-    for (const SpecialPoint& s : d.special) {
+    for (const SpecialPoint& s : plane.branches(line, true).special) {
       if (s.type != SpecialPointType::hopf || s.at.floquet) continue;
       if (plane.system().nv > largest_for_pairs) {
         plane.leave_out();

@@ -3,6 +3,7 @@
 #include "engine/continuation/pair_crossing.hpp"
 #include "engine/dynamics/local_motion.hpp"
 #include "engine/dynamics/start.hpp"
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/study/lyapunov.hpp"
 
@@ -161,6 +162,18 @@ HopfPoint describe_hopf(const Mechanism& mechanism, const ResponsePoint& at, dou
     out.reason = none.why;
   } catch (const SceneError& error) {
     out.reason = error.what();
+  }
+  return out;
+}
+
+HopfPoints describe_hopf_points(const Mechanism& mechanism, const std::string& address,
+                                const ResponseDiagram& diagram) {
+  HopfPoints out;
+  for (const SpecialPoint& s : diagram.special) {
+    std::optional<HopfPoint>& point = out.emplace_back();
+    if (s.type == SpecialPointType::hopf && !s.at.floquet)
+      point = describe_hopf(with_parameter(mechanism, address, s.at.parameter), s.at,
+                            hopf_frequency(s.at.eigenvalues));
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace flyball {
 
@@ -43,6 +44,13 @@ struct HopfPoint {
 // most, in radians or reaches.
 HopfPoint describe_hopf(const Mechanism& mechanism, const ResponsePoint& at, double frequency,
                         const std::optional<HopfPoint::Coordinate>& coordinate = {});
+
+// Of each special point of branches that were followed over `address`: what there is to say of Hopf points of
+// a motion that does not turn with the drives; nothing of others. Throws SceneError for an address that does
+// not exist.
+using HopfPoints = std::vector<std::optional<HopfPoint>>;
+HopfPoints describe_hopf_points(const Mechanism& mechanism, const std::string& address,
+                                const ResponseDiagram& diagram);
 
 // The frequency (rad/s) of the pair nearest to the axis, as of a Hopf point of a branch; 0 where none swings.
 double hopf_frequency(const std::vector<std::complex<double>>& eigenvalues);

@@ -58,6 +58,19 @@ ReportProgress PlaneSearch::along_line() const {
   };
 }
 
+ResponseDiagram PlaneSearch::branches(const Line& line, bool eigenvalues) {
+  const PlaneAxis& along = moving(line);
+  BranchOptions follow;
+  follow.largest_step = options_.largest_step;
+  follow.eigenvalues = eigenvalues;
+  follow.all = options_.all;
+  follow.cancel = options_.cancel;
+  follow.progress = along_line();
+  ResponseDiagram out = follow_branches(on(line), along.address, along.from, along.to, follow);
+  heard(out.status, out.message);
+  return out;
+}
+
 ExtendedBalance PlaneSearch::balance(std::vector<Condition> conditions, bool unfolded) const {
   return {system_,
           at_corner(),
@@ -126,14 +139,14 @@ Mechanism PlaneSearch::at_corner() const {
                         std::clamp(get_parameter(mechanism_, y_.address), y_.from, y_.to));
 }
 
-ResponsePoint PlaneSearch::response(ExtendedBalance& balance, PlaneCurveType type, const ExtendedState& s) {
+ResponsePoint PlaneSearch::response(ExtendedBalance& balance, const ExtendedState& s, bool eigenvalues) {
   balance.set(s.parameters);
-  return response_point(balance.mechanism(), balance.judged(), s.z, {}, {type == PlaneCurveType::hopf, false},
+  return response_point(balance.mechanism(), balance.judged(), s.z, {}, {eigenvalues, false},
                         balance.workspace());
 }
 
 PlanePoint PlaneSearch::point(ExtendedBalance& balance, PlaneCurveType type, const ExtendedState& s) {
-  ResponsePoint p = response(balance, type, s);
+  ResponsePoint p = response(balance, s, false);
   PlanePoint out{s.parameters[0], s.parameters[1], std::move(p.coordinates), {}};
   if (type == PlaneCurveType::value) out.stable = p.stable;
   return out;

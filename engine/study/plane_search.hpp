@@ -28,6 +28,8 @@ class PlaneSearch {
   void for_lines(const std::function<void(const Line&)>& search);
   // Of following the branches along the line that is searched: a part of the whole.
   ReportProgress along_line() const;
+  // The branches along a line, of which the search has heard.
+  ResponseDiagram branches(const Line& line, bool eigenvalues);
 
   ExtendedBalance balance(std::vector<Condition> conditions, bool unfolded = false) const;
 
@@ -39,8 +41,8 @@ class PlaneSearch {
   };
   std::optional<Added> add(ExtendedBalance& balance, PlaneCurveType type, const Line& line, double varied,
                            const std::vector<CoordinateSolution>& coordinates, double pair = 0);
-  // What there is to say of a state on a curve. Eigenvalues are found on Hopf curves alone.
-  static ResponsePoint response(ExtendedBalance& balance, PlaneCurveType type, const ExtendedState& state);
+  // What there is to say of a state on a curve, with or without its eigenvalues.
+  static ResponsePoint response(ExtendedBalance& balance, const ExtendedState& state, bool eigenvalues);
   static PlanePoint point(ExtendedBalance& balance, PlaneCurveType type, const ExtendedState& state);
 
   // Counts a start that is not followed for the size of the system.

@@ -240,9 +240,12 @@ void PlaneTracer::land_on_border(const ExtendedState& state, const Eigen::Vector
   prepare(state);
   ExtendedState last = state;
   balance_.move(last, part * length * tangent);
-  last.parameters[border] = there[border] > 1 ? high_[border] : low_[border];
+  const double at_border = there[border] > 1 ? high_[border] : low_[border];
+  last.parameters[border] = at_border;
   balance_.set(last.parameters);
-  if (!balance_.correct(last, unit(border)).converged || !inside(last)) return;
+  if (!balance_.correct(last, unit(border)).converged) return;
+  last.parameters[border] = at_border; // without the rounding of the corrections
+  if (!inside(last)) return;
   if (difference(state, last).norm() > 2 * length || !finish_step(state, last)) return;
   out.states.push_back(last);
   out.tangents.push_back(tangent);

@@ -6,6 +6,7 @@
 
 #include "engine/dynamics/simulation.hpp"
 #include "engine/dynamics/simulator.hpp"
+#include "engine/stability/floquet.hpp"
 
 #include <complex>
 
@@ -105,4 +106,18 @@ TEST_CASE("Floquet: simulated motions obey the multipliers", "[floquet]") {
   }
   CHECK(judged >= 20);
   CHECK(unstable >= 1);
+}
+
+TEST_CASE("multipliers within their error of the unit circle tell of stability in Hamilton's motions alone") {
+  const auto pair = [](double size) {
+    const Complex mu = std::polar(size, 0.9);
+    return std::vector{mu, std::conj(mu)};
+  };
+  const double error = 1e-7;
+  for (const bool has_hamiltonian : {true, false}) {
+    CHECK(stable_by_multipliers(pair(1 - 1e-5), error, 0, has_hamiltonian) == true);
+    CHECK(stable_by_multipliers(pair(1 + 1e-5), error, 0, has_hamiltonian) == false);
+    for (const double size : {1 - 3e-7, 1., 1 + 3e-7})
+      CHECK(stable_by_multipliers(pair(size), error, 0, has_hamiltonian).has_value() == has_hamiltonian);
+  }
 }

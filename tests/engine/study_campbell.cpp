@@ -164,6 +164,34 @@ TEST_CASE("a critical speed at the very end of the range counts, once", "[campbe
   CHECK(critical_speeds(stiffening(0.05, 1, 0), 1, 6).size() == 1);
 }
 
+TEST_CASE("a tuned centrifugal pendulum runs along its order's line, which is told once", "[campbell]") {
+  // Of length l at the radius R of a disc it swings at w sqrt(R / l), whatever the speed w.
+  const auto tuned = [](double radius, double length) {
+    Mechanism m;
+    m.bodies = {spindle(), body("bob", 0.2, {radius + length, 0, 0})};
+    m.joints = {spin(1, {0, 0, 1}), revolute("swing", "spindle", "bob", {radius, 0, 0}, {0, 0, 1})};
+    return m;
+  };
+  for (const auto& [from, to] : {std::pair(1., 50.), std::pair(50., 1.), std::pair(-50., -1.)}) {
+    CAPTURE(from, to);
+    const CampbellDiagram d = diagram_of(tuned(0.08, 0.02), from, to, {1, 2, 3});
+    REQUIRE(d.critical.size() == 1);
+    CHECK(d.critical[0].order == 2);
+    REQUIRE(d.critical[0].until);
+    CHECK(d.critical[0].speed == std::min(from, to));
+    CHECK(*d.critical[0].until == std::max(from, to));
+    CHECK(d.critical[0].error == 0);
+    CHECK(std::abs(d.critical[0].frequency - 2 * std::abs(d.critical[0].speed)) < 1e-10);
+  }
+  // From standstill, where nothing swings, it begins at the next point of the branch.
+  const CampbellDiagram still = diagram_of(tuned(0.08, 0.02), 0, 50, {2});
+  REQUIRE(still.critical.size() == 1);
+  CHECK(still.critical[0].speed <= still.critical[0].error);
+  CHECK(*still.critical[0].until == 50);
+  // A little out of tune it never meets the line.
+  CHECK(diagram_of(tuned(0.08, 0.02001), 1, 50, {1, 2, 3}).critical.empty());
+}
+
 TEST_CASE("a governor's critical speed is where its eigenvalue says", "[campbell]") {
   // Independently: the eigenvalues of plain solves, halved into.
   Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/governor.json");

@@ -18,8 +18,10 @@ std::string critical_words(const CampbellDiagram& diagram, std::size_t branch, c
   for (const CriticalSpeed& at : diagram.critical)
     if (at.branch == static_cast<int>(branch)) {
       text += (text.empty() ? "Critical speeds: " : "; ") + order_text(at.order) + " " +
-              diagram.branches[branch].names[static_cast<std::size_t>(at.line)] + " at " +
-              short_text(unit.shown(at.speed), 6) + " " + unit.text + (at.touches ? ", only touching" : "");
+              diagram.branches[branch].names[static_cast<std::size_t>(at.line)] +
+              (at.until ? " runs along from " : " at ") + short_text(unit.shown(at.speed), 6) +
+              (at.until ? " to " + short_text(unit.shown(*at.until), 6) : "") + " " + unit.text +
+              (at.touches ? ", only touching" : "");
       error = std::max(error, at.error);
     }
   return text.empty() ? "No critical speed in this range."
