@@ -69,6 +69,16 @@ std::string names_of(const Unbounded& found) {
   return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
 }
 
+// Whether a spring by a law is among what acts on them: it gave way.
+bool pulled_by_law(const System& system, const Unbounded& found) {
+  return std::ranges::any_of(system.coordinate_laws, [&](const ForceLawElement& law) {
+    const Link& link = system.links[static_cast<std::size_t>(law.at)];
+    const std::string& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
+    return law.has_spring &&
+           std::ranges::find(found.coordinates, joint, &UnheldCoordinate::joint) != found.coordinates.end();
+  });
+}
+
 } // namespace
 
 std::vector<std::string> notes(const System& system, const Mechanism& mechanism) {
@@ -228,6 +238,8 @@ void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Wor
                           : "the forces on it") +
       ": " + (one ? "it goes" : "they go") + " on without end" +
       (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +
+      (pulled_by_law(problem.system, found) ? "A spring by a law that pulls no harder there does not hold: "
+                                            : "") +
       (one ? "It needs a spring or a stop" : "They need springs or stops") +
       (found.by_weight ? ", or no gravity." : ".");
   out.message = unstable ? out.message + " " + words : words;

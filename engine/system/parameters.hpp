@@ -20,6 +20,8 @@ struct BasicCoordinateForce {
   // In place of stiffness and damping, which then are 0 and that at rest; null: none.
   std::shared_ptr<const BasicForceLaws<N>> laws;
   bool has_spring() const { return stiffness != 0 || (laws && laws->spring); }
+  // Where the spring is slack.
+  N slack() const { return laws && laws->spring ? laws->free : free; }
   bool elastic() const { return has_spring() || stop_stiffness != 0; }
   bool damped() const { return damping != 0 || (laws && laws->damper); }
 
@@ -143,6 +145,15 @@ struct BasicBearingParameters {
   BasicOffset<N> a, b;                       // the bearing's point in either
   Mat3T<N> axes;                             // x, y, z as columns, drawn pose
   Eigen::Matrix<N, 6, 6> stiffness, damping; // of two rows: those of x and y, else zero
+
+  // Whether it does more than resist shifts.
+  bool resists_turns() const {
+    const auto beyond_shifts = [](const Eigen::Matrix<N, 6, 6>& m) {
+      return (m.template bottomRows<3>().array() != N(0)).any() ||
+             (m.template rightCols<3>().array() != N(0)).any();
+    };
+    return beyond_shifts(stiffness) || beyond_shifts(damping);
+  }
 };
 
 template <class N>
@@ -156,6 +167,7 @@ struct BasicBodyForceParameters {
   // m/s of the air where it does not turn.
   N normal_quadratic = 0;
   Vec3T<N> normal = Vec3T<N>::Zero(), span = Vec3T<N>::Zero(), wind = Vec3T<N>::Zero();
+  std::shared_ptr<const Polar> polar{}; // in place of normal_quadratic, its coefficients times quadratic
 };
 
 template <class N>
