@@ -69,6 +69,14 @@ std::string names_of(const Unbounded& found) {
   return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
 }
 
+// Whether plates, blades or quadratic drag rest in the air.
+bool is_in_still_air(const Problem& problem) {
+  return !problem.parameters.moving &&
+         std::ranges::any_of(problem.parameters.body_forces, [](const BodyForceParameters& f) {
+           return is_of_air(f.type) && f.quadratic + f.normal_quadratic > 0 && f.wind.isZero(0);
+         });
+}
+
 // Whether a spring by a law is among what acts on them: it gave way.
 bool pulled_by_law(const System& system, const Unbounded& found) {
   return std::ranges::any_of(system.coordinate_laws, [&](const ForceLawElement& law) {
@@ -219,6 +227,10 @@ std::string solution_message(const ReportInput& in, int rank, const Solution& ou
   if (out.stability_reason == StabilityReason::gyroscopic_only)
     text += " Rotation alone keeps this state, which is no minimum of the amended potential: any damping in "
             "what moves would make it unstable.";
+  if (out.stability_reason == StabilityReason::marginal && !in.stability.kinks_leave_open &&
+      is_in_still_air(in.problem))
+    text += " The force of still air grows with the square of the speed and has no slope at rest: the linear "
+            "motion does not show whether it dies out in it.";
   if (out.stable == false && in.found.remark == Remark::none) text += " This state is unstable.";
   return text;
 }

@@ -151,6 +151,15 @@ TEST_CASE("a plate hangs in the wind at the angle of its weight", "[air]") {
   }
 }
 
+TEST_CASE("a plate in still air swings on and on as far as the linear motion tells", "[air]") {
+  const Solution s = Analysis(hung_plate(0)).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(!s.stable);
+  CHECK(s.stability_reason == StabilityReason::marginal);
+  CHECK_THAT(s.message, ContainsSubstring("the linear motion does not show whether it dies out"));
+}
+
 TEST_CASE("a weather vane stands along the wind, and nowhere else stably", "[air]") {
   Mechanism m;
   m.air.wind = {6, 0, 0};
