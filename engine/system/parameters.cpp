@@ -277,8 +277,8 @@ class Binder {
         speed = read_(drive.speed);
       else
         speed = drive.speed; // no number of the balance
-      bind_law(s_.torques[i].torque, drive.torque, p_.torques[i].torque);
-      bind_law(s_.torques[i].load, drive.load, p_.torques[i].load);
+      bind_drive_law(s_.torques[i].torque, drive.torque, p_.torques[i].torque);
+      bind_drive_law(s_.torques[i].load, drive.load, p_.torques[i].load);
     }
     for (std::size_t i = 0; i < s_.torques.size(); ++i)
       if (s_.torques[i].keeps_momentum) p_.torques[i].momentum = drawn_momentum(s_, p_, s_.torques[i].link);
@@ -315,8 +315,8 @@ class Binder {
             " turns one of them on and on, and a rotation vector ends at half a turn");
   }
 
-  void bind_law(const DriveLaw& law, const std::optional<double>& value,
-                BasicDriveLawParameters<N>& out) const {
+  void bind_drive_law(const DriveLaw& law, const std::optional<double>& value,
+                      BasicDriveLawParameters<N>& out) const {
     out.value = value ? read_(*value) : N(0);
     out.numbers.clear();
     if (law.expression) read_named(m_, law.expression->names(), read_, out.numbers);

@@ -507,20 +507,22 @@ TEST_CASE("a polar is written as it is read, and stands for the other coefficien
       "chord": [1, 0, 0], )" +
            coefficients + "}]}";
   };
-  const Mechanism m = read_scene(scene(R"("lift": "=c*sin(2*incidence)", "drag": 0.2)"));
+  const Mechanism m = read_scene(scene(R"~("lift": "=c*sin(2*incidence)", "drag": 0.2)~"));
   REQUIRE(m.forces[0].lift);
   CHECK(m.forces[0].drag == 0.2);
   CHECK(read_scene(write_scene(m)) == m);
-  CHECK_THAT(write_scene(m), ContainsSubstring("\"lift\": \"=c*sin(2*incidence)\"") && !ContainsSubstring("\"cn\""));
+  CHECK_THAT(write_scene(m),
+             ContainsSubstring("\"lift\": \"=c*sin(2*incidence)\"") && !ContainsSubstring("\"cn\""));
   CHECK(get_parameter(m, "forces.cloth.drag") == 0.2);
-  for (const std::string other : {"cn", "cd"})
+  for (const std::string other : {"cn", "cd"}) {
     try {
-    read_scene(scene("\"lift\": \"=c*sin(2*incidence)\", \"" + other + "\": 1"));
-    FAIL("two coefficients were taken");
+      read_scene(scene("\"lift\": \"=c*sin(2*incidence)\", \"" + other + "\": 1"));
+      FAIL("two coefficients were taken");
     } catch (const SceneError& error) {
-    CHECK(error.where() == "forces.cloth." + other);
-    CHECK_THAT(error.expected(), ContainsSubstring("expected none beside `lift` and `drag`"));
+      CHECK(error.where() == "forces.cloth." + other);
+      CHECK_THAT(error.expected(), ContainsSubstring("expected none beside `lift` and `drag`"));
     }
+  }
 }
 
 TEST_CASE("what is said of the air is checked", "[air]") {
