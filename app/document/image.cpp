@@ -2,6 +2,7 @@
 
 #include "app/document/coordinate_image.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/bearing_axes.hpp"
 #include "engine/mechanism/force_law.hpp"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 #include "app/viewport/glyphs.hpp"
 
+#include "engine/mechanism/bearing_axes.hpp"
 #include "engine/mechanism/damped.hpp"
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/infinite_rate.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/report/kink_message.hpp"
 #include "engine/report/report_forces.hpp"
 #include "engine/search/all_equilibria.hpp"
 #include "engine/search/find_equilibrium.hpp"
@@ -66,6 +67,7 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
   point.stable = stability.stable;
   point.floquet = std::move(stability.floquet);
   point.stability_reason = stability.reason;
+  point.kinks = kink_message(problem.system, mechanism, stability);
   if (stability.eigenvalues) point.eigenvalues = std::move(*stability.eigenvalues);
   Unknowns reported;
   const bool measured = details.measures && !mechanism.measures.empty();

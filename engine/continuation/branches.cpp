@@ -57,7 +57,7 @@ class Diagram {
       if (out_.branches.empty()) out_.message = "Cancelled.";
     }
     if (out_.status == Status::converged && out_.message.empty()) out_.message = summary();
-    for (const std::string& note : {begun_, bands(), follower_.limits()})
+    for (const std::string& note : {begun_, bands(), kinks(), follower_.limits()})
       if (out_.status == Status::converged && !note.empty()) out_.message += " " + note;
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(out_);
@@ -77,12 +77,25 @@ class Diagram {
     out_.message = std::to_string(out_.branches.size()) +
                    (out_.branches.size() == 1 ? " branch" : " branches") + " through the present state" +
                    (follower_.cancelled() ? "; cancelled." : ".");
-    if (const std::string limits = follower_.limits(); !limits.empty()) out_.message += " " + limits;
+    for (const std::string& note : {kinks(), follower_.limits()})
+      if (!note.empty()) out_.message += " " + note;
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(out_);
   }
 
  private:
+  // The first point that stands on one, and how many others do.
+  std::string kinks() const {
+    const ResponsePoint* first = nullptr;
+    int count = 0;
+    for (const ResponseBranch& branch : out_.branches)
+      for (const ResponsePoint& point : branch.points)
+        if (!point.kinks.empty() && count++ == 0) first = &point;
+    if (!first) return "";
+    return "At " + address_ + " = " + rounded_text(first->parameter, 6) +
+           (count > 1 ? " and " + std::to_string(count - 1) + " more points: " : ": ") + first->kinks;
+  }
+
   bool room() const { return static_cast<int>(followed_.size()) < options_.max_branches; }
   bool going() const { return room() && !follower_.cancelled(); }
 

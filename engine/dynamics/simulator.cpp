@@ -11,10 +11,12 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/messages.hpp"
+#include "engine/system/bearing.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace flyball {
@@ -54,6 +56,7 @@ struct Simulator::State {
   std::vector<StopElement> stops;
   std::vector<bool> touching; // by stop
   std::vector<FlipElement> flips;
+  std::vector<Vec3> bearing_turns;         // rad, by bearing: of those that resist turns, at the last step
   std::shared_ptr<const MotionModel> free; // without what friction adds; null where there is none
   std::vector<FrictionElement> frictions;
   std::vector<int> slips; // by friction, see with_modes()
@@ -103,6 +106,7 @@ struct Simulator::State {
     equations = std::make_unique<Equations>(*model, watch);
     stops = list_stops(model->system, model->parameters);
     touching.assign(stops.size(), false);
+    bearing_turns.clear();
     flips = list_flips(model->system, model->parameters);
     restructure(t, u);
     if (!equations->evaluate(t, q, s))
@@ -278,6 +282,27 @@ struct Simulator::State {
     return out;
   }
 
+  // The bearing that resists turns whose rotation vector went over half a turn since the last step, as a
+  // clause; empty as a rule.
+  std::string turned_over() {
+    const System& system = model->system;
+    bearing_turns.resize(system.bearings.size(), Vec3::Zero());
+    for (std::size_t i = 0; i < system.bearings.size(); ++i) {
+      const BearingElement& e = system.bearings[i];
+      if (!model->parameters.bearings[i].resists_turns()) continue;
+      const Vec3 before = bearing_turns[i];
+      bearing_turns[i] =
+          bearing_state<double>(e, model->parameters.bearings[i], equations->kinematics()).x.tail<3>();
+      constexpr double quarter = std::numbers::pi / 2;
+      if (bearing_turns[i].dot(before) < -quarter * quarter)
+        return "the bodies of the bearing " +
+               model->mechanism.forces[static_cast<std::size_t>(e.force)].name +
+               " turned by more than half a turn against each other, where the rotation vector that it "
+               "resists jumps";
+    }
+    return {};
+  }
+
   void handle_event(const StepOutcome& outcome) {
     const double t = outcome.time;
     if (!settle(t, nullptr)) return; // the next step says what is wrong
@@ -389,6 +414,7 @@ struct Simulator::State {
   // After a step: whether all is well.
   bool check_step(double t) {
     if (const std::string what = runaway(y); !what.empty()) return diverge(t, what);
+    if (const std::string what = turned_over(); !what.empty()) return diverge(t, what);
     if (!stops.empty() && find_missed_stops(t)) {
       equations->latch(stops, touching, flips);
       ode->set_touching(touching);

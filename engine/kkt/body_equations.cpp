@@ -14,7 +14,7 @@ struct JointTerms {
 };
 
 JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Vec6& load, const Eigen::VectorXd& q,
-                       const MotionWeights& weights) {
+                       const Kinematics<double>& kinematics, const MotionWeights& weights) {
   const int k = x.columns;
   const double length = problem.parameters.length;
   JointTerms terms;
@@ -37,7 +37,9 @@ JointTerms joint_terms(const Problem& problem, const BodyNode& x, const Vec6& lo
     if (link.type != LinkType::spherical) {
       const double unit = problem.scaling.column[link.v] * problem.scaling.column[link.v];
       if (lp.elastic) g(c, c) += weights.stiffness * lp.force[0].curvature(q[link.q]) * unit;
-      g(c, c) += weights.velocity * lp.force[0].damping * unit;
+      if (weights.velocity != 0)
+        g(c, c) += weights.velocity *
+                   coordinate_damping(problem.system, problem.parameters, x.stage[column], kinematics) * unit;
     } else if (link.v == x.v[column]) {
       if (lp.elastic) g.block<3, 3>(c, c) += weights.stiffness * rotation_stiffness(link, lp, q);
       if (weights.velocity != 0) g.block<3, 3>(c, c) += weights.velocity * rotation_damping(link, lp, q);
@@ -98,7 +100,7 @@ void BodyEquations::add_all(const Problem& problem, const Unknowns& z, const Kin
   for_parts(division, [&](const SystemPart& part, std::size_t n) {
     for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];) {
       if (forces) sum_up_load(i, residual);
-      add_joint(problem, n, i, &z.q);
+      add_joint(problem, k, n, i, &z.q);
     }
     add_rows(problem, k, part, n);
   });
@@ -112,7 +114,7 @@ void BodyEquations::assemble_metric(const Problem& problem, const Kinematics<dou
   for_parts(division, [&](const SystemPart&, std::size_t n) { add_bodies(problem, k, n, false); });
   for_parts(division, [&](const SystemPart& part, std::size_t n) {
     for (int i = nodes_.first_of_part()[n + 1]; i-- > nodes_.first_of_part()[n];)
-      add_joint(problem, n, i, nullptr);
+      add_joint(problem, k, n, i, nullptr);
     add_rows(problem, k, part, n);
   });
   add_rows(problem, k, division.between, between_);
@@ -278,12 +280,13 @@ void BodyEquations::sum_up_load(int i, const Residual<double>& residual) {
 
 // A body with what its tree joint transmits, and what that holds; after those beyond it, so that then nothing
 // is missing. Without q the metric alone.
-void BodyEquations::add_joint(const Problem& problem, std::size_t list, int i, const Eigen::VectorXd* q) {
+void BodyEquations::add_joint(const Problem& problem, const Kinematics<double>& k, std::size_t list, int i,
+                              const Eigen::VectorXd* q) {
   const BodyNode& x = nodes_[i];
   Sums& sums = sums_[static_cast<std::size_t>(i)];
   Mat6 p = Mat6::Zero(), t = Mat6::Zero();
   if (q) {
-    const JointTerms terms = joint_terms(problem, x, sums.load, *q, weights_);
+    const JointTerms terms = joint_terms(problem, x, sums.load, *q, k, weights_);
     p = x.d * terms.stiffness * x.d.transpose();
     sums.stiffness = nodes_.scaled(sums.stiffness) + p;
     if (x.parent >= 0) t = terms.turns * x.d.transpose();

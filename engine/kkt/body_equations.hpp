@@ -77,7 +77,8 @@ class BodyEquations {
   void add_pair(std::size_t list, int a, int b, const PairBlocks& blocks);
   void add_damping(std::size_t list, const PairEnds& ends, const PairDamping& damping);
   void sum_up_load(int node, const Residual<double>& residual);
-  void add_joint(const Problem& problem, std::size_t list, int node, const Eigen::VectorXd* q);
+  void add_joint(const Problem& problem, const Kinematics<double>& kinematics, std::size_t list, int node,
+                 const Eigen::VectorXd* q);
   void add_rows(const Problem& problem, const Kinematics<double>& kinematics, const SystemPart& part,
                 std::size_t list);
   void add_coordinate(std::size_t list, int row, int coordinate, double gradient);

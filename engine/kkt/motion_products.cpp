@@ -100,7 +100,7 @@ void MotionProducts::set_joint(const Problem& problem, const Eigen::VectorXd& q,
   } else {
     const double unit = problem.scaling.column[n.v] * problem.scaling.column[n.v];
     n.joint(0, 0) = lp.elastic ? lp.force[0].curvature(q[link.q]) * unit : 0;
-    n.damper(0, 0) = lp.force[0].damping * unit;
+    n.damper(0, 0) = coordinate_damping(problem.system, problem.parameters, n.link, k) * unit;
   }
   has_dampers_ |= !n.damper.isZero(0);
 }

@@ -114,7 +114,8 @@ void TreeKkt::set_joint(const Problem& problem, const Eigen::VectorXd& q, const 
     n.angular = column.angular;
     measure(n.v, n.angular, n.noise, n.metric);
     n.joint = lp.elastic ? lp.force[0].curvature(q[link.q]) * unit * unit : 0;
-    if (with_velocities_) n.joint += rate_ * lp.force[0].damping * unit * unit;
+    if (with_velocities_)
+      n.joint += rate_ * coordinate_damping(problem.system, problem.parameters, n.link, k) * unit * unit;
   }
 }
 

@@ -5,10 +5,12 @@
 
 #include "engine/mechanism/expression.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/number_rates.hpp"
 
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace flyball {
 
@@ -33,5 +35,13 @@ void check_drive_law(const Mechanism& mechanism, const Formula& law, bool angle,
 // The number that is a parameter's value or a point's coordinate: "L", "A.x". Throws ExpressionError where
 // there is none.
 const double& named_number(const Mechanism& mechanism, std::string_view name);
+// Of several, in this order, read as the reader does. Throws as that.
+template <class N>
+void read_named(const Mechanism& mechanism, const std::vector<std::string>& names,
+                const NumberReader<N>& read, std::vector<Dual>& out) {
+  out.clear();
+  for (const std::string& name : names)
+    out.push_back(read(named_number(mechanism, name)));
+}
 
 } // namespace flyball

@@ -90,8 +90,15 @@ inline Dual log(Dual a) {
 inline Dual log10(Dual a) {
   return chained(a, std::log10(a.value), 1 / (a.value * std::numbers::ln10));
 }
+// At corners the rates of these are those on the way on, as of what moves by its rate.
 inline Dual abs(Dual a) {
-  return chained(a, std::abs(a.value), a.value < 0 ? -1. : 1.);
+  return {std::abs(a.value), a.value == 0 ? std::abs(a.rate) : a.value < 0 ? -a.rate : a.rate};
+}
+inline Dual min(Dual a, Dual b) {
+  return b.value < a.value || (b.value == a.value && b.rate < a.rate) ? b : a;
+}
+inline Dual max(Dual a, Dual b) {
+  return b.value > a.value || (b.value == a.value && b.rate > a.rate) ? b : a;
 }
 inline Dual atan2(Dual y, Dual x) {
   const double square = x.value * x.value + y.value * y.value;

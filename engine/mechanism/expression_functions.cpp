@@ -26,10 +26,8 @@ constexpr std::array functions{
     ExpressionFunction{"log10", 1, DimensionRule::number, of_one<log10>},
     ExpressionFunction{"sqrt", 1, DimensionRule::root, of_one<sqrt>},
     ExpressionFunction{"abs", 1, DimensionRule::same, of_one<abs>},
-    ExpressionFunction{"min", 2, DimensionRule::same,
-                       [](Dual a, Dual b) { return b.value < a.value ? b : a; }},
-    ExpressionFunction{"max", 2, DimensionRule::same,
-                       [](Dual a, Dual b) { return b.value > a.value ? b : a; }},
+    ExpressionFunction{"min", 2, DimensionRule::same, min},
+    ExpressionFunction{"max", 2, DimensionRule::same, max},
     ExpressionFunction{"hypot", 2, DimensionRule::same, hypot},
 };
 

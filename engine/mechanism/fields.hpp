@@ -261,6 +261,9 @@ void visit_fields(Visitor& v, Part& force, const Mechanism* of = nullptr) {
     v.field({"area", expected::number, "m^2", required}, force.area);
     v.field({"normal", expected::direction, "", required}, force.normal);
     v.field({"chord", expected::direction}, force.chord);
+    v.field({"lift", expected::number}, force.lift);
+    v.field({"drag", expected::number}, force.drag);
+    if (has_polar(force)) return; // it stands for them
     v.field({"cn", expected::number}, force.cn, Force().cn);
     v.field({"cd", expected::number}, force.cd, 0);
   } else {

@@ -40,7 +40,7 @@ GivenNames::GivenNames(const Mechanism& mechanism) : mechanism_(mechanism) {
     throw SceneError("parameters", "expected names that no other parameter or point has");
 }
 
-std::size_t GivenNames::find(const std::string& name) const {
+std::size_t GivenNames::find(const std::string& name, std::string_view also) const {
   const auto found = numbers_.find(name);
   if (found != numbers_.end()) return found->second;
   if (point_index(mechanism_, name) >= 0)
@@ -49,6 +49,7 @@ std::size_t GivenNames::find(const std::string& name) const {
   std::vector<std::string_view> known;
   for (const auto& [each, number] : numbers_)
     known.push_back(each);
+  if (!also.empty()) known.push_back(also);
   std::ranges::sort(known);
   throw ExpressionError("there is no parameter \"" + name + "\"" + unit_hint(name) +
                         did_you_mean(name, known) +

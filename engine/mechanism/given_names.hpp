@@ -22,8 +22,8 @@ class GivenNames {
   std::size_t point(std::size_t point, int i) const {
     return mechanism_.parameters.size() + 3 * point + static_cast<std::size_t>(i);
   }
-  // Throws ExpressionError where there is none.
-  std::size_t find(const std::string& name) const;
+  // Throws ExpressionError where there is none, which tells those that there are: `also` among them.
+  std::size_t find(const std::string& name, std::string_view also = {}) const;
   ValueDimension dimension(std::size_t number) const { return dimensions_[number]; }
   std::string address(std::size_t number) const; // "parameters.L", "points.A.0"
 

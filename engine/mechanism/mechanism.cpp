@@ -101,21 +101,13 @@ bool acts_between(ForceType type) {
   return type == ForceType::spring || type == ForceType::bearing;
 }
 
-Mat3 bearing_axes(const Force& bearing) {
-  const Vec3 z = bearing.axis.normalized();
-  Eigen::Index nearest = 0;
-  z.cwiseAbs().minCoeff(&nearest);
-  const Vec3 towards = bearing.x_axis.value_or(Vec3(Vec3::Unit(nearest)));
-  Mat3 axes;
-  axes.col(0) = (towards - z * z.dot(towards)).normalized();
-  axes.col(1) = z.cross(axes.col(0));
-  axes.col(2) = z;
-  return axes;
-}
-
 int bearing_size(const Force& bearing) {
   constexpr std::size_t full = 36;
   return bearing.bearing_stiffness.size() == full || bearing.bearing_damping.size() == full ? 6 : 2;
+}
+
+bool has_polar(const Force& vane) {
+  return vane.lift || vane.drag;
 }
 
 bool finds_speed(const Drive& drive) {

@@ -228,13 +228,14 @@ struct Force {
   double linear = 0;                    // N s/m; drag
   double quadratic = 0;                 // N s^2/m^2; drag
   Vec3 axis = Vec3::UnitZ();            // bearing, any length: of what turns in it
-  std::optional<Vec3>
-      x_axis{}; // bearing, any length: its x in the plane across; default as bearing_axes says
+  std::optional<Vec3> x_axis{};         // bearing, any length: x in the plane across, see bearing_axes.hpp
   BearingMatrix bearing_stiffness{}, bearing_damping{};
   double area = 0;             // m^2; vane
   Vec3 normal = Vec3::UnitZ(); // any length, fixed in the body; vane
   std::optional<Vec3> chord;   // any length; vane: a blade along the flow, across which flow does nothing
   double cn = 1.2, cd = 0;     // vane: coefficients of the force along the normal and along the flow
+  std::optional<double> lift{}, drag{}; // vane: in place of these its coefficients across and along the flow,
+                                        // mostly expressions of the incidence, see force_law.hpp
   Formulas formulas{};
   bool operator==(const Force&) const = default;
 };
@@ -316,11 +317,10 @@ std::string_view type_name(SliderScale scale);
 
 // Whether what acts does so between two bodies, at `bodies`, rather than on one, at `body`.
 bool acts_between(ForceType type);
-// x, y and z of a bearing, unit vectors of the drawn pose as columns. Without an x_axis x is the world axis
-// nearest to the plane across, the first of several.
-Mat3 bearing_axes(const Force& bearing);
 // 2 or 6: the larger of its matrices.
 int bearing_size(const Force& bearing);
+// Whether a vane's coefficients are those of lift and drag by its incidence.
+bool has_polar(const Force& vane);
 
 // Whether a rack or screw, whose first coordinate is a turn and whose second a slide.
 bool turns_into_slide(GearKind kind);

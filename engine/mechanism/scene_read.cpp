@@ -117,6 +117,11 @@ void check(const ValueReader& value, const CoordinateSpring& spring) {
 }
 void check(const ValueReader& value, const Force& force) {
   if (force.type == ForceType::spring) check_spring(value, force.force.has_value(), noun(force));
+  if (!has_polar(force)) return;
+  for (const std::string_view key : {"cn", "cd"})
+    if (value.json().contains(key))
+      throw SceneError(key_path(value.path(), key),
+                       "expected none beside `lift` and `drag`, which stand in its place");
 }
 
 template <class Part>

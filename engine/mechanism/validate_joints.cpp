@@ -78,15 +78,16 @@ void find_law_mistakes(const Formula* law, const std::string& path, Mistakes& mi
 }
 
 void find_damper_mistakes(const std::optional<double>& force, const Formula* law, double damping,
-                          const std::string& path, Mistakes& mistakes) {
+                          const std::string& path, const std::string& damping_path, Mistakes& mistakes) {
   if (!force) return;
   if (!law) mistakes.add(path, "expected an expression of the rate, as \"=40 N*tanh(rate/(1 m/s))\"");
-  if (damping != 0) mistakes.add(path, "expected none beside `damping`, in whose place it stands");
+  if (damping != 0)
+    mistakes.add(damping_path, "expected none beside `damping_force`, which stands in its place");
 }
 
 void find_force_law_mistakes(const Mechanism& mechanism, const Joint& joint, std::size_t i,
                              const std::string& spring_path, const std::string& damper_path,
-                             Mistakes& mistakes) {
+                             const std::string& damping_path, Mistakes& mistakes) {
   const Coordinate& coordinate = joint.coordinates[i];
   const int index = static_cast<int>(i);
   const bool angle = is_angle(joint.type, index);
@@ -96,7 +97,8 @@ void find_force_law_mistakes(const Mechanism& mechanism, const Joint& joint, std
     });
   if (!coordinate.damping_force) return;
   const Formula* law = damper_law(joint, index);
-  find_damper_mistakes(coordinate.damping_force, law, coordinate.damping, damper_path, mistakes);
+  find_damper_mistakes(coordinate.damping_force, law, coordinate.damping, damper_path, damping_path,
+                       mistakes);
   if (is_rotation_vector(joint.type, index))
     return mistakes.add(damper_path, "expected `damping`: the components of a rotation vector have no rates "
                                      "of their own; use revolute joints");
@@ -144,7 +146,8 @@ void find_coordinate_mistakes(const Mechanism& mechanism, std::size_t j, std::si
   const auto path = [&](std::string_view key) { return coordinate_path(mechanism, j, key, i); };
   if (coordinate.damping < 0)
     mistakes.add(path("damping"), "expected zero or more, found " + number_text(coordinate.damping));
-  find_force_law_mistakes(mechanism, joint, i, path("spring"), path("damping_force"), mistakes);
+  find_force_law_mistakes(mechanism, joint, i, path("spring"), path("damping_force"), path("damping"),
+                          mistakes);
   if (coordinate.stop) {
     const Stop& stop = *coordinate.stop;
     mistakes.expect(stop.lower || stop.upper, path("stop"), "expected lower, upper or both");
@@ -302,6 +305,32 @@ void find_bearing_mistakes(const Force& bearing, const std::string& path, Mistak
   if (k != 0 && d != 0 && k != d) mistakes.add(path + ".damping", "expected as many rows as `stiffness` has");
 }
 
+void find_vane_mistakes(const Mechanism& mechanism, const Force& vane, const std::string& path,
+                        Mistakes& mistakes) {
+  const auto not_negative = [&](double value, const char* key) {
+    if (value < 0) mistakes.add(path + "." + key, "expected zero or more, found " + number_text(value));
+  };
+  not_negative(vane.area, "area");
+  not_negative(vane.cn, "cn");
+  not_negative(vane.cd, "cd");
+  constexpr const char* expected = "expected a direction, not zero";
+  const bool normal = has_direction(vane.normal), chord = !vane.chord || has_direction(*vane.chord);
+  mistakes.expect(normal, path, ".normal", expected);
+  mistakes.expect(chord, path, ".chord", expected);
+  if (vane.chord && normal && chord && parallel(vane.normal, *vane.chord))
+    mistakes.add(path + ".chord", "expected a direction that is not parallel to `normal`");
+  if (!has_polar(vane)) return;
+  mistakes.expect(
+      vane.chord.has_value(), path, ".chord",
+      "missing; `lift` and `drag` need it, a direction: the incidence is the angle from it to the "
+      "flow");
+  not_negative(vane.drag.value_or(0), "drag");
+  find_law_mistakes(lift_law(vane), path, mistakes,
+                    [&](const Formula& law) { check_lift_law(mechanism, law, path + ".lift"); });
+  find_law_mistakes(drag_law(vane), path, mistakes,
+                    [&](const Formula& law) { check_drag_law(mechanism, law, path + ".drag"); });
+}
+
 } // namespace
 
 void find_mistakes_of(const Mechanism& mechanism, const Force& force, const std::string& path,
@@ -321,7 +350,8 @@ void find_mistakes_of(const Mechanism& mechanism, const Force& force, const std:
     find_law_mistakes(spring_law(force), path, mistakes,
                       [&](const Formula& law) { check_spring_law(mechanism, law, false, path + ".force"); });
     const Formula* law = damper_law(force);
-    find_damper_mistakes(force.damping_force, law, force.damping, path + ".damping_force", mistakes);
+    find_damper_mistakes(force.damping_force, law, force.damping, path + ".damping_force", path + ".damping",
+                         mistakes);
     find_law_mistakes(law, path, mistakes, [&](const Formula& formula) {
       check_damper_law(mechanism, formula, false, path + ".damping_force");
     });
@@ -331,16 +361,7 @@ void find_mistakes_of(const Mechanism& mechanism, const Force& force, const std:
     not_negative(force.linear, "linear");
     not_negative(force.quadratic, "quadratic");
   }
-  if (force.type != ForceType::vane) return;
-  not_negative(force.area, "area");
-  not_negative(force.cn, "cn");
-  not_negative(force.cd, "cd");
-  constexpr const char* expected = "expected a direction, not zero";
-  const bool normal = has_direction(force.normal), chord = !force.chord || has_direction(*force.chord);
-  mistakes.expect(normal, path, ".normal", expected);
-  mistakes.expect(chord, path, ".chord", expected);
-  if (force.chord && normal && chord && parallel(force.normal, *force.chord))
-    mistakes.add(path + ".chord", "expected a direction that is not parallel to `normal`");
+  if (force.type == ForceType::vane) find_vane_mistakes(mechanism, force, path, mistakes);
 }
 
 void find_mistakes_of(const Air& air, Mistakes& mistakes) {

@@ -8,7 +8,6 @@
 #include "engine/mechanism/validate.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
 #include "engine/report/found_speeds.hpp"
-#include "engine/report/kinks.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/turning_part.hpp"
@@ -57,7 +56,9 @@ bool same_laws(const Joint& a, const Joint& b, int i) {
 bool same_laws(const Force& a, const Force& b) {
   return a.force.has_value() == b.force.has_value() &&
          a.damping_force.has_value() == b.damping_force.has_value() &&
-         same_law(spring_law(a), spring_law(b)) && same_law(damper_law(a), damper_law(b));
+         same_law(spring_law(a), spring_law(b)) && same_law(damper_law(a), damper_law(b)) &&
+         a.lift.has_value() == b.lift.has_value() && a.drag.has_value() == b.drag.has_value() &&
+         same_law(lift_law(a), lift_law(b)) && same_law(drag_law(a), drag_law(b));
 }
 
 // Parts and connections, as opposed to numbers: what a compiled system depends on.
@@ -117,6 +118,24 @@ Stability stability_of(const Problem& problem, SteadyState& steady, bool with_ei
   Stability out = find_stability(steady.factored(by_matrices(problem)), with_eigenvalues && !many);
   if (many && !out.floquet) out.eigenvalues.reset();
   return out;
+}
+
+bool stands_on_kink(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
+  if (problem.system.coordinate_laws.empty() && problem.system.spring_laws.empty())
+    return false; // of a minimum
+  forward<double>(problem.system, problem.parameters, q, 0, w.kinematics);
+  return !find_kinks(problem, q, w.kinematics).empty();
+}
+
+// Within the error of the state; on kinks on their softer side.
+bool sign_may_change(const Problem& problem, SteadyState& steady, const Stability& stability) {
+  const auto is_open = [&](const Problem& judged, bool minimum) {
+    return sign_is_open(judged, steady.found.z, steady.error.solution, minimum, steady.elsewhere());
+  };
+  if (stability.kinks.empty()) return is_open(problem, steady.found.minimum);
+  const Parameters softer = straightened(problem, stability.kinks, KinkSide::softer);
+  return is_open({problem.system, softer, problem.scaling, problem.cancel, problem.form},
+                 stability.reason == StabilityReason::minimum);
 }
 
 // Adds the eigenvalues nearest to zero of a large mechanism to what its pivots say; where those decide
@@ -294,16 +313,16 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   SteadyState& steady = s.steady;
   steady.find(problem, s.start, s.drawn, {options.nearest, warm, options.search, options.progress});
   Stability stability;
-  if (steady.holds && steady.found.minimum && steady.phases.empty()) {
+  if (steady.holds && steady.found.minimum && steady.phases.empty() &&
+      !stands_on_kink(problem, steady.found.z.q, steady.elsewhere())) {
     stability.stable = true;
     stability.reason = StabilityReason::minimum;
   } else if (steady.holds) {
     stability = stability_of(problem, steady, false, 0);
   }
   const bool varies = stability.floquet || stability.floquet_failure;
-  const bool open =
-      steady.holds && !varies && stability.reason != StabilityReason::neutral &&
-      sign_is_open(problem, steady.found.z, steady.error.solution, steady.found.minimum, steady.elsewhere());
+  const bool open = steady.holds && !varies && stability.reason != StabilityReason::neutral &&
+                    sign_may_change(problem, steady, stability);
   const auto end = std::chrono::steady_clock::now();
 
   Solution out;
@@ -348,12 +367,6 @@ Solution Analysis::solve_through(const SolveOptions& options) {
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
       stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
   }
-  const Kinks kinks = find_kinks(problem, *s.mechanism, s.answer, steady.elsewhere());
-  if (kinks.spring ||
-      (kinks.damper && stability.reason != StabilityReason::minimum)) { // one side says little
-    stability.stable.reset();
-    stability.reason = StabilityReason::marginal;
-  }
   if (open && stability.reason != StabilityReason::neutral) {
     stability.stable.reset();
     stability.reason = StabilityReason::marginal;
@@ -369,7 +382,6 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                           stability,    options.points, &s.measures};
   report(input, steady.error.solution + steady.error.data, options.details, steady.reuse(), out);
   if (!without_modes.empty()) out.message += " " + without_modes;
-  if (!kinks.message.empty()) out.message += " " + kinks.message;
   if (options.details && !s.system.torques.empty())
     out.at_constant_speed = stability_at_constant_speed(*s.mechanism, s.system, s.answer, out.coordinates);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)

@@ -53,7 +53,7 @@ double usual_stiffness(const Problem& problem, double mass) {
   for (std::size_t l = 0; l < p.links.size(); ++l) {
     const double unit = problem.system.links[l].type == LinkType::prismatic ? 1 : p.length;
     for (const CoordinateForce& force : p.links[l].force)
-      sum = std::max(sum, (force.laws ? force.laws->spring.slope(0) : force.stiffness) / (unit * unit));
+      sum = std::max(sum, (force.stiffness + (force.laws ? force.laws->spring.slope(0) : 0)) / (unit * unit));
   }
   return sum > 0 ? sum : 1;
 }

@@ -69,6 +69,24 @@ std::string names_of(const Unbounded& found) {
   return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
 }
 
+// Whether plates, blades or quadratic drag rest in the air.
+bool is_in_still_air(const Problem& problem) {
+  return !problem.parameters.moving &&
+         std::ranges::any_of(problem.parameters.body_forces, [](const BodyForceParameters& f) {
+           return is_of_air(f.type) && f.quadratic + f.normal_quadratic > 0 && f.wind.isZero(0);
+         });
+}
+
+// Whether a spring by a law is among what acts on them: it gave way.
+bool pulled_by_law(const System& system, const Unbounded& found) {
+  return std::ranges::any_of(system.coordinate_laws, [&](const ForceLawElement& law) {
+    const Link& link = system.links[static_cast<std::size_t>(law.at)];
+    const std::string& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
+    return law.has_spring &&
+           std::ranges::find(found.coordinates, joint, &UnheldCoordinate::joint) != found.coordinates.end();
+  });
+}
+
 } // namespace
 
 std::vector<std::string> notes(const System& system, const Mechanism& mechanism) {
@@ -209,6 +227,10 @@ std::string solution_message(const ReportInput& in, int rank, const Solution& ou
   if (out.stability_reason == StabilityReason::gyroscopic_only)
     text += " Rotation alone keeps this state, which is no minimum of the amended potential: any damping in "
             "what moves would make it unstable.";
+  if (out.stability_reason == StabilityReason::marginal && !in.stability.kinks_leave_open &&
+      is_in_still_air(in.problem))
+    text += " The force of still air grows with the square of the speed and has no slope at rest: the linear "
+            "motion does not show whether it dies out in it.";
   if (out.stable == false && in.found.remark == Remark::none) text += " This state is unstable.";
   return text;
 }
@@ -228,6 +250,8 @@ void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Wor
                           : "the forces on it") +
       ": " + (one ? "it goes" : "they go") + " on without end" +
       (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +
+      (pulled_by_law(problem.system, found) ? "A spring by a law that pulls no harder there does not hold: "
+                                            : "") +
       (one ? "It needs a spring or a stop" : "They need springs or stops") +
       (found.by_weight ? ", or no gravity." : ".");
   out.message = unstable ? out.message + " " + words : words;

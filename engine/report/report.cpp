@@ -3,6 +3,7 @@
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/kink_message.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report_forces.hpp"
 #include "engine/system/joint_coordinates.hpp"
@@ -203,6 +204,8 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
       in.measures->mark_nonunique(in.mechanism, out.reactions, out.drive_torques, out.measures);
   }
   out.message = solution_message(in, rank, out);
+  if (const std::string kinks = kink_message(system, in.mechanism, in.stability); !kinks.empty())
+    out.message += " " + kinks;
 }
 
 Sensitivity name_rates(const System& system, const std::string& address, const Eigen::VectorXd& rate) {

@@ -68,8 +68,7 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
       SearchRange range{value - reach, value + reach};
       const CoordinateForce& f = lp.force[0];
       if (f.has_spring()) {
-        const double free = f.laws ? f.laws->free : f.free;
-        range = {std::min(range.lower, free - reach), std::max(range.upper, free + reach)};
+        range = {std::min(range.lower, f.slack() - reach), std::max(range.upper, f.slack() + reach)};
       }
       // A stop gives way by what its stiffness allows.
       if (f.has_lower) range.lower = std::max(range.lower, f.lower - 0.5 * reach);

@@ -205,7 +205,10 @@ bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::Matri
   return agrees;
 }
 
-Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
+namespace {
+
+// Taking the slopes of all laws as they are evaluated.
+Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) {
   const Problem& problem = at.problem;
   if (problem.form != KktForm::dense) return find_pivot_stability(at);
   Stability out;
@@ -305,6 +308,58 @@ Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
   } else {
     out.reason = StabilityReason::marginal;
   }
+  return out;
+}
+
+// What holds on the softer and the stiffer side of all kinks of springs holds in between: of a minimum; of
+// directions that nothing resists; and at rest, where nothing but a potential and dampers act, of a potential
+// that falls. Eigenvalues of either side alone prove nothing of a motion that goes to and fro between them.
+Stability common_stability(const FactoredState& at, const std::vector<Kink>& kinks) {
+  const auto on_side = [&](KinkSide side) {
+    const Parameters numbers = straightened(at.problem, kinks, side);
+    Problem problem{at.problem.system, numbers, at.problem.scaling, at.problem.cancel, at.problem.form};
+    problem.as_gradient = at.problem.as_gradient;
+    Workspace w;
+    return find_smooth_stability(factor_at(problem, at.z, w), false);
+  };
+  const Stability softer = on_side(KinkSide::softer);
+  if (softer.reason == StabilityReason::minimum) return softer;
+  Stability common = on_side(KinkSide::stiffer);
+  const bool proven =
+      softer.reason == StabilityReason::neutral ||
+      (softer.reason == StabilityReason::unstable && at.problem.symmetric() && !at.problem.parameters.moving);
+  if (proven && softer.reason == common.reason && softer.neutral == common.neutral) return common;
+  common.stable.reset();
+  common.reason = StabilityReason::marginal;
+  common.kinks_leave_open = true;
+  return common;
+}
+
+void judge_kinks(const FactoredState& at, Stability& out) {
+  out.kinks = find_kinks(at.problem, at.z.q, at.w.kinematics);
+  if (std::ranges::any_of(out.kinks, [](const Kink& kink) { return kink.law == Kink::Law::spring; })) {
+    const Stability common = common_stability(at, out.kinks);
+    out.stable = common.stable;
+    out.reason = common.reason;
+    out.neutral = common.neutral;
+    out.kinks_leave_open = common.kinks_leave_open;
+  }
+  const bool by_eigenvalues =
+      out.reason != StabilityReason::minimum && out.reason != StabilityReason::neutral;
+  const bool others =
+      std::ranges::any_of(out.kinks, [](const Kink& kink) { return kink.law != Kink::Law::spring; });
+  if (others && by_eigenvalues) { // of one side of it
+    out.stable.reset();
+    out.reason = StabilityReason::marginal;
+    out.kinks_leave_open = true;
+  }
+}
+
+} // namespace
+
+Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
+  Stability out = find_smooth_stability(at, with_eigenvalues);
+  judge_kinks(at, out);
   return out;
 }
 

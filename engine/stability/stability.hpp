@@ -6,6 +6,7 @@
 #include "engine/solve/factored_state.hpp"
 #include "engine/solve/solution.hpp"
 #include "engine/stability/floquet.hpp"
+#include "engine/stability/kinks.hpp"
 
 #include <complex>
 
@@ -21,7 +22,9 @@ struct Stability {
   std::optional<std::vector<std::complex<double>>> eigenvalues;
   std::optional<Floquet> floquet;                // where the linearised motion turns with the drives
   std::optional<FloquetFailure> floquet_failure; // where it does and there are no multipliers
-  std::vector<int> neutral; // coordinates of q_R that take part in directions nothing resists
+  std::vector<int> neutral;      // coordinates of q_R that take part in directions nothing resists
+  std::vector<Kink> kinks;       // of laws, on which it stands
+  bool kinks_leave_open = false; // stable or not: the sides differ, or there is no potential to compare them
 };
 
 // How far from zero (1/s) rounding may put the real part of an eigenvalue, `largest` the size of the largest.
@@ -49,7 +52,8 @@ std::optional<std::vector<std::complex<double>>> motion_eigenvalues(const Proble
                                                                     Workspace& w);
 
 // Of a steady state. Of a dense problem `with_eigenvalues` asks for the full picture, else only the sign of a
-// minimum is found; of others the signs of the pivots decide (pivot_stability.hpp).
+// minimum is found; of others the signs of the pivots decide (pivot_stability.hpp). On kinks of laws it is
+// what both sides have in common.
 Stability find_stability(const FactoredState& at, bool with_eigenvalues);
 
 } // namespace flyball

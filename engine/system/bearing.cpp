@@ -11,16 +11,6 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-// Of a rotation of less than half a turn.
-template <class S>
-Vec3T<S> log_of(const Mat3T<S>& m) {
-  using std::sqrt;
-  Eigen::Quaternion<S> q;
-  q.w() = sqrt(S(1 + m.trace())) / 2;
-  q.vec() = Vec3T<S>(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)) / (4 * q.w());
-  return log_rotation(q);
-}
-
 // One bearing at one state, and how a coordinate of its support moves it.
 struct Linear {
   const BearingElement& e;
@@ -96,7 +86,7 @@ BearingState<S> bearing_state(const BearingElement& e, const BearingParametersOf
       s.axes.transpose() * (k.velocity(e.ends.b, s.point) - k.velocity(e.ends.a, s.point));
   s.turning.setIdentity();
   if (e.size == 6) {
-    const Vec3T<S> r = log_of<S>(s.axes.transpose() * (b.R * drawn));
+    const Vec3T<S> r = log_rotation(Eigen::Quaternion<S>(Mat3T<S>(s.axes.transpose() * (b.R * drawn))));
     s.turning = inverse_left_jacobian<S>(r);
     s.x.template tail<3>() = r;
     s.dx.template tail<3>() = s.turning * (s.axes.transpose() * (b.w - a.w));

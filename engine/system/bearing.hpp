@@ -11,6 +11,9 @@
 // the relative angular velocity: it differs from them by |r|/2 relative. So a symmetric K has exactly the
 // potential x^T K x / 2. The first body feels the opposite at the same place. A part of K that is not
 // symmetric has none: it feeds whirl in one direction and takes from the other (oil whip).
+//
+// At half a turn r jumps. A bearing that resists turns is therefore refused where a drive turns one body
+// against the other, and a motion that takes it over half a turn ends there.
 #pragma once
 
 #include "engine/system/linearization.hpp"

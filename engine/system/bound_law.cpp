@@ -16,4 +16,9 @@ double BoundLaw::energy(double x) const {
   return integral([this](double at) { return (*this)(Dual(at)).value; }, 0, x);
 }
 
+BoundLaw line_through(const BoundLaw& law, double x, double slope) {
+  static const auto line = std::make_shared<const ForceLaw>("force + slope*(x - there)", "x");
+  return {line, {law.value(x), slope, x}};
+}
+
 } // namespace flyball

@@ -1,10 +1,12 @@
 // The laws of springs and dampers (force_law.hpp) with their numbers.
 #pragma once
 
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/force_law.hpp"
 #include "engine/system/spatial.hpp"
 
 #include <memory>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -42,11 +44,32 @@ class BoundLaw {
   std::vector<Dual> numbers_;
 };
 
+// A straight line that meets the law at x, of this slope.
+BoundLaw line_through(const BoundLaw& law, double x, double slope);
+
 // Of a spring and damper; most have none.
 template <class N>
 struct BasicForceLaws {
   BoundLaw spring, damper;
-  N free = 0; // m or rad, from which the deflection is counted
+  N free = 0; // m or rad, from which the deflection is counted, whatever else the coordinate's springs do
 };
+using ForceLaws = BasicForceLaws<double>;
+
+// The coefficients of a vane's lift and drag by its incidence.
+struct Polar {
+  BoundLaw lift, drag;
+};
+
+// A law, or where there is none a number in its place, with the numbers of a mechanism as they are read.
+template <class N>
+BoundLaw bind_law(const Mechanism& mechanism, std::shared_ptr<const ForceLaw> law,
+                  const std::optional<double>& number, const NumberReader<N>& read) {
+  std::vector<Dual> numbers;
+  if (law)
+    read_named(mechanism, law->names(), read, numbers);
+  else if (number)
+    numbers = {Dual(read(*number))};
+  return {std::move(law), std::move(numbers)};
+}
 
 } // namespace flyball

@@ -487,13 +487,16 @@ class Compiler {
         s_.bearings.push_back(
             {f, ends_between(link_of(body_of(x.bodies[0], path)), link_of(body_of(x.bodies[1], path))),
              bearing_size(x)});
+        s_.bearings.back().turning = driven_turn_between(s_.bearings.back().ends);
         continue;
       }
       const int on = link_of(body_of(x.body, path));
+      const PolarElement polar{read_law(lift_law(x), air_variable, path),
+                               read_law(drag_law(x), air_variable, path)};
       if (!is_of_air(x.type) || air < 0)
-        s_.body_forces.push_back({f, on});
+        s_.body_forces.push_back({f, on, polar});
       else if (on != air) // else nothing flows
-        s_.turning_air.push_back({f, ends_between(air, on)});
+        s_.turning_air.push_back({f, ends_between(air, on), polar});
     }
   }
 
@@ -582,11 +585,11 @@ class Compiler {
   }
 
   static std::shared_ptr<const ForceLaw> read_law(const Formula* law, std::string_view variable,
-                                                  const std::string& where) {
+                                                  const std::string& part) {
     try {
       return law ? std::make_shared<const ForceLaw>(law->text, variable) : nullptr;
     } catch (const ExpressionError& error) {
-      throw SceneError(where, "\"=" + law->text + "\": " + error.what());
+      throw SceneError(part + "." + law->key, "\"=" + law->text + "\": " + error.what());
     }
   }
 
@@ -608,11 +611,11 @@ class Compiler {
     }
     for (int i = 0; i < static_cast<int>(s_.springs.size()); ++i) {
       const Force& x = m_.forces[static_cast<std::size_t>(s_.springs[static_cast<std::size_t>(i)].force)];
-      const std::string where = "forces." + x.name;
+      const std::string part = "forces." + x.name;
       if (x.force || x.damping_force)
         s_.spring_laws.push_back({i, 0, x.force.has_value(), x.damping_force.has_value(),
-                                  read_law(spring_law(x), spring_variable, where),
-                                  read_law(damper_law(x), damper_variable, where)});
+                                  read_law(spring_law(x), spring_variable, part),
+                                  read_law(damper_law(x), damper_variable, part)});
     }
   }
 
@@ -626,6 +629,17 @@ class Compiler {
                                  return false;
                                }) ||
            std::ranges::any_of(m_.forces, [&](const Force& x) { return drives(damper_law(x)); });
+  }
+
+  // The link of a drive's turn on the way between two others; -1: none.
+  int driven_turn_between(const PairEnds& ends) const {
+    int a = ends.a, b = ends.b; // links come after their parents
+    while (a != b) {
+      int& further = a > b ? a : b;
+      if (link_at(further).drive >= 0 && link_at(further).type == LinkType::revolute) return further;
+      further = link_at(further).parent;
+    }
+    return -1;
   }
 
   // The drives a link turns with, innermost last; two links with the same ones never move against each other

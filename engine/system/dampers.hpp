@@ -6,7 +6,7 @@
 
 namespace flyball {
 
-// In joints, joints that close loops, and springs between points; be it by a number or by a law.
+// In joints, joints that close loops, springs between points and bearings; be it by a number or by a law.
 bool has_dampers(const System& system, const Parameters& parameters);
 
 // All forces have a potential and nothing damps: motions follow Hamilton's equations, with the drives'

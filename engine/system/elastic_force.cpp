@@ -1,17 +1,13 @@
 #include "engine/system/elastic_force.hpp"
 
-#include "engine/mechanism/drive_law.hpp"
 #include "engine/system/bound_law.hpp"
 
 namespace flyball {
 namespace {
 
 BoundLaw bound(const Mechanism& mechanism, const Formula& formula, std::string_view variable) {
-  auto law = std::make_shared<const ForceLaw>(formula.text, variable);
-  std::vector<Dual> numbers;
-  for (const std::string& name : law->names())
-    numbers.push_back(named_number(mechanism, name));
-  return {std::move(law), std::move(numbers)};
+  return bind_law(mechanism, std::make_shared<const ForceLaw>(formula.text, variable), {},
+                  NumberReader<double>());
 }
 
 ElasticForce of_spring(const Mechanism& mechanism, const Formula* formula, const std::optional<double>& force,

@@ -1,6 +1,7 @@
 #include "engine/system/parameters.hpp"
 
-#include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/bearing_axes.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/gear_ratio.hpp"
 #include "engine/system/air_force.hpp"
 #include "engine/system/implied_rates.hpp"
@@ -121,14 +122,6 @@ class Binder {
     out.elastic = out.elastic || c.friction || f.elastic();
   }
 
-  BoundLaw bound(const std::shared_ptr<const ForceLaw>& law, const std::optional<double>& number) const {
-    if (!law) return number ? BoundLaw(nullptr, {Dual(read_(*number))}) : BoundLaw();
-    std::vector<Dual> numbers;
-    for (const std::string& name : law->names())
-      numbers.push_back(read_(named_number(m_, name)));
-    return {law, std::move(numbers)};
-  }
-
   void bind_coordinate_law(const ForceLawElement& e) const {
     const Link& link = s_.links[static_cast<std::size_t>(e.at)];
     const Coordinate& c = joint(s_.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint)
@@ -137,11 +130,11 @@ class Binder {
     BasicCoordinateForce<N>& f = out.force.hold(static_cast<std::size_t>(e.component));
     BasicForceLaws<N> laws;
     if (e.has_spring) {
-      laws.spring = bound(e.spring, c.spring->force);
+      laws.spring = bind_law(m_, e.spring, c.spring->force, read_);
       laws.free = read_(c.spring->free);
     }
     if (e.has_damper) {
-      laws.damper = bound(e.damper, c.damping_force);
+      laws.damper = bind_law(m_, e.damper, c.damping_force, read_);
       f.damping = laws.damper.slope(0);
     }
     f.laws = std::make_shared<const BasicForceLaws<N>>(std::move(laws));
@@ -211,7 +204,8 @@ class Binder {
     return link >= 0 ? Vector(p - p_.links[static_cast<std::size_t>(link)].origin) : p;
   }
 
-  void bind_body_force(const Force& f, int link, BasicBodyForceParameters<N>& out) const {
+  void bind_body_force(const Force& f, int link, const PolarElement& polar,
+                       BasicBodyForceParameters<N>& out) const {
     const int b = link >= 0 ? s_.links[static_cast<std::size_t>(link)].body : -1;
     const Vector centre =
         b >= 0 ? Vector(read_(m_.bodies[static_cast<std::size_t>(b)].position)) : Vector(Vector::Zero());
@@ -224,6 +218,9 @@ class Binder {
     out.at = in_link(read_(f.at, centre), link);
     out.vector = vector;
     if (is_of_air(f.type)) set_air_force(f, m_.air, read_, out);
+    if (has_polar(f))
+      out.polar = std::make_shared<const Polar>(bind_law(m_, polar.lift, f.lift, read_),
+                                                bind_law(m_, polar.drag, f.drag, read_));
   }
 
   void bind_elements() {
@@ -241,9 +238,9 @@ class Binder {
       BasicPointSpringParameters<N>& out = p_.springs[static_cast<std::size_t>(e.at)];
       const Force& f = m_.forces[static_cast<std::size_t>(s_.springs[static_cast<std::size_t>(e.at)].force)];
       BasicForceLaws<N> laws;
-      if (e.has_spring) laws.spring = bound(e.spring, f.force);
+      if (e.has_spring) laws.spring = bind_law(m_, e.spring, f.force, read_);
       if (e.has_damper) {
-        laws.damper = bound(e.damper, f.damping_force);
+        laws.damper = bind_law(m_, e.damper, f.damping_force, read_);
         out.damping = laws.damper.slope(0);
       }
       out.laws = std::make_shared<const BasicForceLaws<N>>(std::move(laws));
@@ -254,12 +251,12 @@ class Binder {
     p_.body_forces.resize(s_.body_forces.size());
     for (std::size_t i = 0; i < s_.body_forces.size(); ++i) {
       const BodyForceElement& e = s_.body_forces[i];
-      bind_body_force(m_.forces[static_cast<std::size_t>(e.force)], e.link, p_.body_forces[i]);
+      bind_body_force(m_.forces[static_cast<std::size_t>(e.force)], e.link, e.polar, p_.body_forces[i]);
     }
     p_.turning_air.resize(s_.turning_air.size());
     for (std::size_t i = 0; i < s_.turning_air.size(); ++i) {
       const TurningAirElement& e = s_.turning_air[i];
-      bind_body_force(m_.forces[static_cast<std::size_t>(e.force)], e.ends.b, p_.turning_air[i]);
+      bind_body_force(m_.forces[static_cast<std::size_t>(e.force)], e.ends.b, e.polar, p_.turning_air[i]);
     }
     p_.cut_dampers.resize(s_.cut_dampers.size());
     for (std::size_t i = 0; i < s_.cut_dampers.size(); ++i) {
@@ -281,26 +278,14 @@ class Binder {
         speed = read_(drive.speed);
       else
         speed = drive.speed; // no number of the balance
-      bind_law(s_.torques[i].torque, drive.torque, p_.torques[i].torque);
-      bind_law(s_.torques[i].load, drive.load, p_.torques[i].load);
+      bind_drive_law(s_.torques[i].torque, drive.torque, p_.torques[i].torque);
+      bind_drive_law(s_.torques[i].load, drive.load, p_.torques[i].load);
     }
     for (std::size_t i = 0; i < s_.torques.size(); ++i)
       if (s_.torques[i].keeps_momentum) p_.torques[i].momentum = drawn_momentum(s_, p_, s_.torques[i].link);
     p_.cuts.resize(s_.cuts.size());
     for (std::size_t i = 0; i < s_.cuts.size(); ++i)
       bind_cut(s_.cuts[i], p_.cuts[i]);
-  }
-
-  // See bearing_axes.
-  Tensor axes_of(const Force& bearing) const {
-    const Vector z = read_(bearing.axis).normalized();
-    Vector towards = bearing_axes(bearing).col(0).template cast<N>();
-    if (bearing.x_axis) towards = read_(*bearing.x_axis);
-    Tensor axes;
-    axes.col(0) = (towards - z * z.dot(towards)).normalized();
-    axes.col(1) = z.cross(axes.col(0));
-    axes.col(2) = z;
-    return axes;
   }
 
   void bind_bearing(const BearingElement& e, BasicBearingParameters<N>& out) const {
@@ -314,18 +299,28 @@ class Binder {
     };
     out.a = in_link(at, e.ends.a);
     out.b = in_link(at, e.ends.b);
-    out.axes = axes_of(f);
+    out.axes = bearing_axes(f, read_);
     matrix(f.bearing_stiffness, out.stiffness);
     matrix(f.bearing_damping, out.damping);
+    if (e.turning >= 0 && out.resists_turns()) refuse_turning(e, f);
   }
 
-  void bind_law(const DriveLaw& law, const std::optional<double>& value,
-                BasicDriveLawParameters<N>& out) const {
+  // A rotation vector ends at half a turn, where it jumps.
+  [[noreturn]] void refuse_turning(const BearingElement& e, const Force& bearing) const {
+    const Link& link = s_.links[static_cast<std::size_t>(e.turning)];
+    throw SceneError(
+        "forces." + bearing.name + (bearing.bearing_stiffness.empty() ? ".damping" : ".stiffness"),
+        "expected zero in the rows and columns of turns, or bodies that do not turn against each "
+        "other: " +
+            s_.tree_joints[static_cast<std::size_t>(link.tree_joint)].name +
+            " turns one of them on and on, and a rotation vector ends at half a turn");
+  }
+
+  void bind_drive_law(const DriveLaw& law, const std::optional<double>& value,
+                      BasicDriveLawParameters<N>& out) const {
     out.value = value ? read_(*value) : N(0);
     out.numbers.clear();
-    if (!law.expression) return;
-    for (const std::string& name : law.expression->names())
-      out.numbers.push_back(read_(named_number(m_, name)));
+    if (law.expression) read_named(m_, law.expression->names(), read_, out.numbers);
   }
 
   void bind_cut(const CutJoint& cut, BasicCutParameters<N>& out) const {

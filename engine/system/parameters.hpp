@@ -39,6 +39,8 @@ struct BasicCoordinateForce : BasicSpringDamper<N> {
   N lower = 0, upper = 0, stop_stiffness = 0; // stop_stiffness 0: no stop
   bool has_lower = false, has_upper = false;
   N friction = 0; // what friction gives, N m or N, positive along the coordinate
+  // Where the spring is slack.
+  N slack() const { return laws && laws->spring ? laws->free : free; }
   bool elastic() const { return this->has_spring() || stop_stiffness != 0; }
 
   // Torque or force of the spring, stop and friction on the coordinate's own side: dV/dq at q.
@@ -141,6 +143,15 @@ struct BasicBearingParameters {
   BasicOffset<N> a, b;                       // the bearing's point in either
   Mat3T<N> axes;                             // x, y, z as columns, drawn pose
   Eigen::Matrix<N, 6, 6> stiffness, damping; // of two rows: those of x and y, else zero
+
+  // Whether it does more than resist shifts.
+  bool resists_turns() const {
+    const auto beyond_shifts = [](const Eigen::Matrix<N, 6, 6>& m) {
+      return (m.template bottomRows<3>().array() != N(0)).any() ||
+             (m.template rightCols<3>().array() != N(0)).any();
+    };
+    return beyond_shifts(stiffness) || beyond_shifts(damping);
+  }
 };
 
 template <class N>
@@ -154,6 +165,7 @@ struct BasicBodyForceParameters {
   // m/s of the air where it does not turn.
   N normal_quadratic = 0;
   Vec3T<N> normal = Vec3T<N>::Zero(), span = Vec3T<N>::Zero(), wind = Vec3T<N>::Zero();
+  std::shared_ptr<const Polar> polar{}; // in place of normal_quadratic, its coefficients times quadratic
 };
 
 template <class N>

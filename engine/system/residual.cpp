@@ -298,10 +298,7 @@ struct MagnitudesPass {
                                    (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
           if (c.laws) out.force[link.v] += law_size(c.laws->spring, q[link.q] - c.laws->free, q[link.q]);
         } else if (lp.elastic) {
-          for (int j = 0; j < 3; ++j)
-            for (const CoordinateForce& c : lp.force)
-              out.force[link.v + j] += (std::abs(c.stiffness) + c.stop_stiffness) * (4 + std::abs(c.free)) +
-                                       (c.laws ? law_size(c.laws->spring, 4, c.laws->free) : 0);
+          add_rotation_sizes(link, lp);
         }
       }
       if (link.parent < 0) continue;
@@ -311,6 +308,19 @@ struct MagnitudesPass {
       (here ? out.link_moment[j] : out.spine_moment[spine + j]) +=
           out.link_moment[i] + (k.links[i].o - k.links[j].o).norm() * out.link_force[i];
     }
+  }
+
+  // Each component's rounding is that of a rotation of some radians, and the torque mixes all of them.
+  void add_rotation_sizes(const Link& link, const LinkParameters& lp) const {
+    constexpr double radians = 4;
+    const Vec3 r = rotation_vector(link, lp, q);
+    double size = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const CoordinateForce& c = lp.force[i];
+      size += (std::abs(c.stiffness) + c.stop_stiffness) * (radians + std::abs(c.free));
+      if (c.laws) size += law_size(c.laws->spring, r[static_cast<int>(i)] - c.laws->free, radians);
+    }
+    out.force.segment<3>(link.v).array() += size;
   }
 
   void add_elements(const SystemPart& part) const {

@@ -106,18 +106,26 @@ struct BearingElement {
   int force = 0; // in the mechanism
   PairEnds ends;
   int size = 2;
+  int turning = -1; // link: a drive turns one end against the other there; -1: none does
+};
+
+// Of a vane (force_law.hpp); null where a number is the coefficient, or the vane has no polar.
+struct PolarElement {
+  std::shared_ptr<const ForceLaw> lift, drag;
 };
 
 // A force, torque or force of the air on one body.
 struct BodyForceElement {
   int force = 0;
   int link = -1;
+  PolarElement polar{};
 };
 
 // A force of the air on a body, in air that turns with another: the first end.
 struct TurningAirElement {
   int force = 0;
   PairEnds ends;
+  PolarElement polar{};
 };
 
 // Damping in a cut joint that slides or turns about `axis` (prismatic, revolute, cylindrical).

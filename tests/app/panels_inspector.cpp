@@ -534,6 +534,22 @@ TEST_CASE("a vane and the air are edited") {
   REQUIRE(vane().chord);
   hand.one_step([&] { hand.fill("inspector/chord/y", "0.5"); });
   CHECK(vane().chord->y() == 0.5);
+  hand.one_step([&] { hand.choose_from("inspector/form", "airfoil"); });
+  REQUIRE(vane().lift);
+  CHECK(vane().chord->y() == 0.5);
+  CHECK(vane().formulas ==
+        Formulas{{"drag", "2*sin(incidence)^2 + 0.1"}, {"lift", "2*sin(incidence)*cos(incidence)"}});
+  CHECK(find_mistakes(hand.mechanism()).empty());
+  hand.one_step([&] { hand.fill("inspector/lift", "=1.1*sin(2*incidence)"); });
+  CHECK(vane().formulas[1].text == "1.1*sin(2*incidence)");
+  hand.one_step([&] { hand.fill("inspector/drag", "0.3"); });
+  CHECK(vane().drag == 0.3);
+  CHECK(vane().formulas.size() == 1);
+  hand.one_step([&] { hand.choose_from("inspector/form", "blade"); });
+  CHECK_FALSE(vane().lift);
+  CHECK_FALSE(vane().drag);
+  CHECK(vane().formulas.empty());
+  CHECK(vane().cn == 2);
   hand.one_step([&] { hand.choose_from("inspector/form", "plate"); });
   CHECK_FALSE(vane().chord);
   select(hand.app, {});

@@ -134,12 +134,11 @@ TEST_CASE("the sparse matrix of implicit steps is the dense one of what stands s
     RandomOptions o = loops(seed);
     o.drives = RandomDrives::root;
     o.steady = true;
-    o.air = false; // with vanes the sparse matrix is another approximation of the motion's
     const Mechanism mechanism = reference::random_mechanism(seed, o);
     for (const double gamma : {1e-3, 3e-2}) {
       Motion dense(mechanism, Form::dense), sparse(mechanism, Form::sparse);
       CAPTURE(seed, gamma, dense.model.system.nv, dense.model.system.rows);
-      if (dense.model.system.nv == 0) break;
+      if (dense.model.system.nv == 0 || !dense.model.system.turning_air.empty()) break; // not for this form
       try {
         dense.settle();
       } catch (const SceneError&) {
@@ -158,6 +157,35 @@ TEST_CASE("the sparse matrix of implicit steps is the dense one of what stands s
     }
   }
   CHECK(compared > 20);
+}
+
+TEST_CASE("dampers by laws are as stiff as at their rates in every form of the implicit step") {
+  // Slides in a row, which feel no forces by their velocities but those of the dampers.
+  Mechanism m;
+  for (int i = 0; i < 6; ++i) {
+    const std::string name = "b" + std::to_string(i), before = i == 0 ? "ground" : m.bodies.back().name;
+    m.bodies.push_back(body(name, 1 + 0.1 * i, {0.3 * i, 0, 0}));
+    Joint slide = prismatic("slide" + std::to_string(i), before, name, {0.3 * i, 0, 0}, {1, 0, 0});
+    slide.coordinates[0].spring = CoordinateSpring{40, 0};
+    slide.coordinates[0].damping_force = 0;
+    slide.formulas = {{"damping_force", "2 N s/m*rate + 3 N s^3/m^3*rate^3"}};
+    m.joints.push_back(slide);
+  }
+  Force tie = point_spring("tie", "b1", "b4", {0.3, 0, 0}, {1.2, 0, 0}, 25);
+  const auto compare = [&](Form form) {
+    Motion dense(m, Form::dense), other(m, form);
+    dense.stir(3, 1);
+    other.stir(3, 1);
+    for (const double gamma : {1e-3, 0.1, 1.}) {
+      const Eigen::VectorXd a = dense.newton_step(gamma, false), b = other.newton_step(gamma, false);
+      CAPTURE(gamma);
+      CHECK(size_of(a - b) <= 1e-6 * size_of(a));
+      CHECK(size_of(a - dense.newton_step(gamma, true)) <= 1e-4 * size_of(a));
+    }
+  };
+  compare(Form::tree);
+  m.forces = {tie};
+  compare(Form::sparse);
 }
 
 TEST_CASE("the motion of a net is that by the dense equations") {

@@ -86,9 +86,19 @@ TEST_CASE("what is wrong with a law is said at its place") {
              ContainsSubstring("expected no force at a rate of 0"));
   CHECK_THAT(of_slide(R"~("damping_force": 2)~"), ContainsSubstring("expected an expression of the rate"));
   CHECK_THAT(of_slide(R"~("damping": 1, "damping_force": "=3 N s/m*rate")~"),
-             ContainsSubstring("beside `damping`"));
+             ContainsSubstring("joints.slide.damping: expected none beside `damping_force`"));
+  CHECK_THAT(
+      of_slide(
+          R"~("damping_force": "=4 N*sqrt(abs(rate)/(1 m/s))*tanh(rate/(1 m/s))/abs(tanh(rate/(1 m/s)))")~"),
+      ContainsSubstring("expected a finite force at a rate of 0"));
+  CHECK_THAT(of_slide(R"~("damping_force": "=4 N*sqrt(abs(rate)/(1 m/s))")~"),
+             ContainsSubstring("expected a finite slope at a rate of 0"));
+  CHECK_THAT(of_slide(R"~("spring": {"force": "=3 N/m*coordinate(slide)"})~"),
+             ContainsSubstring("joints.slide.spring.force: \"=3 N/m*coordinate(slide)\": column 7: expected "
+                               "no results, as coordinate() is: it is given by the deflection alone"));
   CHECK_THAT(of_spring(R"~("damping": 1)~"), ContainsSubstring("forces.f.stiffness: missing"));
-  CHECK_THAT(of_spring(R"~("force": "=2*depth")~"), ContainsSubstring("depth"));
+  CHECK_THAT(of_spring(R"~("force": "=2*depth")~"),
+             ContainsSubstring("there is no parameter \"depth\"; expected one of deflection or k"));
   CHECK_THAT(of_spring(R"~("stiffness": 1, "damping_force": "=1 N")~"),
              ContainsSubstring("expected no force at a rate of 0"));
   std::string taken = scene_with(R"~("spring": {"force": "=k*deflection"})~", plain_spring);

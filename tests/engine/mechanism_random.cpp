@@ -151,6 +151,11 @@ Force RandomMechanism::force() {
     force.area = number();
     force.normal = vector();
     if (maybe()) force.chord = vector();
+    if (maybe()) {
+      force.lift = number();
+      if (maybe()) force.drag = number();
+      return force;
+    }
     force.cn = number();
     force.cd = number();
   } else {

@@ -151,6 +151,15 @@ TEST_CASE("a plate hangs in the wind at the angle of its weight", "[air]") {
   }
 }
 
+TEST_CASE("a plate in still air swings on and on as far as the linear motion tells", "[air]") {
+  const Solution s = Analysis(hung_plate(0)).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(!s.stable);
+  CHECK(s.stability_reason == StabilityReason::marginal);
+  CHECK_THAT(s.message, ContainsSubstring("the linear motion does not show whether it dies out"));
+}
+
 TEST_CASE("a weather vane stands along the wind, and nowhere else stably", "[air]") {
   Mechanism m;
   m.air.wind = {6, 0, 0};
@@ -316,6 +325,204 @@ TEST_CASE("the windmill turns where its blades give what the pump takes", "[air]
     (left((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
   CHECK_THAT(speed(s, "axle"), WithinRel(low, 1e-12));
   CHECK(s.stable == true);
+}
+
+namespace {
+
+// In place of cn and cd.
+Force with_polar(Force blade, const std::string& lift, const std::string& drag) {
+  blade.lift = blade.drag = 0;
+  blade.formulas.push_back({"drag", drag});
+  blade.formulas.push_back({"lift", lift});
+  return blade;
+}
+
+// A shaft in a wind along it, with blades whose chords lie in the plane of the turn.
+Mechanism blades(double wind, double radius, double area, const std::string& lift, const std::string& drag,
+                 double torque) {
+  Mechanism m;
+  m.air.wind = {0, 0, wind};
+  m.bodies = {disc("rotor", 2)};
+  m.joints = {by_torque(revolute("spin", "ground", "rotor", {0, 0, 0}, {0, 0, 1}), torque, 12)};
+  for (int i = 0; i < 3; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 3;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0), round(-out.y(), out.x(), 0);
+    Force blade = vane("blade" + std::to_string(i), "rotor", radius * out, area, Vec3::UnitZ(), 0, 0);
+    blade.chord = -round; // it moves along +round, so that the flow comes along the chord
+    m.forces.push_back(with_polar(blade, lift, drag));
+  }
+  return m;
+}
+
+// Where f falls through zero.
+template <class F>
+double root(const F& f, double low, double high) {
+  for (int i = 0; i < 200; ++i)
+    (f((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
+  return low;
+}
+
+} // namespace
+
+TEST_CASE("a plate's own polar is the plate", "[air]") {
+  Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/windmill.json");
+  const Solution by_plate = Analysis(m).solve();
+  for (Force& f : m.forces)
+    if (f.type == ForceType::vane)
+      f = with_polar(f, "4.5*sin(incidence)*cos(incidence)", "4.5*sin(incidence)^2 + 0.02");
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "axle"), WithinRel(speed(by_plate, "axle"), 1e-13));
+  REQUIRE(s.eigenvalues->size() == by_plate.eigenvalues->size());
+  for (std::size_t i = 0; i < s.eigenvalues->size(); ++i)
+    CHECK(std::abs((*s.eigenvalues)[i] - (*by_plate.eigenvalues)[i]) <=
+          1e-11 * std::abs((*s.eigenvalues)[i]));
+}
+
+TEST_CASE("a rotor of airfoils turns at the speed of its polar", "[air]") {
+  // Round the shaft: rho A / 2 |u|^2 r (cl sin a - cd cos a) with tan a = wind / (w r).
+  const double wind = 6, radius = 1.2, area = 0.15, drag = 0.02;
+  const auto moment = [&](double w, const auto& lift) {
+    const double past = w * radius, a = std::atan2(wind, past);
+    return 3 * 0.5 * rho * area * (wind * wind + past * past) * radius *
+           (lift(a) * std::sin(a) - drag * std::cos(a));
+  };
+  SECTION("by an expression") {
+    const auto lift = [](double a) { return 1.1 * std::sin(2 * a) + 0.05; };
+    for (const double load : {0., 4., -3.}) {
+      const Mechanism m = blades(wind, radius, area, "1.1*sin(2*incidence) + 0.05", "0.02", -load);
+      validate(m);
+      const Solution s = Analysis(m).solve();
+      INFO(s.message);
+      REQUIRE(s.status == Status::converged);
+      const double w = root([&](double at) { return moment(at, lift) - load; }, 5, 1000);
+      CHECK_THAT(speed(s, "spin"), WithinRel(w, 1e-12));
+      CHECK(s.stable == true);
+      // J s = dM/dw.
+      const double h = 1e-4 * w, slope = (moment(w + h, lift) - moment(w - h, lift)) / (2 * h);
+      REQUIRE(s.eigenvalues->size() == 1);
+      CHECK_THAT((*s.eigenvalues)[0].real(), WithinRel(slope / 4, 1e-6));
+    }
+  }
+  SECTION("by a table, its coefficient that of a point of it") {
+    // At 10 deg lift is 0.9: the load is chosen so that it turns there.
+    const double a = 10 * std::numbers::pi / 180, w = wind / std::tan(a) / radius;
+    const double load = moment(w, [](double) { return 0.9; });
+    Mechanism m =
+        blades(wind, radius, area,
+               "table(incidence, [-180 deg, 0], [-90 deg, 0], [-15 deg, -1.1], [0, 0], [10 deg, 0.9], "
+               "[14 deg, 1.1], [90 deg, 0], [180 deg, 0])",
+               "cd", -load);
+    m.parameters = {{"cd", "", drag, "", {}}};
+    m.sliders = {{"parameters.cd", 0, 1, SliderScale::linear, ""}};
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed(s, "spin"), WithinRel(w, 1e-12));
+    // By the drag's number: dM/dcd + dM/dw w' = 0, the slope by the eigenvalue.
+    const double by_drag =
+        -3 * 0.5 * rho * area * (wind * wind + w * w * radius * radius) * radius * std::cos(a);
+    REQUIRE(s.sensitivities.size() == 1);
+    CHECK_THAT(s.sensitivities[0].rates.at(0).value,
+               WithinRel(-by_drag / (4 * (*s.eigenvalues)[0].real()), 1e-11));
+  }
+}
+
+TEST_CASE("a weather vane by a polar swings by the slope of its lift", "[air]") {
+  Mechanism m;
+  m.air.wind = {6, 0, 0};
+  m.bodies = {body("vane", 0.3, {0.2, 0, 0}, {0.002, 0.002, 0.002})};
+  m.joints = {revolute("post", "ground", "vane", {0, 0, 0}, {0, 0, 1})};
+  Force blade = vane("blade", "vane", {0.25, 0, 0}, 0.02, {0, 1, 0}, 0, 0);
+  blade.chord = Vec3(1, 0, 0);
+  m.forces = {with_polar(blade, "2*sin(2*incidence)", "0.3")};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(coordinate(s, "post").value, WithinAbs(0, 1e-14));
+  CHECK(s.stable == true);
+  // J x^2 + C x + K = 0: lift's slope and drag both bring it back, 4 + 0.3.
+  const double b = 0.5 * rho * 0.02, j = 0.002 + 0.3 * 0.04, c = b * (4 + 0.3) * 6 * 0.25 * 0.25,
+               k = b * (4 + 0.3) * 36 * 0.25;
+  REQUIRE(s.eigenvalues->size() == 2);
+  CHECK_THAT((*s.eigenvalues)[0].real(), WithinRel(-c / (2 * j), 1e-11));
+  CHECK_THAT(std::abs((*s.eigenvalues)[0].imag()), WithinRel(std::sqrt(k / j - c * c / (4 * j * j)), 1e-11));
+  // A lift at no incidence puts it where that is zero: lift cos q' = drag sin q', q' the angle to the wind.
+  m.forces[0].formulas[1].text = "2*sin(2*incidence) + 0.5";
+  const Solution cambered = Analysis(m).solve();
+  INFO(cambered.message);
+  REQUIRE(cambered.status == Status::converged);
+  // At the angle q of the post the incidence is -q, and about the post lift has the arm cos a, drag sin a.
+  const double q = coordinate(cambered, "post").value;
+  CHECK(std::abs((2 * std::sin(-2 * q) + 0.5) * std::cos(q) - 0.3 * std::sin(q)) < 1e-13);
+  CHECK(q > 0.05);
+  CHECK(cambered.stable == true);
+  // On a kink of its drag it says so.
+  m.forces[0] = with_polar(blade, "2*sin(2*incidence)", "0.3 + 0.2*abs(incidence)");
+  const Solution kink = Analysis(m).solve();
+  INFO(kink.message);
+  CHECK(!kink.stable);
+  CHECK_THAT(kink.message, ContainsSubstring("The drag of blade stands on a kink of its law"));
+}
+
+TEST_CASE("what is wrong with a polar is said at its place", "[air]") {
+  Mechanism m = turning_arm(true);
+  m.forces[0].chord = Vec3(1, 0, -2);
+  const auto mistake = [&](const std::string& lift, const std::string& drag) {
+    Mechanism with = m;
+    with.forces[0] = with_polar(with.forces[0], lift, drag);
+    try {
+      validate(with);
+    } catch (const SceneError& error) {
+      return error.where() + ": " + error.expected();
+    }
+    return std::string();
+  };
+  CHECK(mistake("sin(incidence)", "1 - cos(2*incidence)") == "");
+  CHECK_THAT(
+      mistake("sin(2*incidense)", "0"),
+      ContainsSubstring("forces.vane.lift: \"=sin(2*incidense)\": there is no parameter \"incidense\"") &&
+          ContainsSubstring("did you mean \"incidence\"?"));
+  CHECK_THAT(mistake("1 m*incidence", "0"), ContainsSubstring("expected a number, found m"));
+  CHECK_THAT(mistake("sin(incidence)", "sin(2*incidence)"),
+             ContainsSubstring("forces.vane.drag: ") && ContainsSubstring("expected a drag of zero or more"));
+  CHECK_THAT(mistake("1/incidence", "0"),
+             ContainsSubstring("expected a finite coefficient at an incidence of 0 deg"));
+  CHECK_THAT(mistake("table(incidence, [-10 deg, -0.9], [0, 0], [12 deg, 1.1])", "0"),
+             ContainsSubstring("expected the same at incidences of -180 and 180 deg") &&
+                 ContainsSubstring("it has to go all round"));
+  m.forces[0].chord.reset();
+  CHECK_THAT(mistake("sin(incidence)", "0"), ContainsSubstring("forces.vane.chord: missing"));
+}
+
+TEST_CASE("a polar is written as it is read, and stands for the other coefficients", "[air]") {
+  const auto scene = [](const std::string& coefficients) {
+    return R"({"flyball": 2, "name": "air", "parameters": {"c": {"value": 0.4}},
+    "bodies": [{"name": "flag", "mass": 1, "position": [0, 0, 0], "inertia": [1, 1, 1]}],
+    "joints": [{"name": "pole", "type": "revolute", "bodies": ["ground", "flag"], "at": [0, 0, 0], "axis": [0, 1, 0]}],
+    "forces": [{"name": "cloth", "type": "vane", "body": "flag", "at": [1, 0, 0], "area": 0.2, "normal": [0, 0, 1],
+      "chord": [1, 0, 0], )" +
+           coefficients + "}]}";
+  };
+  const Mechanism m = read_scene(scene(R"~("lift": "=c*sin(2*incidence)", "drag": 0.2)~"));
+  REQUIRE(m.forces[0].lift);
+  CHECK(m.forces[0].drag == 0.2);
+  CHECK(read_scene(write_scene(m)) == m);
+  CHECK_THAT(write_scene(m),
+             ContainsSubstring("\"lift\": \"=c*sin(2*incidence)\"") && !ContainsSubstring("\"cn\""));
+  CHECK(get_parameter(m, "forces.cloth.drag") == 0.2);
+  for (const std::string other : {"cn", "cd"}) {
+    try {
+      read_scene(scene("\"lift\": \"=c*sin(2*incidence)\", \"" + other + "\": 1"));
+      FAIL("two coefficients were taken");
+    } catch (const SceneError& error) {
+      CHECK(error.where() == "forces.cloth." + other);
+      CHECK_THAT(error.expected(), ContainsSubstring("expected none beside `lift` and `drag`"));
+    }
+  }
 }
 
 TEST_CASE("what is said of the air is checked", "[air]") {

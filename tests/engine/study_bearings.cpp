@@ -4,6 +4,8 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/bearing_axes.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 #include "tests/engine/dynamics_runs.hpp"
@@ -201,6 +203,90 @@ TEST_CASE("sensitivities to a bearing's numbers are those of the closed form", "
       CHECK_THAT(found.rates[0].value, WithinRel(rate.x(), 1e-11));
       CHECK_THAT(found.rates[1].value, WithinRel(rate.y(), 1e-11));
     }
+}
+
+TEST_CASE("sensitivities to a bearing's axis follow its x, wherever that points", "[bearings]") {
+  // Off the world's axes, x is the one nearest to the plane across, less its part along the axis.
+  for (const bool given : {false, true}) {
+    CAPTURE(given);
+    Mechanism m;
+    m.gravity = {0.4, -0.7, 1.2};
+    m.bodies = {body("block", 3, {0, 0, 0}, {0.1, 0.1, 0.1})};
+    m.joints = {prismatic("along", "ground", "cross", {0, 0, 0}, {1, 0, 0}),
+                prismatic("across", "cross", "block", {0, 0, 0}, {0, 0, 1})};
+    m.bodies.push_back(body("cross", 0));
+    m.forces = {bearing("ground", "block", {0, 0, 0}, {900, 80, -50, 400})};
+    m.forces[0].axis = {0.5, 0.9, 0.7};
+    if (given) m.forces[0].x_axis = Vec3(1, 0.2, -0.3);
+    for (int i = 0; i < 3; ++i)
+      m.sliders.push_back({"forces.bearing.axis." + std::to_string(i), 0, 1, SliderScale::linear, ""});
+    const Solution s = solved(m);
+    REQUIRE(s.sensitivities.size() == 3);
+    for (int i = 0; i < 3; ++i) {
+      constexpr double h = 1e-5;
+      const auto beside = [&](double by) {
+        Mechanism moved = m;
+        moved.forces[0].axis[i] += by;
+        return solved(moved);
+      };
+      const Solution after = beside(h), before = beside(-h);
+      for (int c = 0; c < 2; ++c) {
+        const auto at = static_cast<std::size_t>(c);
+        const double rate = (after.coordinates[at].value - before.coordinates[at].value) / (2 * h);
+        CHECK(std::abs(s.sensitivities[static_cast<std::size_t>(i)].rates[at].value - rate) < 1e-8);
+      }
+    }
+  }
+}
+
+TEST_CASE("a bearing that resists turns is refused where a drive turns one body on", "[bearings]") {
+  const auto six_rows = [](const std::vector<double>& diagonal) {
+    BearingMatrix m(36, 0.);
+    for (std::size_t i = 0; i < 6; ++i)
+      m[7 * i] = diagonal[i];
+    return m;
+  };
+  Mechanism m = jeffcott(5, six_rows({2e4, 2e4, 1e5, 0, 0, 0}), six_rows({9, 9, 9, 0, 0, 0}));
+  m.gravity = {0, -standard_gravity, 0};
+  CHECK_THAT(value(solved(m), "y"), WithinRel(-5 * standard_gravity / 2e4, 1e-12)); // a thrust bearing
+  for (const bool damping : {false, true}) {
+    Mechanism tilting = m;
+    BearingMatrix& matrix = damping ? tilting.forces[0].bearing_damping : tilting.forces[0].bearing_stiffness;
+    matrix = six_rows({2e4, 2e4, 1e5, 50, 50, 0});
+    if (damping) tilting.forces[0].bearing_stiffness.clear();
+    try {
+      Analysis(tilting).solve();
+      FAIL("a bearing was wound up");
+    } catch (const SceneError& error) {
+      CHECK(error.where() == std::string("forces.bearing.") + (damping ? "damping" : "stiffness"));
+      CHECK_THAT(error.expected(), ContainsSubstring("spin turns one of them on and on"));
+    }
+  }
+  // Beside the drive, on what turns with it, it may.
+  Mechanism beside = m;
+  beside.forces[0].bodies = {"ground", "journal"};
+  beside.forces[0].bearing_stiffness = six_rows({2e4, 2e4, 1e5, 50, 50, 50});
+  CHECK_THAT(value(solved(beside), "y"), WithinRel(-5 * standard_gravity / 2e4, 1e-12));
+}
+
+TEST_CASE("a motion that takes a bearing over half a turn ends there", "[bearings]") {
+  BearingMatrix k(36, 0.);
+  for (const std::size_t i : {0, 7, 14})
+    k[i] = 400;
+  for (const std::size_t i : {21, 28, 35})
+    k[i] = 0.5;
+  Mechanism m;
+  m.bodies = {body("block", 1, {0, 0, 0}, {0.01, 0.01, 0.01})};
+  m.forces = {bearing("ground", "block", {0, 0, 0}, k)};
+  // Its springs stop it at 3 rad and at 3.5 rad.
+  const auto kick = [](double turn) { return std::sqrt(0.5 / 0.01) * turn; };
+  const Run held = simulate(m, undamped(kicked(lasting(2), "block.free.3", kick(3.))));
+  CHECK(held.status == RunStatus::completed);
+  const Run over = simulate(m, undamped(kicked(lasting(2), "block.free.3", kick(3.5))));
+  CHECK(over.status == RunStatus::diverged);
+  CHECK_THAT(over.message,
+             ContainsSubstring("the bodies of the bearing bearing turned by more than half a turn"));
+  CHECK(over.time.back() < 1);
 }
 
 TEST_CASE("oil whip of a hanging rotor: it whirls at half its speed", "[bearings][branches]") {

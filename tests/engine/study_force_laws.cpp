@@ -306,7 +306,24 @@ TEST_CASE("a steady state on a kink is told", "[laws]") {
   const Solution two = solved(
       sliding(1, by_law(slide_along_x(), "100 N/m*max(deflection, 0 m) + 30 N/m*min(deflection, 0 m)")));
   CHECK_THAT(two.message, ContainsSubstring("jumps from 30 to 100 N/m"));
-  CHECK(two.stable != false);
+  CHECK_THAT(two.message, !ContainsSubstring("open"));
+  CHECK(two.stable == true); // on either side the potential rises
+  CHECK(two.stability_reason == StabilityReason::minimum);
+  CHECK_THAT(std::abs((*two.eigenvalues)[0].imag()), WithinRel(10., 1e-12)); // of one side
+  const auto nearest = [](const Mechanism& m) {
+    SolveOptions options;
+    options.nearest = true;
+    return Analysis(m).solve(options);
+  };
+  const Solution ridge = nearest(
+      sliding(1, by_law(slide_along_x(), "-100 N/m*max(deflection, 0 m) - 30 N/m*min(deflection, 0 m)")));
+  CHECK(ridge.stable == false); // it falls on either side
+  const Solution slope = nearest(
+      sliding(1, by_law(slide_along_x(), "100 N/m*max(deflection, 0 m) - 30 N/m*min(deflection, 0 m)")));
+  INFO(slope.message);
+  CHECK(!slope.stable);
+  CHECK(slope.stability_reason == StabilityReason::marginal);
+  CHECK_THAT(slope.message, ContainsSubstring("whether it is stable stays open"));
   const Solution damper = solved(sliding(
       1, damped_by_law(by_law(slide_along_x(), "100 N/m*deflection"), "2 N s/m*rate + abs(rate)*1 N s/m")));
   CHECK_THAT(damper.message, ContainsSubstring("The damper of slide stands on a kink"));
@@ -315,6 +332,79 @@ TEST_CASE("a steady state on a kink is told", "[laws]") {
   const Solution table =
       solved(hanging(40 / standard_gravity, "table(deflection, [0 mm, 0 N], [5 mm, 40 N], [9 mm, 200 N])"));
   CHECK_THAT(table.message, !ContainsSubstring("kink")); // at a point of a table the slope does not jump
+}
+
+TEST_CASE("every verdict on an equilibrium knows the kink it stands on", "[laws][branches]") {
+  Mechanism m = sliding(1, by_law(slide_along_x(), "c*max(deflection, 0 m) - 30 N/m*min(deflection, 0 m)"));
+  m.parameters = {{"c", "", 100, "N/m", {}}};
+  const AllSolutions all = Analysis(m).solve_all();
+  REQUIRE(all.equilibria.size() == 1);
+  CHECK(!all.equilibria[0].stable);
+  CHECK_THAT(all.equilibria[0].message, ContainsSubstring("The spring of slide stands on a kink"));
+  const ResponseDiagram d = follow_branches(m, "parameters.c", 50, 150);
+  INFO(d.message);
+  CHECK_THAT(d.message, ContainsSubstring("The spring of slide stands on a kink"));
+  REQUIRE(d.branches.size() == 1);
+  for (const ResponsePoint& p : d.branches[0].points)
+    CHECK(!p.stable);
+  m.joints[0].formulas[0].text = "c*max(deflection, 0 m) + 30 N/m*min(deflection, 0 m)";
+  for (const ResponsePoint& p : follow_branches(m, "parameters.c", 50, 150).branches.at(0).points)
+    CHECK(p.stable == true);
+  // Of two coordinates: the potential falls in between where one of the sides is softer than what couples
+  // them.
+  for (const double softer : {50., 20.}) {
+    Mechanism pair =
+        sliding(1, by_law(slide_along_x(), "100 N/m*max(deflection, 0 m) + " + std::to_string(softer) +
+                                               " N/m*min(deflection, 0 m)"));
+    pair.bodies.push_back(body("other", 1, {0, 0, 0}));
+    pair.joints.push_back(
+        by_law(prismatic("second", "mass", "other", {0, 0, 0}, {1, 0, 0}), "60 N/m*deflection"));
+    Force push = point_spring("push", "ground", "other", {0, 0, 0}, {0, 0, 0}, -25, 0);
+    pair.forces = {push};
+    // k1 - 25 and 60 - 25 on the diagonal, -25 beside it.
+    const Solution s = solved(pair);
+    INFO(s.message);
+    CHECK((s.stable == true) == ((softer - 25) * 35 > 625));
+  }
+}
+
+TEST_CASE("a law that is large far away says nothing of where it stands", "[laws]") {
+  // A ball held softly, its springs at 4 rad stronger by many powers of ten.
+  Mechanism m;
+  m.bodies = {body("ball", 1, {0, 0, 0}, {0.02, 0.03, 0.04})};
+  Joint hinge = joint(JointType::spherical, "hinge", "ground", "ball", {0, 0, 0});
+  for (int i = 0; i < 3; ++i) {
+    hinge.coordinates[static_cast<std::size_t>(i)].spring = CoordinateSpring{0, 0, "", 0};
+    hinge.formulas.push_back(
+        {"spring." + std::to_string(i) + ".force", "2 N m*deflection + 1e-9 N m*sinh(20*deflection)"});
+  }
+  m.joints = {hinge};
+  const Solution s = solved(m);
+  INFO(s.message);
+  CHECK(s.stability_reason == StabilityReason::minimum);
+  CHECK(s.neutral.empty());
+  REQUIRE(s.eigenvalues->size() == 6);
+  CHECK_THAT((*s.eigenvalues)[0].imag(), WithinRel(std::sqrt(2.00000002 / 0.04), 1e-9));
+}
+
+TEST_CASE("a spring beside a damper by a law is searched where it is slack", "[laws]") {
+  Mechanism m = sliding(1, damped_by_law(slide_along_x(), "3 N s/m*rate + 1 N s^3/m^3*rate^3"));
+  m.joints[0].coordinates[0].spring = CoordinateSpring{50, 40};
+  const AllSolutions all = Analysis(m).solve_all();
+  REQUIRE(all.bounds.size() == 1);
+  CHECK(all.bounds[0].upper > 40);
+  REQUIRE(all.equilibria.size() == 1);
+  CHECK_THAT(value(all.equilibria[0], "slide"), WithinRel(40., 1e-12));
+}
+
+TEST_CASE("a constant force that does not hold is no spring that is missing", "[laws]") {
+  Mechanism m = hanging(2, "0 N");
+  m.joints[0].formulas.clear();
+  m.joints[0].coordinates[0].spring->force = 15;
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  CHECK(s.status == Status::not_converged);
+  CHECK_THAT(s.message, ContainsSubstring("A spring by a law that pulls no harder there does not hold"));
 }
 
 TEST_CASE("what pushes on without end is found with laws, too", "[laws]") {
@@ -327,11 +417,11 @@ TEST_CASE("what pushes on without end is found with laws, too", "[laws]") {
 }
 
 TEST_CASE("random mechanisms with laws: damped motions settle where the direct solution stands", "[laws]") {
-  int compared = 0;
+  int compared = 0, with_loops = 0;
   for (std::uint32_t seed = 0; seed < 24; ++seed) {
     reference::RandomOptions options;
     options.bodies = 1 + static_cast<int>(seed % 3);
-    options.loops = 0;
+    options.loops = static_cast<int>(seed % 4) / 2;
     options.drives = reference::RandomDrives::none;
     options.conservative = true;
     Mechanism m = reference::random_mechanism(seed, options);
@@ -365,6 +455,8 @@ TEST_CASE("random mechanisms with laws: damped motions settle where the direct s
     INFO(settled.message);
     CHECK(settled.distance < 1e-5);
     ++compared;
+    with_loops += options.loops > 0;
   }
   CHECK(compared >= 8);
+  CHECK(with_loops >= 3);
 }

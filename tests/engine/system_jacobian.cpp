@@ -274,8 +274,11 @@ std::vector<std::pair<std::string, Force>> forces() {
     full.bearing_stiffness.push_back(60 * std::sin(1.0 + 2.3 * i) + (i % 7 == 0 ? 150 : 0));
     full.bearing_damping.push_back(3 * std::cos(0.7 * i) + (i % 7 == 0 ? 5 : 0));
   }
-  Force full_across = full;
+  Force full_across = full; // which may resist shifts alone
   full_across.bodies = {"sled", "arm"};
+  for (BearingMatrix* each : {&full_across.bearing_stiffness, &full_across.bearing_damping})
+    for (std::size_t i = 0; i < 36; ++i)
+      if (i % 6 >= 3 || i / 6 >= 3) (*each)[i] = 0;
   Force constant = spring_between("ground", "tool", {2, 0.3, 0}, {0.8, 0.8, 0.4});
   constant.force = 30;
   Force drag = on_tool(ForceType::drag, ForceFrame::world), quadratic = drag, both = drag;
@@ -370,6 +373,7 @@ TEST_CASE("the Jacobian is exact for each type of force") {
     for (const Use use : {Use::tree, Use::reversed, Use::cut})
       for (const auto& [name, force] : forces()) {
         if (type == JointType::free && use == Use::cut) continue;
+        if (name == "bearing of six rows" && use == Use::cut) continue; // drives turn its ends then
         INFO(name << ", " << type_name(type) << " " << static_cast<int>(use));
         Mechanism m = rig(type, use);
         m.forces.push_back(force);
@@ -389,9 +393,13 @@ TEST_CASE("the Jacobian is exact for drag, plates and blades in all air") {
   plate.cd = 0.3;
   Force blade = plate;
   blade.chord = Vec3(1, 0.2, -0.5);
+  Force airfoil = blade;
+  airfoil.lift = airfoil.drag = 0;
+  airfoil.formulas = {{"drag", "0.2 + 0.7*sin(incidence)^2 + 0.1*cos(incidence)"},
+                      {"lift", "1.4*sin(2*incidence + 0.3) - 0.2*cos(incidence)"}};
   for (const JointType type : {JointType::universal, JointType::planar, JointType::free})
     for (const Use use : {Use::tree, Use::reversed, Use::cut})
-      for (const Force& force : {drag, plate, blade})
+      for (const Force& force : {drag, plate, blade, airfoil})
         for (const std::string air : {"at rest", "wind", "table", "sled", "arm", "tool"}) {
           if (type == JointType::free && use == Use::cut) continue;
           INFO((force.chord ? "blade" : type_name(force.type))

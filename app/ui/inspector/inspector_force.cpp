@@ -2,7 +2,9 @@
 #include "app/ui/inspector/inspector_rows.hpp"
 
 #include "engine/mechanism/fields.hpp"
+#include "engine/mechanism/text.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace flyball {
@@ -207,6 +209,43 @@ void drag_rows(App& app, const Force& force) {
                 .address = address_of(force, "quadratic")});
 }
 
+enum class VaneForm { plate, blade, airfoil };
+
+VaneForm form_of(const Force& vane) {
+  return has_polar(vane) ? VaneForm::airfoil : vane.chord ? VaneForm::blade : VaneForm::plate;
+}
+
+// An airfoil begins with the polar that it had as a blade.
+void set_form(Force& vane, VaneForm form) {
+  if (form == VaneForm::plate)
+    vane.chord.reset();
+  else if (!vane.chord)
+    vane.chord = vane.normal.unitOrthogonal();
+  const bool polar = form == VaneForm::airfoil;
+  if (polar == has_polar(vane)) return;
+  std::erase_if(vane.formulas, [](const Formula& f) {
+    return f.key == "cn" || f.key == "cd" || f.key == "lift" || f.key == "drag";
+  });
+  vane.lift = vane.drag = polar ? std::optional(0.) : std::nullopt;
+  if (!polar) return;
+  const std::string cn = number_text(vane.cn);
+  vane.formulas.push_back({"lift", cn + "*sin(incidence)*cos(incidence)"});
+  vane.formulas.push_back({"drag", cn + "*sin(incidence)^2 + " + number_text(vane.cd)});
+  std::ranges::sort(vane.formulas, {}, &Formula::key);
+}
+
+// Of lift and drag.
+void coefficient_row(App& app, const Force& vane, const std::string& label, const std::string& key,
+                     const std::optional<double>& coefficient, const char* help) {
+  if (!coefficient) return; // zero, as the file leaves it out
+  quantity_row(app, label,
+               {.name = "inspector/" + key,
+                .value = *coefficient,
+                .unit = "",
+                .help = help,
+                .address = address_of(vane, key)});
+}
+
 void vane_rows(App& app, const Force& vane) {
   quantity_row(app, "Area",
                {.name = "inspector/area",
@@ -220,23 +259,30 @@ void vane_rows(App& app, const Force& vane) {
                .value = vane.normal,
                .help = "Square to the plate, as drawn; of any length, either way.",
                .address = address_of(vane, "normal")});
-  constexpr std::array<std::string_view, 2> forms{"plate", "blade"};
-  const auto chosen = choice_row(app, "inspector/form", "Form", forms, vane.chord ? 1 : 0,
-                                 "On a blade flow along its span does nothing; a plate is alike all round.");
+  constexpr std::array<std::string_view, 3> forms{"plate", "blade", "airfoil"};
+  const auto chosen =
+      choice_row(app, "inspector/form", "Form", forms, static_cast<std::size_t>(form_of(vane)),
+                 "On a blade flow along its span does nothing; a plate is alike all round. An airfoil is a "
+                 "blade with lift and drag by the direction of the flow.");
   if (chosen)
-    edit_later(app, "Form of " + vane.name,
-               [name = vane.name, blade = *chosen == 1](Mechanism& m, Selection&) {
-                 const int f = force_index(m, name);
-                 if (f < 0) return;
-                 Force& same = m.forces[static_cast<std::size_t>(f)];
-                 same.chord = blade ? std::optional<Vec3>(same.normal.unitOrthogonal()) : std::nullopt;
-               });
+    edit_force(app, "Form of " + vane.name, vane.name,
+               [form = static_cast<VaneForm>(*chosen)](Force& same) { set_form(same, form); });
   if (vane.chord)
     vector_rows(app, "Chord",
                 {.name = "inspector/chord",
                  .value = *vane.chord,
-                 .help = "Along the flow over the blade, as drawn; of any length.",
+                 .help = "Along the flow over the blade, from its leading edge on, as drawn; of any length.",
                  .address = address_of(vane, "chord")});
+  if (has_polar(vane)) {
+    coefficient_row(
+        app, vane, "Lift coefficient", "lift", vane.lift,
+        "Of the force square to the flow: an expression of the incidence, the angle from the chord "
+        "to the flow towards the normal, such as =table(incidence, [-180 deg, 0], [-90 deg, 0], "
+        "[-12 deg, -1.1], [12 deg, 1.1], [90 deg, 0], [180 deg, 0]).");
+    coefficient_row(app, vane, "Drag coefficient", "drag", vane.drag,
+                    "Of the force along the flow, such as =0.01 + 1.2*sin(incidence)^2; zero or more.");
+    return;
+  }
   quantity_row(app, "Normal coefficient",
                {.name = "inspector/cn",
                 .value = vane.cn,

@@ -1,5 +1,8 @@
 #include "tests/engine/reference/b_matrix.hpp"
 
+#include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/force_law.hpp"
+
 #include <stdexcept>
 
 namespace flyball::reference {
@@ -133,6 +136,19 @@ void push(const Mechanism& mechanism, std::vector<ReferenceBody>& bodies, const 
   bodies[at(b)].applied.torque += (point - bodies[at(b)].position).cross(force);
 }
 
+// Of a vane, by its law or number.
+Real coefficient(const Mechanism& mechanism, const Formula* formula, const std::optional<double>& number,
+                 Real attack) {
+  if (!formula) return number.value_or(0);
+  const ForceLaw law(formula->text, air_variable);
+  std::vector<Dual> numbers;
+  for (const std::string& name : law.names())
+    numbers.emplace_back(named_number(mechanism, name));
+  const auto rounded = static_cast<double>(attack);
+  const Dual there = law(numbers, {rounded, 1});
+  return Real(there.value) + Real(there.rate) * (attack - Real(rounded));
+}
+
 // Lift and drag by the angle of attack of the flow in the plane of normal and chord, or of normal and flow.
 Vec3R vane_force(const Mechanism& mechanism, const Force& vane, const Mat3R& displacement,
                  const Vec3R& flow) {
@@ -148,8 +164,11 @@ Vec3R vane_force(const Mechanism& mechanism, const Force& vane, const Mat3R& dis
   const Real across = flow.dot(normal), past = flow.dot(along), speed = std::hypot(across, past);
   if (speed == 0) return Vec3R::Zero();
   const Real attack = std::atan2(across, past), pressure = Real(mechanism.air.density) / 2 * speed * speed;
-  const Real lift = Real(vane.cn) * std::sin(attack) * std::cos(attack),
-             drag = Real(vane.cn) * std::sin(attack) * std::sin(attack) + Real(vane.cd);
+  const bool polar = vane.lift || vane.drag;
+  const Real lift = polar ? coefficient(mechanism, lift_law(vane), vane.lift, attack)
+                          : Real(vane.cn) * std::sin(attack) * std::cos(attack),
+             drag = polar ? coefficient(mechanism, drag_law(vane), vane.drag, attack)
+                          : Real(vane.cn) * std::sin(attack) * std::sin(attack) + Real(vane.cd);
   const Vec3R downstream = (across * normal + past * along) / speed,
               lifting = (past * normal - across * along) / speed;
   return pressure * Real(vane.area) * (lift * lifting + drag * downstream);

@@ -243,6 +243,7 @@ class Builder {
       if (dice_.chance(0.5)) vane.chord = vane.normal.cross(dice_.direction());
       vane.cn = dice_.between(0.5, 3);
       vane.cd = dice_.between(0, 0.5);
+      if (vane.chord && dice_.chance(0.5)) add_polar(vane);
       mechanism_.forces.push_back(vane);
     }
     mechanism_.air.density = dice_.between(1, 2);
@@ -250,6 +251,18 @@ class Builder {
       mechanism_.air.turns_with = body_name(anchored() ? 0 : dice_.below(count));
     else
       mechanism_.air.wind = anchored() ? Vec3(main_axis_ * dice_.between(-3, 3)) : dice_.box(3);
+  }
+
+  // Of any shape, the same from behind on either side.
+  void add_polar(Force& vane) {
+    vane.lift = vane.drag = 0;
+    const std::string size = std::to_string(dice_.between(0.5, 2));
+    vane.formulas = {{"drag", "0.1 + " + size + "*(1 - cos(2*incidence))"},
+                     {"lift", dice_.chance(0.5)
+                                  ? size + "*sin(incidence + 0.1)"
+                                  : "table(incidence, [-180 deg, 0], [-90 deg, 0.1], [-15 deg, -" + size +
+                                        "], [0, 0.2], [15 deg, " + size +
+                                        "], [90 deg, -0.2], [180 deg, 0])"}};
   }
 
   void add_point_spring(Force& force, int count) {

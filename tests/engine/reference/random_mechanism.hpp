@@ -26,7 +26,7 @@ struct RandomOptions {
   double spring_share = 0.6; // of the free coordinates, how many have a spring; 1 keeps all of them in place
   bool stops = true;
   bool forces = true; // beside the joints
-  bool air = false;   // vanes, in a wind or in air that turns with a body
+  bool air = false;   // vanes, some by polars, in a wind or in air that turns with a body
   bool massless = true;
   bool rotated_bodies = true;
   bool skew_universals = false; // axes not at right angles

@@ -1,0 +1,127 @@
+#include "engine/stability/kinks.hpp"
+
+#include "engine/system/air_force.hpp"
+#include "engine/system/residual.hpp"
+#include "engine/system/rotation_vector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace flyball {
+namespace {
+
+// Slopes before and after a jump within some 1e-8 of `size` beside x, of a law with this slope.
+template <class Slope>
+std::optional<std::array<double, 2>> jump_at(const Slope& slope, double x, double size) {
+  const auto slopes = [&](double h) { return std::array<double, 2>{slope(x - h), slope(x + h)}; };
+  const auto difference = [](const std::array<double, 2>& s) { return std::abs(s[1] - s[0]); };
+  constexpr double far = 1e-6, near = far / 64;
+  const auto wide = slopes(far * size), close = slopes(near * size);
+  const double largest = std::max(std::abs(close[0]), std::abs(close[1]));
+  // A smooth slope differs by 1/64 as much.
+  if (!(difference(close) > 1e-6 * largest) || difference(close) < 0.5 * difference(wide)) return {};
+  return close;
+}
+
+// Collects those that stand on one.
+class Search {
+ public:
+  Search(Kink::Of of, std::size_t entry, std::vector<Kink>& out) : of_(of), entry_(entry), out_(out) {}
+
+  void look(const BoundLaw& law, Kink::Law which, double at, double size) const {
+    if (law) add(which, at, jump_at([&](double x) { return law.slope(x); }, at, size));
+  }
+  // At +-pi the flow comes from behind, from either side.
+  void look_round(const BoundLaw& law, Kink::Law which, double at) const {
+    const auto slope = [&](double x) { return law.slope(std::remainder(x, 2 * std::numbers::pi)); };
+    if (law) add(which, at, jump_at(slope, at, 1));
+  }
+
+ private:
+  void add(Kink::Law which, double at, const std::optional<std::array<double, 2>>& jump) const {
+    if (jump) out_.push_back({of_, entry_, which, at, *jump});
+  }
+
+  Kink::Of of_;
+  std::size_t entry_;
+  std::vector<Kink>& out_;
+};
+
+void look_at_polar(const Search& search, const BodyForceParameters& p, const Mat3& rotation,
+                   const Vec3& flow) {
+  const Vec3 normal = rotation * p.normal, chord = (rotation * p.span).cross(normal);
+  const double up = flow.dot(normal), along = flow.dot(chord);
+  if (up == 0 && along == 0) return; // no force, on either side
+  const double incidence = std::atan2(up, along);
+  search.look_round(p.polar->lift, Kink::Law::lift, incidence);
+  search.look_round(p.polar->drag, Kink::Law::drag, incidence);
+}
+
+} // namespace
+
+std::vector<Kink> find_kinks(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k) {
+  const System& system = problem.system;
+  const Parameters& p = problem.parameters;
+  std::vector<Kink> out;
+  for (std::size_t i = 0; i < system.coordinate_laws.size(); ++i) {
+    const ForceLawElement& e = system.coordinate_laws[i];
+    const auto l = static_cast<std::size_t>(e.at);
+    const Link& link = system.links[l];
+    if (link.v < 0) continue;
+    const CoordinateForce& force = p.links[l].force[static_cast<std::size_t>(e.component)];
+    const Search search(Kink::Of::coordinate, i, out);
+    const double size = link.type == LinkType::prismatic ? p.length : 1;
+    if (link.drive < 0) {
+      const double value =
+          link.type == LinkType::spherical ? rotation_vector(link, p.links[l], q)[e.component] : q[link.q];
+      search.look(force.laws->spring, Kink::Law::spring, value - force.laws->free, size);
+    }
+    search.look(force.laws->damper, Kink::Law::damper, finds_speed(link) ? q[link.q] : 0, size);
+  }
+  for (std::size_t i = 0; i < system.spring_laws.size(); ++i) {
+    const auto n = static_cast<std::size_t>(system.spring_laws[i].at);
+    const PointSpringParameters& spring = p.springs[n];
+    const SpringState<double> s = spring_state(system.springs[n], spring, k);
+    const Search search(Kink::Of::spring, i, out);
+    search.look(spring.laws->spring, Kink::Law::spring, s.length - spring.free_length, p.length);
+    search.look(spring.laws->damper, Kink::Law::damper, stretching(system.springs[n], s, k), p.length);
+  }
+  for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
+    const BodyForceParameters& vane = p.body_forces[i];
+    const int link = system.body_forces[i].link;
+    if (!vane.polar) continue;
+    look_at_polar(Search(Kink::Of::vane, i, out), vane, k.at(link).R,
+                  vane.wind - k.velocity(link, k.point(link, vane.at)));
+  }
+  for (std::size_t i = 0; i < system.turning_air.size(); ++i) {
+    const BodyForceParameters& vane = p.turning_air[i];
+    if (!vane.polar) continue;
+    const TurningAirElement& e = system.turning_air[i];
+    look_at_polar(Search(Kink::Of::vane_in_turning_air, i, out), vane, k.at(e.ends.b).R,
+                  turning_air_force<double>(e, vane, k).flow);
+  }
+  return out;
+}
+
+Parameters straightened(const Problem& problem, const std::vector<Kink>& kinks, KinkSide side) {
+  const System& system = problem.system;
+  Parameters out = problem.parameters;
+  for (const Kink& kink : kinks) {
+    if (kink.law != Kink::Law::spring) continue;
+    const ForceLawElement& e =
+        (kink.of == Kink::Of::spring ? system.spring_laws : system.coordinate_laws)[kink.entry];
+    auto& laws = kink.of == Kink::Of::spring ? out.springs[static_cast<std::size_t>(e.at)].laws
+                                             : out.links[static_cast<std::size_t>(e.at)]
+                                                   .force.hold(static_cast<std::size_t>(e.component))
+                                                   .laws;
+    const auto [least, most] = std::minmax(kink.slopes[0], kink.slopes[1]);
+    laws = std::make_shared<const ForceLaws>(
+        line_through(laws->spring, kink.at, side == KinkSide::softer ? least : most), laws->damper,
+        laws->free);
+  }
+  return out;
+}
+
+} // namespace flyball

@@ -1,0 +1,35 @@
+// Springs, dampers and vanes that stand on a kink of their laws (force_law.hpp), where the slope jumps.
+//
+// The balance has one derivative on either side there, so eigenvalues tell of one side. Where there is a
+// potential the sides can be compared: with the smaller slope of every spring on a kink in place of its law
+// the second variation is nowhere larger than that of any side, and with the larger one nowhere smaller.
+#pragma once
+
+#include "engine/kkt/problem.hpp"
+
+#include <array>
+#include <vector>
+
+namespace flyball {
+
+struct Kink {
+  // Whose law: an entry of System::coordinate_laws, spring_laws, body_forces or turning_air.
+  enum class Of { coordinate, spring, vane, vane_in_turning_air };
+  enum class Law { spring, damper, lift, drag };
+  Of of = Of::coordinate;
+  std::size_t entry = 0;
+  Law law = Law::spring;
+  double at = 0;                  // the deflection, rate or incidence
+  std::array<double, 2> slopes{}; // before and after
+};
+
+// At a configuration, whose kinematics are at the drawn phase.
+std::vector<Kink> find_kinks(const Problem& problem, const Eigen::VectorXd& q,
+                             const Kinematics<double>& kinematics);
+
+// The numbers with a straight line, of the smaller or larger slope, in place of the law of every spring that
+// stands on a kink.
+enum class KinkSide { softer, stiffer };
+Parameters straightened(const Problem& problem, const std::vector<Kink>& kinks, KinkSide side);
+
+} // namespace flyball
