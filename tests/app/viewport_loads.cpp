@@ -138,7 +138,8 @@ TEST_CASE("bearings are parts of the diagram, of what they hold and of what hold
       {"name": "film", "type": "bearing", "bodies": ["foot", "rotor"], "at": [0, 0.1, 0], "axis": [0, 0, 1],
        "stiffness": [[3e3, 0, 0, 0, 0, 0], [0, 4e3, 0, 0, 0, 0], [0, 0, 5e3, 0, 0, 0], [0, 0, 0, 80, 0, 0],
          [0, 0, 0, 0, 90, 0], [0, 0, 0, 0, 0, 70]],
-       "damping": [[3, 0], [0, 3]]}]})"));
+       "damping": [[3, 0, 0, 0, 0, 0], [0, 3, 0, 0, 0, 0], [0, 0, 3, 0, 0, 0], [0, 0, 0, 1, 0, 0],
+         [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]]}]})"));
   for (const int body : {0, 1}) {
     const std::vector<Load> loads =
         loads_of(Assembly(steady.mechanism, steady.solution.poses), steady.solution, steady.turning, body);
