@@ -101,11 +101,14 @@ bool acts_between(ForceType type) {
   return type == ForceType::spring || type == ForceType::bearing;
 }
 
-Mat3 bearing_axes(const Force& bearing) {
-  const Vec3 z = bearing.axis.normalized();
+Vec3 bearing_x_towards(const Force& bearing) {
   Eigen::Index nearest = 0;
-  z.cwiseAbs().minCoeff(&nearest);
-  const Vec3 towards = bearing.x_axis.value_or(Vec3(Vec3::Unit(nearest)));
+  bearing.axis.cwiseAbs().minCoeff(&nearest);
+  return bearing.x_axis.value_or(Vec3(Vec3::Unit(nearest)));
+}
+
+Mat3 bearing_axes(const Force& bearing) {
+  const Vec3 z = bearing.axis.normalized(), towards = bearing_x_towards(bearing);
   Mat3 axes;
   axes.col(0) = (towards - z * z.dot(towards)).normalized();
   axes.col(1) = z.cross(axes.col(0));

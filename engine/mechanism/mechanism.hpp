@@ -228,8 +228,7 @@ struct Force {
   double linear = 0;                    // N s/m; drag
   double quadratic = 0;                 // N s^2/m^2; drag
   Vec3 axis = Vec3::UnitZ();            // bearing, any length: of what turns in it
-  std::optional<Vec3>
-      x_axis{}; // bearing, any length: its x in the plane across; default as bearing_axes says
+  std::optional<Vec3> x_axis{}; // bearing, any length: its x in the plane across; default bearing_x_towards
   BearingMatrix bearing_stiffness{}, bearing_damping{};
   double area = 0;             // m^2; vane
   Vec3 normal = Vec3::UnitZ(); // any length, fixed in the body; vane
@@ -316,8 +315,10 @@ std::string_view type_name(SliderScale scale);
 
 // Whether what acts does so between two bodies, at `bodies`, rather than on one, at `body`.
 bool acts_between(ForceType type);
-// x, y and z of a bearing, unit vectors of the drawn pose as columns. Without an x_axis x is the world axis
-// nearest to the plane across, the first of several.
+// Where a bearing's x is, in the plane across its axis: the x_axis, or without one the world axis nearest to
+// that plane, the first of several.
+Vec3 bearing_x_towards(const Force& bearing);
+// x, y and z of a bearing, unit vectors of the drawn pose as columns.
 Mat3 bearing_axes(const Force& bearing);
 // 2 or 6: the larger of its matrices.
 int bearing_size(const Force& bearing);

@@ -293,8 +293,7 @@ class Binder {
   // See bearing_axes.
   Tensor axes_of(const Force& bearing) const {
     const Vector z = read_(bearing.axis).normalized();
-    Vector towards = bearing_axes(bearing).col(0).template cast<N>();
-    if (bearing.x_axis) towards = read_(*bearing.x_axis);
+    const Vector towards = read_(bearing.x_axis, Vector(bearing_x_towards(bearing).template cast<N>()));
     Tensor axes;
     axes.col(0) = (towards - z * z.dot(towards)).normalized();
     axes.col(1) = z.cross(axes.col(0));

@@ -137,9 +137,9 @@ void bearing_rows(App& app, const Force& force) {
     };
   vector_rows(app, "x axis",
               {.name = "inspector/x_axis",
-               .value = force.x_axis.value_or(Vec3(bearing_axes(force).col(0))),
+               .value = bearing_x_towards(force),
                .help = force.x_axis ? "Where x is, in the plane across the axis; of any length."
-                                    : "Where x is: as near to a world axis as can be, unless another "
+                                    : "Where x is: towards the world axis most across, unless another "
                                       "direction is typed.",
                .address = address_of(force, "x_axis"),
                .standard = !force.x_axis},
