@@ -23,6 +23,7 @@ enum class Status {
 
 // What found the answer where plain Newton-Raphson did not.
 enum class Fallback {
+  stops, // from what hangs loose between its stops pressed onto those that the forces push it to
   damped,
   homotopy,
   descent,
