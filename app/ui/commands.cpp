@@ -228,13 +228,14 @@ const std::array all_commands{
             .enabled = any_selected},
     Command{.id = "edit.gear",
             .title = "Join by a gear",
-            .help = "Couple the selected joints: the second turns as the first does.",
+            .help = "Couple the selected joints: each turns as the one chosen before it does.",
             .run = gear<GearKind::gear>,
             .enabled = can_gear<GearKind::gear>},
     Command{.id = "edit.belt",
             .title = "Join by a belt",
             .help =
-                "A belt or chain over wheels on the selected joints; over more wheels from one to the next.",
+                "A belt or chain over wheels on the selected joints, from one to the next in the order of "
+                "their choice.",
             .run = gear<GearKind::belt>,
             .enabled = can_gear<GearKind::belt>},
     Command{.id = "edit.rack",
@@ -247,6 +248,13 @@ const std::array all_commands{
             .help = "A thread: the selected joint that slides moves by the lead as the other makes a turn.",
             .run = gear<GearKind::screw>,
             .enabled = can_gear<GearKind::screw>},
+    Command{.id = "edit.backlash",
+            .title = "Give backlash",
+            .help =
+                "Play between the teeth of the selected gear, belt, rack or screw: its wheel is hung in a "
+                "rim between two stops.",
+            .run = give_backlash_to_selected,
+            .enabled = can_give_backlash},
     Command{.id = "edit.settle",
             .title = "Draw as it settles",
             .help = "The steady state becomes the drawn pose; the mechanism stays the same.",
