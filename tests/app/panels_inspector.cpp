@@ -492,6 +492,26 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
   }
 }
 
+TEST_CASE("a law typed for a stiffness or damping stands in its place, its slider gone") {
+  Hand hand;
+  hand.click("outline/joints/slide");
+  REQUIRE(is_pinned(hand.mechanism(), "joints.slide.spring.stiffness"));
+  const auto slide = [&]() -> const Coordinate& { return hand.joint("slide").coordinates[0]; };
+  hand.one_step([&] {
+    hand.fill("inspector/spring/stiffness",
+              "=table(deflection, [-200 mm, -150 N], [0 mm, 0 N], [50 mm, 40 N])");
+  });
+  CHECK(hand.app.inspector.typing.mistake.empty());
+  CHECK(slide().spring->force);
+  CHECK_FALSE(is_pinned(hand.mechanism(), "joints.slide.spring.stiffness"));
+  hand.one_step([&] { hand.fill("inspector/damping", "=40 N*tanh(rate/(0.1 m/s))"); });
+  CHECK(slide().damping_force);
+  CHECK(hand.app.mistakes.empty());
+  hand.one_step([&] { hand.fill("inspector/spring/force", "=1500 N/m*deflection"); });
+  CHECK(slide().spring->force);
+  CHECK(converged(hand.app));
+}
+
 TEST_CASE("forces of every type are edited") {
   Hand hand;
   const auto add = [&](const auto& make) {

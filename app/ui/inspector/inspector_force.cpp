@@ -251,20 +251,20 @@ void vane_rows(App& app, const Force& vane) {
                  .value = *vane.chord,
                  .help = "Along the flow over the blade, as drawn; of any length.",
                  .address = address_of(vane, "chord")});
-  quantity_row(app, "Normal coefficient",
+  quantity_row(app, "cn (normal)",
                {.name = "inspector/cn",
                 .value = vane.cn,
                 .unit = "",
-                .help =
-                    "Of the force square to the plate, times the sine of the angle of attack; a plate in a "
-                    "stream 1.2, a thin blade up to 2 pi.",
+                .help = "Coefficient of the force square to the plate, times the sine of the angle of "
+                        "attack; a plate in a "
+                        "stream 1.2, a thin blade up to 2 pi.",
                 .least = Least::zero,
                 .address = address_of(vane, "cn")});
-  quantity_row(app, "Drag coefficient",
+  quantity_row(app, "cd (drag)",
                {.name = "inspector/cd",
                 .value = vane.cd,
                 .unit = "",
-                .help = "Of the force along the flow that is there at any angle.",
+                .help = "Coefficient of the force along the flow that is there at any angle.",
                 .least = Least::zero,
                 .address = address_of(vane, "cd")});
 }
