@@ -86,8 +86,8 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);
   for (const char* key :
        {"potential", "eigenvalues", "floquet", "at_constant_speed", "speeds", "speed_errors", "neutral",
-        "drive_torques", "drive_torque_ranges", "reactions", "poses", "points", "measures", "sensitivities",
-        "measure_sensitivities", "condition"})
+        "drive_torques", "drive_torque_ranges", "reactions", "bearings", "poses", "points", "measures",
+        "sensitivities", "measure_sensitivities", "condition"})
     out[key] = nullptr;
   out["unheld"] = Json::array();
   for (const UnheldCoordinate& c : s.unheld)
@@ -146,6 +146,12 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
     if (g.varying) entry["varying"] = true;
     if (g.nonunique) entry["nonunique"] = true;
     out["reactions"][g.joint] = std::move(entry);
+  }
+  out["bearings"] = Json::object();
+  for (const BearingForce& b : s.bearings) {
+    Json entry = {{"force", array(b.force)}, {"torque", array(b.torque)}};
+    if (b.varying) entry["varying"] = true;
+    out["bearings"][b.bearing] = std::move(entry);
   }
   out["poses"] = Json::object();
   for (std::size_t b = 0; b < s.poses.size(); ++b) {

@@ -94,6 +94,8 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
     width = std::max(width, m.name.size());
   for (const auto& r : s.reactions)
     width = std::max(width, printable(r.joint).size());
+  for (const auto& b : s.bearings)
+    width = std::max(width, printable(b.bearing).size());
   const auto heading = [&](const char* text) { out += fmt::format("\n{}\n", text); };
   if (!s.coordinates.empty()) heading("coordinates");
   for (const CoordinateSolution& c : s.coordinates) {
@@ -136,28 +138,36 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
     force = std::max(force, r.force.norm());
     torque = std::max(torque, r.torque.norm());
   }
+  for (const BearingForce& b : s.bearings) {
+    force = std::max(force, b.force.norm());
+    torque = std::max(torque, b.torque.norm());
+  }
   double load = std::max(force, torque);
   for (const GearReaction& g : s.gears)
     load = std::max({load, std::abs(g.a), std::abs(g.b)});
   const auto clean = [](double x, double size) { return std::abs(x) < 1e-12 * size ? 0. : x; };
-  const auto clean_vector = [&](const Vec3& v, double size) -> Vec3 {
-    return v.unaryExpr([&](double x) { return clean(x, size); });
-  };
   if (!s.drive_torques.empty()) heading("drives");
   for (const DriveTorque& d : s.drive_torques)
     out += fmt::format("  {:{}}  {:>22.9g} {}{}{}\n", shown_label(d), width, clean(d.value, load),
                        unit_of(d.angle), range_text(d), d.nonunique ? "  (not unique)" : "");
   if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
-  for (const Reaction& raw : s.reactions) {
-    const Reaction r{raw.joint, clean_vector(raw.force, force),
-                     clean_vector(raw.torque, std::max(torque, force)), raw.varying, raw.nonunique};
+  const auto wrench = [&](const std::string& name, const Vec3& raw_force, const Vec3& raw_torque,
+                          const std::string& told) {
+    const auto cleaned = [&](const Vec3& v, double size) -> Vec3 {
+      return v.unaryExpr([&](double x) { return clean(x, size); });
+    };
+    const Vec3 f = cleaned(raw_force, force), t = cleaned(raw_torque, std::max(torque, force));
     out += fmt::format("  {:{}}  force [{:.6g}, {:.6g}, {:.6g}] N  torque [{:.6g}, {:.6g}, {:.6g}] N m{}\n",
-                       printable(r.joint), width, r.force.x(), r.force.y(), r.force.z(), r.torque.x(),
-                       r.torque.y(), r.torque.z(), flags(r.varying, r.nonunique));
-  }
+                       printable(name), width, f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), told);
+  };
+  for (const Reaction& r : s.reactions)
+    wrench(r.joint, r.force, r.torque, flags(r.varying, r.nonunique));
   if (s.reactions_nonunique)
     out +=
         "  (not unique): the loops are redundant; of many possible ones these have the least multipliers.\n";
+  if (!s.bearings.empty()) heading("bearings, on their second body, world axes at the drawn phase");
+  for (const BearingForce& b : s.bearings)
+    wrench(b.bearing, b.force, b.torque, flags(b.varying, false));
   if (!s.gears.empty())
     heading("gears, along the coordinates of their two joints, whose reactions include it");
   for (const GearReaction& g : s.gears)

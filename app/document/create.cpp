@@ -127,6 +127,18 @@ std::string add_spring(Mechanism& mechanism, const std::array<std::string, 2>& b
   return add(mechanism, std::move(force), stiffness == 0 && damping != 0 ? "damper" : "spring");
 }
 
+std::string add_bearing(Mechanism& mechanism, const std::array<std::string, 2>& bodies, const Vec3& at,
+                        const Vec3& axis) {
+  Force force;
+  force.type = ForceType::bearing;
+  force.bodies = bodies;
+  force.at = at;
+  force.axis = axis;
+  force.bearing_stiffness = {usual_bearing_stiffness, 0, 0, usual_bearing_stiffness};
+  force.bearing_damping = {usual_bearing_damping, 0, 0, usual_bearing_damping};
+  return add(mechanism, std::move(force), "bearing");
+}
+
 std::string add_force(Mechanism& mechanism, ForceType type, const std::string& body, const Vec3& at,
                       const Vec3& vector) {
   Force force;

@@ -38,8 +38,12 @@ std::string add_gear(Mechanism& mechanism, const std::array<std::string, 2>& coo
 // Slack as drawn, and of no length between points that coincide. A damper is a spring without stiffness.
 std::string add_spring(Mechanism& mechanism, const std::array<std::string, 2>& bodies,
                        const std::array<Vec3, 2>& points, double stiffness, double damping);
-// Every type but spring. Of drag `vector` does not count and the linear coefficient is 1 N s/m, of a vane of
-// 1 dm^2 it is the normal.
+// Of two rows, alike all round, whose axis is that of what turns in it.
+inline constexpr double usual_bearing_stiffness = 1e6, usual_bearing_damping = 1000; // N/m, N s/m
+std::string add_bearing(Mechanism& mechanism, const std::array<std::string, 2>& bodies, const Vec3& at,
+                        const Vec3& axis);
+// Every type but spring and bearing. Of drag `vector` does not count and the linear coefficient is 1 N s/m,
+// of a vane of 1 dm^2 it is the normal.
 std::string add_force(Mechanism& mechanism, ForceType type, const std::string& body, const Vec3& at,
                       const Vec3& vector);
 

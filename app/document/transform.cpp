@@ -68,7 +68,8 @@ class Transform {
       return;
     }
     if (force.type == ForceType::bearing) {
-      if (selected || (moves(force.bodies[0]) && moves(force.bodies[1])))
+      const bool first = moves(force.bodies[0]), second = moves(force.bodies[1]);
+      if (selected || (first && second) || (outer_ && (first || second)))
         force = image_of(force, isometry_, Quat::Identity(), false);
       return;
     }

@@ -2,13 +2,13 @@
 //
 // A body takes along what is its own: mass centre, axes, shapes, the ends of springs and distance joints on
 // it, the points of forces on it, and joints of which every body moves (the ground never does); with
-// OuterJoints::follow also joints to what stays, the ground included: their point and axis go with the body,
-// and are another place of what stays. A joint
-// selected by itself moves its point and axis; a force or distance joint selected by itself moves all its
-// points. A rotation also turns axes and inertia's frame (the body's `rotation`). A force's vector in body
-// axes goes with the body; in world axes it turns only where the force is selected. Coordinates of spherical
-// and free joints have the world's axes: they trade places as these do, gears and sliders following (see
-// coordinate_image.hpp). Nothing moves twice, and nothing by numbers that are not finite.
+// OuterJoints::follow also joints and bearings to what stays, the ground included: their point and axis go
+// with the body, and are another place of what stays. A joint or bearing selected by itself moves its point
+// and axis; another force or a distance joint selected by itself moves all its points. A rotation also turns
+// axes and inertia's frame (the body's `rotation`). A force's vector in body axes goes with the body; in
+// world axes it turns only where the force is selected. Coordinates of spherical and free joints have the
+// world's axes: they trade places as these do, gears and sliders following (see coordinate_image.hpp).
+// Nothing moves twice, and nothing by numbers that are not finite.
 #pragma once
 
 #include "app/document/part.hpp"

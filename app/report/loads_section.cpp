@@ -49,20 +49,35 @@ Vec3 without_rounding(const Vec3& v, double largest) {
   return v.unaryExpr([&](double x) { return std::abs(x) < 1e-12 * largest ? 0. : x; });
 }
 
+// Of joints and bearings: N, N m.
+struct LargestLoads {
+  double force = 0, torque = 0;
+};
+LargestLoads largest_loads(const Solution& s) {
+  LargestLoads out;
+  const auto take = [&](const auto& all) {
+    for (const auto& each : all)
+      out = {std::max(out.force, each.force.norm()), std::max(out.torque, each.torque.norm())};
+  };
+  take(s.reactions);
+  take(s.bearings);
+  return out;
+}
+
+void wrench_row(HtmlTable& table, const std::string& name, const Vec3& force, const Vec3& torque,
+                const LargestLoads& largest, const char* told) {
+  const Vec3 f = without_rounding(force, largest.force),
+             t = without_rounding(torque, std::max(largest.torque, largest.force));
+  table.row({name, vector_quantity(f, "N", 5), quantity(f.norm(), "N", 5), vector_quantity(t, "N m", 5),
+             quantity(t.norm(), "N m", 5), told});
+}
+
 Html reactions(const Solution& s) {
   if (s.reactions.empty()) return {};
-  double force = 0, torque = 0;
-  for (const Reaction& r : s.reactions) {
-    force = std::max(force, r.force.norm());
-    torque = std::max(torque, r.torque.norm());
-  }
   HtmlTable table(
       {{"Joint", false}, {"Force (x, y, z)"}, {"Size"}, {"Torque (x, y, z)"}, {"Size"}, {"", false}});
-  for (const Reaction& r : s.reactions) {
-    const Vec3 f = without_rounding(r.force, force), t = without_rounding(r.torque, std::max(torque, force));
-    table.row({r.joint, vector_quantity(f, "N", 5), quantity(f.norm(), "N", 5), vector_quantity(t, "N m", 5),
-               quantity(t.norm(), "N m", 5), flags(r.varying, r.nonunique)});
-  }
+  for (const Reaction& r : s.reactions)
+    wrench_row(table, r.joint, r.force, r.torque, largest_loads(s), flags(r.varying, r.nonunique));
   Html out = heading_of("Reactions") +
              paragraph_of(
                  "What the parent exerts on the child through the joint, its spring, stop, damper and drive "
@@ -75,6 +90,18 @@ Html reactions(const Solution& s) {
                    {{"class", "note"}}) +
            "\n";
   return out;
+}
+
+Html bearings(const Solution& s) {
+  if (s.bearings.empty()) return {};
+  HtmlTable table(
+      {{"Bearing", false}, {"Force (x, y, z)"}, {"Size"}, {"Torque (x, y, z)"}, {"Size"}, {"", false}});
+  for (const BearingForce& b : s.bearings)
+    wrench_row(table, b.bearing, b.force, b.torque, largest_loads(s), flags(b.varying, false));
+  return heading_of("Bearings") +
+         paragraph_of("What each exerts on its second body, its damping included: in world axes at the drawn "
+                      "phase, torques about the bearing's point.") +
+         table.html();
 }
 
 Html gears(const Solution& s) {
@@ -110,7 +137,7 @@ Html springs(const std::vector<SpringLoad>& all) {
 
 OptionalSection loads_section(const ReportContents& contents) {
   const Html body = drives(*contents.mechanism, contents.solution) + springs(contents.springs) +
-                    reactions(contents.solution) + gears(contents.solution);
+                    reactions(contents.solution) + bearings(contents.solution) + gears(contents.solution);
   if (body.empty()) return std::nullopt;
   return ReportSection{"loads", "Loads", body};
 }

@@ -71,7 +71,14 @@ bool is_stiffness(std::string_view address) {
   return address.ends_with(".stiffness");
 }
 
-// "drive.0.speed" of a joint with several coordinates becomes "speed 0", and "position.1" "position y".
+// Of a row or column of a bearing's matrix: "x", "turn z".
+std::string shift_or_turn(const std::string& index) {
+  const auto i = static_cast<std::size_t>(std::atoi(index.c_str()));
+  return (i < 3 ? "" : "turn ") + std::string(1, "xyz"[i % 3]);
+}
+
+// "drive.0.speed" of a joint with several coordinates becomes "speed 0", "position.1" "position y", and
+// "stiffness.0.1" of a bearing "stiffness x by y".
 std::string what_of(const std::vector<std::string>& parts) {
   const auto is_index = [](const std::string& part) {
     return part.find_first_not_of("0123456789") == std::string::npos;
@@ -82,6 +89,7 @@ std::string what_of(const std::vector<std::string>& parts) {
   if (parts.front() == "parameters") return "";
   if (parts.front() == "points") return parts.size() > 2 ? axis(parts[2]) : "";
   if (parts.front() == "gravity") return parts.size() > 1 ? axis(parts[1]) : "";
+  if (parts.front() == "air" && parts.size() > 2) return parts[1] + " " + axis(parts[2]);
   if (parts.size() > 3 && parts[2] == "inertia")
     return "inertia " +
            std::array<std::string, 6>{
@@ -91,10 +99,12 @@ std::string what_of(const std::vector<std::string>& parts) {
     of_shape.insert(of_shape.end(), parts.begin() + 4, parts.end());
     return what_of(of_shape) + " of shape " + parts[3];
   }
-  constexpr std::array vectors{"position", "at",   "axis", "axes", "x_axis", "points",
-                               "vector",   "size", "from", "to",   "turn"};
+  constexpr std::array vectors{"position", "at",    "axis", "axes", "x_axis", "points", "vector",
+                               "normal",   "chord", "size", "from", "to",     "turn"};
   const bool vector = parts.size() > 3 && std::ranges::find(vectors, parts[2]) != vectors.end();
   if (vector) return parts[2] + (parts.size() > 4 ? " " + parts[3] : "") + " " + axis(parts.back());
+  const bool matrix = parts.size() == 5 && is_index(parts[3]) && is_index(parts[4]);
+  if (matrix) return parts[2] + " " + shift_or_turn(parts[3]) + " by " + shift_or_turn(parts[4]);
   if (parts.size() > 3 && is_index(parts.back())) return parts[2] + " " + parts.back();
   std::string words = parts.back();
   const bool plain = parts.back() == "speed" || parts.back() == "stiffness";
@@ -105,6 +115,13 @@ std::string what_of(const std::vector<std::string>& parts) {
       words = parts[i] + " " + words;
   }
   return words;
+}
+
+// What the number is of: the part or point that has the name, or "gravity", "air" and "simulation", of which
+// the scene has one each.
+std::string owner_of(const std::vector<std::string>& parts) {
+  const bool one = parts[0] == "gravity" || parts[0] == "air" || parts[0] == "simulation";
+  return one || parts.size() < 2 ? parts[0] : parts[1];
 }
 
 std::optional<double> number_at(const Mechanism& mechanism, const std::string& address) {
@@ -121,8 +138,7 @@ ParameterControl named_control(const std::string& address, ParameterGroup group,
   const std::vector<std::string> parts = split(address);
   control.address = address;
   control.group = group;
-  const bool named = parts.size() > 1 && parts[0] == "parameters";
-  control.name = parts.size() > 2 || named ? parts[1] : parts[0];
+  control.name = owner_of(parts);
   control.what = what_of(parts);
   std::ranges::replace(control.what, '_', ' ');
   control.unit = std::move(unit);
@@ -282,8 +298,8 @@ std::string parameter_phrase(std::string_view address) {
   const std::vector<std::string> parts = split(address);
   std::string what = what_of(parts);
   std::ranges::replace(what, '_', ' ');
-  if (what.empty()) return parts.size() > 1 ? parts[1] : parts[0];
-  return what + " of " + (parts.size() > 2 ? parts[1] : parts[0]);
+  const std::string owner = owner_of(parts);
+  return what.empty() ? owner : what + " of " + owner;
 }
 
 double slider_step(double span) {

@@ -1,5 +1,6 @@
 #include "app/ui/edit_commands.hpp"
 
+#include "app/document/backlash.hpp"
 #include "app/document/clipboard.hpp"
 #include "app/document/copies.hpp"
 #include "app/document/create.hpp"
@@ -144,14 +145,43 @@ void select_all(App& app) {
   select(app, std::move(all));
 }
 
+namespace {
+
+// The pairs of coordinates that a gear or belt ties when it goes from one joint to the next in the order of
+// their choice, a rack or screw one pair; none where it cannot.
+std::vector<std::array<std::string, 2>> pairs_to_gear(const App& app, GearKind kind) {
+  const std::vector<std::string> joints = app.selection().names(PartKind::joint);
+  const std::size_t count = joints.size();
+  if (count <= 2 || turns_into_slide(kind)) {
+    const auto ends = gear_ends(app.mechanism(), joints, kind);
+    return ends ? std::vector{*ends} : std::vector<std::array<std::string, 2>>{};
+  }
+  std::vector<std::array<std::string, 2>> pairs;
+  for (std::size_t i = 1; i < count; ++i) {
+    const auto ends = gear_ends(app.mechanism(), {joints[i - 1], joints[i]}, kind);
+    if (!ends || (i > 1 && (*ends)[0] != pairs.back()[1])) return {};
+    pairs.push_back(*ends);
+  }
+  return pairs;
+}
+
+// Two belts over one wheel have its radius by one number.
+void share_radius(Mechanism& mechanism, const std::string& from, const std::string& to) {
+  const std::string name = free_name(mechanism, "radius"), radius = "joints." + from + ".radii.1";
+  name_number(mechanism, radius, name);
+  set_expression(mechanism, "joints." + to + ".radii.0", name);
+}
+
+} // namespace
+
 bool can_gear_selected(const App& app, GearKind kind) {
-  return gear_ends(app.mechanism(), app.selection().names(PartKind::joint), kind).has_value();
+  return !pairs_to_gear(app, kind).empty();
 }
 
 void gear_selected(App& app, GearKind kind) {
   const std::vector<std::string> joints = app.selection().names(PartKind::joint);
-  const auto ends = gear_ends(app.mechanism(), joints, kind);
-  if (!ends) return;
+  const std::vector<std::array<std::string, 2>> pairs = pairs_to_gear(app, kind);
+  if (pairs.empty()) return;
   const auto first_ratio = [kind] { // wheels that mesh, or of one size; 50 mm; 5 mm a turn
     switch (kind) {
     case GearKind::gear: return -1.;
@@ -163,10 +193,46 @@ void gear_selected(App& app, GearKind kind) {
   };
   std::string word(type_name(kind));
   word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
-  edit(app, word + " of " + joints.front() + (joints.size() > 1 ? " and " + joints.back() : ""),
-       [&](Mechanism& mechanism, Selection& selection) {
-         selection.set({PartKind::joint, add_gear(mechanism, *ends, first_ratio(), kind)});
-       });
+  const std::vector<std::string_view> names(joints.begin(), joints.end());
+  edit(app, word + " of " + word_list(names, "and"), [&](Mechanism& mechanism, Selection& selection) {
+    selection = {};
+    std::string last;
+    for (const auto& ends : pairs) {
+      const std::string name = add_gear(mechanism, ends, first_ratio(), kind);
+      if (kind == GearKind::belt && !last.empty()) share_radius(mechanism, last, name);
+      selection.add({PartKind::joint, name});
+      last = name;
+    }
+  });
+}
+
+namespace {
+
+// The gear that alone is selected; empty: none is.
+std::string selected_gear(const App& app) {
+  if (app.selection().parts.size() != 1 || app.selection().parts[0].kind != PartKind::joint) return {};
+  const int j = joint_index(app.mechanism(), app.selection().parts[0].name);
+  if (j < 0 || app.mechanism().joints[static_cast<std::size_t>(j)].type != JointType::gear) return {};
+  return app.selection().parts[0].name;
+}
+
+} // namespace
+
+bool can_give_backlash(const App& app) {
+  return !selected_gear(app).empty();
+}
+
+void give_backlash_to_selected(App& app) {
+  const std::string gear = selected_gear(app);
+  if (gear.empty()) return;
+  if (const std::string why = backlash_refused(app.document.stored(), gear); !why.empty()) {
+    app.notice = why;
+    return;
+  }
+  edit(app, "Backlash of " + gear, [&](Mechanism& mechanism, Selection& selection) {
+    selection.set({PartKind::joint, give_backlash(mechanism, gear)});
+  });
+  app.notice = "Half of the play is to either side; its stop is as stiff as the teeth.";
 }
 
 } // namespace flyball

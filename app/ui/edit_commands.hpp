@@ -21,4 +21,8 @@ bool can_gear_selected(const App& app, GearKind kind);
 void mirror_dialog(App& app);
 void circular_dialog(App& app);
 
+// Of the gear that alone is selected.
+bool can_give_backlash(const App& app);
+void give_backlash_to_selected(App& app);
+
 } // namespace flyball

@@ -27,6 +27,7 @@ enum class Tool {
   distance, // between two points, as springs and dampers
   spring,
   damper,
+  bearing, // placed as joints are
   force,
   torque,
   drag,
@@ -65,7 +66,7 @@ struct Grab {
   bool shift = false;          // held when it was moved last
 };
 
-// A joint before it is made.
+// A joint or bearing before it is made.
 struct JointDraft {
   Vec3 at = Vec3::Zero();            // m
   std::string named{};               // the named point there

@@ -46,6 +46,21 @@ class Collector {
     }
   }
 
+  // The first body feels the opposite at the same place.
+  void bearings() {
+    for (const BearingForce& b : solution_.bearings) {
+      const int index = force_index(mechanism_, b.bearing);
+      if (index < 0) continue;
+      const auto f = static_cast<std::size_t>(index);
+      const auto [first, second] = assembly_.force_bodies[f];
+      if (!of_body(first) && !of_body(second)) continue;
+      const double sign = body_ >= 0 && body_ == first ? -1 : 1;
+      const Vec3 at = assembly_.point(second, mechanism_.forces[f].at.value_or(Vec3::Zero()));
+      add(LoadKind::reaction, false, at, turn_ * (sign * b.force), part_at(PartKind::force, f));
+      add(LoadKind::reaction, true, at, turn_ * (sign * b.torque), part_at(PartKind::force, f));
+    }
+  }
+
   void drives() {
     for (const DriveTorque& t : solution_.drive_torques)
       along_coordinate(LoadKind::drive, t.joint, t.index, t.angle, t.value);
@@ -200,7 +215,9 @@ std::optional<Quat> common_turn(const Mechanism& mechanism, const Solution& solu
                                 std::span<const Pose> poses) {
   constexpr double alike = 1e-9;
   if (poses.empty() || poses.size() != solution.poses.size()) return std::nullopt;
-  if (std::ranges::any_of(solution.reactions, &Reaction::varying)) return std::nullopt;
+  if (std::ranges::any_of(solution.reactions, &Reaction::varying) ||
+      std::ranges::any_of(solution.bearings, &BearingForce::varying))
+    return std::nullopt;
   const Quat turn = poses[0].rotation * solution.poses[0].rotation.conjugate();
   for (std::size_t b = 1; b < poses.size(); ++b)
     if (turn.angularDistance(poses[b].rotation * solution.poses[b].rotation.conjugate()) > alike)
@@ -214,6 +231,7 @@ std::vector<Load> loads_of(const Assembly& assembly, const Solution& solution,
                            std::span<const AngularMotion> turning, int body, const Quat& turn) {
   Collector collector(assembly, solution, turning, body, turn);
   collector.reactions();
+  collector.bearings();
   if (body < 0) { // of a body they are part of the reactions
     collector.drives();
     collector.joint_springs();

@@ -1,5 +1,5 @@
-// What acts on the bodies of a steady state: reactions, drives, springs, weights, applied loads, the air and
-// inertial loads, each as a force or a moment at a point. No OpenGL.
+// What acts on the bodies of a steady state: reactions of joints and bearings, drives, springs, weights,
+// applied loads, the air and inertial loads, each as a force or a moment at a point. No OpenGL.
 #pragma once
 
 #include "app/viewport/assembly.hpp"
@@ -19,7 +19,7 @@ struct Load {
   bool moment = false;        // N m rather than N
   Vec3 at = Vec3::Zero();     // m, world
   Vec3 vector = Vec3::Zero(); // N or N m, world
-  PartId part;                // the joint, spring, force or body that it comes from
+  PartId part;                // the joint, spring, bearing, force or body that it comes from
 };
 
 // The rotation that carries the loads at the drawn phase of the drives to the phase with these poses, where
@@ -29,9 +29,9 @@ std::optional<Quat> common_turn(const Mechanism& mechanism, const Solution& solu
 
 // Of a steady state and how its bodies turn (both at the drawn phase); the assembly has its poses, turned by
 // `turn` since then.
-//   body < 0: of the mechanism. What each joint's parent exerts on its child; of that, what drives, springs
-//   and
-//     stops exert along the joints' coordinates; springs between bodies, on both; the air; inertial loads.
+//   body < 0: of the mechanism. What each joint's parent exerts on its child, and each bearing on its second
+//     body; of the former, what drives, springs and stops exert along the joints' coordinates; springs
+//     between bodies, on both; the air; inertial loads.
 //   a body: its free-body diagram, which is complete: its forces, -m a of the mass centre included, add up to
 //     zero, and so do their moments with the couples, -d(I w)/dt included (d'Alembert).
 std::vector<Load> loads_of(const Assembly& assembly, const Solution& solution,

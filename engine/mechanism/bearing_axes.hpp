@@ -5,15 +5,12 @@
 
 namespace flyball {
 
-// In N, as `read` reads the mechanism's numbers. Without an x_axis x is the world axis nearest to the plane
-// across, the first of several.
+// In N, as `read` reads the mechanism's numbers; see bearing_x_towards.
 template <class N>
 Eigen::Matrix<N, 3, 3> bearing_axes(const Force& bearing, const NumberReader<N>& read) {
   using Vector = Eigen::Matrix<N, 3, 1>;
-  Eigen::Index nearest = 0;
-  bearing.axis.cwiseAbs().minCoeff(&nearest);
   const Vector z = Vector(read(bearing.axis)).normalized(),
-               towards = bearing.x_axis ? Vector(read(*bearing.x_axis)) : Vector(Vector::Unit(nearest));
+               towards = read(bearing.x_axis, Vector(bearing_x_towards(bearing).template cast<N>()));
   Eigen::Matrix<N, 3, 3> axes;
   axes.col(0) = (towards - z * z.dot(towards)).normalized();
   axes.col(1) = z.cross(axes.col(0));

@@ -246,7 +246,7 @@ void visit_fields(Visitor& v, Part& force, const Mechanism* of = nullptr) {
     v.field(fields::bodies, force.bodies);
     v.field({"at", expected::point, "m", required}, force.at);
     v.field({"axis", expected::direction, "", required}, force.axis);
-    v.field({"x_axis", expected::direction}, force.x_axis);
+    v.field({"x_axis", expected::direction}, force.x_axis, bearing_x_towards(force));
     v.field({"stiffness", expected::matrix, "N/m"}, force.bearing_stiffness, {});
     v.field({"damping", expected::matrix, "N s/m"}, force.bearing_damping, {});
     return;

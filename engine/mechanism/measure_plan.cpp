@@ -69,6 +69,9 @@ class Finder {
     }
     case ArgumentKind::joint: {
       const int j = joint_index(m_, a.name);
+      if (j < 0 && is_bearing(force_index(m_, a.name)))
+        throw ExpressionError("expected a joint; \"" + a.name +
+                              "\" is a bearing, of which force() and couple() tell");
       if (j < 0) fail_part("joint", a.name, m_.joints);
       return {j, 0, -1};
     }
@@ -91,6 +94,23 @@ class Finder {
     return of;
   }
 
+  bool is_bearing(int force) const {
+    return force >= 0 && m_.forces[place(force)].type == ForceType::bearing;
+  }
+
+  // That a spring or a bearing is what is asked of.
+  void expect_elastic(Result result, int force, const std::string& quoted) const {
+    const ForceType type = m_.forces[place(force)].type;
+    const bool of_springs = result == Result::length || result == Result::tension;
+    const bool of_bearings = result >= Result::couple_x && result <= Result::couple;
+    if ((type == ForceType::spring && !of_bearings) || (type == ForceType::bearing && !of_springs)) return;
+    throw ExpressionError(std::string("expected a ") +
+                          (of_springs    ? "spring"
+                           : of_bearings ? "bearing"
+                                         : "spring or a bearing") +
+                          "; " + quoted + " is a " + std::string(type_name(type)));
+  }
+
   // That the part has what is asked for.
   void expect_it(Result result, ArgumentKind kind, const ResultQuantity::Of& of,
                  const std::string& name) const {
@@ -104,9 +124,8 @@ class Finder {
     } else if (kind == ArgumentKind::joint && m_.joints[place(of.part)].type == JointType::gear) {
       throw ExpressionError("expected a joint between two bodies; " + quoted +
                             " is a gear, which the reactions of its two joints include");
-    } else if (kind == ArgumentKind::force && m_.forces[place(of.part)].type != ForceType::spring) {
-      throw ExpressionError("expected a spring; " + quoted + " is a " +
-                            std::string(type_name(m_.forces[place(of.part)].type)));
+    } else if (kind == ArgumentKind::force) {
+      expect_elastic(result, of.part, quoted);
     } else if (result == Result::clearance) {
       if (m_.bodies[place(of.part)].shapes.empty())
         throw ExpressionError(quoted + " has no shapes of its own");
@@ -142,10 +161,18 @@ std::string_view result_unit(const ResultQuantity& quantity) {
   case Result::acceleration: return "m/s^2";
   case Result::angle: return "rad";
   case Result::tension:
+  case Result::force_x:
+  case Result::force_y:
+  case Result::force_z:
+  case Result::force:
   case Result::reaction_x:
   case Result::reaction_y:
   case Result::reaction_z:
   case Result::reaction: return "N";
+  case Result::couple_x:
+  case Result::couple_y:
+  case Result::couple_z:
+  case Result::couple:
   case Result::moment_x:
   case Result::moment_y:
   case Result::moment_z:

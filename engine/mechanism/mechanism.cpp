@@ -101,6 +101,12 @@ bool acts_between(ForceType type) {
   return type == ForceType::spring || type == ForceType::bearing;
 }
 
+Vec3 bearing_x_towards(const Force& bearing) {
+  Eigen::Index nearest = 0;
+  bearing.axis.cwiseAbs().minCoeff(&nearest);
+  return bearing.x_axis.value_or(Vec3(Vec3::Unit(nearest)));
+}
+
 int bearing_size(const Force& bearing) {
   constexpr std::size_t full = 36;
   return bearing.bearing_stiffness.size() == full || bearing.bearing_damping.size() == full ? 6 : 2;

@@ -317,6 +317,9 @@ std::string_view type_name(SliderScale scale);
 
 // Whether what acts does so between two bodies, at `bodies`, rather than on one, at `body`.
 bool acts_between(ForceType type);
+// Where a bearing's x is, in the plane across its axis: the x_axis, or without one the world axis nearest to
+// that plane, the first of several.
+Vec3 bearing_x_towards(const Force& bearing);
 // 2 or 6: the larger of its matrices.
 int bearing_size(const Force& bearing);
 // Whether a vane's coefficients are those of lift and drag by its incidence.

@@ -27,6 +27,14 @@ enum class Result : std::uint8_t {
   angle,        // rad, from 0 to pi, at the second of three points between the other two
   length,       // m, of a spring between two points
   tension,      // N, of a spring between two points and its damper: positive where it pulls
+  force_x,      // N, of a spring between two points or a bearing, on its second body
+  force_y,      //
+  force_z,      //
+  force,        // N, its size
+  couple_x,     // N m, of a bearing on its second body, about its point
+  couple_y,     //
+  couple_z,     //
+  couple,       // N m, its size
   spring,       // N m or N, by a coordinate's spring, along the coordinate
   reaction_x,   // N, of the parent on the child of a joint, as Reaction::force
   reaction_y,   //

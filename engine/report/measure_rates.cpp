@@ -91,9 +91,9 @@ void MeasureSet::rates(const MeasuredState& s, std::size_t i, Eigen::VectorXd& o
   }
   case Result::length:
   case Result::tension: {
-    const PointSpringElement& element = s.system.springs[static_cast<std::size_t>(place.spring)];
+    const PointSpringElement& element = s.system.springs[static_cast<std::size_t>(place.elastic.spring)];
     const PairEnds& ends = element.ends;
-    const PointSpringParameters& p = s.parameters.springs[static_cast<std::size_t>(place.spring)];
+    const PointSpringParameters& p = s.parameters.springs[static_cast<std::size_t>(place.elastic.spring)];
     return apart(
         {ends.a, p.a}, {ends.b, p.b},
         quantity.result == Result::length ? 1 : p.pull_slope(spring_state(element, p, s.kinematics).length));
@@ -217,7 +217,7 @@ Eigen::VectorXd MeasureSet::rates_by(const Problem& problem, const Mechanism& me
       else if (const Clearance least = clearance_of(w.kinematics, i); std::isfinite(least.gap))
         rate = clearance_rate(least, k, numbers.solids[0], numbers.solids[1]);
       break;
-    default: rate = quantity_value(quantity, numbers, place.spring, system, p, k).rate;
+    default: rate = quantity_value(quantity, numbers, place.elastic, system, p, k).rate;
     }
   }
   plan_.set_numbers(mechanism, rates);

@@ -1,5 +1,6 @@
 #include "engine/report/measured_quantity.hpp"
 
+#include "engine/system/bearing.hpp"
 #include "engine/system/residual.hpp"
 
 #include <limits>
@@ -100,13 +101,23 @@ void take_numbers(const ResultQuantity& quantity, const System& system, const Ba
 }
 
 template <class N>
-N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& numbers, int spring,
-                 const System& system, const BasicParameters<N>& p, const Kinematics<N>& k) {
+N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& numbers,
+                 const ElasticPlace& elastic, const System& system, const BasicParameters<N>& p,
+                 const Kinematics<N>& k) {
   const auto motion = [&] { return motion_of(p, k, numbers.points[0]); };
   const auto place = [&](std::size_t i) { return k.point(numbers.points[i].link, numbers.points[i].at); };
   const auto state = [&] {
-    const auto s = static_cast<std::size_t>(spring);
+    const auto s = static_cast<std::size_t>(elastic.spring);
     return spring_state<N>(system.springs[s], p.springs[s], k);
+  };
+  const auto bearing = [&] {
+    const auto b = static_cast<std::size_t>(elastic.bearing);
+    return bearing_state<N>(system.bearings[b], p.bearings[b], k);
+  };
+  const auto force = [&]() -> Vec3T<N> { // on the second body
+    if (elastic.bearing >= 0) return -bearing().force;
+    const SpringState<N> s = state();
+    return -s.tension * s.direction;
   };
   switch (quantity.result) {
   case Result::x:
@@ -124,6 +135,14 @@ N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& 
   case Result::angle: return angle_between<N>(place(0) - place(1), place(2) - place(1));
   case Result::length: return state().length;
   case Result::tension: return state().tension;
+  case Result::force_x:
+  case Result::force_y:
+  case Result::force_z: return component<N>(force(), quantity.result, Result::force_x);
+  case Result::force: return force().norm();
+  case Result::couple_x:
+  case Result::couple_y:
+  case Result::couple_z: return component<N>(-bearing().moment, quantity.result, Result::couple_x);
+  case Result::couple: return bearing().moment.norm();
   case Result::mass: return numbers.mass;
   default: return std::numeric_limits<double>::quiet_NaN(); // asked of other things
   }
@@ -135,9 +154,9 @@ template void take_numbers(const ResultQuantity&, const System&, const Parameter
                            const NumberReader<double>&, QuantityNumbers&);
 template void take_numbers(const ResultQuantity&, const System&, const BasicParameters<Dual>&,
                            const Mechanism&, const NumberReader<Dual>&, BasicQuantityNumbers<Dual>&);
-template double quantity_value(const ResultQuantity&, const QuantityNumbers&, int, const System&,
-                               const Parameters&, const Kinematics<double>&);
-template Dual quantity_value(const ResultQuantity&, const BasicQuantityNumbers<Dual>&, int, const System&,
-                             const BasicParameters<Dual>&, const Kinematics<Dual>&);
+template double quantity_value(const ResultQuantity&, const QuantityNumbers&, const ElasticPlace&,
+                               const System&, const Parameters&, const Kinematics<double>&);
+template Dual quantity_value(const ResultQuantity&, const BasicQuantityNumbers<Dual>&, const ElasticPlace&,
+                             const System&, const BasicParameters<Dual>&, const Kinematics<Dual>&);
 
 } // namespace flyball

@@ -31,11 +31,17 @@ template <class N>
 void take_numbers(const ResultQuantity& quantity, const System& system, const BasicParameters<N>& parameters,
                   const Mechanism& mechanism, const NumberReader<N>& read, BasicQuantityNumbers<N>& out);
 
-// A position, velocity or acceleration, a distance or angle, mass. Throws nothing; not finite where it is
-// undefined. `spring`: in the system, of length and tension.
+// Of what acts between two bodies: in System::springs or System::bearings, else -1.
+struct ElasticPlace {
+  int spring = -1, bearing = -1;
+};
+
+// A position, velocity or acceleration, a distance or angle, mass, what a spring or bearing exerts. Throws
+// nothing; not finite where it is undefined.
 template <class N>
-N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& numbers, int spring,
-                 const System& system, const BasicParameters<N>& parameters, const Kinematics<N>& kinematics);
+N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& numbers,
+                 const ElasticPlace& elastic, const System& system, const BasicParameters<N>& parameters,
+                 const Kinematics<N>& kinematics);
 
 bool is_clearance_of_bodies(const ResultQuantity& quantity);
 

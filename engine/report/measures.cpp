@@ -1,6 +1,7 @@
 #include "engine/report/measures.hpp"
 
 #include "engine/report/report_forces.hpp"
+#include "engine/system/bearing.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/residual.hpp"
 
@@ -34,6 +35,11 @@ bool asks_for_forces(Result result) {
   }
 }
 
+// Of a spring or bearing, in world axes.
+bool is_elastic_wrench(Result result) {
+  return result >= Result::force_x && result <= Result::couple;
+}
+
 bool asks_for_acceleration(Result result) {
   return result == Result::ax || result == Result::ay || result == Result::az ||
          result == Result::acceleration;
@@ -59,7 +65,7 @@ void MeasureSet::bind(const Mechanism& m, const System& system, const Parameters
     Place& place = places_[i];
     take_numbers<double>(quantity, system, p, m, {}, numbers_[i]);
     if (quantity.result == Result::tension)
-      place.differenced = !system.torques.empty() || p.springs[slot(place.spring)].damped();
+      place.differenced = !system.torques.empty() || p.springs[slot(place.elastic.spring)].damped();
     differenced_ = differenced_ || place.differenced;
   }
 }
@@ -87,7 +93,8 @@ void MeasureSet::find_places(const Mechanism& m, const System& system) {
     const bool forces = asks_for_forces(quantity.result);
     needs_forces_ = needs_forces_ || forces;
     needs_accelerations_ = needs_accelerations_ || asks_for_acceleration(quantity.result);
-    place.differenced = forces || !system.torques.empty(); // which change with the speeds found, too
+    // Those of speeds found change with these, too.
+    place.differenced = forces || is_elastic_wrench(quantity.result) || !system.torques.empty();
     place.differenced_by_numbers = forces;
     const ArgumentKind kind = argument_kind(result_function(quantity.result), slot(quantity.count));
     switch (kind) {
@@ -114,7 +121,9 @@ void MeasureSet::find_places(const Mechanism& m, const System& system) {
       break;
     case ArgumentKind::force:
       for (std::size_t f = 0; f < system.springs.size(); ++f)
-        if (system.springs[f].force == part) place.spring = static_cast<int>(f);
+        if (system.springs[f].force == part) place.elastic.spring = static_cast<int>(f);
+      for (std::size_t f = 0; f < system.bearings.size(); ++f)
+        if (system.bearings[f].force == part) place.elastic.bearing = static_cast<int>(f);
       break;
     case ArgumentKind::body:
     case ArgumentKind::point: break;
@@ -179,7 +188,7 @@ double MeasureSet::value(const MeasuredState& s, std::size_t i) const {
     return place.drive < 0 ? none : s.forces->drives[slot(place.drive)] * s.rate(place.reported);
   default:
     if (!s.accelerated && asks_for_acceleration(quantity.result)) return none;
-    return quantity_value(quantity, numbers, place.spring, s.system, s.parameters, s.kinematics);
+    return quantity_value(quantity, numbers, place.elastic, s.system, s.parameters, s.kinematics);
   }
 }
 
@@ -222,6 +231,20 @@ const Eigen::VectorXd& MeasureSet::evaluate_at(const Problem& problem, const Eig
   return evaluate({problem.system, problem.parameters, q, w.kinematics});
 }
 
+double MeasureSet::elastic_rounding(const MeasuredState& s, const ElasticPlace& elastic, Result result) {
+  const double reach = s.parameters.length;
+  if (elastic.bearing >= 0) {
+    const BearingParameters& bearing = s.parameters.bearings[slot(elastic.bearing)];
+    Eigen::Matrix<double, 6, 1> place; // of the shifts and turns
+    place << Vec3::Constant(reach), Vec3::Ones();
+    const Eigen::Matrix<double, 6, 1> along = bearing.stiffness.cwiseAbs() * place;
+    return result >= Result::couple_x ? along.tail<3>().norm() : along.head<3>().norm();
+  }
+  const std::size_t n = slot(elastic.spring);
+  const double length = spring_state(s.system.springs[n], s.parameters.springs[n], s.kinematics).length;
+  return std::abs(s.parameters.springs[n].pull_slope(length)) * reach;
+}
+
 double MeasureSet::rounding_size(const MeasuredState& s, std::size_t i) const {
   const ResultQuantity& quantity = plan_.quantities()[i];
   const double reach = s.parameters.length, size = std::abs(found_[i]);
@@ -253,11 +276,15 @@ double MeasureSet::rounding_size(const MeasuredState& s, std::size_t i) const {
     return std::max(size, std::abs(numbers_[i].spring_slope(at)) *
                               std::max(std::abs(at), quantity.angle ? 1 : reach));
   }
-  case Result::tension: {
-    const std::size_t n = slot(places_[i].spring);
-    const double length = spring_state(s.system.springs[n], s.parameters.springs[n], s.kinematics).length;
-    return std::max(size, std::abs(s.parameters.springs[n].pull_slope(length)) * reach);
-  }
+  case Result::tension:
+  case Result::force_x:
+  case Result::force_y:
+  case Result::force_z:
+  case Result::force:
+  case Result::couple_x:
+  case Result::couple_y:
+  case Result::couple_z:
+  case Result::couple: return std::max(size, elastic_rounding(s, places_[i].elastic, quantity.result));
   case Result::clearance:
     if (is_clearance_of_bodies(quantity))
       return size + reach + clearance_of(s.kinematics, i).error / measure_rounding;

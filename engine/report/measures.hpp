@@ -48,10 +48,11 @@ class MeasureSet {
   const Eigen::VectorXd& evaluate_at(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
 
   // (measures, nv): their rates by the entries of a step of q_R, unscaled, multipliers following as in
-  // evaluate_at(). Exact by the kinematics; those of forces, of the rates of joints that close loops and of
-  // springs with dampers by central differences. Of what was evaluated last, which is evaluated in `w` (its
-  // kinematics); `elsewhere` is for states beside it. Not a number where a measure has no rate, and of more
-  // than 64 coordinates where it takes differences, two balances a coordinate, unless these are asked for.
+  // evaluate_at(). Exact by the kinematics; those of forces (of springs along their lines too where there is
+  // a damper) and of the rates of joints that close loops by central differences. Of what was evaluated last,
+  // which is evaluated in `w` (its kinematics); `elsewhere` is for states beside it. Not a number where a
+  // measure has no rate, and of more than 64 coordinates where it takes differences, two balances a
+  // coordinate, unless these are asked for.
   const Eigen::MatrixXd& gradient(const Problem& problem, const Eigen::VectorXd& q, const Workspace& w,
                                   Workspace& elsewhere, bool all_differences = false);
 
@@ -79,7 +80,8 @@ class MeasureSet {
  private:
   // Where a quantity is found in the system.
   struct Place {
-    int reported = -1, tree = -1, cut = -1, drive = -1, spring = -1;
+    int reported = -1, tree = -1, cut = -1, drive = -1;
+    ElasticPlace elastic;
     bool differenced = false; // its rates along coordinates are found by differences
     // Those by numbers, too: of forces, whose multipliers follow, and of joints that close loops.
     bool differenced_by_numbers = false;
@@ -94,6 +96,8 @@ class MeasureSet {
   void explain_unknown_depths(std::vector<MeasureSolution>& out) const;
   // By how much of it a quantity may be wrong by rounding alone, in parts of 1e-16.
   double rounding_size(const MeasuredState& state, std::size_t quantity) const;
+  // The same of what a spring or bearing exerts.
+  static double elastic_rounding(const MeasuredState& state, const ElasticPlace& elastic, Result result);
   void difference(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
   const Eigen::VectorXd& combine();
   bool differenced_by_numbers() const;

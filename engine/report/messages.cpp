@@ -87,6 +87,13 @@ bool pulled_by_law(const System& system, const Unbounded& found) {
   });
 }
 
+bool any_has_stop(const Mechanism& mechanism, const std::vector<std::string>& joints) {
+  return std::ranges::any_of(mechanism.joints, [&](const Joint& joint) {
+    return std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.stop.has_value(); }) &&
+           std::ranges::find(joints, joint.name) != joints.end();
+  });
+}
+
 } // namespace
 
 std::vector<std::string> notes(const System& system, const Mechanism& mechanism) {
@@ -214,7 +221,8 @@ std::string solution_message(const ReportInput& in, int rank, const Solution& ou
     for (std::size_t i = 0; i < std::min(named, out.neutral.size()); ++i)
       text += (i ? ", " : " ") + out.neutral[i];
     if (out.neutral.size() > named) text += " and " + std::to_string(out.neutral.size() - named) + " more";
-    text += out.neutral.size() == 1 ? "; its value is arbitrary." : "; their values are arbitrary.";
+    text += out.neutral.size() == 1 ? "; its value is arbitrary" : "; their values are arbitrary";
+    text += any_has_stop(in.mechanism, out.neutral) ? " between stops." : ".";
   }
   if (!out.stability_reason && !out.eigenvalues && system.nv <= largest_for_eigenvalues)
     text += " Whether it is stable is not known: the eigenvalues were not found, the iteration for them does "

@@ -152,6 +152,7 @@ bool is_finite(const Solution& s) {
                  }) &&
          numbers(s.drive_torques, [](const DriveTorque& t) { return t.value; }) &&
          numbers(s.reactions, [](const Reaction& r) { return r.force.sum() + r.torque.sum(); }) &&
+         numbers(s.bearings, [](const BearingForce& b) { return b.force.sum() + b.torque.sum(); }) &&
          numbers(s.centres, [](const PointMotion& p) { return p.velocity.sum() + p.acceleration.sum(); }) &&
          numbers(s.points,
                  [](const PointSolution& p) {
@@ -199,6 +200,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
     out.drive_torques = std::move(forces.drive_torques);
     out.reactions = std::move(forces.reactions);
     out.gears = std::move(forces.gears);
+    out.bearings = std::move(forces.bearings);
     out.reactions_nonunique = forces.nonunique;
     if (in.measures)
       in.measures->mark_nonunique(in.mechanism, out.reactions, out.drive_torques, out.measures);

@@ -34,23 +34,25 @@ Frames frames_of(const System& system, const Kinematics<double>& k, const TreeJo
 // Of one phase.
 struct Snapshot {
   TransmittedForces forces;
-  std::vector<Frames> tree, cuts;
+  std::vector<Frames> tree, cuts, bearings;
 };
 
 Snapshot snapshot(const Problem& problem, const Eigen::VectorXd& lambda, const Workspace& w) {
   const System& system = problem.system;
-  Snapshot s{transmitted_forces(system, problem.parameters, lambda, w.kinematics, w.residual), {}, {}};
+  Snapshot s{transmitted_forces(system, problem.parameters, lambda, w.kinematics, w.residual), {}, {}, {}};
   for (const TreeJoint& tree : system.tree_joints)
     s.tree.push_back(frames_of(system, w.kinematics, tree));
   for (const CutJoint& cut : system.cuts)
     s.cuts.push_back({w.kinematics.at(cut.ends.a).R, w.kinematics.at(cut.ends.b).R});
+  for (const BearingElement& bearing : system.bearings)
+    s.bearings.push_back({w.kinematics.at(bearing.ends.a).R, w.kinematics.at(bearing.ends.b).R});
   return s;
 }
 
 // N, moments by the mechanism's reach.
 double size_of(const TransmittedForces& forces, double length) {
   double size = 0;
-  for (const auto* list : {&forces.tree, &forces.cuts})
+  for (const auto* list : {&forces.tree, &forces.cuts, &forces.bearings})
     for (const JointWrench& x : *list)
       size = std::max({size, x.force.norm(), x.torque.norm() / length});
   return size;
@@ -168,6 +170,17 @@ class ForceReport {
       const bool nonunique = tree ? touched_.tree[i] : touched_.cuts[i];
       out.reactions.push_back({j.name, wrench(drawn_).force, wrench(drawn_).torque, varying, nonunique});
       out.nonunique = out.nonunique || nonunique;
+    }
+  }
+
+  void bearings(ReportedForces& out) const {
+    for (std::size_t i = 0; i < system_.bearings.size(); ++i) {
+      const JointWrench& drawn = drawn_.forces.bearings[i];
+      const bool varying = std::ranges::any_of(others_, [&](const Snapshot& s) {
+        return varies(drawn, drawn_.bearings[i], s.forces.bearings[i], s.bearings[i]);
+      });
+      out.bearings.push_back(
+          {mechanism_.forces[at(system_.bearings[i].force)].name, drawn.force, drawn.torque, varying});
     }
   }
 
@@ -292,6 +305,7 @@ ReportedForces report_forces(const Mechanism& mechanism, const Problem& problem,
   const Kinematics<double> drawn = w.kinematics;
   const ForceReport report(mechanism, problem, z, w);
   report.reactions(out);
+  report.bearings(out);
   report.gears(drawn, out);
   report.drive_torques(w, out);
   return out;

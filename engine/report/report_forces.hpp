@@ -1,4 +1,4 @@
-// What drives, joints and gears bear in a steady state, and what of it changes as the drives turn.
+// What drives, joints, gears and bearings bear in a steady state, and what of it changes as the drives turn.
 #pragma once
 
 #include "engine/report/report.hpp"
@@ -17,6 +17,7 @@ struct ReportedForces {
   std::vector<DriveTorque> drive_torques;
   std::vector<Reaction> reactions;
   std::vector<GearReaction> gears;
+  std::vector<BearingForce> bearings;
   bool nonunique = false; // any of them
 };
 // Of a state by evaluate_reported(), which the workspace leaves.

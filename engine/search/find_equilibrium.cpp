@@ -12,6 +12,31 @@
 namespace flyball {
 namespace {
 
+// Moves what hangs loose between its stops to those that the forces there push it to, into which it sinks as
+// deep as holds them; false where there is nothing of the kind. Loops may open by that.
+bool press_against_stops(const Problem& problem, Eigen::VectorXd& q, Workspace& w) {
+  Unknowns z{q, {}};
+  bool evaluated = false, pressed = false;
+  double size = 0;
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const Link& link = problem.system.links[l];
+    if (link.v < 0 || link.type == LinkType::spherical || finds_speed(link)) continue;
+    const CoordinateForce& force = problem.parameters.links[l].force[0];
+    if (!(force.stop_stiffness > 0) || force.has_spring() || force.touched(q[link.q])) continue;
+    if (!evaluated) {
+      evaluate_with_multipliers(problem, z, w);
+      size = w.magnitudes.force.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
+      evaluated = true;
+    }
+    const double push = -w.residual.f[link.v];
+    if (!(std::abs(push) * problem.scaling.column[link.v] > tolerance::neutral_force * size)) continue;
+    if (push > 0 ? !force.has_upper : !force.has_lower) continue;
+    q[link.q] = (push > 0 ? force.upper : force.lower) + push / force.stop_stiffness;
+    pressed = true;
+  }
+  return pressed;
+}
+
 class EquilibriumSearch {
  public:
   EquilibriumSearch(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
@@ -34,6 +59,7 @@ class EquilibriumSearch {
     assemble_start(); // first, since closing loops takes the factors
     if (newton_raphson()) return true;
     if (!close_loops()) return false;
+    if (against_stops()) return true;
     if (large_ && downhill()) return true;
     if (damped_newton() || from_rest()) return true;
     if (!large_ && downhill()) return true;
@@ -55,6 +81,14 @@ class EquilibriumSearch {
     // Where the descent comes next it leads to a minimum with fewer steps.
     plain.to_minimum = descends_ && large_ && !warm_;
     return attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, plain, &history_); });
+  }
+
+  // Within its play nothing holds a coordinate, and Newton's step along it means nothing.
+  bool against_stops() {
+    if (arrived_) return false;
+    Eigen::VectorXd pressed = w_.assembled;
+    return press_against_stops(p_, pressed, w_) &&
+           attempt(pressed, Fallback::stops, [&](Unknowns& z) { return newton(p_, z, w_, {}, &history_); });
   }
 
   bool damped_newton() {

@@ -16,6 +16,7 @@ std::string_view word(Status status) {
 
 std::string_view word(Fallback fallback) {
   switch (fallback) {
+  case Fallback::stops: return "stops";
   case Fallback::damped: return "damped";
   case Fallback::homotopy: return "homotopy";
   case Fallback::descent: return "descent";

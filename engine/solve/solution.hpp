@@ -23,6 +23,7 @@ enum class Status {
 
 // What found the answer where plain Newton-Raphson did not.
 enum class Fallback {
+  stops, // from what hangs loose between its stops pressed onto those that the forces push it to
   damped,
   homotopy,
   descent,
@@ -130,6 +131,14 @@ struct GearReaction {
   bool varying = false, nonunique = false;          // as of a Reaction
 };
 
+// What a bearing exerts on its second body.
+struct BearingForce {
+  std::string bearing;
+  Vec3 force = Vec3::Zero();  // N, world axes at the drawn drive phase
+  Vec3 torque = Vec3::Zero(); // N m, about `at` as carried by the second body
+  bool varying = false;       // changes with the phase of the drives
+};
+
 // A point asked for, at the drawn drive phase.
 struct PointSolution {
   BodyPoint point;
@@ -203,6 +212,7 @@ struct Solution {
   std::vector<DriveTorque> drive_torques;
   std::vector<Reaction> reactions;
   std::vector<GearReaction> gears;
+  std::vector<BearingForce> bearings;
   bool reactions_nonunique = false;       // of any joint: the minimum-norm multipliers
   std::vector<Pose> poses;                // in the order of the bodies, at the drawn drive phase
   std::vector<PointMotion> centres;       // mass centres likewise; with details only

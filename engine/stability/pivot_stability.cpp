@@ -3,6 +3,7 @@
 #include "engine/kkt/motion_products.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/solve/existence.hpp"
+#include "engine/stability/play.hpp"
 
 #include <random>
 
@@ -87,8 +88,9 @@ Stability of_shifted_directions(const FactoredState& at) {
   for (const KktSystem::NullDirection& f : kkt.null_directions()) // and what feels nothing at all
     for (const auto& [v, share] : f)
       if (std::abs(share) > tolerance::takes_part) takes_part[static_cast<std::size_t>(v)] = true;
+  const auto step = [&](double size) { return step_within_play(problem, at.z.q, size * direction); };
   const bool balanced =
-      stays_balanced(at, 0.002 * direction, rounding) && stays_balanced(at, -0.003 * direction, rounding);
+      stays_balanced(at, step(0.002), rounding) && stays_balanced(at, step(-0.003), rounding);
   out.reason = balanced ? StabilityReason::neutral : StabilityReason::marginal;
   for (int v = 0; balanced && v < problem.system.nv; ++v)
     if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);
@@ -144,8 +146,9 @@ Stability find_pivot_stability(const FactoredState& at) {
     return out;
   }
   all /= all.lpNorm<Eigen::Infinity>();
-  const bool balanced = stays_balanced(at, 0.05 * all, tolerance::neutral_force) &&
-                        stays_balanced(at, -0.11 * all, tolerance::neutral_force);
+  const auto step = [&](double size) { return step_within_play(problem, at.z.q, size * all); };
+  const bool balanced = stays_balanced(at, step(0.05), tolerance::neutral_force) &&
+                        stays_balanced(at, step(-0.11), tolerance::neutral_force);
   if (balanced)
     for (int v = 0; v < problem.system.nv; ++v)
       if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);

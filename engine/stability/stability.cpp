@@ -9,6 +9,7 @@
 #include "engine/stability/gyroscopic_stability.hpp"
 #include "engine/stability/linear_motion.hpp"
 #include "engine/stability/pivot_stability.hpp"
+#include "engine/stability/play.hpp"
 #include "engine/stability/routh.hpp"
 #include "engine/system/dampers.hpp"
 #include "engine/system/kept_momentum.hpp"
@@ -230,8 +231,8 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   const Eigen::MatrixXd null_space = basis * energy.null_basis();
   int neutral_count = 0;
   const auto stays_along = [&](const Eigen::VectorXd& direction) {
-    return stays_balanced(at, null_space, 0.05 * direction) &&
-           stays_balanced(at, null_space, -0.11 * direction);
+    const auto step = [&](double size) { return step_within_play(problem, at.z.q, size * direction); };
+    return stays_balanced(at, null_space, step(0.05)) && stays_balanced(at, null_space, step(-0.11));
   };
   // What holds for a mixture of many holds for each.
   const bool all = null_space.cols() > few_null_directions && stays_along(mixture_of(null_space));

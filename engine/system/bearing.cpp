@@ -187,6 +187,8 @@ BearingPowers bearing_powers(const System& system, const Parameters& p, const Ki
 
 template BearingState<double> bearing_state(const BearingElement&, const BearingParameters&,
                                             const Kinematics<double>&);
+template BearingState<Dual> bearing_state(const BearingElement&, const BasicBearingParameters<Dual>&,
+                                          const Kinematics<Dual>&);
 template void add_bearings<double>(const System&, const Parameters&, const Kinematics<double>&,
                                    Configuration<double>&);
 template void add_bearings<Extended>(const System&, const Parameters&, const Kinematics<Extended>&,

@@ -94,6 +94,7 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     const BearingState<double> s = bearing_state<double>(system.bearings[i], p.bearings[i], k);
     add(ends.b, s.point, s.force, s.moment);
     add(ends.a, s.point, -s.force, -s.moment);
+    out.bearings.push_back({-s.force, -s.moment, s.point});
   }
   for (std::size_t i = 0; i < system.turning_air.size(); ++i) {
     const TurningAirElement& e = system.turning_air[i];

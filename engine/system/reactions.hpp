@@ -28,6 +28,8 @@ struct TransmittedForces {
   // On a joint's child by its parent: springs, stops, dampers and drives of the joint included.
   std::vector<JointWrench> tree; // by System::tree_joints
   std::vector<JointWrench> cuts; // by System::cuts; zero for gears
+  // On a bearing's second body, about its point as carried by that; by System::bearings.
+  std::vector<JointWrench> bearings;
   // By the motor, positive along its coordinate, gears' loads included: N m or N, by System::drives; zero for
   // coordinates driven through gears.
   std::vector<double> drives;

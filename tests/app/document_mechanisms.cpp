@@ -118,7 +118,7 @@ class Builder {
   void add_force() {
     Force force;
     force.name = name('f', m_.forces.size());
-    force.type = static_cast<ForceType>(dice_.below(4));
+    force.type = static_cast<ForceType>(dice_.below(6));
     const Body& body = dice_.one_of(m_.bodies);
     if (force.type == ForceType::spring) {
       // From the ground it would turn with the table.
@@ -127,18 +127,38 @@ class Builder {
       force.stiffness = dice_.between(10, 50);
       if (dice_.chance(0.5)) force.free_length = dice_.between(0.1, 1);
       force.damping = dice_.between(0, 2);
+    } else if (force.type == ForceType::bearing) {
+      hold_in_bearing(force);
     } else {
       force.body = body.name;
       if (dice_.chance(0.7)) force.at = body.position + dice_.box(0.2);
       if (force.type == ForceType::drag) {
         force.linear = dice_.between(0, 0.5);
         force.quadratic = dice_.between(0, 0.5);
+      } else if (force.type == ForceType::vane) {
+        force.area = dice_.between(0.01, 0.1);
+        force.normal = dice_.direction();
+        if (dice_.chance(0.5)) force.chord = force.normal.cross(dice_.direction());
       } else {
         force.vector = dice_.box(2);
         force.frame = spinning_ || dice_.chance(0.5) ? ForceFrame::body : ForceFrame::world;
       }
     }
     m_.forces.push_back(force);
+  }
+
+  // Of two rows or six, stiff and coupled but for a tenth not symmetric.
+  void hold_in_bearing(Force& force) {
+    force.bodies = {spinning_ || dice_.chance(0.5) ? "table" : "ground", m_.bodies.back().name};
+    force.at = m_.bodies.back().position + dice_.box(0.2);
+    force.axis = dice_.direction();
+    if (dice_.chance(0.5)) force.x_axis = force.axis.cross(dice_.direction());
+    const std::size_t size = dice_.chance(0.5) ? 6 : 2;
+    for (std::size_t i = 0; i < size * size; ++i) {
+      const bool diagonal = i % (size + 1) == 0;
+      force.bearing_stiffness.push_back(diagonal ? dice_.between(10, 50) : dice_.between(-1, 1));
+      force.bearing_damping.push_back(diagonal ? dice_.between(1, 2) : dice_.between(-0.1, 0.1));
+    }
   }
 
   void add_loop() {

@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numbers>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -446,6 +447,41 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
     hand.one_step([&] { hand.fill("inspector/lead", "2 mm"); });
     CHECK(hand.joint("rack1").lead == 0.002);
   }
+  SECTION("a belt over three wheels, the middle one of one radius") {
+    edit(hand.app, "Add", [&](Mechanism& m, Selection&) {
+      const std::string wheel = add_body(m, {});
+      add_joint(m, JointType::revolute, {"ground", wheel}, {1, 0, 0}, {0, 0, 1});
+    });
+    select(hand.app, {{arm1, arm2, {PartKind::joint, "revolute1"}}});
+    hand.frames(2);
+    hand.one_step([&] { run_command(hand.app, "edit.belt"); });
+    CHECK(hand.joint("belt1").joints == std::array<std::string, 2>{"arm1", "arm2"});
+    CHECK(hand.joint("belt2").joints == std::array<std::string, 2>{"arm2", "revolute1"});
+    CHECK(hand.app.selection().parts.size() == 2);
+    edit(hand.app, "Wheel", [](Mechanism& m, Selection&) { set_parameter(m, "parameters.radius", 0.3); });
+    CHECK(hand.joint("belt1").radii[1] == 0.3);
+    CHECK(hand.joint("belt2").radii[0] == 0.3);
+  }
+  SECTION("backlash, or why there is none") {
+    select(hand.app, {{arm1, arm2}});
+    hand.frames(2);
+    CHECK_FALSE(is_enabled(hand.app, command("edit.backlash")));
+    run_command(hand.app, "edit.gear");
+    hand.frames(2);
+    REQUIRE(is_enabled(hand.app, command("edit.backlash")));
+    hand.one_step([&] { hand.press_widget("inspector/edit.backlash"); });
+    CHECK(hand.joint("play1").coordinates[0].stop);
+    CHECK(hand.app.selection().parts == std::vector{Part{PartKind::joint, "play1"}});
+    undo(hand.app);
+    edit(hand.app, "Damp", [](Mechanism& m, Selection& s) {
+      for (const char* name : {"arm1", "arm2"})
+        m.joints[static_cast<std::size_t>(joint_index(m, name))].coordinates[0].damping = 1;
+      s.set({PartKind::joint, "gear1"});
+    });
+    hand.frames(2);
+    run_command(hand.app, "edit.backlash");
+    CHECK_THAT(hand.app.notice, ContainsSubstring("would act on the rim"));
+  }
   SECTION("only what suits them is offered") {
     select(hand.app, {{arm1, arm2}});
     CHECK(is_enabled(hand.app, command("edit.belt")));
@@ -454,6 +490,26 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
     CHECK_FALSE(is_enabled(hand.app, command("edit.gear")));
     CHECK_FALSE(is_enabled(hand.app, command("edit.screw")));
   }
+}
+
+TEST_CASE("a law typed for a stiffness or damping stands in its place, its slider gone") {
+  Hand hand;
+  hand.click("outline/joints/slide");
+  REQUIRE(is_pinned(hand.mechanism(), "joints.slide.spring.stiffness"));
+  const auto slide = [&]() -> const Coordinate& { return hand.joint("slide").coordinates[0]; };
+  hand.one_step([&] {
+    hand.fill("inspector/spring/stiffness",
+              "=table(deflection, [-200 mm, -150 N], [0 mm, 0 N], [50 mm, 40 N])");
+  });
+  CHECK(hand.app.inspector.typing.mistake.empty());
+  CHECK(slide().spring->force);
+  CHECK_FALSE(is_pinned(hand.mechanism(), "joints.slide.spring.stiffness"));
+  hand.one_step([&] { hand.fill("inspector/damping", "=40 N*tanh(rate/(0.1 m/s))"); });
+  CHECK(slide().damping_force);
+  CHECK(hand.app.mistakes.empty());
+  hand.one_step([&] { hand.fill("inspector/spring/force", "=1500 N/m*deflection"); });
+  CHECK(slide().spring->force);
+  CHECK(converged(hand.app));
 }
 
 TEST_CASE("forces of every type are edited") {
@@ -559,6 +615,40 @@ TEST_CASE("a vane and the air are edited") {
   hand.one_step([&] { hand.choose_from("inspector/turns_with", "spindle"); });
   CHECK(hand.mechanism().air.turns_with == "spindle");
   CHECK(hand.mechanism().air.wind.isZero(0));
+}
+
+TEST_CASE("a bearing is edited: bodies, axes, matrices of two rows or six, with their units") {
+  Hand hand;
+  edit(hand.app, "Add", [&](Mechanism& m, Selection& s) {
+    s.set({PartKind::force, add_bearing(m, {"ground", "collar"}, {0, 0.1, 0}, {0, 1, 0})});
+  });
+  hand.frames(2);
+  const auto bearing = [&]() -> const Force& { return hand.force("bearing1"); };
+  hand.one_step([&] { hand.fill("inspector/stiffness/0/1", "2 kN/mm"); });
+  CHECK(bearing().bearing_stiffness == BearingMatrix{1e6, 2e6, 0, 1e6});
+  hand.one_step([&] { hand.fill("inspector/x_axis/z", "0.5"); });
+  REQUIRE(bearing().x_axis);
+  CHECK(*bearing().x_axis == Vec3(1, 0, 0.5));
+  hand.one_step([&] { hand.press_widget("inspector/x_axis/x/reset"); });
+  CHECK_FALSE(bearing().x_axis);
+  hand.one_step([&] { hand.fill("inspector/at/y", "120 mm"); });
+  CHECK(*bearing().at == Vec3(0, 0.12, 0));
+  hand.one_step([&] { hand.choose_from("inspector/bodies/0", "spindle"); });
+  CHECK(bearing().bodies == std::array<std::string, 2>{"spindle", "collar"});
+  hand.one_step([&] { hand.choose_from("inspector/rows", "6 rows"); });
+  REQUIRE(bearing().bearing_stiffness.size() == 36);
+  REQUIRE(bearing().bearing_damping.size() == 36);
+  CHECK(bearing().bearing_stiffness[1] == 2e6);
+  CHECK(bearing().bearing_damping[7] == 1000);
+  CHECK(hand.app.mistakes.empty());
+  hand.one_step([&] { hand.fill("inspector/stiffness/5/5", "3 N m/deg"); });
+  CHECK(bearing().bearing_stiffness[35] == Approx(3 * 180 / std::numbers::pi));
+  hand.one_step([&] { hand.choose_from("inspector/rows", "2 rows"); });
+  CHECK(bearing().bearing_stiffness == BearingMatrix{1e6, 2e6, 0, 1e6});
+  hand.one_step([&] { hand.press_widget("inspector/damping"); });
+  CHECK(bearing().bearing_damping.empty());
+  undo(hand.app);
+  CHECK(bearing().bearing_damping.size() == 4);
 }
 
 TEST_CASE("the scene's own numbers are there while nothing is selected") {

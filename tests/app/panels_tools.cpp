@@ -351,6 +351,82 @@ TEST_CASE("forces, torques and drag act on the body that is clicked") {
   CHECK(d.m().forces[0].at == Vec3(0.2, 0, 0));
 }
 
+TEST_CASE("a bearing is put on a shaft by a click and the card beside it") {
+  Drawing d;
+  d.have_rod({0, 0, 0}, {0.3, 0, 0});
+  d.choose_nothing();
+  SECTION("from the strip") {
+    d.click("tools/bearing");
+  }
+  SECTION("by its key") {
+    d.key('J', false, true);
+  }
+  REQUIRE(d.app.tool.tool == Tool::bearing);
+  d.click_at({0.302, 0.003, 0});
+  d.frames(2);
+  REQUIRE(d.app.tool.joint);
+  CHECK(d.app.tool.joint->bodies == std::array<std::string, 2>{"ground", "rod1"});
+  CHECK(d.app.tool.joint->at == Vec3(0.3, 0, 0));
+  CHECK(d.app.tool.joint->axis == Vec3::UnitX()); // along the rod
+  CHECK(d.app.widgets.count("tools/type/revolute") == 0);
+  CHECK(d.steps() == 1);
+  if (GENERATE(false, true)) {
+    d.key(key_escape);
+    CHECK_FALSE(d.app.tool.joint);
+    CHECK(d.m().forces.empty());
+    return;
+  }
+  if (GENERATE(false, true))
+    d.click("tools/join");
+  else
+    d.key(key_enter);
+  REQUIRE(d.m().forces.size() == 1);
+  const Force& bearing = d.m().forces[0];
+  CHECK(bearing.type == ForceType::bearing);
+  CHECK(bearing.bodies == std::array<std::string, 2>{"ground", "rod1"});
+  CHECK(bearing.at == Vec3(0.3, 0, 0));
+  CHECK(bearing.axis == Vec3::UnitX());
+  CHECK(bearing.bearing_stiffness == BearingMatrix{1e6, 0, 0, 1e6});
+  CHECK(bearing.bearing_damping == BearingMatrix{1000, 0, 0, 1000});
+  CHECK(d.m().joints.empty());
+  CHECK(d.app.selection().parts == std::vector{Part{PartKind::force, "bearing1"}});
+  CHECK(d.steps() == 2);
+  CHECK(d.app.mistakes.empty());
+  // It is moved as what has one point, and goes with the shaft as a joint does.
+  d.pull("gizmo/y", {0.3, 0.2, 0});
+  d.release();
+  CHECK(d.m().forces[0].at->y() > 0.05);
+  undo(d.app);
+  select(d.app, {{{PartKind::body, "rod1"}}});
+  d.frames(2);
+  const Vec3 before = d.m().bodies[0].position;
+  d.pull("gizmo/y", before + Vec3(0, 0.2, 0));
+  d.release();
+  const Vec3 by = d.m().bodies[0].position - before;
+  CHECK(by.y() > 0.05);
+  CHECK((*d.m().forces[0].at - Vec3(0.3, 0, 0) - by).norm() < 1e-12);
+  undo(d.app);
+  undo(d.app);
+  CHECK(d.m().forces.empty());
+}
+
+TEST_CASE("a bearing lies along the axis that a body turns about") {
+  Drawing d;
+  d.have_rod({0, 0, 0}, {0.3, 0, 0});
+  d.choose_nothing();
+  d.key('J');
+  d.click_at({0, 0, 0});
+  d.frames(2);
+  d.click("tools/join"); // a hinge across the view
+  REQUIRE(d.m().joints.size() == 1);
+  d.choose_nothing();
+  d.click("tools/bearing");
+  d.click_at({0.3, 0, 0});
+  d.frames(2);
+  REQUIRE(d.app.tool.joint);
+  CHECK(d.app.tool.joint->axis == Vec3::UnitZ());
+}
+
 TEST_CASE("an arrow moves along its axis, onto the grid, in one step") {
   Drawing d;
   d.have_ball({0.0123, 0.0456, 0.0789});

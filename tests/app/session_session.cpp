@@ -1,10 +1,13 @@
 // A session without a window: this program is linked without Dear ImGui and without OpenGL.
 #include "app/session/session.hpp"
+#include "app/session/parameter_list.hpp"
 #include "engine/mechanism/address.hpp"
 #include "session_wait.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
+
+#include <algorithm>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -62,4 +65,28 @@ TEST_CASE("Session: a slider's move hands one mechanism on, from the document to
   change_parameter(session, speed, 12);
   update(session, 0);
   CHECK(session.answer.mechanism.get() == session.document.shared().get());
+}
+
+TEST_CASE("Session: every number is called by what it is and what it is of") {
+  CHECK(parameter_phrase("joints.spin.drive.speed") == "speed of spin");
+  CHECK(parameter_phrase("gravity.1") == "y of gravity");
+  CHECK(parameter_phrase("air.wind.0") == "wind x of air");
+  CHECK(parameter_phrase("air.density") == "density of air");
+  CHECK(parameter_phrase("simulation.duration") == "duration of simulation");
+  CHECK(parameter_phrase("forces.sail.normal.2") == "normal z of sail");
+  CHECK(parameter_phrase("forces.sail.chord.1") == "chord y of sail");
+  CHECK(parameter_phrase("forces.film.stiffness.0.1") == "stiffness x by y of film");
+  CHECK(parameter_phrase("forces.film.damping.5.2") == "damping turn z by z of film");
+  CHECK(parameter_phrase("joints.ball.damping.2") == "damping 2 of ball");
+  CHECK(parameter_phrase("joints.cross.axes.1.0") == "axes 1 x of cross");
+
+  Mechanism m = test::shipped("governor");
+  for (const char* address : {"air.wind.0", "gravity.2", "simulation.duration"})
+    m.sliders.push_back({address, 0, 1, SliderScale::linear, ""});
+  std::vector<std::string> names;
+  for (const ParameterControl& control : parameter_controls(m, m))
+    if (control.group == ParameterGroup::pinned) names.push_back(control.name + ": " + control.what);
+  CHECK(std::ranges::count(names, "air: wind x") == 1);
+  CHECK(std::ranges::count(names, "gravity: z") == 1);
+  CHECK(std::ranges::count(names, "simulation: duration") == 1);
 }

@@ -126,6 +126,34 @@ TEST_CASE("gears, drag, dampers and applied loads are parts of the diagram") {
   }
 }
 
+TEST_CASE("bearings are parts of the diagram, of what they hold and of what holds them") {
+  const Steady steady = solved(parse_scene(R"({"flyball": 1, "name": "On a foot", "gravity": [0, -9.8, 0],
+    "bodies": [
+      {"name": "foot", "mass": 4, "position": [0, 0, 0], "inertia": [0.2, 0.2, 0.2]},
+      {"name": "rotor", "mass": 3, "position": [0.05, 0.1, 0.02], "inertia": [0.05, 0.04, 0.06]}],
+    "joints": [
+      {"name": "spin", "type": "revolute", "bodies": ["ground", "foot"], "at": [0, 0, 0], "axis": [0, 1, 0],
+       "drive": {"speed": 4}}],
+    "forces": [
+      {"name": "film", "type": "bearing", "bodies": ["foot", "rotor"], "at": [0, 0.1, 0], "axis": [0, 0, 1],
+       "stiffness": [[3e3, 0, 0, 0, 0, 0], [0, 4e3, 0, 0, 0, 0], [0, 0, 5e3, 0, 0, 0], [0, 0, 0, 80, 0, 0],
+         [0, 0, 0, 0, 90, 0], [0, 0, 0, 0, 0, 70]],
+       "damping": [[3, 0, 0, 0, 0, 0], [0, 3, 0, 0, 0, 0], [0, 0, 3, 0, 0, 0], [0, 0, 0, 1, 0, 0],
+         [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]]}]})"));
+  for (const int body : {0, 1}) {
+    const std::vector<Load> loads =
+        loads_of(Assembly(steady.mechanism, steady.solution.poses), steady.solution, steady.turning, body);
+    CHECK(std::ranges::any_of(loads, [](const Load& load) { return load.part.kind == PartKind::force; }));
+  }
+  worst_of(steady, steady.solution.poses, Quat::Identity());
+  Analysis analysis(steady.mechanism);
+  analysis.solve();
+  const std::vector<Pose> turned = analysis.poses_at(0.37);
+  const auto turn = common_turn(steady.mechanism, steady.solution, turned);
+  REQUIRE(turn);
+  worst_of(steady, turned, *turn);
+}
+
 TEST_CASE("loads turn with a drive that turns everything about the vertical, and only then") {
   const auto later = [](const Mechanism& mechanism) {
     Analysis analysis(mechanism);

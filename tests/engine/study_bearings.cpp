@@ -186,6 +186,88 @@ TEST_CASE("six rows hold a body in all its motions, at the frequencies of its pe
   CHECK(largest > 0.1);
 }
 
+TEST_CASE("two bearings bear a rotor's weight by its levers", "[bearings][measures]") {
+  const double mass = 12, left = 0.3, right = 0.5, weight = mass * standard_gravity;
+  // Shifts along x and y, tilts about both; a horizontal shaft along z, its centre between the bearings.
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("cross", 0), body("journal", 0), body("yoke", 0),
+              body("rotor", mass, {0, 0, 0}, {0.2, 0.2, 0.05})};
+  Joint tilt = joint(JointType::universal, "tilt", "journal", "yoke", {0, 0, 0});
+  tilt.axis = {1, 0, 0};
+  tilt.axis2 = {0, 1, 0};
+  m.joints = {prismatic("x", "ground", "cross", {0, 0, 0}, {1, 0, 0}),
+              prismatic("y", "cross", "journal", {0, 0, 0}, {0, 1, 0}), tilt,
+              driven(revolute("spin", "yoke", "rotor", {0, 0, 0}), 30)};
+  m.forces = {bearing("ground", "rotor", {0, 0, -left}, {8e4, 0, 0, 8e4}, {300, 0, 0, 300}),
+              bearing("rotor", "ground", {0, 0, right}, {5e4, 0, 0, 3e4}, {})};
+  m.forces[0].name = "A";
+  m.forces[1].name = "B";
+  m.measures = {{"a", "", "force_y(A)", "N"},         {"b", "", "force_y(B)", "N"},
+                {"across", "", "force_x(A)", "N"},    {"size", "", "force(B)", "N"},
+                {"couple_a", "", "couple(A)", "N m"}, {"both", "", "a - b", "N"}};
+  m.sliders = {{"bodies.rotor.mass", 1, 20, SliderScale::linear, ""},
+               {"forces.A.stiffness.1.1", 1e4, 1e6, SliderScale::linear, ""}};
+  const Solution s = solved(m);
+  // Both arms shorten alike where the shaft tilts.
+  const double on_a = weight * right / (left + right), on_b = weight * left / (left + right);
+  const auto told = [&](std::size_t i) { return *s.measures.at(i).value; };
+  CHECK_THAT(told(0), WithinRel(on_a, 1e-12));
+  CHECK_THAT(told(1), WithinRel(-on_b, 1e-12)); // on the ground
+  CHECK(std::abs(told(2)) < 1e-12 * weight);
+  CHECK_THAT(told(3), WithinRel(on_b, 1e-12));
+  CHECK(told(4) == 0);
+  CHECK_THAT(told(5), WithinRel(weight, 1e-12));
+  for (const MeasureSolution& each : s.measures) {
+    REQUIRE(each.error);
+    CHECK(*each.error < 1e-9 * weight);
+  }
+  CHECK(std::abs(told(0) - on_a) <= *s.measures[0].error);
+  REQUIRE(s.sensitivities.size() == 2);
+  CHECK_THAT(s.sensitivities[0].measures[0], WithinRel(on_a / mass, 1e-6));
+  CHECK(std::abs(s.sensitivities[1].measures[0]) < 1e-9 * weight); // by statics alone
+
+  REQUIRE(s.bearings.size() == 2);
+  CHECK(s.bearings[0].bearing == "A");
+  CHECK((s.bearings[0].force - Vec3(0, on_a, 0)).norm() < 1e-12 * weight);
+  CHECK((s.bearings[1].force + Vec3(0, on_b, 0)).norm() < 1e-12 * weight);
+  CHECK(s.bearings[0].torque.isZero(0));
+  CHECK_FALSE(s.bearings[0].varying);
+}
+
+TEST_CASE("a bearing of six rows bears a moment about its point", "[bearings][measures]") {
+  const double mass = 2, arm = 0.4, stiffness = 30;
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("beam", mass, {arm, 0, 0}, {0.01, 0.02, 0.02})};
+  BearingMatrix entries(36, 0);
+  for (const std::size_t i : {0, 1, 2})
+    entries[7 * i] = 1e4;
+  for (const std::size_t i : {3, 4, 5})
+    entries[7 * i] = stiffness;
+  m.forces = {bearing("ground", "beam", {0, 0, 0}, entries)};
+  m.measures = {{"turned", "", "couple_z(bearing)", "N m"},
+                {"sideways", "", "couple_x(bearing)", "N m"},
+                {"all", "", "couple(bearing)", "N m"},
+                {"up", "", "force_y(bearing)", "N"}};
+  const Solution s = solved(m);
+  double turn = 0; // k r = m g arm cos r, downwards
+  for (int i = 0; i < 200; ++i)
+    turn = mass * standard_gravity * arm * std::cos(turn) / stiffness;
+  CHECK_THAT(*s.measures[0].value, WithinRel(stiffness * turn, 1e-9));
+  CHECK(std::abs(*s.measures[1].value) < 1e-12);
+  CHECK_THAT(*s.measures[2].value, WithinRel(stiffness * turn, 1e-9));
+  CHECK_THAT(*s.measures[3].value, WithinRel(mass * standard_gravity, 1e-12));
+  REQUIRE(s.bearings.size() == 1);
+  CHECK_THAT(s.bearings[0].torque.z(), WithinRel(stiffness * turn, 1e-9));
+  // In a motion, too: with damping and without the weight's last word.
+  m.forces[0].bearing_damping.assign(36, 0);
+  for (std::size_t i = 0; i < 6; ++i)
+    m.forces[0].bearing_damping[7 * i] = i < 3 ? 100 : 1;
+  const Run run = simulate(m, lasting(8, Integrator::automatic, 1e-10));
+  CHECK_THAT(run.measures.front().value.back(), WithinRel(stiffness * turn, 1e-5));
+}
+
 TEST_CASE("sensitivities to a bearing's numbers are those of the closed form", "[bearings]") {
   Mechanism m = jeffcott(12, {8e4, 5e4, -3e4, 2e5}, {900, 0, 0, 900}, 3);
   m.gravity = {0, -standard_gravity, 0};

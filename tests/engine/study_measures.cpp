@@ -77,7 +77,36 @@ Mechanism hung() {
   return m;
 }
 
-// With a named point, and any drives and loops.
+// Of two rows or six, between the ground and a body, any way round.
+Force random_bearing(std::uint32_t seed, const std::string& body) {
+  Dice dice(seed + 500);
+  Force f;
+  f.name = "film";
+  f.type = ForceType::bearing;
+  f.bodies =
+      seed % 3 ? std::array{std::string(ground_name), body} : std::array{body, std::string(ground_name)};
+  f.at = Vec3(dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1));
+  f.axis = dice.direction();
+  const std::size_t size = seed % 2 ? 6 : 2;
+  for (std::size_t i = 0; i < size * size; ++i) {
+    f.bearing_stiffness.push_back(dice.between(-20, 20));
+    f.bearing_damping.push_back(dice.between(-2, 2));
+  }
+  return f;
+}
+
+// "force_x(coil)" and its like, with their units.
+std::vector<std::pair<std::string, std::string>> elastic_results(const Force& force) {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const char* of : {"_x", "_y", "_z", ""}) {
+    all.emplace_back("force" + std::string(of) + "(" + argument_text(force.name) + ")", "N");
+    if (force.type == ForceType::bearing)
+      all.emplace_back("couple" + std::string(of) + "(" + argument_text(force.name) + ")", "N m");
+  }
+  return all;
+}
+
+// With a named point, a bearing, and any drives and loops.
 Mechanism random_to_measure(std::uint32_t seed, int bodies) {
   reference::RandomOptions options;
   options.bodies = bodies;
@@ -86,6 +115,7 @@ Mechanism random_to_measure(std::uint32_t seed, int bodies) {
   options.steady = false;
   Mechanism m = reference::random_mechanism(seed, options);
   m.points = {{"A", Vec3(0.3, -0.2, 0.5), {}}};
+  m.forces.push_back(random_bearing(seed, m.bodies.back().name));
   m.measures.clear();
   return m;
 }
@@ -178,6 +208,10 @@ TEST_CASE("rates of measures along the coordinates agree with differences", "[me
         add("length(" + argument_text(each.name) + ")", "m");
         add("tension(" + argument_text(each.name) + ")", "N");
       }
+    for (const Force& each : m.forces)
+      if (acts_between(each.type))
+        for (const auto& [text, unit] : elastic_results(each))
+          add(text, unit);
     const System system = compile(m);
     if (system.nv == 0) continue;
     Parameters p;
@@ -269,6 +303,10 @@ TEST_CASE("rates of measures with numbers agree with differences", "[measures]")
       }
     for (const Force& each : m.forces)
       if (each.type == ForceType::spring) add("tension(" + argument_text(each.name) + ")", "N");
+    for (const Force& each : m.forces)
+      if (acts_between(each.type))
+        for (const auto& [text, unit] : elastic_results(each))
+          add(text, unit);
     const System system = compile(m);
     if (system.nv == 0) continue;
     Parameters p;

@@ -221,7 +221,8 @@ struct CoordinateRows {
     if (!coordinate().spring) return;
     const CoordinateSpring& spring = *coordinate().spring;
     if (spring.force)
-      number(angle() ? "Torque" : "Force", key("spring") + ".force", *spring.force, force_unit(),
+      number(angle() ? "Spring torque" : "Spring force", key("spring") + ".force", *spring.force,
+             force_unit(),
              "Against the deflection: a number, or an expression of it such as =2000 N/m*deflection + 1e6 "
              "N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).");
     else
@@ -252,7 +253,8 @@ struct CoordinateRows {
 
   void damper_numbers() const {
     if (coordinate().damping_force)
-      number(angle() ? "Torque" : "Force", key("damping_force"), *coordinate().damping_force, force_unit(),
+      number(angle() ? "Damping torque" : "Damping force", key("damping_force"), *coordinate().damping_force,
+             force_unit(),
              "Against the rate, an expression of it such as =40 N*tanh(rate/(0.1 m/s)) or =table(rate, "
              "[-1 m/s, -30 N], [0 m/s, 0 N], [1 m/s, 90 N]).");
     if (coordinate().damping != 0)

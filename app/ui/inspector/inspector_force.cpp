@@ -1,3 +1,4 @@
+#include "app/document/create.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 
@@ -88,8 +89,6 @@ void spring_rows(App& app, const Force& force) {
                 .address = address_of(force, "damping")});
 }
 
-constexpr double bearing_stiffness = 1e5, bearing_damping = 100; // N/m, N s/m; where there was none
-
 // One number each, by what moves and what feels it.
 void matrix_rows(App& app, const Force& force, const std::string& key, const BearingMatrix& matrix,
                  std::string_view unit, double usual, BearingMatrix Force::*member) {
@@ -120,7 +119,8 @@ void matrix_rows(App& app, const Force& force, const std::string& key, const Bea
 void bearing_rows(App& app, const Force& force) {
   const Part part{PartKind::force, force.name};
   for (std::size_t end = 0; end < 2; ++end)
-    body_end_row(app, part, force.bodies, end, end == 0 ? "In" : "Holds");
+    body_end_row(app, part, force.bodies, end, end == 0 ? "In" : "Holds",
+                 end == 0 ? bearing_in_help : bearing_holds_help);
   vector_rows(app, "Point",
               {.name = "inspector/at",
                .value = force.at.value_or(Vec3::Zero()),
@@ -132,6 +132,20 @@ void bearing_rows(App& app, const Force& force) {
                .value = force.axis,
                .help = "Of what turns in it; x and y are across.",
                .address = address_of(force, "axis")});
+  std::function<void(App&)> reset;
+  if (force.x_axis)
+    reset = [name = force.name](App& changed) {
+      edit_force(changed, "x axis of " + name + " as usual", name, [](Force& same) { same.x_axis.reset(); });
+    };
+  vector_rows(app, "x axis",
+              {.name = "inspector/x_axis",
+               .value = bearing_x_towards(force),
+               .help = force.x_axis ? "Where x is, in the plane across the axis; of any length."
+                                    : "Where x is: towards the world axis most across, unless another "
+                                      "direction is typed.",
+               .address = address_of(force, "x_axis"),
+               .standard = !force.x_axis},
+              reset);
   constexpr std::array<std::string_view, 2> sizes{"2 rows", "6 rows"};
   const bool full = bearing_size(force) == 6;
   if (const auto chosen = choice_row(app, "inspector/rows", "Matrices", sizes, full ? 1 : 0,
@@ -147,9 +161,9 @@ void bearing_rows(App& app, const Force& force) {
         *matrix = std::move(resized);
       }
     });
-  matrix_rows(app, force, "stiffness", force.bearing_stiffness, "N/m", bearing_stiffness,
+  matrix_rows(app, force, "stiffness", force.bearing_stiffness, "N/m", usual_bearing_stiffness,
               &Force::bearing_stiffness);
-  matrix_rows(app, force, "damping", force.bearing_damping, "N s/m", bearing_damping,
+  matrix_rows(app, force, "damping", force.bearing_damping, "N s/m", usual_bearing_damping,
               &Force::bearing_damping);
 }
 
@@ -283,20 +297,20 @@ void vane_rows(App& app, const Force& vane) {
                     "Of the force along the flow, such as =0.01 + 1.2*sin(incidence)^2; zero or more.");
     return;
   }
-  quantity_row(app, "Normal coefficient",
+  quantity_row(app, "cn (normal)",
                {.name = "inspector/cn",
                 .value = vane.cn,
                 .unit = "",
-                .help =
-                    "Of the force square to the plate, times the sine of the angle of attack; a plate in a "
-                    "stream 1.2, a thin blade up to 2 pi.",
+                .help = "Coefficient of the force square to the plate, times the sine of the angle of "
+                        "attack; a plate in a "
+                        "stream 1.2, a thin blade up to 2 pi.",
                 .least = Least::zero,
                 .address = address_of(vane, "cn")});
-  quantity_row(app, "Drag coefficient",
+  quantity_row(app, "cd (drag)",
                {.name = "inspector/cd",
                 .value = vane.cd,
                 .unit = "",
-                .help = "Of the force along the flow that is there at any angle.",
+                .help = "Coefficient of the force along the flow that is there at any angle.",
                 .least = Least::zero,
                 .address = address_of(vane, "cd")});
 }

@@ -1,7 +1,10 @@
 // Gears, belts, racks and screws.
 #include "app/document/gear_kinds.hpp"
+#include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/widgets/typed_field.hpp"
+#include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/gear_ratio.hpp"
 
 #include <algorithm>
@@ -123,6 +126,10 @@ void gear_rows(App& app, const Joint& gear) {
                 .address = gear_address(gear, "offset"),
                 .standard = !gear.offset},
                reset);
+  const Command& backlash = command("edit.backlash");
+  if (text_button(app, "inspector/edit.backlash", backlash.title))
+    later(app, [](App& changed) { run_command(changed, "edit.backlash"); });
+  help_on_hover(backlash.help);
 }
 
 } // namespace flyball

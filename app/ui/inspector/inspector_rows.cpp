@@ -290,11 +290,12 @@ std::vector<std::string> body_choices(const Mechanism& mechanism, bool ground) {
 }
 
 void body_end_row(App& app, const Part& part, const std::array<std::string, 2>& bodies, std::size_t end,
-                  const char* label) {
+                  const char* label, const char* help) {
   const std::vector<std::string> choices = body_choices(app.mechanism(), true);
   const std::string name = "inspector/bodies/" + std::to_string(end);
-  const char* help = end == 0 ? "The first body: what coordinates and reactions are counted from."
-                              : "The second body, which a positive coordinate moves.";
+  if (!help)
+    help = end == 0 ? "The first body: what coordinates and reactions are counted from."
+                    : "The second body, which a positive coordinate moves.";
   if (const auto chosen = name_choice_row(app, name, label, choices, bodies[end], help)) {
     if (*chosen == bodies[1 - end]) // two ends on one body have no meaning
       swap_bodies(app, part);

@@ -60,10 +60,13 @@ void vector_rows(App& app, const std::string& label, const VectorField& field,
 
 // The bodies' names, after the ground's where it may be chosen.
 std::vector<std::string> body_choices(const Mechanism& mechanism, bool ground);
-// One of the two bodies of a joint or spring; beside the second a button that swaps them. The ends of both
-// stay on their bodies.
+// What a bearing's two bodies are to it.
+inline constexpr const char* bearing_in_help = "The body that the bearing is in, which keeps its axes.";
+inline constexpr const char* bearing_holds_help = "The body that it holds, on which its force is told.";
+// One of the two bodies of a joint, spring or bearing; beside the second a button that swaps them. The ends
+// of both stay on their bodies. Without a help that of a joint or spring.
 void body_end_row(App& app, const Part& part, const std::array<std::string, 2>& bodies, std::size_t end,
-                  const char* label);
+                  const char* label, const char* help = nullptr);
 // The point of that end, of a distance joint or spring.
 void end_point_rows(App& app, const Part& part, const std::array<Vec3, 2>& points, std::size_t end);
 

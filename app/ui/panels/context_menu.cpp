@@ -126,11 +126,12 @@ void part_items(App& app) {
   if (alone) command_item(app, "edit.rename");
   command_items(app, {"edit.duplicate", "edit.copy", "edit.delete"});
   if (selection.has(PartKind::body)) command_items(app, {"edit.mirror", "edit.circular"});
-  if (selection.names(PartKind::joint).size() == 2) command_item(app, "edit.gear");
+  if (selection.names(PartKind::joint).size() >= 2) command_item(app, "edit.gear");
   for (const auto& [kind, command_id] : {std::pair(GearKind::belt, "edit.belt"),
                                          {GearKind::rack, "edit.rack"},
                                          {GearKind::screw, "edit.screw"}})
     if (can_gear_selected(app, kind)) command_item(app, command_id);
+  if (can_give_backlash(app)) command_item(app, "edit.backlash");
   ImGui::Separator();
   if (alone && id.kind == PartKind::joint)
     drive_items(app, mechanism.joints[static_cast<std::size_t>(id.index)]);

@@ -64,9 +64,9 @@ std::string load_components_text(const Load& load) {
 
 // Whether it is a reaction that redundant loops share out in many ways.
 bool is_one_of_many(const Solution& solution, const std::string& part, const Load& load) {
-  return load.kind == LoadKind::reaction && std::ranges::any_of(solution.reactions, [&](const Reaction& r) {
-           return r.nonunique && r.joint == part;
-         });
+  return load.kind == LoadKind::reaction && load.part.kind == PartKind::joint &&
+         std::ranges::any_of(solution.reactions,
+                             [&](const Reaction& r) { return r.nonunique && r.joint == part; });
 }
 
 // What else is drawn over the view.

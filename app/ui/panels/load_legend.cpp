@@ -25,8 +25,10 @@ double round_below(double value) {
 const char* load_help(LoadKind kind, bool moment, bool diagram) {
   switch (kind) {
   case LoadKind::reaction:
-    return diagram ? "What the joints exert on the body, their springs, dampers and drives included"
-                   : "What each joint's parent exerts on its child, springs, dampers and drives included";
+    return diagram
+               ? "What joints, with their springs, dampers and drives, and bearings exert on the body"
+               : "What each joint's parent exerts on its child, springs, dampers and drives included, and "
+                 "each bearing on its second body";
   case LoadKind::drive: return "What drives exert on their joint's child; part of the reactions";
   case LoadKind::spring:
     return diagram ? "What springs between bodies exert on the body"

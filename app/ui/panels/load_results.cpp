@@ -78,9 +78,24 @@ void gear_reactions(App& app, double force, double torque) {
   });
 }
 
+// What bearings exert on their second bodies.
+void bearing_forces(App& app, double force, double torque) {
+  const std::vector<BearingForce>& all = app.answer.solution.bearings;
+  const bool torques = torque > 1e-9 * force;
+  const std::size_t rows = torques ? 2 : 1;
+  visible_rows(rows * all.size(), [&](std::size_t i) {
+    const BearingForce& b = all[i / rows];
+    if (i % rows == 1)
+      return row(app, "", vector_text(b.torque, torque), "N m", "About the bearing's point.");
+    row(app, b.bearing + (b.varying ? " (varies)" : ""), vector_text(b.force, force), "N",
+        b.varying ? "The bearing on its second body. Changes as the drives turn; at the drawn phase."
+                  : "The bearing on its second body.");
+  });
+}
+
 void reactions(App& app) {
   const Solution& solution = app.answer.solution;
-  if (solution.reactions.empty()) return;
+  if (solution.reactions.empty() && solution.bearings.empty()) return;
   if (!section(app, "results/reactions", "Reactions", app.panels.reactions)) return;
   paragraph(solution.reactions_nonunique ? "Parent on child: x, y, z of the world. The loops hold more than "
                                            "they need; of those marked ≈ these are the smallest that do it."
@@ -90,6 +105,10 @@ void reactions(App& app) {
   for (const Reaction& r : solution.reactions) {
     force = std::max(force, r.force.lpNorm<Eigen::Infinity>());
     torque = std::max(torque, r.torque.lpNorm<Eigen::Infinity>());
+  }
+  for (const BearingForce& b : solution.bearings) {
+    force = std::max(force, b.force.lpNorm<Eigen::Infinity>());
+    torque = std::max(torque, b.torque.lpNorm<Eigen::Infinity>());
   }
   // Torques of a mechanism that has none are round-off of its forces.
   const bool torques = torque > 1e-9 * force;
@@ -103,6 +122,7 @@ void reactions(App& app) {
         : r.nonunique ? "The loops hold more than they need; of many possible ones the smallest."
                       : nullptr);
   });
+  bearing_forces(app, force, torque);
   gear_reactions(app, force, torque);
 }
 

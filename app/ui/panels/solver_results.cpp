@@ -8,6 +8,7 @@ namespace {
 
 const char* fallback_text(Fallback fallback) {
   switch (fallback) {
+  case Fallback::stops: return "start pressed against stops";
   case Fallback::damped: return "damped steps";
   case Fallback::homotopy: return "speeding up from rest";
   case Fallback::descent: return "descent of the potential";

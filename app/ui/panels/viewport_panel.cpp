@@ -29,7 +29,8 @@ void use_tool(App& app, const ViewInput& input) {
   case Tool::distance:
   case Tool::spring:
   case Tool::damper: return use_connecting(app, input);
-  case Tool::joint: return use_joining(app, input);
+  case Tool::joint:
+  case Tool::bearing: return use_joining(app, input);
   case Tool::force:
   case Tool::torque:
   case Tool::drag:

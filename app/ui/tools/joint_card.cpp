@@ -1,4 +1,4 @@
-// The card beside the point of a joint to be made: which bodies, which type, which axis.
+// The card beside the point of a joint or bearing to be made: which bodies, which type, which axis.
 #include "app/render/icons.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels/view_drawing.hpp"
@@ -91,11 +91,14 @@ void body_rows(App& app) {
     next[end] = name;
     set_bodies(app, next);
   };
-  if (const auto name = name_choice_row(app, "tools/parent", "Parent", choices, bodies[0],
-                                        "The body that coordinates are counted from."))
+  const bool bearing = app.tool.tool == Tool::bearing;
+  if (const auto name =
+          name_choice_row(app, "tools/parent", bearing ? "In" : "Parent", choices, bodies[0],
+                          bearing ? bearing_in_help : "The body that coordinates are counted from."))
     take(0, *name);
-  if (const auto name = name_choice_row(app, "tools/child", "Child", choices, bodies[1],
-                                        "The body that a positive coordinate moves."))
+  if (const auto name =
+          name_choice_row(app, "tools/child", bearing ? "Holds" : "Child", choices, bodies[1],
+                          bearing ? bearing_holds_help : "The body that a positive coordinate moves."))
     take(1, *name);
   ImGui::SameLine(0, 0);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
@@ -135,7 +138,8 @@ void axis_rows(App& app, const ViewInput& input) {
   };
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * app.scale, 4 * app.scale});
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("%s", app.tool.joint_type == JointType::planar ? "Normal" : "Axis");
+  const bool normal = app.tool.tool == Tool::joint && app.tool.joint_type == JointType::planar;
+  ImGui::TextDisabled("%s", normal ? "Normal" : "Axis");
   ImGui::SameLine();
   const std::array<const char*, 3> letters{"X", "Y", "Z"}, ids{"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
@@ -255,14 +259,15 @@ void joint_card(App& app, const ViewInput& input) {
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
                    ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(2);
-  heading(app, "Join");
+  const bool bearing = app.tool.tool == Tool::bearing;
+  heading(app, bearing ? "Bearing" : "Join");
   body_rows(app);
   ImGui::Dummy({0, s});
-  type_rows(app, input);
-  if (has_axis(app.tool.joint_type)) axis_rows(app, input);
-  if (has_axis2(app.tool.joint_type)) second_axis_row(app);
+  if (!bearing) type_rows(app, input);
+  if (bearing || has_axis(app.tool.joint_type)) axis_rows(app, input);
+  if (!bearing && has_axis2(app.tool.joint_type)) second_axis_row(app);
   ImGui::Dummy({0, 2 * s});
-  if (text_button(app, "tools/join", "Join", true)) {
+  if (text_button(app, "tools/join", bearing ? "Put it there" : "Join", true)) {
     make_joint(app);
   } else {
     ImGui::SameLine();

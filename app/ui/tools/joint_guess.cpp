@@ -146,6 +146,20 @@ Vec3 guess_axis(const Mechanism& mechanism, JointType type, const std::array<std
   return up_axis(mechanism).array() + 0.0;
 }
 
+Vec3 guess_shaft(const Mechanism& mechanism, const std::array<std::string, 2>& bodies, int normal) {
+  for (const std::string& name : {bodies[1], bodies[0]}) {
+    if (name == ground_name) continue;
+    for (const Joint& joint : mechanism.joints)
+      if ((joint.type == JointType::revolute || joint.type == JointType::cylindrical ||
+           joint.type == JointType::planar) &&
+          (joint.bodies[0] == name || joint.bodies[1] == name))
+        return joint.axis;
+    if (const Body* body = find_body(mechanism, name))
+      if (const auto rod = rod_axis(*body)) return *rod;
+  }
+  return Vec3::Unit(normal);
+}
+
 Vec3 axis_across(const Vec3& axis) {
   Vec3::Index least = 0;
   axis.cwiseAbs().minCoeff(&least);

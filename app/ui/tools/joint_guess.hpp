@@ -28,6 +28,9 @@ std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std
 // (0 to 2) nearest to the line of sight.
 Vec3 guess_axis(const Mechanism& mechanism, JointType type, const std::array<std::string, 2>& bodies,
                 int normal);
+// Of a bearing: that which one of the bodies turns about, the second rather; or along a rod, or across the
+// picture.
+Vec3 guess_shaft(const Mechanism& mechanism, const std::array<std::string, 2>& bodies, int normal);
 // A world axis at right angles to the axis, or its part that is.
 Vec3 axis_across(const Vec3& axis);
 

@@ -44,7 +44,7 @@ std::optional<Vec3> likely_point(App& app) {
   std::vector<int> bodies;
   for (const std::string& name : app.selection().names(PartKind::body))
     bodies.push_back(body_index(mechanism, name));
-  if (app.tool.tool != Tool::joint && !bodies.empty())
+  if (app.tool.tool != Tool::joint && app.tool.tool != Tool::bearing && !bodies.empty())
     return mechanism.bodies[static_cast<std::size_t>(bodies.front())].position;
   if (bodies.empty())
     for (int i = 0; i < static_cast<int>(mechanism.bodies.size()); ++i)

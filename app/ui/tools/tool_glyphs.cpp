@@ -157,6 +157,16 @@ void draw_damper(const GlyphPen& pen) {
   pen.line({{0, 0}, {1, 0}});
 }
 
+// A ring of balls between two rings.
+void draw_bearing(const GlyphPen& pen) {
+  pen.circle({0, 0}, 0.92f);
+  pen.circle({0, 0}, 0.34f);
+  for (int i = 0; i < 6; ++i) {
+    const float angle = pi * static_cast<float>(i) / 3;
+    pen.disc({0.63f * std::cos(angle), 0.63f * std::sin(angle)}, 0.17f);
+  }
+}
+
 void draw_force(const GlyphPen& pen) {
   pen.disc({0, -0.78f}, 0.2f);
   pen.line({{0, -0.7f}, {0, 0.5f}});
@@ -203,6 +213,7 @@ void draw_tool_glyph(ImDrawList& list, Tool tool, ImVec2 center, float half, ImU
   case Tool::distance: return draw_link(pen);
   case Tool::spring: return draw_spring(pen);
   case Tool::damper: return draw_damper(pen);
+  case Tool::bearing: return draw_bearing(pen);
   case Tool::force: return draw_force(pen);
   case Tool::torque: return draw_torque(pen);
   case Tool::drag: return draw_stream(pen);

@@ -31,6 +31,7 @@ constexpr std::array buttons{
     ToolButton{Tool::distance, "tools/distance", "insert.distance"},
     ToolButton{Tool::spring, "tools/spring", "insert.spring"},
     ToolButton{Tool::damper, "tools/damper", "insert.damper"},
+    ToolButton{Tool::bearing, "tools/bearing", "insert.bearing"},
     ToolButton{Tool::force, "tools/force", "insert.force", true},
     ToolButton{Tool::torque, "tools/torque", "insert.torque"},
     ToolButton{Tool::drag, "tools/drag", "insert.drag"},

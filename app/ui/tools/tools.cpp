@@ -163,8 +163,7 @@ namespace {
 std::string standing_hint(const App& app) {
   const ToolState& tool = app.tool;
   const std::string& name = tool.grab ? tool.grab->stands : tool.caches.aim.named;
-  const bool takes = tool.grab || (places(tool.tool) && tool.tool != Tool::point &&
-                                   !(tool.tool == Tool::joint && tool.joint));
+  const bool takes = tool.grab || (places(tool.tool) && tool.tool != Tool::point && !tool.joint);
   return takes && !name.empty() ? "It stands at " + name + " then, and moves with it. " : "";
 }
 
@@ -207,10 +206,16 @@ std::string hint_of_tool(const App& app) {
     return tool.first ? "Click the other end, or type the length. Esc drops the first."
                       : "Click one end, then the other. Esc ends.";
   case Tool::joint:
-    if (!tool.joint) return "Click the point where two bodies meet. Esc ends.";
-    return tool.joint->picking_axis
-               ? (tool.joint->axis_from ? "Click a second point on the axis." : "Click a point on the axis.")
-               : "Enter joins. Click to move the point. Esc cancels.";
+  case Tool::bearing: {
+    const bool bearing = tool.tool == Tool::bearing;
+    if (!tool.joint)
+      return bearing ? "Click the point of a shaft where the bearing holds it. Esc ends."
+                     : "Click the point where two bodies meet. Esc ends.";
+    if (tool.joint->picking_axis)
+      return tool.joint->axis_from ? "Click a second point on the axis." : "Click a point on the axis.";
+    return std::string(bearing ? "Enter puts it there." : "Enter joins.") +
+           " Click to move the point. Esc cancels.";
+  }
   case Tool::force: return "Click a point of a body: a force of 1 N downwards. Esc ends.";
   case Tool::torque: return "Click a body: a torque of 1 N m about the line of sight. Esc ends.";
   case Tool::drag: return "Click a point of a body that the air holds back. Esc ends.";

@@ -30,10 +30,10 @@ void use_placing(App& app, const ViewInput& input);    // ball, block, plate
 void use_connecting(App& app, const ViewInput& input); // rod, link, spring, damper
 void use_forces(App& app, const ViewInput& input);     // force, torque, drag, vane
 void use_joining(App& app, const ViewInput& input);
-bool make_joint(App& app); // of app.tool.joint, and ends it; false where it cannot be made as it is
+bool make_joint(App& app); // or bearing, of app.tool.joint, and ends it; false where it cannot be made
 
 void tool_strip(App& app, const PanelRect& view);
-void joint_card(App& app, const ViewInput& input); // what a joint will be, beside its point
+void joint_card(App& app, const ViewInput& input); // what a joint or bearing will be, beside its point
 
 // After a tool has made something: chosen again while Shift is held, else it is time to select.
 void end_tool(App& app, const ViewInput& input);

@@ -1,4 +1,4 @@
-// Joining two bodies: a click says where, the card beside the point how.
+// Joining two bodies, by a joint or a bearing: a click says where, the card beside the point how.
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
@@ -33,7 +33,9 @@ void begin_joint(App& app, const ViewInput& input, const Aim& aim) {
     app.notice = "There is nothing to join yet: place a body first.";
     return;
   }
-  draft.axis = guess_axis(app.mechanism(), app.tool.joint_type, draft.bodies, aim.plane.normal);
+  draft.axis = app.tool.tool == Tool::bearing
+                   ? guess_shaft(app.mechanism(), draft.bodies, aim.plane.normal)
+                   : guess_axis(app.mechanism(), app.tool.joint_type, draft.bodies, aim.plane.normal);
   draft.axis2 = axis_across(draft.axis);
   app.tool.joint = std::move(draft);
   app.tool.last_point = aim.point;
@@ -79,8 +81,9 @@ void draw_axis(const App& app, const ViewInput& input, const Vec3& at, const Vec
 void draw_draft(const App& app, const ViewInput& input) {
   const JointDraft& draft = *app.tool.joint;
   const JointType type = app.tool.joint_type;
-  if (has_axis(type)) draw_axis(app, input, draft.at, draft.axis, true);
-  if (has_axis2(type)) draw_axis(app, input, draft.at, draft.axis2, false);
+  const bool bearing = app.tool.tool == Tool::bearing;
+  if (bearing || has_axis(type)) draw_axis(app, input, draft.at, draft.axis, true);
+  if (!bearing && has_axis2(type)) draw_axis(app, input, draft.at, draft.axis2, false);
   if (const auto at = input.on_screen(draft.at)) {
     draw_dot(app, *at, 4);
     draw_dot(app, *at, 9, true);
@@ -111,12 +114,16 @@ void use_joining(App& app, const ViewInput& input) {
 bool make_joint(App& app) {
   const std::optional<JointDraft> draft = app.tool.joint;
   if (!draft || draft->picking_axis || draft->bodies[0] == draft->bodies[1]) return false;
-  edit(app, "Join " + draft->bodies[0] + " and " + draft->bodies[1],
+  const bool bearing = app.tool.tool == Tool::bearing;
+  const std::string between = draft->bodies[0] + " and " + draft->bodies[1];
+  edit(app, (bearing ? "Add bearing between " : "Join ") + between,
        [&](Mechanism& mechanism, Selection& selection) {
-         const std::string name =
-             add_joint(mechanism, app.tool.joint_type, draft->bodies, draft->at, draft->axis, draft->axis2);
-         stand_at(mechanism, "joints." + name + ".at", draft->named);
-         selection.set({PartKind::joint, name});
+         const Part part =
+             bearing ? Part{PartKind::force, add_bearing(mechanism, draft->bodies, draft->at, draft->axis)}
+                     : Part{PartKind::joint, add_joint(mechanism, app.tool.joint_type, draft->bodies,
+                                                       draft->at, draft->axis, draft->axis2)};
+         stand_at(mechanism, point_address(mechanism, {part, 0}), draft->named);
+         selection.set(part);
        });
   app.tool.joint.reset();
   if (!ImGui::GetIO().KeyShift) app.tool.tool = Tool::select;

@@ -75,6 +75,7 @@ std::string mistake_in(const App& app, const std::string& text, const QuantityFi
     try {
       Mechanism copy = app.document.stored();
       set_typed_expression(copy, field, text.substr(1));
+      if (field.least == Least::any) return {}; // a law may stand in the number's place
       return too_small(expressed_value(copy, place_of(field)), field.least);
     } catch (const SceneError& error) {
       return error.expected();
