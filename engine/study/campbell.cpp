@@ -248,6 +248,7 @@ class CrossingFinder {
     found_.push_back({.order = order_,
                       .speed = speed,
                       .frequency = mode.frequency,
+                      .until = {},
                       .error = error,
                       .damping_ratio = mode.damping_ratio,
                       .touches = touches,

@@ -1,9 +1,9 @@
 #include "engine/study/hopf_point.hpp"
 
+#include "engine/continuation/branch_follower.hpp"
 #include "engine/continuation/pair_crossing.hpp"
 #include "engine/dynamics/local_motion.hpp"
 #include "engine/dynamics/start.hpp"
-#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/study/lyapunov.hpp"
 
