@@ -297,8 +297,7 @@ struct Simulator::State {
       if (bearing_turns[i].dot(before) < -quarter * quarter)
         return "the bodies of the bearing " +
                model->mechanism.forces[static_cast<std::size_t>(e.force)].name +
-               " turned by more than half a turn against each other, where the rotation vector that it "
-               "resists jumps";
+               " turned by more than half a turn against each other, where its moments jump";
     }
     return {};
   }

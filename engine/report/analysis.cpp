@@ -8,6 +8,7 @@
 #include "engine/mechanism/validate.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
 #include "engine/report/found_speeds.hpp"
+#include "engine/report/kink_message.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/turning_part.hpp"
@@ -437,6 +438,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     Solution solution;
     Eigen::VectorXd q;
     std::vector<int> neutral;
+    std::string kinks;
   };
   std::vector<Entry> entries;
   std::string undetermined; // that nothing determines the speed of a drive
@@ -480,7 +482,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
         }))
       continue;
     const auto end = std::chrono::steady_clock::now();
-    Entry entry{potential, {}, found.z.q, stability.neutral};
+    Entry entry{potential, {}, found.z.q, stability.neutral, kink_message(s.system, *s.mechanism, stability)};
     entry.solution.status = Status::converged;
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
@@ -499,6 +501,8 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   for (Entry& e : entries)
     out.equilibria.push_back(std::move(e.solution));
   out.message = entries.empty() && !undetermined.empty() ? undetermined : message(out);
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    if (!entries[i].kinks.empty()) out.message += " In " + std::to_string(i + 1) + ": " + entries[i].kinks;
   return out;
 }
 

@@ -258,10 +258,9 @@ void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Wor
                           : "the forces on it") +
       ": " + (one ? "it goes" : "they go") + " on without end" +
       (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +
-      (pulled_by_law(problem.system, found) ? "A spring by a law that pulls no harder there does not hold: "
-                                            : "") +
-      (one ? "It needs a spring or a stop" : "They need springs or stops") +
-      (found.by_weight ? ", or no gravity." : ".");
+      (one ? "It needs a spring" : "They need springs") +
+      (pulled_by_law(problem.system, found) ? " whose force grows with its deflection," : "") +
+      (one ? " or a stop" : " or stops") + (found.by_weight ? ", or no gravity." : ".");
   out.message = unstable ? out.message + " " + words : words;
 }
 
