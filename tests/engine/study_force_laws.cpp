@@ -349,7 +349,9 @@ TEST_CASE("every verdict on an equilibrium knows the kink it stands on", "[laws]
   for (const ResponsePoint& p : d.branches[0].points)
     CHECK(!p.stable);
   m.joints[0].formulas[0].text = "c*max(deflection, 0 m) + 30 N/m*min(deflection, 0 m)";
-  for (const ResponsePoint& p : follow_branches(m, "parameters.c", 50, 150).branches.at(0).points)
+  const ResponseDiagram held = follow_branches(m, "parameters.c", 50, 150);
+  REQUIRE(held.branches.size() == 1);
+  for (const ResponsePoint& p : held.branches[0].points)
     CHECK(p.stable == true);
   // Of two coordinates: the potential falls in between where one of the sides is softer than what couples
   // them.
