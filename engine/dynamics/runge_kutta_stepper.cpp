@@ -1,3 +1,4 @@
+#include "engine/dynamics/dormand_prince.hpp"
 #include "engine/dynamics/stepper.hpp"
 #include "engine/dynamics/sundials.hpp"
 
@@ -27,25 +28,23 @@ std::string runge_kutta_clause(int flag) {
   }
 }
 
-// Fehlberg's method of order 8 with a stage more: the state at the end of the step, with which the next one
-// begins. ERKStep of SUNDIALS 6.4 takes every method whose last stage is at the end of the step for one where
-// that stage is the end, and loses an order with those for which it is not.
+// With a stage more: the state at the end of the step, with which the next one begins. ERKStep of
+// SUNDIALS 6.4 takes every method whose last stage is at the end of the step for one where that stage is the
+// end, and loses an order with those for which it is not.
 void set_method(void* memory) {
+  namespace pair = dormand_prince;
   using Table = std::unique_ptr<ARKodeButcherTableMem, decltype(&ARKodeButcherTable_Free)>;
-  const Table fehlberg(ARKodeButcherTable_LoadERK(ARKODE_FEHLBERG_13_7_8), &ARKodeButcherTable_Free);
-  const Table table(fehlberg ? ARKodeButcherTable_Alloc(fehlberg->stages + 1, SUNTRUE) : nullptr,
-                    &ARKodeButcherTable_Free);
+  const Table table(ARKodeButcherTable_Alloc(pair::stages + 1, SUNTRUE), &ARKodeButcherTable_Free);
   if (!table) throw std::bad_alloc();
-  table->q = fehlberg->q;
-  table->p = fehlberg->p;
-  const int last = fehlberg->stages;
-  for (int i = 0; i < last; ++i) {
-    std::copy_n(fehlberg->A[i], last, table->A[i]);
-    table->A[last][i] = table->b[i] = fehlberg->b[i];
-    table->c[i] = fehlberg->c[i];
-    table->d[i] = fehlberg->d[i];
+  table->q = pair::order;
+  table->p = pair::order_beside;
+  for (std::size_t i = 0; i < pair::stages; ++i) {
+    std::ranges::copy(pair::take[i], table->A[i]);
+    table->A[pair::stages][i] = table->b[i] = pair::step[i];
+    table->c[i] = pair::when[i];
+    table->d[i] = pair::step_beside[i];
   }
-  table->c[last] = 1;
+  table->c[pair::stages] = 1;
   ERKStepSetTable(memory, table.get());
 }
 

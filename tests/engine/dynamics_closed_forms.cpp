@@ -36,7 +36,31 @@ double pendulum_period(double length, double angle) {
   return 2 * pi * std::sqrt(length / standard_gravity) / a;
 }
 
+// A sledge of 3 kg on a smooth rail, and on it a disc of 1 kg with its mass centre e beside its axis.
+Mechanism free_sledge(double speed, double e) {
+  Mechanism m;
+  m.bodies = {body("sledge", 3), body("disc", 1, {e, 0, 0}, {0.01, 0.01, 0.02})};
+  m.joints = {prismatic("rail", "ground", "sledge", {0, 0, 0}, {1, 0, 0}),
+              driven(revolute("spin", "sledge", "disc", {0, 0, 0}, {0, 0, 1}), speed)};
+  return m;
+}
+
 } // namespace
+
+TEST_CASE("what the time alone pushes moves within the tolerance, by any integrator and in long steps") {
+  const double speed = 5, e = 0.02;
+  for (const Integrator method : {Integrator::runge_kutta, Integrator::adams, Integrator::bdf})
+    for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
+      SimulationOptions options = lasting(20, method, tolerance);
+      options.rate = 0.05; // few samples to land on
+      const Run run = simulate(free_sledge(speed, e), options);
+      CAPTURE(run.message, tolerance, static_cast<int>(method));
+      REQUIRE(run.time.size() == 2);
+      // 4 x'' = 1 e w^2 cos w t, from rest
+      const double wanted = e / 4 * (1 - std::cos(speed * 20));
+      CHECK(std::abs(track(run, "rail").value.back() - wanted) < 1e4 * tolerance * e + 1e-13);
+    }
+}
 
 TEST_CASE("a pendulum's period, at small and at large swings") {
   for (const double angle : {0.01, 1., 2.5, 3.1})
