@@ -120,6 +120,7 @@ class Shooter {
     const Eigen::Index n = orbit_.nodes.front().size(), m = static_cast<Eigen::Index>(segments());
     const Eigen::Index extra = options_.find_period ? 1 : 0;
     matrix_.setZero(n * m + extra, n * m + extra);
+    begin_.clear();
     gaps_.setZero(n * m + extra);
     for (Eigen::Index i = 0; i < m; ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -128,6 +129,7 @@ class Shooter {
       if (!rates) return false;
       matrix_.block(n * i, n * i, n, n) += rates->end;
       matrix_.block(n * ((i + m - 1) % m), n * i, n, n) -= rates->begin;
+      begin_.push_back(rates->begin);
       gaps_.segment(n * i, n) = after(at).coordinates(ends_[at]);
       if (!options_.find_period) continue;
       const auto going = velocity(ends_[at], after(at));
@@ -151,6 +153,20 @@ class Shooter {
     return (4 * (chart.coordinates(once->to) - x) - (chart.coordinates(twice->to) - x)) / (2 * dt);
   }
 
+  // In how many of the directions (by column) the states move: rates of what has no momentum follow from the
+  // rest whatever they are asked to be.
+  int moving(const Matrix& directions) const {
+    if (directions.cols() == 0) return 0;
+    const Eigen::Index n = orbit_.nodes.front().size();
+    Matrix moved(n * static_cast<Eigen::Index>(segments()), directions.cols());
+    for (std::size_t i = 0; i < segments(); ++i) {
+      const Eigen::Index at = n * static_cast<Eigen::Index>(i);
+      moved.middleRows(at, n) = begin_[i] * directions.middleRows(at, n);
+    }
+    const auto svd = singular_vectors(moved);
+    return svd ? static_cast<int>((svd->values.array() > 0.01).count()) : 0;
+  }
+
   // The shortest step that closes the gaps. False where no step closes much of them.
   bool solve(Vector& step) {
     step.setZero(matrix_.cols());
@@ -159,7 +175,7 @@ class Shooter {
     if (!svd) return false;
     const double least = singular * std::max(1., svd->values[0]);
     const Eigen::Index rank = (svd->values.array() > least).count();
-    orbit_.neutral = static_cast<int>(svd->values.size() - rank);
+    orbit_.neutral = moving(svd->right.rightCols(svd->values.size() - rank));
     const Vector along = svd->left.transpose() * gaps_;
     unclosed_ = svd->left.rightCols(along.size() - rank);
     if (along.tail(along.size() - rank).norm() > unreachable * gaps_.norm()) return false;
@@ -224,8 +240,9 @@ class Shooter {
   std::vector<MotionState> ends_; // of the segments
   Matrix matrix_;
   Vector gaps_;
-  Matrix unclosed_;    // by column: parts of the gaps that no step closes
-  bool moved_ = false; // some part of the last step led to motions that last
+  std::vector<Matrix> begin_; // by segment: how its states move as their coordinates do
+  Matrix unclosed_;           // by column: parts of the gaps that no step closes
+  bool moved_ = false;        // some part of the last step led to motions that last
 };
 
 // Extrapolated differences of a segment, and the same by as much off as their error may be, in the way in
