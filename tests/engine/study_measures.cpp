@@ -95,6 +95,13 @@ Force random_bearing(std::uint32_t seed, const std::string& body) {
   return f;
 }
 
+// What six rows have to do where a drive turns what they hold.
+void resist_shifts_alone(Force& bearing) {
+  for (BearingMatrix* each : {&bearing.bearing_stiffness, &bearing.bearing_damping})
+    for (std::size_t i = 0; i < each->size() && each->size() == 36; ++i)
+      if (i % 6 >= 3 || i / 6 >= 3) (*each)[i] = 0;
+}
+
 // "force_x(coil)" and its like, with their units.
 std::vector<std::pair<std::string, std::string>> elastic_results(const Force& force) {
   std::vector<std::pair<std::string, std::string>> all;
@@ -116,6 +123,7 @@ Mechanism random_to_measure(std::uint32_t seed, int bodies) {
   Mechanism m = reference::random_mechanism(seed, options);
   m.points = {{"A", Vec3(0.3, -0.2, 0.5), {}}};
   m.forces.push_back(random_bearing(seed, m.bodies.back().name));
+  if (compile(m).bearings.front().turning >= 0) resist_shifts_alone(m.forces.back());
   m.measures.clear();
   return m;
 }

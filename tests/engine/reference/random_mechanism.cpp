@@ -16,7 +16,8 @@ std::string numbered(std::string stem, int i) {
 
 class Builder {
  public:
-  Builder(std::uint32_t seed, const RandomOptions& options) : dice_(seed), options_(options) {
+  Builder(std::uint32_t seed, const RandomOptions& options)
+      : dice_(seed), polar_dice_(seed + 77), options_(options) {
     mechanism_.name = "random";
     tree_types_ = options.tree_types;
     loop_types_ = options.loop_types;
@@ -243,7 +244,7 @@ class Builder {
       if (dice_.chance(0.5)) vane.chord = vane.normal.cross(dice_.direction());
       vane.cn = dice_.between(0.5, 3);
       vane.cd = dice_.between(0, 0.5);
-      if (vane.chord && dice_.chance(0.5)) add_polar(vane);
+      if (vane.chord && polar_dice_.chance(0.5)) add_polar(vane);
       mechanism_.forces.push_back(vane);
     }
     mechanism_.air.density = dice_.between(1, 2);
@@ -256,9 +257,9 @@ class Builder {
   // Of any shape, the same from behind on either side.
   void add_polar(Force& vane) {
     vane.lift = vane.drag = 0;
-    const std::string size = std::to_string(dice_.between(0.5, 2));
+    const std::string size = std::to_string(polar_dice_.between(0.5, 2));
     vane.formulas = {{"drag", "0.1 + " + size + "*(1 - cos(2*incidence))"},
-                     {"lift", dice_.chance(0.5)
+                     {"lift", polar_dice_.chance(0.5)
                                   ? size + "*sin(incidence + 0.1)"
                                   : "table(incidence, [-180 deg, 0], [-90 deg, 0.1], [-15 deg, -" + size +
                                         "], [0, 0.2], [15 deg, " + size +
@@ -286,7 +287,7 @@ class Builder {
     mechanism_.forces.push_back(force);
   }
 
-  test::Dice dice_;
+  test::Dice dice_, polar_dice_; // what has polars is else as it was without
   RandomOptions options_;
   Mechanism mechanism_;
   std::vector<JointType> tree_types_, loop_types_;
