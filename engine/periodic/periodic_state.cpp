@@ -419,7 +419,8 @@ class Search {
       out.message = "A periodic motion was found, but not what it measures: " + flow_.trouble();
       return;
     }
-    if (out.motion->statistics.singular_positions > 0) { // differences tell nothing of such a passage
+    if (out.motion->statistics.singular_positions > 0 &&
+        c.beside.error > inexact) { // differences do not agree
       out.stable.reset();
       out.stability_reason.reset();
       out.floquet.multipliers.clear();
@@ -491,7 +492,7 @@ class Search {
     text += ".";
     if (c.beside.multipliers.empty())
       text += cycle ? "" : " Nothing moves freely: the drives prescribe all of it.";
-    else if (out.motion->statistics.singular_positions > 0)
+    else if (out.floquet.multipliers.empty())
       text +=
           " It passes positions in which linkages could part into branches: what is beside it is not known "
           "there, nor whether it is stable.";
@@ -505,6 +506,9 @@ class Search {
       text += " Motions beside it neither grow nor die out.";
     else
       text += " It is stable: motions beside it die out.";
+    if (out.motion->statistics.singular_positions > 0 && !out.floquet.multipliers.empty())
+      text +=
+          " It passes positions in which linkages could part into branches, and is taken to go straight on.";
     if (left_first_)
       text += " The one nearest to the drawn pose is unstable; a motion that leaves it comes to this one.";
     return text;

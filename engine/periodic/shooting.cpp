@@ -14,6 +14,8 @@ constexpr double newton_step = 1e-3;     // scaled, of differences that only New
 constexpr double newton_tolerance = 1e3; // times the tolerance is enough for them
 constexpr double largest_step = 0.5;     // scaled, of the coordinates in an iteration
 constexpr double singular = 1e-7;        // of the largest singular value: differences are no better
+constexpr double nearly_singular = 1e-4; // differences are to be better, to tell it from singular
+constexpr double moves = 0.01;           // of what is asked: a state that changes by less does not
 constexpr double unreachable = 0.1;      // of the gap: so much of it is no step's to close
 constexpr double multiplier_step = 4e-3; // scaled, at first
 constexpr double noise = 1;              // of the tolerance over a step: what is left in the best differences
@@ -42,13 +44,16 @@ std::optional<Rates> differences(Flow& flow, const StateChart& from, const State
   return out;
 }
 
-// d(coordinates at the end) / d(those at the beginning). Rates of what has no momentum follow from the rest.
+// d(coordinates at the end) / d(those at the beginning). Rates of what has no momentum follow from the rest:
+// along those nothing begins otherwise, and the derivative is zero.
 std::optional<Matrix> derivative(const std::optional<Rates>& rates) {
   if (!rates) return {};
   if (rates->begin.size() == 0) return rates->end;
-  const auto transposed = least_squares_columns(rates->begin.transpose(), rates->end.transpose());
-  if (!transposed) return {};
-  return Matrix(transposed->transpose());
+  const auto svd = singular_vectors(rates->begin);
+  if (!svd) return {};
+  const Eigen::Index rank = (svd->values.array() > moves).count();
+  return Matrix(rates->end * svd->right.leftCols(rank) * svd->values.head(rank).cwiseInverse().asDiagonal() *
+                svd->left.leftCols(rank).transpose());
 }
 
 class Shooter {
@@ -68,9 +73,13 @@ class Shooter {
       if (orbit_.iterations > 0 && (gap <= closed || (gap <= nearly_closed && still)))
         return ended(ShootingEnd::converged);
       if (orbit_.iterations == options_.iterations) return ended(ShootingEnd::diverged);
-      if (!linearise()) return ended(end_of(flow_));
       Vector step;
-      const bool reachable = solve(step);
+      bool reachable = true;
+      for (const double coarser : {newton_tolerance, 1.}) {
+        if (!linearise(coarser * options_.tolerance)) return ended(end_of(flow_));
+        reachable = solve(step);
+        if (!doubtful_) break;
+      }
       if (gap <= closed) return ended(ShootingEnd::converged);
       if (!reachable)
         return ended(gap <= nearly_closed && is_rounding() ? ShootingEnd::converged : ShootingEnd::pumped);
@@ -116,7 +125,7 @@ class Shooter {
 
   // E_i s_i - B_(i+1) s_(i+1) + p_i dT = -r_i, where steps s_i begin with B_i s_i and end with E_i s_i, and
   // the phase of a motion without one of its own.
-  bool linearise() {
+  bool linearise(double tolerance) {
     const Eigen::Index n = orbit_.nodes.front().size(), m = static_cast<Eigen::Index>(segments());
     const Eigen::Index extra = options_.find_period ? 1 : 0;
     matrix_.setZero(n * m + extra, n * m + extra);
@@ -124,8 +133,7 @@ class Shooter {
     gaps_.setZero(n * m + extra);
     for (Eigen::Index i = 0; i < m; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const auto rates = differences(flow_, orbit_.nodes[at], after(at), duration(),
-                                     newton_tolerance * options_.tolerance, newton_step);
+      const auto rates = differences(flow_, orbit_.nodes[at], after(at), duration(), tolerance, newton_step);
       if (!rates) return false;
       matrix_.block(n * i, n * i, n, n) += rates->end;
       matrix_.block(n * ((i + m - 1) % m), n * i, n, n) -= rates->begin;
@@ -164,17 +172,19 @@ class Shooter {
       moved.middleRows(at, n) = begin_[i] * directions.middleRows(at, n);
     }
     const auto svd = singular_vectors(moved);
-    return svd ? static_cast<int>((svd->values.array() > 0.01).count()) : 0;
+    return svd ? static_cast<int>((svd->values.array() > moves).count()) : 0;
   }
 
   // The shortest step that closes the gaps. False where no step closes much of them.
   bool solve(Vector& step) {
     step.setZero(matrix_.cols());
+    doubtful_ = false;
     if (matrix_.size() == 0) return true;
     const auto svd = singular_vectors(matrix_);
     if (!svd) return false;
     const double least = singular * std::max(1., svd->values[0]);
     const Eigen::Index rank = (svd->values.array() > least).count();
+    doubtful_ = (svd->values.array() < least / singular * nearly_singular).any();
     orbit_.neutral = moving(svd->right.rightCols(svd->values.size() - rank));
     const Vector along = svd->left.transpose() * gaps_;
     unclosed_ = svd->left.rightCols(along.size() - rank);
@@ -242,6 +252,7 @@ class Shooter {
   Vector gaps_;
   std::vector<Matrix> begin_; // by segment: how its states move as their coordinates do
   Matrix unclosed_;           // by column: parts of the gaps that no step closes
+  bool doubtful_ = false;     // the matrix may be singular, but for the errors of differences
   bool moved_ = false;        // some part of the last step led to motions that last
 };
 
