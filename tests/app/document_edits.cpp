@@ -110,7 +110,7 @@ TEST_CASE("a part takes along what hangs on it") {
   CHECK(arm.parts.size() == 10);
   remove_parts(m, arm);
   CHECK(joint_index(m, "spin") == 0);
-  CHECK(m.forces.size() == 3);
+  CHECK(m.forces.size() == 4);
   // The slider of the hinge's spring went with the hinge.
   REQUIRE(m.sliders.size() == 1);
   CHECK(m.sliders[0].parameter == "joints.spin.drive.speed");

@@ -76,7 +76,9 @@ inline constexpr std::string_view everything = R"({
     {"name": "journal", "description": "oil", "type": "bearing", "bodies": ["ground", "drone"], "at": [0, 0, 7.5],
      "axis": [0, 0, 4], "x_axis": [1, 0, 0.5], "stiffness": [["=8 N / L", 17], [-17, 18]], "damping": [[3, 0], [0, 3]]},
     {"name": "sail", "type": "vane", "body": "puck", "at": [0, 0.5, 6], "area": "=L * 2 cm", "normal": [0, 1, 2],
-     "chord": [1, 0, 0], "cn": 3, "cd": 0.0625}
+     "chord": [1, 0, 0], "cn": 3, "cd": 0.0625},
+    {"name": "wing", "type": "vane", "body": "puck", "area": 0.75, "normal": [0, 0, 3], "chord": [2, 0, 0],
+     "lift": "=sin(2*incidence)*1.25", "drag": 0.125}
   ],
   "measures": {
     "gap": {"description": "between two", "value": "=distance(ball, drone) - half", "unit": "m"},
