@@ -132,6 +132,15 @@ inline constexpr Mistake mistakes_of_form[] = {
     {R"("color": [0.5, 0.25, 1])", R"("color": [0.5, "=half", 1])", "bodies.table.shapes[0].color[1]",
      "expected a number, found \"=half\""},
     {R"("density": 1000)", R"("density": 1000, "mass": 1)", "bodies.pinion.mass", "follows from the density"},
+    // what stands in the place of something else
+    {R"("cn": 3,)", R"("lift": 1,)", "forces.sail.cd", "expected none beside `lift` and `drag`"},
+    {R"("chord": [2, 0, 0],)", "", "forces.wing.chord", "missing; `lift` and `drag` need it"},
+    {R"("damping": 1.5})", R"("damping": 1.5, "damping_force": "=3 N s/m*rate"})", "forces.coil.damping",
+     "expected none beside `damping_force`"},
+    {R"("damping": [[3, 0], [0, 3]])",
+     R"("damping": [[1, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0],
+                    [1, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0]])",
+     "forces.journal.damping", "as many rows as `stiffness`"},
     // unknown keys, at every level
     {R"("gravity")", R"("gravitation")", "gravitation", "unknown key of a scene"},
     {R"("gravity")", R"("Gravity")", "Gravity", "did you mean \"gravity\"?"},
