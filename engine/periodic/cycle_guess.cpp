@@ -117,6 +117,13 @@ Return first_return(const StateChart& begin, const std::vector<MotionState>& tra
 
 } // namespace
 
+bool is_steady(const Flow& flow, const std::vector<MotionState>& states, double rate) {
+  const Eigen::VectorXd& unit = flow.model().scaling.column;
+  return std::ranges::all_of(states, [&](const MotionState& state) {
+    return (state.u - states.front().u).cwiseQuotient(unit).lpNorm<Eigen::Infinity>() <= at_rest * rate;
+  });
+}
+
 Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate) {
   const Eigen::MatrixXd all = turning_directions(flow, state);
   Eigen::MatrixXd out(all.rows(), 0);
@@ -197,8 +204,9 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
     if (trace.empty()) return refused("The motion does not last: " + flow.trouble());
     const StateChart chart(flow.problem(), *state, turn / *period, alike_along);
     const Return back = first_return(chart, trace);
-    if (back.farthest < at_rest)
-      return refused("The motion from the drawn pose settles in the steady state.");
+    if (is_steady(flow, trace, turn / *period))
+      return refused(leaves ? "The motion that leaves the steady state settles in another one."
+                            : "The motion from the drawn pose settles in a steady state.");
     const bool grows = std::abs(back.farthest - before) > steadily * back.farthest;
     before = back.farthest;
     if (back.sample == 0 || back.nearest > returned * back.farthest || (grows && look + 1 < looks)) continue;

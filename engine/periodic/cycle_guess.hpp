@@ -6,6 +6,9 @@
 
 namespace flyball {
 
+// Whether all rates stay as they are, scaled by `rate` (1/s): everything rests or turns evenly.
+bool is_steady(const Flow& flow, const std::vector<MotionState>& states, double rate);
+
 // Angles of what torques drive, as scaled directions (nv, any), at all of which the motion goes on alike:
 // these need not return after a period.
 Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate);

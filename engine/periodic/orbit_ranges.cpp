@@ -12,7 +12,7 @@ namespace flyball {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+constexpr double rounding = 4096 * std::numeric_limits<double>::epsilon(); // of the steps of a period
 
 // The greatest value of sign * the polynomial through seven samples about the greatest one.
 double extreme(std::span<const double> values, std::size_t stride, double sign) {

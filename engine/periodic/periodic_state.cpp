@@ -28,7 +28,6 @@ constexpr double strong_growth = 1e3; // in a segment
 constexpr double inexact = 1e-4;      // relative error of a multiplier: too much
 constexpr double least_swing = 0.01;  // scaled, of the first guess around a stable steady state
 constexpr double furthest = 64;       // times as far is the last guess of a limit cycle
-constexpr double standing = 1e-6;     // scaled: what is no further away after half a period stands still
 constexpr int pulling_periods = 32;   // in which a push on and on is to outweigh what dies out
 constexpr int frozen_segments = 8;    // of a guess that stands as drawn
 constexpr int samples_a_turn = 64, least_samples = 256, most_samples = 8192;
@@ -131,6 +130,8 @@ class Search {
     if (!flow_.model().system.torques.empty()) alike_ = angles_alike(flow_, *start, rate());
     std::optional<Candidate> first = attempt({*start}, 1);
     if (!first && end_ != ShootingEnd::pumped)
+      if (const auto steady = flow_.steady()) first = attempt({*steady}, 1);
+    if (!first && end_ != ShootingEnd::pumped)
       if (const auto guess = frozen(*start); !guess.empty()) first = attempt(guess, 1);
     if (options_.nearest || (first && first->stable != false) || flow_.spent() || flow_.cancelled())
       return first;
@@ -174,6 +175,8 @@ class Search {
     for (double part = 1; part <= furthest; part *= 1.4) {
       auto cycle = complete({at_distance(*began.guess, part, how)}, how, 0);
       if (cycle && !stands(*cycle)) return cycle;
+      if (cycle && start == CycleStart::drawn)
+        cycle_trouble_ = "The motion from the drawn pose settles in a steady state.";
       if (!began.guess->steady || flow_.spent() || flow_.cancelled()) break;
     }
     return {};
@@ -187,10 +190,11 @@ class Search {
                                        : Eigen::VectorXd(part * least_swing * guess.swing));
   }
 
-  bool stands(const Candidate& cycle) {
-    const StateChart& node = cycle.orbit.nodes.front();
-    const auto half = flow_.pass(node.base(), cycle.orbit.period / 2, settling);
-    return !half || node.distance(half->to) < standing;
+  // The steady state, which comes back after any time.
+  bool stands(const Candidate& c) {
+    const std::vector<MotionState> trace =
+        flow_.trace(c.orbit.nodes.front().base(), c.orbit.period, 8, settling);
+    return trace.empty() || is_steady(flow_, trace, 2 * std::numbers::pi / c.orbit.period);
   }
 
   std::optional<Candidate> attempt(const std::vector<MotionState>& guess, int periods) {

@@ -47,14 +47,27 @@ Eigen::VectorXd StateChart::place_change(const Eigen::VectorXd& x) const {
 Eigen::VectorXd StateChart::coordinates(const MotionState& state) const {
   Eigen::VectorXd x(size());
   if (size() == 0) return x;
-  x << places_.transpose() * scaled_difference(problem(), base_.q, state.q),
+  x << places_.transpose() * away(state),
       rates_.transpose() * (state.u - base_.u).cwiseQuotient(scaling_->column) / rate_;
   return x;
 }
 
+Eigen::VectorXd StateChart::away(const MotionState& state) const {
+  if (left_out_.cols() == 0) return scaled_difference(problem(), base_.q, state.q);
+  // Along what is left out it goes on and on: by whole turns, which differ between wheels that turn together.
+  Eigen::VectorXd gone = Eigen::VectorXd::Zero(system_->nv);
+  for (const Link& link : system_->links)
+    if (link.v >= 0 && link.type != LinkType::spherical)
+      gone[link.v] = (state.q[link.q] - base_.q[link.q]) / scaling_->column[link.v];
+  gone = left_out_ * (left_out_.transpose() * gone);
+  Eigen::VectorXd beside = base_.q;
+  retract<double>(*system_, scaling_->column.cwiseProduct(gone), beside);
+  return scaled_difference(problem(), beside, state.q);
+}
+
 double StateChart::distance(const MotionState& state) const {
   if (size() == 0) return 0;
-  Eigen::VectorXd places = scaled_difference(problem(), base_.q, state.q);
+  Eigen::VectorXd places = away(state);
   places -= left_out_ * (left_out_.transpose() * places);
   return std::max(places.lpNorm<Eigen::Infinity>(),
                   (state.u - base_.u).cwiseQuotient(scaling_->column).lpNorm<Eigen::Infinity>() / rate_);

@@ -28,6 +28,8 @@ class StateChart {
   Eigen::VectorXd place_change(const Eigen::VectorXd& x) const;
 
  private:
+  // Of the coordinates, scaled, from the base moved along what is left out as far as the state went.
+  Eigen::VectorXd away(const MotionState& state) const;
   Problem problem() const { return {*system_, *parameters_, *scaling_}; }
 
   const System* system_;
