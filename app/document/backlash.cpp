@@ -37,6 +37,7 @@ class Backlash {
     Joint& joint = at(play);
     const double half = m_.parameters.back().value / 2;
     joint.coordinates[0].stop = Stop{-half, half, angle ? usual_mesh_torsion : usual_mesh_stiffness, ""};
+    joint.coordinates[0].damping = angle ? usual_mesh_damping : usual_slide_damping;
     joint.formulas = {{"stop.lower", "-" + name + "/2"}, {"stop.upper", name + "/2"}};
     follow_beyond(wheel, play);
     return play;
