@@ -1,5 +1,6 @@
 #include "engine/solve/drive_cuts.hpp"
 
+#include "engine/kkt/constraint_space.hpp"
 #include "engine/kkt/problem.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/system/implied_rates.hpp"
@@ -16,7 +17,38 @@ namespace {
 struct DrivenCuts {
   int opened = 0;           // cuts that the drives pull open
   std::vector<bool> turned; // by cut: its ends move against each other, and it stays closed
+  bool varies = false;      // some cut turned, and with it what forces act on: balance_varies()
 };
+
+constexpr int few = 200; // coordinates, of which the null space costs nothing beside the rest
+
+// Whether forces along the directions that loops leave change as drives at this speed (rad/s, m/s over the
+// length) go on with all else at rest: weights are carried round, and whatever balances them does so for a
+// moment.
+bool balance_varies(const System& system, const Parameters& p, const Scaling& scaling,
+                    const Eigen::VectorXd& q, double fastest) {
+  const Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.rows);
+  Kinematics<double> k;
+  Residual<double> r;
+  Linearization l;
+  Magnitudes sizes;
+  ConstraintSpace space;
+  std::optional<Eigen::VectorXd> first;
+  for (const double turned : {0., 0.9, 2.3, 4.1}) {
+    forward<double>(system, p, q, turned / fastest, k);
+    evaluate_residual<double>(system, p, q, lambda, k, r);
+    evaluate_magnitudes(system, p, q, lambda, k, sizes);
+    linearize_constraints(system, p, k, l);
+    space.factor(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal(), 1e-9);
+    const Eigen::MatrixXd& basis = space.basis();
+    Eigen::VectorXd f = basis * (basis.transpose() * r.f.cwiseProduct(scaling.column));
+    if (!first)
+      first = std::move(f);
+    else if ((f - *first).norm() > 1e-6 * sizes.force.cwiseProduct(scaling.column).norm())
+      return true;
+  }
+  return false;
+}
 
 DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
   DrivenCuts out;
@@ -59,6 +91,9 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
       out.turned[c] = (relative(1) - relative(0)).norm() > 1e-6;
     }
   }
+  out.varies = out.opened == 0 && system.nv <= few &&
+               std::ranges::find(out.turned, true) != out.turned.end() &&
+               balance_varies(system, p, scaling, q, fastest);
   return out;
 }
 
@@ -132,7 +167,22 @@ System compile_for_drives(const Mechanism& mechanism) {
   for (const auto& [from, beside] : {std::pair{&first, true}, std::pair{&first, false},
                                      std::pair{&second, true}, std::pair{&second, false}})
     if (fate.opened > 0) let_turn(*from, implied_turning(*from, bound(*from, mechanism), beside));
-  constexpr int few = 200; // of which the null space costs nothing beside the rest
+  // A bearing on a shaft that turns and another on the ground hold a pendulum alike: where it would be
+  // carried round it may hang as well.
+  const System carried = best;
+  if (fate.varies)
+    for (const CutChoice& choice : neighbouring_cuts(mechanism, carried)) {
+      try {
+        System other = compile(mechanism, choice);
+        DrivenCuts there = drive_cuts(other, mechanism);
+        if (there.opened > 0 || there.varies) continue;
+        fate = std::move(there);
+        best = std::move(other);
+        break;
+      } catch (const SceneError&) {
+        continue; // not admissible: a drive would be cut
+      }
+    }
   if (fate.opened == 0 && !best.drives.empty() && best.nv <= few && !keeps_momentum(best)) {
     const System standing = best;
     let_turn(standing, slipping_turning(standing, bound(standing, mechanism)));

@@ -7,7 +7,8 @@ namespace flyball {
 
 // The cuts by preference, or the nearest others with which the drives carry the loops along: a joint that
 // must turn or slide at a constant rate in the steady state has to be cut. Such cuts say so
-// (CutJoint::turns).
+// (CutJoint::turns). Where drives would carry weights round by one joint of a loop and not by another, the
+// one is cut.
 System compile_for_drives(const Mechanism& mechanism);
 // With the same cuts, what torques drive being coordinates like others.
 System compile_for_motion(const Mechanism& mechanism);

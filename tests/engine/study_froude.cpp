@@ -146,3 +146,24 @@ TEST_CASE("Froude's pendulum keeps swinging as averaging says, beyond the limit"
     CHECK(s.floquet.growth[0] == Approx((c + sliding(w).first) / froude_inertia).epsilon(4 * square));
   }
 }
+
+TEST_CASE("a sleeve on a shaft that turns drags its pendulum aside, whichever joint stands first",
+          "[froude]") {
+  for (const bool sleeve_first : {false, true})
+    for (const double w : {4., -2.5}) {
+      CAPTURE(sleeve_first, w);
+      const double drag = 0.3;
+      Mechanism m = froude_pendulum(w, 0);
+      m.forces.clear();
+      Joint swing = dampened(revolute("swing", "ground", "pendulum", {0, 0, 0}), 0.1),
+            sleeve = dampened(revolute("sleeve", "shaft", "pendulum", {0, 0, 0}), drag);
+      m.joints[1] = sleeve_first ? sleeve : swing;
+      m.joints.push_back(sleeve_first ? swing : sleeve);
+      const Solution s = solve(m);
+      REQUIRE(s.status == Status::converged);
+      check_value(s, "swing", std::asin(drag * w / froude_moment));
+      CHECK(s.stable == true);
+      REQUIRE(s.drive_torques.size() == 1);
+      CHECK(s.drive_torques[0].value == Approx(drag * w).epsilon(1e-12));
+    }
+}
