@@ -133,3 +133,32 @@ TEST_CASE("An eccentric wheel that a torque drives turns unevenly, with its exac
   REQUIRE(s.floquet.multipliers.size() == 1);
   CHECK_THAT(s.floquet.multipliers[0].real(), WithinAbs(std::exp(-load / about * period), 1e-6));
 }
+
+TEST_CASE(
+    "What settles or turns evenly is told to do so, wheels that gears and belts tie together included") {
+  // A fly that a weight turns, a mill, and two wheels behind a differential.
+  for (const char* name : {"fan_governor", "windmill", "differential"}) {
+    CAPTURE(name);
+    const PeriodicState s = find_periodic_state(shipped(name));
+    CHECK(s.status == PeriodicStatus::not_found);
+    CHECK_THAT(s.message, ContainsSubstring("settles in a steady state"));
+  }
+}
+
+TEST_CASE("Where the drawn pose leads nowhere the steady state is found, as a periodic motion") {
+  PeriodicOptions options;
+  options.patience = 2;
+  const PeriodicState s = find_periodic_state(shipped("ball_on_string"), options);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK(s.stability_reason == StabilityReason::neutral); // the ball turns about its string
+  const Solution steady = solve(shipped("ball_on_string"));
+  for (const CoordinateSolution& c : steady.coordinates)
+    if (!c.driven && !c.angle) {
+      const auto found = std::ranges::find_if(s.coordinates, [&](const PeriodicCoordinate& at) {
+        return at.joint == c.joint && at.index == c.index;
+      });
+      REQUIRE(found != s.coordinates.end());
+      CHECK_THAT(found->range.mean, WithinAbs(c.value, 1e-9));
+    }
+}

@@ -118,6 +118,9 @@ TEST_CASE("the boundary of hunting of Froude's pendulum is M' = -c, soft as far 
   REQUIRE(found.curves.size() == 1);
   for (const PlanePoint& p : found.curves[0].points)
     CHECK(p.y == Approx(-sliding(p.x).first).epsilon(1e-9));
+  // It ends on the borders of the plane, without rounding.
+  CHECK(found.curves[0].points.front().y == 0.05);
+  CHECK(found.curves[0].points.back().x == 12);
   // x^2 - 6 x + 1 = 0, x = (v / b)^2.
   REQUIRE(found.curves[0].bautin.size() == 1);
   CHECK(found.curves[0].bautin[0].x == Approx(froude_at * std::sqrt(3 + std::sqrt(8.))).epsilon(1e-6));
