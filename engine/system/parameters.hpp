@@ -146,9 +146,11 @@ struct BasicBearingParameters {
 
   // Whether it does more than resist shifts.
   bool resists_turns() const {
-    const auto beyond_shifts = [](const Eigen::Matrix<N, 6, 6>& m) {
-      return (m.template bottomRows<3>().array() != N(0)).any() ||
-             (m.template rightCols<3>().array() != N(0)).any();
+    // By values alone: an entry of zero may well have a rate.
+    const auto acts = [](const N& entry) { return entry < N(0) || entry > N(0); };
+    const auto beyond_shifts = [&](const Eigen::Matrix<N, 6, 6>& m) {
+      return m.template bottomRows<3>().unaryExpr(acts).any() ||
+             m.template rightCols<3>().unaryExpr(acts).any();
     };
     return beyond_shifts(stiffness) || beyond_shifts(damping);
   }

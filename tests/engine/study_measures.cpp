@@ -113,6 +113,12 @@ std::vector<std::pair<std::string, std::string>> elastic_results(const Force& fo
   return all;
 }
 
+// Told by differences of two orders: the size of a force has one where there is none, a damper by its law
+// maybe where it rests.
+bool has_corner(double coarse, double fine) {
+  return std::abs(coarse - fine) > 1e-5 * std::abs(coarse);
+}
+
 // With a named point, a bearing, and any drives and loops.
 Mechanism random_to_measure(std::uint32_t seed, int bodies) {
   reference::RandomOptions options;
@@ -216,10 +222,12 @@ TEST_CASE("rates of measures along the coordinates agree with differences", "[me
         add("length(" + argument_text(each.name) + ")", "m");
         add("tension(" + argument_text(each.name) + ")", "N");
       }
+    std::vector<bool> elastic(m.measures.size(), false);
     for (const Force& each : m.forces)
       if (acts_between(each.type))
         for (const auto& [text, unit] : elastic_results(each))
           add(text, unit);
+    elastic.resize(m.measures.size(), true);
     const System system = compile(m);
     if (system.nv == 0) continue;
     Parameters p;
@@ -257,6 +265,7 @@ TEST_CASE("rates of measures along the coordinates agree with differences", "[me
         if (!std::isfinite(expected) || !std::isfinite(rates(k, v))) continue;
         // An angle of joints may jump by a turn.
         if (std::abs(at[2][k] - at[3][k]) > 1 && m.measures[i].unit == "rad") continue;
+        if (elastic[i] && has_corner((at[0][k] - at[1][k]) / (2 * h), expected)) continue;
         INFO("seed " << seed << " " << m.measures[i].text << " along " << v);
         CHECK(std::abs(rates(k, v) - expected) < 1e-8 * (1 + std::abs(expected)) + 1e-11 * (1 + size) / h);
         ++compared;
@@ -311,10 +320,12 @@ TEST_CASE("rates of measures with numbers agree with differences", "[measures]")
       }
     for (const Force& each : m.forces)
       if (each.type == ForceType::spring) add("tension(" + argument_text(each.name) + ")", "N");
+    std::vector<bool> elastic(m.measures.size(), false);
     for (const Force& each : m.forces)
       if (acts_between(each.type))
         for (const auto& [text, unit] : elastic_results(each))
           add(text, unit);
+    elastic.resize(m.measures.size(), true);
     const System system = compile(m);
     if (system.nv == 0) continue;
     Parameters p;
@@ -332,6 +343,7 @@ TEST_CASE("rates of measures with numbers agree with differences", "[measures]")
     const Eigen::MatrixXd rates = measures.rates_along(problem, m, addresses, q, still, w);
     for (std::size_t a = 0; a < addresses.size(); ++a) {
       const double value = get_parameter(m, addresses[a]), h = 1e-4 * (std::abs(value) + 0.1);
+      if (value == 0 && addresses[a].starts_with("forces.film.")) continue; // of turns that a drive makes
       std::array<Eigen::VectorXd, 4> at; // the error of the combination is of order h^4
       for (std::size_t i = 0; i < 4; ++i) {
         Mechanism there = m;
@@ -349,6 +361,7 @@ TEST_CASE("rates of measures with numbers agree with differences", "[measures]")
         if (!std::isfinite(expected) || !std::isfinite(found)) continue;
         // An angle of joints may jump by a turn.
         if (std::abs(at[2][k] - at[3][k]) > 1 && m.measures[i].unit == "rad") continue;
+        if (elastic[i] && has_corner((at[0][k] - at[1][k]) / (2 * h), expected)) continue;
         INFO("seed " << seed << " " << m.measures[i].text << " with " << addresses[a]);
         CHECK(std::abs(found - expected) <
               2e-7 * (1 + std::abs(expected)) + 1e-11 * (1 + std::abs(at[0][k])) / h);
