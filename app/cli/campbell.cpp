@@ -104,7 +104,7 @@ std::string critical_text(const CriticalSpeed& c, const CampbellBranch& branch) 
                                       c.damping_ratio, whirl_text(c.whirl));
   const char* unstable = c.stable ? "" : ", unstable";
   if (c.until)
-    return fmt::format("  {} from {:.9g} to {:.9g} rad/s (± {:.1g}): {} runs along the line{}\n",
+    return fmt::format("  {} from {:.9g} to {:.9g} rad/s (± {:.1g}), all along the line: {}{}\n",
                        order_text(c.order), c.speed, *c.until, c.error, who, unstable);
   return fmt::format("  {} at {:.12g} rad/s (± {:.1g}, {:.9g} rpm), {:.9g} Hz: {}{}{}\n", order_text(c.order),
                      c.speed, c.error, c.speed * 30 / std::numbers::pi, hertz(c.frequency), who,
