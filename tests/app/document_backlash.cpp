@@ -11,7 +11,6 @@
 
 using namespace flyball;
 using namespace flyball::test;
-using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::WithinRel;
 
 namespace {

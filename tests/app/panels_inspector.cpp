@@ -7,6 +7,7 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/layout.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/gear_ratio.hpp"
 #include "engine/mechanism/mass_properties.hpp"
