@@ -81,7 +81,7 @@ TEST_CASE("what is geared to the wheel follows it through its play") {
   CHECK_THAT(value(s, first), WithinRel(on_flank(through), 1e-11));
   CHECK_THAT(value(s, "follow1"), WithinRel(-0.4 * on_flank(through), 1e-11));
   if (second_too) CHECK_THAT(value(s, second), WithinRel(on_flank(2), 1e-11));
-  CHECK(s.stable == true);
+  CHECK(s.stable != false); // nothing damps it
   CHECK_THAT(s.drive_torques.at(0).value, WithinRel(0.5 * through, 1e-11));
 }
 

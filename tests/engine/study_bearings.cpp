@@ -198,7 +198,7 @@ TEST_CASE("two bearings bear a rotor's weight by its levers", "[bearings][measur
               prismatic("y", "cross", "journal", {0, 0, 0}, {0, 1, 0}), tilt,
               driven(revolute("spin", "yoke", "rotor", {0, 0, 0}), 30)};
   m.forces = {bearing("ground", "rotor", {0, 0, -left}, {8e4, 0, 0, 8e4}, {300, 0, 0, 300}),
-              bearing("rotor", "ground", {0, 0, right}, {5e4, 0, 0, 3e4}, {})};
+              bearing("rotor", "ground", {0, 0, right}, {5e4, 0, 0, 5e4}, {})};
   m.forces[0].name = "A";
   m.forces[1].name = "B";
   m.measures = {{"a", "", "force_y(A)", "N"},         {"b", "", "force_y(B)", "N"},
