@@ -32,6 +32,7 @@ class Backlash {
     const std::string play = hang_in_rim(wheel, "play");
     const std::string name = free_name(m_, "backlash");
     const bool angle = turns(at(play));
+    const UsualMesh& mesh = angle ? usual_mesh_of_angles : usual_mesh_of_slides;
     m_.parameters.push_back(
         {name, "play of " + gear_, angle ? usual_play_angle : usual_play_length, angle ? "rad" : "m", {}});
     Joint& joint = at(play);

@@ -12,8 +12,13 @@
 
 namespace flyball {
 
-inline constexpr double usual_play_angle = 0.01, usual_play_length = 1e-4;    // rad, m
-inline constexpr double usual_mesh_torsion = 1e5, usual_mesh_stiffness = 1e7; // N m/rad, N/m
+// What it begins with, to be changed at once.
+struct UsualMesh {
+  double play;      // rad or m
+  double stiffness; // N m/rad or N/m
+  double damping;   // N m s/rad or N s/m, in the play too; it changes no steady state
+};
+inline constexpr UsualMesh usual_mesh_of_angles{0.01, 1e5, 10}, usual_mesh_of_slides{1e-4, 1e7, 500};
 
 // Why a gear, belt, rack or screw cannot have any, a sentence; empty where it can.
 std::string backlash_refused(const Mechanism& mechanism, const std::string& gear);
