@@ -87,9 +87,8 @@ class EquilibriumSearch {
   bool against_stops() {
     if (arrived_) return false;
     Eigen::VectorXd pressed = w_.assembled;
-    return press_against_stops(p_, pressed, w_) && attempt(pressed, Fallback::stops, [&](Unknowns& z) {
-             return newton(p_, z, w_, {}, &history_);
-           });
+    return press_against_stops(p_, pressed, w_) &&
+           attempt(pressed, Fallback::stops, [&](Unknowns& z) { return newton(p_, z, w_, {}, &history_); });
   }
 
   bool damped_newton() {

@@ -1,11 +1,11 @@
 // Which equilibrium is the answer, and which method found it.
 //
-// Newton-Raphson runs first, then from the stops that what hangs loose is pushed to, then damped, then by homotopy from rest, then downhill on the amended potential;
-// for large mechanisms, where it takes few iterations, downhill comes second. Where there is a potential an
-// answer counts only if it is a minimum that the assembled start can reach without climbing; Newton's habit
-// of stopping at unstable states is met by going on downhill. A drawn pose that is itself a gyroscopically
-// stable state is the answer, too: it is what the mechanism does from there. Without a potential Newton's
-// answer stands.
+// Newton-Raphson runs first, then from the stops that what hangs loose is pushed to, then damped, then by
+// homotopy from rest, then downhill on the amended potential; for large mechanisms, where it takes few
+// iterations, downhill comes second. Where there is a potential an answer counts only if it is a minimum that
+// the assembled start can reach without climbing; Newton's habit of stopping at unstable states is met by
+// going on downhill. A drawn pose that is itself a gyroscopically stable state is the answer, too: it is what
+// the mechanism does from there. Without a potential Newton's answer stands.
 #pragma once
 
 #include "engine/solve/newton.hpp"

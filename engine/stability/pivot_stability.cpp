@@ -89,7 +89,8 @@ Stability of_shifted_directions(const FactoredState& at) {
     for (const auto& [v, share] : f)
       if (std::abs(share) > tolerance::takes_part) takes_part[static_cast<std::size_t>(v)] = true;
   const auto step = [&](double size) { return step_within_play(problem, at.z.q, size * direction); };
-  const bool balanced = stays_balanced(at, step(0.002), rounding) && stays_balanced(at, step(-0.003), rounding);
+  const bool balanced =
+      stays_balanced(at, step(0.002), rounding) && stays_balanced(at, step(-0.003), rounding);
   out.reason = balanced ? StabilityReason::neutral : StabilityReason::marginal;
   for (int v = 0; balanced && v < problem.system.nv; ++v)
     if (takes_part[static_cast<std::size_t>(v)]) out.neutral.push_back(v);
