@@ -32,12 +32,11 @@ class Backlash {
     const std::string play = hang_in_rim(wheel, "play");
     const std::string name = free_name(m_, "backlash");
     const bool angle = turns(at(play));
-    m_.parameters.push_back(
-        {name, "play of " + gear_, angle ? usual_play_angle : usual_play_length, angle ? "rad" : "m", {}});
+    const UsualMesh& mesh = angle ? usual_mesh_of_angles : usual_mesh_of_slides;
+    m_.parameters.push_back({name, "play of " + gear_, mesh.play, angle ? "rad" : "m", {}});
     Joint& joint = at(play);
-    const double half = m_.parameters.back().value / 2;
-    joint.coordinates[0].stop = Stop{-half, half, angle ? usual_mesh_torsion : usual_mesh_stiffness, ""};
-    joint.coordinates[0].damping = angle ? usual_mesh_damping : usual_slide_damping;
+    joint.coordinates[0].stop = Stop{-mesh.play / 2, mesh.play / 2, mesh.stiffness, ""};
+    joint.coordinates[0].damping = mesh.damping;
     joint.formulas = {{"stop.lower", "-" + name + "/2"}, {"stop.upper", name + "/2"}};
     follow_beyond(wheel, play);
     return play;

@@ -74,7 +74,22 @@ class Redraw {
       carry_point(bodies[end], points[end]);
   }
 
-  void carry(Force& force) const {
+  // Whether x of a bearing changes.
+  bool moves_in(const Force& bearing) const {
+    Vec3 in_first = bearing.at.value_or(Vec3::Zero()), in_second = in_first;
+    carry_point(bearing.bodies[0], in_first);
+    carry_point(bearing.bodies[1], in_second);
+    const Mat3 axes = bearing_axes(bearing);
+    Vec3 shift = in_second - in_first;
+    Mat3 first = Mat3::Identity(), second = first;
+    if (const Isometry* by = motion(bearing.bodies[0])) first = by->linear;
+    if (const Isometry* by = motion(bearing.bodies[1])) second = by->linear;
+    shift = axes.transpose() * (first.transpose() * shift);
+    if (bearing_size(bearing) == 2) return shift.head<2>().norm() > no_motion * half_diagonal(before_);
+    return shift.norm() > no_motion * half_diagonal(before_) || (first - second).norm() > no_motion;
+  }
+
+  void carry(Force& force) {
     if (force.type == ForceType::spring) {
       // What is left to the drawn distance is that of the pose in which it was so left.
       const double length = drawn_distance(force.points);
@@ -84,6 +99,7 @@ class Redraw {
       return;
     }
     if (force.type == ForceType::bearing) { // of which the first body keeps the axes
+      if (!force.bearing_stiffness.empty() && moves_in(force)) out_.slack_elsewhere.push_back(force.name);
       if (force.at) carry_point(force.bodies[1], *force.at);
       carry_axis(force.bodies[0], force.axis);
       if (force.x_axis) carry_axis(force.bodies[0], *force.x_axis);

@@ -16,9 +16,12 @@ void redraw(Session& session, const std::string& step, const Mechanism& before, 
     mechanism = std::move(next.mechanism);
     selected = selection;
   });
-  if (next.along_other_axes.empty()) return;
-  session.notice = "What acts along single axes of " + name_list(next.along_other_axes) +
-                   " acts along the world's now, as its parent has turned.";
+  if (!next.along_other_axes.empty())
+    session.notice = "What acts along single axes of " + name_list(next.along_other_axes) +
+                     " acts along the world's now, as its parent has turned.";
+  if (!next.slack_elsewhere.empty())
+    session.notice = "Bearings are slack as they are drawn: what is held by " +
+                     name_list(next.slack_elsewhere) + " settles elsewhere now.";
 }
 
 void move_coordinate(Session& session, const std::string& joint, int index, double value) {

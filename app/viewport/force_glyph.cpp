@@ -147,21 +147,31 @@ void draw_joint_forces(Sketch& sketch, const Assembly& assembly, std::size_t ind
 
 namespace {
 
-// A ring round the shaft on its foot, in the first body.
+// A sleeve round the shaft, hung on four springs in a ring that the first body holds.
 void draw_bearing(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
   const Force& force = assembly.mechanism.forces[index];
   const auto [first, second] = assembly.force_bodies[index];
   const double u = assembly.scale.unit;
   const Mat3 drawn = bearing_axes(force);
-  const Vec3 at = assembly.point(second, force.at.value_or(Vec3::Zero()));
+  const Vec3 point = force.at.value_or(Vec3::Zero());
+  const Vec3 at = assembly.point(second, point), middle = assembly.point(first, point);
   const Vec3 axis = assembly.vector(first, drawn.col(2));
   const Vec3 x = assembly.vector(first, drawn.col(0)), y = assembly.vector(first, drawn.col(1));
+  const double sleeve = 1.8 * u, ring = 4 * u;
+  sketch.pen.color = colors.metal;
+  sketch.tube(at, axis, 0.9 * u, sleeve, 0.15 * u);
   sketch.pen.color = colors.metal_dark;
-  sketch.disc(at - 0.5 * u * axis, axis, 1.1 * u, 1.9 * u, 0.9 * u);
+  sketch.ring(middle, axis, ring, 0.4 * u, false);
   sketch.pen.role = Role::spring;
   sketch.pen.color = colors.slack;
   for (const Vec3& out : {x, y, Vec3(-x), Vec3(-y)})
-    sketch.coil(at + 1.9 * u * out, at + 3.4 * u * out, axis, 0.5 * u, 0.12 * u, false);
+    sketch.coil(at + sleeve * out, middle + ring * out, axis, 0.55 * u, 0.14 * u, false);
+  if (first < 0) {
+    sketch.pen.role = Role::force;
+    const Vec3 up = assembly.scale.up - axis * axis.dot(assembly.scale.up);
+    const Vec3 out = up.norm() > 0.1 ? Vec3(-up.normalized()) : Vec3(-y); // down, where that is across
+    draw_anchor(sketch, middle + (ring + 0.6 * u) * out, out, 1.5 * u, u, colors);
+  }
 }
 
 } // namespace

@@ -43,7 +43,7 @@ Solution settled(const Mechanism& m) {
 }
 
 double on_flank(double torque) {
-  return std::copysign(usual_play_angle / 2, torque) + torque / usual_mesh_torsion;
+  return std::copysign(usual_mesh_of_angles.play / 2, torque) + torque / usual_mesh_of_angles.stiffness;
 }
 
 } // namespace
@@ -63,7 +63,7 @@ TEST_CASE("a wheel is hung in a rim, with a parameter for its play") {
   CHECK_THAT(value(s, play), WithinRel(on_flank(2), 1e-12));
   // One number for both sides.
   set_parameter(m, "parameters.backlash", 0.06);
-  CHECK_THAT(value(settled(m), play), WithinRel(0.03 + 2 / usual_mesh_torsion, 1e-12));
+  CHECK_THAT(value(settled(m), play), WithinRel(0.03 + 2 / usual_mesh_of_angles.stiffness, 1e-12));
 }
 
 TEST_CASE("what is geared to the wheel follows it through its play") {
@@ -109,7 +109,8 @@ TEST_CASE("a rack has its play along the slide") {
   const std::string play = give_backlash(m, "tie");
   CHECK(m.parameters.back().unit == "m");
   const Solution s = settled(m);
-  CHECK_THAT(value(s, play), WithinRel(-usual_play_length / 2 - 3 * 9.8 / usual_mesh_stiffness, 1e-11));
+  CHECK_THAT(value(s, play),
+             WithinRel(-usual_mesh_of_slides.play / 2 - 3 * 9.8 / usual_mesh_of_slides.stiffness, 1e-11));
   CHECK_THAT(value(s, "turn"), WithinRel(-3 * 9.8 * 0.06 / 40, 1e-11));
   CHECK(s.stable == true);
 }

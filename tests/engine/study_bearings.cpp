@@ -233,6 +233,10 @@ TEST_CASE("two bearings bear a rotor's weight by its levers", "[bearings][measur
   CHECK((s.bearings[1].force - Vec3(0, on_b, 0)).norm() < 1e-12 * weight);
   CHECK(s.bearings[0].torque.isZero(0));
   CHECK_FALSE(s.bearings[0].varying);
+  // The other way round it is the ground that feels it.
+  std::swap(m.forces[0].bodies[0], m.forces[0].bodies[1]);
+  const Solution turned = solved(m);
+  CHECK_THAT(*turned.measures[0].value, WithinRel(-on_a, 1e-4)); // its axes tilt with the shaft
 }
 
 TEST_CASE("a bearing of six rows bears a moment about its point", "[bearings][measures]") {

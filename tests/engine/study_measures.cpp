@@ -102,10 +102,10 @@ void resist_shifts_alone(Force& bearing) {
       if (i % 6 >= 3 || i / 6 >= 3) (*each)[i] = 0;
 }
 
-// "force_x(coil)" and its like, with their units.
+// "force_x(coil)" and its like, with their units; sizes have a kink where they are zero.
 std::vector<std::pair<std::string, std::string>> elastic_results(const Force& force) {
   std::vector<std::pair<std::string, std::string>> all;
-  for (const char* of : {"_x", "_y", "_z", ""}) {
+  for (const char* of : {"_x", "_y", "_z"}) {
     all.emplace_back("force" + std::string(of) + "(" + argument_text(force.name) + ")", "N");
     if (force.type == ForceType::bearing)
       all.emplace_back("couple" + std::string(of) + "(" + argument_text(force.name) + ")", "N m");

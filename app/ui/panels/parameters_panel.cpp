@@ -99,14 +99,20 @@ void hold_button(App& app, const ParameterControl& control, bool pointed, float 
     hold_number(app, control.address, !held);
 }
 
+// Whether the title of its section says what the number is: not of a torque among speeds, or one of several
+// coordinates.
+bool told_by_title(const ParameterControl& control) {
+  return control.group != ParameterGroup::pinned &&
+         (control.what == "speed" || control.what == "stiffness" || control.what == "damping");
+}
+
 // The name and what of it, as far as there is room.
 void control_label(App& app, const ParameterControl& control, float width) {
   ImGui::AlignTextToFramePadding();
   const float start = ImGui::GetCursorPosX();
   clipped_text(control.name, width);
   const float used = ImGui::GetItemRectSize().x;
-  const bool told = control.group != ParameterGroup::pinned; // by the section's title
-  if (!told && !control.what.empty() && used + 40 * app.scale < width) {
+  if (!told_by_title(control) && !control.what.empty() && used + 40 * app.scale < width) {
     ImGui::SameLine(0, 6 * app.scale);
     ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
     clipped_text(control.what, width - used - 6 * app.scale);
@@ -218,7 +224,11 @@ void parameters_panel(App& app, const PanelRect& rect) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
     group(app, ParameterGroup::pinned, "parameters/pinned", "Pinned", app.panels.pinned);
     group(app, ParameterGroup::named, "parameters/named", "Parameters", app.panels.named);
-    group(app, ParameterGroup::drives, "parameters/drives", "Drive speeds", app.panels.drives);
+    const bool speeds = std::ranges::all_of(app.parameters, [](const ParameterControl& control) {
+      return control.group != ParameterGroup::drives || told_by_title(control);
+    });
+    group(app, ParameterGroup::drives, "parameters/drives", speeds ? "Drive speeds" : "Drives",
+          app.panels.drives);
     group(app, ParameterGroup::springs, "parameters/springs", "Spring constants", app.panels.springs);
     if (app.motion.on) // dampers move no steady state
       group(app, ParameterGroup::dampers, "parameters/dampers", "Dampers", app.panels.dampers);

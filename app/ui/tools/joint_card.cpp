@@ -267,7 +267,7 @@ void joint_card(App& app, const ViewInput& input) {
   if (bearing || has_axis(app.tool.joint_type)) axis_rows(app, input);
   if (!bearing && has_axis2(app.tool.joint_type)) second_axis_row(app);
   ImGui::Dummy({0, 2 * s});
-  if (text_button(app, "tools/join", bearing ? "Put it there" : "Join", true)) {
+  if (text_button(app, "tools/join", bearing ? "Insert" : "Join", true)) {
     make_joint(app);
   } else {
     ImGui::SameLine();

@@ -213,7 +213,7 @@ std::string hint_of_tool(const App& app) {
                      : "Click the point where two bodies meet. Esc ends.";
     if (tool.joint->picking_axis)
       return tool.joint->axis_from ? "Click a second point on the axis." : "Click a point on the axis.";
-    return std::string(bearing ? "Enter puts it there." : "Enter joins.") +
+    return std::string(bearing ? "Enter inserts it." : "Enter joins.") +
            " Click to move the point. Esc cancels.";
   }
   case Tool::force: return "Click a point of a body: a force of 1 N downwards. Esc ends.";

@@ -304,7 +304,8 @@ void show_campbell(App& app) {
   const UiColors& colors = colors_of(app);
   const std::string drive = campbell_drive(app);
   if (drive.empty())
-    return paragraph("A Campbell diagram is over the speed of a drive, and there is none here.", colors.dim);
+    return paragraph("A Campbell diagram is over the given speed of a drive, and there is none here.",
+                     colors.dim);
   campbell_choices(app, drive);
   const auto& diagram = campbell.diagram;
   if (!diagram.problem.empty()) paragraph(diagram.problem, colors.bad);
