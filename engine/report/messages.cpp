@@ -248,9 +248,17 @@ void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Wor
   if ((out.status != Status::not_converged && !unstable) || problem.cancelled()) return;
   const Unbounded found = find_unbounded(problem, start, w);
   if (found.coordinates.empty() || problem.cancelled()) return;
+  const bool one = found.coordinates.size() == 1;
+  if (found.for_a_moment) {
+    const std::string words =
+        "Nothing holds " + names_of(found) +
+        ", and what pushes there turns with the drives: " + (one ? "it stands" : "they stand") +
+        " still nowhere" + (unstable ? " beside." : ", so there is no steady state to find.");
+    out.message = unstable ? out.message + " " + words : words;
+    return;
+  }
   out.unheld = found.coordinates;
   out.unheld_by_weight = found.by_weight;
-  const bool one = found.coordinates.size() == 1;
   const std::string words =
       "Nothing holds " + names_of(found) + " against " +
       (found.by_weight    ? "the weight"

@@ -1,6 +1,7 @@
 #include "engine/solve/unbounded.hpp"
 
 #include "engine/solve/eigenvector_descent.hpp"
+#include "engine/solve/existence.hpp"
 #include "engine/system/linearization.hpp"
 
 #include <algorithm>
@@ -30,6 +31,7 @@ class Search {
     if (pushed_.empty() || p_.cancelled()) return out;
     blame(out);
     name(out);
+    out.for_a_moment = turns_with_drives();
     return out;
   }
 
@@ -39,13 +41,14 @@ class Search {
     double force; // generalised (N or N m), positive along the coordinate
   };
 
-  // The balance without multipliers, d potential / d q, where the coordinate is `by` further on.
-  double slope(int v, double by) {
+  // The balance without multipliers, d potential / d q, where the coordinate is `by` further on, at the time
+  // `t` (s) along the drives.
+  double slope(int v, double by, double t = 0) {
     moved_ = start_;
     w_.step.setZero(p_.system.nv);
     w_.step[v] = by;
     retract<double>(p_.system, w_.step, moved_);
-    evaluate(p_, {moved_, Eigen::VectorXd::Zero(p_.system.rows)}, 0, w_);
+    evaluate(p_, {moved_, Eigen::VectorXd::Zero(p_.system.rows)}, t, w_);
     return w_.residual.f[v];
   }
 
@@ -94,6 +97,15 @@ class Search {
     direction_.setZero(system.nv);
     for (const Pushed& p : pushed_)
       direction_[p.v] = std::copysign(p_.scaling.column[p.v], p.force);
+  }
+
+  // Whether what pushes at the start does not, or the other way, at another phase of the drives.
+  bool turns_with_drives() {
+    const std::vector<double> phases = sample_phases(p_.system, p_.parameters);
+    return std::ranges::any_of(pushed_, [&](const Pushed& pushed) {
+      const double first = slope(pushed.v, 0);
+      return std::ranges::any_of(phases, [&](double t) { return !(slope(pushed.v, 0, t) * first > 0); });
+    });
   }
 
   // A descent without a bottom shows by what has moved.

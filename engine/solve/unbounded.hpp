@@ -13,6 +13,7 @@ struct Unbounded {
   std::vector<UnheldCoordinate> coordinates; // empty: nothing of the kind was found
   bool by_weight = false;                    // without gravity the forces do not push this way
   bool by_inertia = false;                   // without the drives' motion they do not
+  bool for_a_moment = false;                 // at other phases of the drives they do not push this way
 };
 
 // From `start` (a configuration, loops open or closed) of a problem without a steady state. Two tests: along

@@ -180,3 +180,16 @@ TEST_CASE("weight that turns with the drive is told from other things that turn"
   REQUIRE(pushed.status == Status::no_steady_state);
   CHECK_FALSE(pushed.weight_turns);
 }
+
+TEST_CASE("a slide that turning unbalance pushes to and fro does not go on without end") {
+  // A disc on a sledge, its mass centre beside its axis: what pushes at the drawn phase pushes back later.
+  Mechanism m;
+  m.bodies = {body("sledge", 3), body("disc", 1, 0.02 * x, {0.01, 0.01, 0.02})};
+  m.joints = {prismatic("rail", "ground", "sledge", origin, x),
+              driven(revolute("spin", "sledge", "disc", origin, z), 5)};
+  const Solution s = solve(m);
+  CHECK(s.status == Status::not_converged);
+  CHECK(s.unheld.empty());
+  CHECK_THAT(s.message, ContainsSubstring("turns with the drives"));
+  CHECK_THAT(s.message, !ContainsSubstring("without end"));
+}
