@@ -113,8 +113,7 @@ std::vector<std::pair<std::string, std::string>> elastic_results(const Force& fo
   return all;
 }
 
-// Told by differences of two orders: the size of a force has one where there is none, a damper by its law
-// maybe where it rests.
+// Told by differences of two orders: a damper by its law may have one where it rests.
 bool has_corner(double coarse, double fine) {
   return std::abs(coarse - fine) > 1e-5 * std::abs(coarse);
 }
