@@ -1,7 +1,9 @@
 #include "engine/report/messages.hpp"
 
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/turning_part.hpp"
+#include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/unbounded.hpp"
 
 #include <algorithm>
@@ -14,6 +16,39 @@ std::string cut_name(const ReportInput& in, int cut) {
   return in.mechanism
       .joints[static_cast<std::size_t>(in.problem.system.cuts[static_cast<std::size_t>(cut)].joint)]
       .name;
+}
+
+bool is_cut(const System& system, int joint) {
+  return std::ranges::find(system.cuts, joint, &CutJoint::joint) != system.cuts.end();
+}
+
+// A joint that turns on and on has to be cut, and one with a law is never: a sentence on the joint whose law
+// is in the way, if any. With a number for it another joint is cut.
+std::string law_in_the_way(const ReportInput& in) {
+  const System& system = in.problem.system;
+  for (int j = 0; j < static_cast<int>(in.mechanism.joints.size()) && !system.cuts.empty(); ++j) {
+    if (is_cut(system, j)) continue;
+    Mechanism numbers = in.mechanism;
+    Joint& joint = numbers.joints[static_cast<std::size_t>(j)];
+    bool has_law = false;
+    for (Coordinate& c : joint.coordinates) {
+      if (!c.damping_force) continue;
+      has_law = true;
+      c.damping_force.reset();
+      c.damping = 1;
+    }
+    if (!has_law) continue;
+    std::erase_if(joint.formulas, [](const Formula& f) { return f.key.starts_with("damping_force"); });
+    try {
+      if (is_cut(compile_for_drives(numbers), j))
+        return " Of the loop through \"" + joint.name +
+               "\" this need not be so: it is not cut there, as its damper is given by a law. With a number "
+               "for its damping it is, and may rest.";
+    } catch (const SceneError&) {
+      continue; // of a mechanism that nobody made
+    }
+  }
+  return "";
 }
 
 std::string floquet_message(const Floquet& f, std::optional<bool> stable) {
@@ -205,7 +240,7 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
                 : ".");
   if (in.existence.pushed >= 0) return lost_momentum_message(in, w);
   return "No steady state: " + turning_part(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
-         " turns with the drives, so the balance holds at one moment only.";
+         " turns with the drives, so the balance holds at one moment only." + law_in_the_way(in);
 }
 
 std::string solution_message(const ReportInput& in, int rank, const Solution& out) {

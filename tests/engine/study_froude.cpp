@@ -170,3 +170,23 @@ TEST_CASE("a sleeve on a shaft that turns drags its pendulum aside, whichever jo
       CHECK(s.drive_torques[0].value == Approx(drag * w).epsilon(1e-12));
     }
 }
+
+TEST_CASE("a law in a sleeve that turns on and on is told to be in the way of a steady state", "[froude]") {
+  Mechanism m = froude_pendulum(3, 0);
+  m.forces.clear();
+  m.joints[1] = dampened(revolute("swing", "ground", "pendulum", {0, 0, 0}), 0.1);
+  Joint sleeve = revolute("sleeve", "shaft", "pendulum", {0, 0, 0});
+  sleeve.coordinates[0].damping_force = 0;
+  sleeve.formulas = {{"damping_force", "0.3 N m s*rate"}};
+  m.joints.push_back(sleeve);
+  const Solution s = solve(m);
+  CHECK(s.status == Status::no_steady_state);
+  CHECK(s.message.find("\"sleeve\"") != std::string::npos);
+  // As it advises.
+  m.joints.back() = dampened(revolute("sleeve", "shaft", "pendulum", {0, 0, 0}), 0.3);
+  CHECK(solve(m).status == Status::converged);
+  // Where no loop is closed the law is in nobody's way.
+  m.joints.back() = sleeve;
+  m.joints.erase(m.joints.begin() + 1);
+  CHECK(solve(m).message.find("\"sleeve\"") == std::string::npos);
+}
