@@ -247,7 +247,7 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
       settling = settling_frames;
     }
     if (ImGui::IsAnyItemActive() || app.file_dialogs.gallery.drawing || app.movie.progress ||
-        stage.resting() || app.panels.slider_press.place)
+        stage.resting() || app.slider_press.place)
       settling = std::max(settling, 1);
     if (title_of(app) != title) window.set_title(title = title_of(app));
     shown.tell(app);

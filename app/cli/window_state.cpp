@@ -21,7 +21,7 @@ std::string window_state(const App& app) {
       {"notice", app.notice},
       {"dialog", app.dialog.showing},
       {"tool", static_cast<int>(app.tool.tool)},
-      {"typing", app.inspector.typing.name},
+      {"typing", app.fields.typing.name},
       {"selected", app.selection().parts.empty() ? "" : app.selection().parts.back().name},
       {"mode", app.mode == Mode::build ? "build" : "explore"},
       {"playing", app.playback.playing},

@@ -46,6 +46,8 @@ void App::document_opened(bool same_file) {
   InspectorState fresh;
   fresh.history = inspector.history;
   inspector = std::move(fresh);
+  fields = {};
+  sections = {};
   tool = {.snap = tool.snap};
   if (!same_file) {
     view.fit = true;

@@ -5,6 +5,7 @@
 #include "app/ui/panels.hpp"
 #include "app/ui/plots/plot_save.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 
@@ -25,8 +26,7 @@ void notice_gestures(App& app) {
     pressed = pressed || ImGui::IsMouseClicked(button);
   if (pressed) ++app.gesture;
   // A slider that is not drawn any more waits for no second click.
-  if (SliderPress& press = app.panels.slider_press; press.place && ImGui::GetTime() - *press.since > 1)
-    press = {};
+  if (SliderPress& press = app.slider_press; press.place && ImGui::GetTime() - *press.since > 1) press = {};
 }
 
 } // namespace
@@ -73,6 +73,7 @@ void build_gui(App& app) {
   shortcut_sheet(app);
   command_palette(app);
   settle_fields(app);
+  begin_picking(app);
   settle_keyboard(app);
 }
 

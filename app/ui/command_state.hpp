@@ -1,4 +1,4 @@
-// The command palette, the sheet of shortcuts, where keys go, and what the commands that copy ask for.
+// The command palette, the sheet of shortcuts, and what the commands that copy ask for.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -18,16 +18,6 @@ struct CopyChoice {
 
 struct PaletteIndex; // see palette_entries.hpp
 
-// Where keys go; see key_focus.hpp.
-struct KeyFocus {
-  bool in_panel = false;     // the last click was in a panel, or one types there
-  bool among_fields = false; // in one of numbers and words, rather than a list of parts
-  // Letters are commands all the same, as long as no number is begun: among plots, and once one has been a
-  // command in the view.
-  bool letters = false;
-  bool number_begun = false; // a digit or sign was pressed there outside of any field
-};
-
 struct CommandState {
   bool palette_wanted = false, palette_showing = false; // wanted: to be opened by the next frame
   std::string search;
@@ -35,7 +25,6 @@ struct CommandState {
   std::shared_ptr<PaletteIndex> index{};
   std::vector<std::string> recent{}; // entries of the palette, the last used first
   bool shortcuts = false;
-  KeyFocus focus;
   CopyChoice copy;
 };
 

@@ -731,7 +731,7 @@ bool keys_are_wanted(const App& app) {
 
 void act_on(App& app, const KeyPress& key) {
   // The first Escape gives the keys back to the view.
-  if (key == plain(keys::escape) && std::exchange(app.commands.focus, {}).in_panel) return;
+  if (key == plain(keys::escape) && std::exchange(app.keyboard.focus, {}).in_panel) return;
   for (const Command& command : all_commands)
     if (pressed(command, key) && is_enabled(app, command)) {
       if (may_command(app, key)) command.run(app);
@@ -746,7 +746,7 @@ void handle_shortcuts(App& app) {
   // The palette has its own use for keys.
   if (app.commands.palette_showing) return;
   const std::vector<KeyPress> pressed_keys = std::exchange(app.keys, {});
-  if (ImGui::GetIO().WantTextInput || !app.inspector.typing.name.empty() || app.dialog.showing) return;
+  if (ImGui::GetIO().WantTextInput || !app.fields.typing.name.empty() || app.dialog.showing) return;
   for (const KeyPress& key : pressed_keys)
     if (!keys_are_wanted(app)) act_on(app, key);
 }

@@ -40,6 +40,7 @@ struct GalleryState {
 
 struct FileDialogState {
   std::function<void(App&)> then;  // what leaving the document is for, while it is asked about
+  std::string path;                // typed
   std::string message;             // in the dialog: why what was asked for was not done
   std::filesystem::path replacing; // an existing file of which the dialog has said that it would be replaced
   int choice = 0;                  // the button that Enter means

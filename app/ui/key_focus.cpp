@@ -54,8 +54,8 @@ bool edits_text(const KeyPress& key) {
 } // namespace
 
 void notice_key_focus(App& app) {
-  KeyFocus& focus = app.commands.focus;
-  if (!app.inspector.typing.name.empty()) focus = {.in_panel = true, .among_fields = true};
+  KeyFocus& focus = app.keyboard.focus;
+  if (!app.fields.typing.name.empty()) focus = {.in_panel = true, .among_fields = true};
   bool clicked = false;
   for (int button = 0; button < 3; ++button)
     clicked = clicked || ImGui::IsMouseClicked(button);
@@ -71,7 +71,7 @@ void notice_key_focus(App& app) {
 }
 
 bool may_command(App& app, const KeyPress& key) {
-  KeyFocus& focus = app.commands.focus;
+  KeyFocus& focus = app.keyboard.focus;
   // With the keyboard at a widget its number begins with a digit, and letters stay commands.
   if (!focus.in_panel || app.keyboard.ring) return true;
   bool typed = false;
@@ -108,7 +108,7 @@ void give_keys_to_popups(App& app) {
   const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
   if (open == 0) return;
   // In a field Escape gives back what stood there before.
-  if (app.inspector.typing.name.empty() && pressed(keys::escape)) ImGui::ClosePopupToLevel(0, true);
+  if (app.fields.typing.name.empty() && pressed(keys::escape)) ImGui::ClosePopupToLevel(0, true);
   app.keys.clear();
 }
 

@@ -16,21 +16,21 @@ namespace {
 // Buttons in rows of the panel's width.
 class Buttons {
  public:
-  explicit Buttons(App& app)
-      : app_(app), right_(ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x) {}
+  explicit Buttons(Ui& ui)
+      : ui_(ui), right_(ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x) {}
 
-  void add(const std::string& name, const char* text, const char* help, std::function<void(App&)> act,
+  void add(const std::string& name, const char* text, const char* help, std::function<void()> act,
            bool primary = false) {
     const float width = ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
     if (!first_ && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width < right_)
       ImGui::SameLine();
     first_ = false;
-    if (text_button(app_, "results/remedy/" + name, text, primary)) later(app_, std::move(act));
+    if (text_button(ui_, "results/remedy/" + name, text, primary)) later(ui_, std::move(act));
     help_on_hover(help);
   }
 
  private:
-  App& app_;
+  Ui& ui_;
   float right_;
   bool first_ = true;
 };
@@ -57,7 +57,7 @@ void set_gravity(Session& session, const std::string& step, const Vec3& gravity)
   edit(session, step, [&](Mechanism& mechanism, Selection&) { mechanism.gravity = gravity; });
 }
 
-void holding_buttons(Buttons& buttons, const Session& session) {
+void holding_buttons(Buttons& buttons, Session& session) {
   const std::vector<RunawayCoordinate> found = holdable(session);
   if (found.empty()) return;
   const bool one = found.size() == 1;
@@ -66,16 +66,16 @@ void holding_buttons(Buttons& buttons, const Session& session) {
   buttons.add(
       "spring", one ? "Add a spring" : "Add springs",
       "A spring, slack as drawn and stiff enough to hold after about a fifth of the mechanism's size.",
-      [found, to](App& changed) {
-        edit(changed, "Add spring" + to, [&](Mechanism& mechanism, Selection&) {
+      [&session, found, to] {
+        edit(session, "Add spring" + to, [&](Mechanism& mechanism, Selection&) {
           for (const RunawayCoordinate& c : found)
             add_holding_spring(mechanism, c);
         });
       },
       true);
   buttons.add("stop", one ? "Add a stop" : "Add stops", "A stop on the side that it moves to.",
-              [found, to](App& changed) {
-                edit(changed, "Add stop" + to, [&](Mechanism& mechanism, Selection&) {
+              [&session, found, to] {
+                edit(session, "Add stop" + to, [&](Mechanism& mechanism, Selection&) {
                   for (const RunawayCoordinate& c : found)
                     add_holding_stop(mechanism, c);
                 });
@@ -95,14 +95,14 @@ void remedies(App& app) {
       buttons.add(
           "gravity along", "Turn gravity along the axis",
           "Gravity of the same size along the axis of the drive, so that the weight does not turn with it.",
-          [along = *along](App& changed) { set_gravity(changed, "Turn gravity along the axis", along); },
-          true);
+          [&app, along = *along] { set_gravity(app, "Turn gravity along the axis", along); }, true);
   if (solution.weight_turns || (!solution.unheld.empty() && solution.unheld_by_weight))
     buttons.add("gravity off", "Turn gravity off", "No gravity; the scene's inspector has it back.",
-                [](App& changed) { set_gravity(changed, "Turn gravity off", Vec3::Zero()); });
+                [&app] { set_gravity(app, "Turn gravity off", Vec3::Zero()); });
   const bool alone = solution.unheld.empty() && !solution.weight_turns;
-  buttons.add("motion", "Show the motion", "How it moves from the drawn pose, which needs no steady state.",
-              show_how_it_moves, alone);
+  buttons.add(
+      "motion", "Show the motion", "How it moves from the drawn pose, which needs no steady state.",
+      [&app] { show_how_it_moves(app); }, alone);
   ImGui::Dummy({0, 2 * app.scale});
 }
 

@@ -4,6 +4,9 @@
 
 #include "app/render/fonts.hpp"
 #include "app/ui/keyboard/keyboard_state.hpp"
+#include "app/ui/widgets/field_state.hpp"
+#include "app/ui/widgets/section_state.hpp"
+#include "app/ui/widgets/slider_press.hpp"
 #include "app/ui/widgets/tooltip.hpp"
 #include "app/ui/widgets/widget_map.hpp"
 #include "app/viewport/theme.hpp"
@@ -28,6 +31,9 @@ struct Ui {
   KeyboardState keyboard;
   std::vector<KeyPress> keys; // since the last frame; whoever runs the loop adds, build_gui() empties
   TooltipState tooltip;
+  FieldState fields;
+  SectionState sections;
+  SliderPress slider_press;
 };
 
 } // namespace flyball

@@ -66,7 +66,7 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
   show_save_dialog(app);
   robot.frames(2);
   REQUIRE(app.dialog.showing);
-  CHECK(app.dialog.path == "governor.json");
+  CHECK(app.file_dialogs.path == "governor.json");
 
   SECTION("asked twice, then replaced") {
     robot.click("save/other.json"); // from the list

@@ -202,18 +202,18 @@ TEST_CASE("what cannot be taken stays in the field and says why") {
   hand.choose(PartKind::body, "ball1");
   const std::size_t steps = hand.app.document.steps().size();
   hand.fill("inspector/mass", "12 m");
-  CHECK(hand.app.inspector.typing.name == "inspector/mass");
-  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("Expected a mass"));
+  CHECK(hand.app.fields.typing.name == "inspector/mass");
+  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("Expected a mass"));
   hand.frames(3);
 
   SECTION("Escape puts the old back") {
     hand.key(key_escape);
-    CHECK(hand.app.inspector.typing.name.empty());
+    CHECK(hand.app.fields.typing.name.empty());
     CHECK_FALSE(hand.app.selection().empty());
   }
   SECTION("so does leaving, with a word") {
     hand.click("inspector/title");
-    CHECK(hand.app.inspector.typing.name.empty());
+    CHECK(hand.app.fields.typing.name.empty());
     CHECK_THAT(hand.app.notice, ContainsSubstring("“12 m” was not taken"));
   }
   SECTION("it can be mended at once") {
@@ -226,7 +226,7 @@ TEST_CASE("what cannot be taken stays in the field and says why") {
   CHECK(hand.body("ball1").mass == 1);
   CHECK(hand.app.document.steps().size() == steps);
   hand.fill("inspector/mass", "-1");
-  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("zero or more"));
+  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("zero or more"));
 }
 
 TEST_CASE("looking into a field changes nothing, and leaving takes what was typed") {
@@ -251,11 +251,11 @@ TEST_CASE("looking into a field changes nothing, and leaving takes what was type
     hand.type("0.5");
     hand.key(key_tab);
     CHECK(hand.joint("spin").at.x() == 0.5);
-    CHECK(hand.app.inspector.typing.name == "inspector/at/y");
+    CHECK(hand.app.fields.typing.name == "inspector/at/y");
     hand.type("0.6");
     hand.key(key_tab, false, true);
     CHECK(hand.joint("spin").at.y() == 0.6);
-    CHECK(hand.app.inspector.typing.name == "inspector/at/x");
+    CHECK(hand.app.fields.typing.name == "inspector/at/x");
     CHECK(hand.app.mode == Mode::build); // where Tab is a shortcut otherwise
   }
   SECTION("to another part, of which the field is not the one typed in") {
@@ -284,7 +284,7 @@ TEST_CASE("a number is dragged by its label and stepped by the arrow keys") {
   hand.press_widget("inspector/mass");
   hand.one_step([&] { hand.key(key_up); });
   CHECK(hand.body("ball1").mass == 2.01);
-  CHECK(hand.app.inspector.typing.text == "2.01 kg");
+  CHECK(hand.app.fields.typing.text == "2.01 kg");
 }
 
 TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
@@ -504,7 +504,7 @@ TEST_CASE("a law typed for a stiffness or damping stands in its place, its slide
     hand.fill("inspector/spring/stiffness",
               "=table(deflection, [-200 mm, -150 N], [0 mm, 0 N], [50 mm, 40 N])");
   });
-  CHECK(hand.app.inspector.typing.mistake.empty());
+  CHECK(hand.app.fields.typing.mistake.empty());
   CHECK(slide().spring->force);
   CHECK_FALSE(is_pinned(hand.mechanism(), "joints.slide.spring.stiffness"));
   hand.one_step([&] { hand.fill("inspector/damping", "=40 N*tanh(rate/(0.1 m/s))"); });
@@ -691,12 +691,12 @@ TEST_CASE("renaming takes every reference along and refuses names that are taken
   Hand hand;
   SECTION("in the outline, by a double click") {
     hand.double_click("outline/bodies/ball1");
-    REQUIRE(hand.app.inspector.typing.name == "outline/bodies/ball1/name");
+    REQUIRE(hand.app.fields.typing.name == "outline/bodies/ball1/name");
   }
   SECTION("in the outline, by F2") {
     hand.click("outline/bodies/ball1");
     hand.key(key_f2);
-    REQUIRE(hand.app.inspector.typing.name == "outline/bodies/ball1/name");
+    REQUIRE(hand.app.fields.typing.name == "outline/bodies/ball1/name");
   }
   SECTION("in the inspector") {
     hand.click("outline/bodies/ball1");
@@ -705,12 +705,12 @@ TEST_CASE("renaming takes every reference along and refuses names that are taken
   hand.frames(2);
   hand.type("ball2");
   hand.key(key_enter);
-  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("ball2"));
+  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("ball2"));
   hand.frames(3);
   hand.key('A', true);
   hand.type("a.b");
   hand.key(key_enter);
-  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("dots"));
+  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("dots"));
   hand.frames(3);
   hand.key('A', true);
   hand.type("left weight");
@@ -941,7 +941,7 @@ TEST_CASE("powers in fields are written as in results, and typed either way") {
   select(hand.app, {});
   hand.frames(2);
   hand.click("inspector/gravity/y");
-  CHECK_THAT(hand.app.inspector.typing.text, Catch::Matchers::EndsWith(" m/s²"));
+  CHECK_THAT(hand.app.fields.typing.text, Catch::Matchers::EndsWith(" m/s²"));
   hand.type("-5 m/s^2");
   hand.key(key_enter);
   CHECK(hand.mechanism().gravity.y() == -5);

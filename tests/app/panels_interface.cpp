@@ -52,12 +52,12 @@ TEST_CASE("a stiffness slider is logarithmic") {
 TEST_CASE("a value can be typed, with a unit") {
   Robot robot;
   robot.double_click(std::string("parameters/") + speed + "/value");
-  CHECK(robot.app.inspector.typing.name == std::string("parameters/") + speed + "/value");
+  CHECK(robot.app.fields.typing.name == std::string("parameters/") + speed + "/value");
   robot.key('A', true);
   robot.type("120 rpm");
   robot.key(key_enter);
   CHECK(parameter(robot.app, speed) == Approx(4 * 3.141592653589793));
-  CHECK(robot.app.inspector.typing.name.empty());
+  CHECK(robot.app.fields.typing.name.empty());
 }
 
 TEST_CASE("the view is steered with the mouse") {
@@ -154,7 +154,7 @@ TEST_CASE("a picture is exported with and without the panels") {
   robot.frames(2);
   REQUIRE(robot.app.dialog.showing);
   robot.click("export/720p"); // leaves the field of the path
-  robot.app.dialog.path = file.string();
+  robot.app.file_dialogs.path = file.string();
   const bool panels = GENERATE(false, true);
   if (panels) robot.click("export/panels");
   robot.click("export/save");

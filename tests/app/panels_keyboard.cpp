@@ -274,7 +274,7 @@ TEST_CASE("a slider by keys: steps, fine, coarse, its ends, and a typed number")
   CHECK(value() == 30);
   hand.strike("15");
   hand.frames(2);
-  REQUIRE(app.inspector.typing.name == std::string("parameters/") + spin_speed + "/value");
+  REQUIRE(app.fields.typing.name == std::string("parameters/") + spin_speed + "/value");
   hand.key(keys::enter);
   hand.frames(2);
   CHECK(value() == 15);
@@ -321,7 +321,7 @@ TEST_CASE("the outline is gone through by arrows, which choose the parts") {
   CHECK(app.selection().parts == std::vector{Part{PartKind::body, app.mechanism().bodies[1].name}});
   hand.key(keys::f2); // rename, a command of the part
   hand.frames(2);
-  CHECK_FALSE(app.inspector.typing.name.empty());
+  CHECK_FALSE(app.fields.typing.name.empty());
 }
 
 TEST_CASE("F6 goes round all regions, and Tab in the view goes on switching Build and Explore") {

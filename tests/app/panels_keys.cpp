@@ -55,7 +55,7 @@ struct Hand : Robot {
   void miss_in_inspector() {
     const WidgetRect name = widget("inspector/name");
     click(ImVec2{name.to.x + 3, name.to.y + 1});
-    REQUIRE(app.inspector.typing.name.empty());
+    REQUIRE(app.fields.typing.name.empty());
   }
 };
 
@@ -269,7 +269,7 @@ TEST_CASE("a double click on a slider types, and does not move the knob") {
   CHECK(get_parameter(robot.app.mechanism(), speed) == 11.0174);
   CHECK(robot.app.document.position() == 0);
   CHECK(robot.app.answer.ticket == answers);
-  REQUIRE(robot.app.inspector.typing.name == slider + "/value");
+  REQUIRE(robot.app.fields.typing.name == slider + "/value");
   robot.type("120 rpm");
   robot.key(key_enter);
   CHECK(get_parameter(robot.app.mechanism(), speed) == Approx(4 * 3.141592653589793));
@@ -308,7 +308,7 @@ TEST_CASE("a double click in a field selects the number and not its unit") {
   }
   hand.frames(2);
   hand.type("0.5");
-  CHECK(hand.app.inspector.typing.text == "0.5 m");
+  CHECK(hand.app.fields.typing.text == "0.5 m");
   hand.key(key_enter);
   const int ball = body_index(hand.app.mechanism(), "ball1");
   CHECK(hand.app.mechanism().bodies[static_cast<std::size_t>(ball)].position.y() == 0.5);
@@ -348,8 +348,8 @@ TEST_CASE("a number typed with its unit over the number alone drives the former 
     hand.type(typed);
   };
   type_over("inspector/mass", "1 kg");
-  CHECK(hand.app.inspector.typing.text == "1 kg kg");
-  CHECK(hand.app.inspector.typing.mistake.empty());
+  CHECK(hand.app.fields.typing.text == "1 kg kg");
+  CHECK(hand.app.fields.typing.mistake.empty());
   hand.key(key_enter);
   CHECK(ball().mass == 1);
   type_over("inspector/mass", "1500 g");
@@ -360,7 +360,7 @@ TEST_CASE("a number typed with its unit over the number alone drives the former 
   CHECK(ball().position.y() == Approx(0.21));
   // What makes no sense without it either is still refused.
   type_over("inspector/mass", "2 m");
-  CHECK_THAT(hand.app.inspector.typing.mistake, ContainsSubstring("Expected a mass"));
+  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("Expected a mass"));
   hand.key(key_escape);
   CHECK(ball().mass == 1.5);
 }

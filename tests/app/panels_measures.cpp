@@ -68,7 +68,7 @@ TEST_CASE("a measure is added, changed, renamed and removed by hand") {
     d.click("inspector/measure/rise");
     d.type("=coordinate(slid)");
     d.frames(1);
-    CHECK(d.app.inspector.typing.mistake.find("did you mean \"slide\"") != std::string::npos);
+    CHECK(d.app.fields.typing.mistake.find("did you mean \"slide\"") != std::string::npos);
     d.key(key_escape);
     d.frames(2);
     CHECK(d.app.document.position() == steps);

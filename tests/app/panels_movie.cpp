@@ -39,7 +39,7 @@ class MovieRobot : public Robot {
   // Types the name of the film.
   void name(const fs::path& file) {
     click("movie/png"); // leaves the field of the path
-    app.dialog.path = file.string();
+    app.file_dialogs.path = file.string();
     frames(2);
   }
   // Until it is made, or is not; returns how many frames of the window that took.
@@ -127,10 +127,10 @@ TEST_CASE("the mode that is shown is exported as it is shown") {
   robot.click("modes/export");
   robot.frames(3);
   REQUIRE(app.dialog.showing);
-  CHECK(fs::path(app.dialog.path).stem() == "flyball-governor-mode-1");
+  CHECK(fs::path(app.file_dialogs.path).stem() == "flyball-governor-mode-1");
   robot.point({2, 2});
   robot.click("movie/png");
-  app.dialog.path = (folder / "swing.png").string();
+  app.file_dialogs.path = (folder / "swing.png").string();
   robot.frames(2);
   robot.click("movie/save");
   for (int i = 0; i < 2000 && (app.movie.request || app.movie.progress); ++i)
@@ -155,10 +155,10 @@ TEST_CASE("a film goes through ffmpeg from the dialog") {
   const FakeFfmpeg ffmpeg;
   const TemporaryFolder folder;
   MovieRobot robot;
-  CHECK(fs::path(robot.app.dialog.path).filename() == "flyball-governor.mp4");
+  CHECK(fs::path(robot.app.file_dialogs.path).filename() == "flyball-governor.mp4");
   robot.name(folder / "run.mp4");
   robot.click("movie/gif");
-  CHECK(robot.app.dialog.path == (folder / "run.gif").string());
+  CHECK(robot.app.file_dialogs.path == (folder / "run.gif").string());
   robot.click("movie/mp4");
   robot.click("movie/save");
   robot.wait();
@@ -198,16 +198,16 @@ TEST_CASE("without ffmpeg the dialog offers frames and says what is missing") {
   const NoFfmpeg none;
   const TemporaryFolder folder;
   MovieRobot robot;
-  CHECK(fs::path(robot.app.dialog.path).filename() == "flyball-governor.png");
+  CHECK(fs::path(robot.app.file_dialogs.path).filename() == "flyball-governor.png");
   robot.click("movie/mp4");
-  CHECK(fs::path(robot.app.dialog.path).extension() == ".png");
+  CHECK(fs::path(robot.app.file_dialogs.path).extension() == ".png");
   // A name that is typed all the same goes nowhere.
   robot.name(folder / "run.mp4");
   robot.click("movie/save");
   CHECK_FALSE(robot.app.movie.request);
   CHECK_FALSE(robot.app.movie.progress);
   robot.click("movie/png");
-  CHECK(robot.app.dialog.path == (folder / "run.png").string());
+  CHECK(robot.app.file_dialogs.path == (folder / "run.png").string());
   robot.click("movie/save");
   robot.wait();
   CHECK(names_in(folder).size() == 6);

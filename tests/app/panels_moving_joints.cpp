@@ -111,7 +111,7 @@ TEST_CASE("everything selected moves as one, and only joints to the rest are tol
 TEST_CASE("a body that is turned turns its joints' axes along") {
   Hand hand;
   hand.choose({{PartKind::body, "spindle"}});
-  hand.app.inspector.open["inspector/rotation section"] = true;
+  hand.app.sections.open["inspector/rotation section"] = true;
   hand.frames(2);
   Mechanism m = hand.app.mechanism();
   rotate_parts(m, {{{PartKind::body, "spindle"}}}, m.bodies[0].position,

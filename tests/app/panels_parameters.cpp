@@ -23,7 +23,7 @@ TEST_CASE("an expression is typed where a number is, and a number over it") {
   SECTION("it is shown for typing, and stays as it is when nothing is changed") {
     d.frames(60);
     d.click("inspector/mass");
-    CHECK(d.app.inspector.typing.text == "=100*m + 50 kg");
+    CHECK(d.app.fields.typing.text == "=100*m + 50 kg");
     d.key(key_escape);
     d.frames(2);
     CHECK(d.app.document.position() == steps);
@@ -41,7 +41,7 @@ TEST_CASE("an expression is typed where a number is, and a number over it") {
     d.click("inspector/mass");
     d.type("=L");
     d.frames(1);
-    CHECK(d.app.inspector.typing.mistake.find("expected kg, found m") != std::string::npos);
+    CHECK(d.app.fields.typing.mistake.find("expected kg, found m") != std::string::npos);
     d.key(key_escape);
   }
 }
@@ -157,13 +157,13 @@ TEST_CASE("a shape's numbers take expressions and names as others do") {
     d.click("inspector/shapes/0/radius");
     d.type("=m");
     d.frames(1);
-    CHECK(d.app.inspector.typing.mistake.find("expected m, found kg") != std::string::npos);
+    CHECK(d.app.fields.typing.mistake.find("expected m, found kg") != std::string::npos);
     d.key(key_escape);
     d.frames(60);
     d.click("inspector/shapes/0/radius");
     d.type("=-L");
     d.frames(1);
-    CHECK(d.app.inspector.typing.mistake == "Expected more than zero.");
+    CHECK(d.app.fields.typing.mistake == "Expected more than zero.");
     d.key(key_escape);
   }
 }
@@ -216,7 +216,7 @@ TEST_CASE("a turn takes an expression, which is kept as one of the quaternion") 
   SECTION("it is typed again as it was, and stays") {
     d.frames(60);
     d.click(z);
-    CHECK(d.app.inspector.typing.text == "=turn_z");
+    CHECK(d.app.fields.typing.text == "=turn_z");
     d.key(key_escape);
     d.frames(2);
     CHECK(d.app.document.position() == steps);

@@ -19,7 +19,7 @@ TEST_CASE("a report is exported of what is shown") {
   set_mode(robot.app, building ? Mode::build : Mode::explore);
   const Theme theme = robot.app.theme;
   run_command(robot.app, "file.report");
-  robot.app.dialog.path = file.string(); // before the field has it
+  robot.app.file_dialogs.path = file.string(); // before the field has it
   robot.frames(3);
   robot.click("report/save");
   REQUIRE(robot.app.export_request);

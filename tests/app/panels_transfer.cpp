@@ -156,7 +156,7 @@ TEST_CASE("the model is exported, by the ending of its name") {
     std::filesystem::remove(file);
     CHECK(is_enabled(robot.app, command("file.model")));
     run_command(robot.app, "file.model");
-    robot.app.dialog.path = file.string(); // before the field has it
+    robot.app.file_dialogs.path = file.string(); // before the field has it
     robot.frames(3);
     robot.click("model/save");
     robot.frames(2);
@@ -170,7 +170,7 @@ TEST_CASE("the model is exported, by the ending of its name") {
   robot.click("model/cancel");
   robot.frames(2);
   run_command(robot.app, "file.model");
-  robot.app.dialog.path = file.string();
+  robot.app.file_dialogs.path = file.string();
   robot.frames(3);
   robot.click("model/save");
   robot.frames(2);

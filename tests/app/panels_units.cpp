@@ -59,7 +59,7 @@ TEST_CASE("fields, sliders and results show one and the same unit") {
   choose_units(app, workshop);
   robot.frames(2);
   robot.click(std::string("parameters/") + speed + "/value");
-  CHECK_THAT(app.inspector.typing.text, ContainsSubstring("rpm"));
+  CHECK_THAT(app.fields.typing.text, ContainsSubstring("rpm"));
   robot.type("120");
   robot.key(key_enter);
   CHECK(get_parameter(app.mechanism(), speed) == Approx(4 * std::numbers::pi).epsilon(1e-15));
@@ -67,7 +67,7 @@ TEST_CASE("fields, sliders and results show one and the same unit") {
   set_mode(app, Mode::build);
   robot.frames(3);
   robot.click("inspector/position/x");
-  CHECK_THAT(app.inspector.typing.text, ContainsSubstring("mm"));
+  CHECK_THAT(app.fields.typing.text, ContainsSubstring("mm"));
   robot.type("12.5");
   robot.key(key_enter);
   CHECK(app.document.stored().bodies.back().position.x() == 0.0125);

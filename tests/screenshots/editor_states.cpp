@@ -115,7 +115,7 @@ TEST_CASE("each kind of part has its inspector") {
       name_number(next, "bodies.ball1.shapes.1.radius", "rod");
     });
     hand.app.panels.inspector_share = 0.9f;
-    hand.app.inspector.open["inspector/mass section"] = false;
+    hand.app.sections.open["inspector/mass section"] = false;
     hand.choose(PartKind::body, "ball1");
     hand.check("inspector-shapes");
   }

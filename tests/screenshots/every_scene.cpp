@@ -61,7 +61,7 @@ TEST_CASE("the dialog for pictures looks as it did") {
   app.view.samples = 1;
   open_scene(app, FLYBALL_ASSETS "/scenes/rate_gyro.json");
   show_export_dialog(app);
-  app.dialog.path = "/home/somebody/rate_gyro.png";
+  app.file_dialogs.path = "/home/somebody/rate_gyro.png";
   check_stored("export-dialog", interface_picture(app, interface_size, 1));
 }
 

@@ -38,7 +38,7 @@ void show_export_dialog(App& app) {
   app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
   const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
-  app.dialog.path = (app.file_dialogs.list.shown / ("flyball-" + stem + ".png")).string();
+  app.file_dialogs.path = (app.file_dialogs.list.shown / ("flyball-" + stem + ".png")).string();
 }
 
 void export_dialog(App& app) {
@@ -61,10 +61,10 @@ void export_dialog(App& app) {
   const std::filesystem::path file = typed_file(app, ".png");
   const bool replaces = asks_to_replace(app, file);
   ImGui::Dummy({0, 2 * app.scale});
-  ImGui::BeginDisabled(!fits || dialog.path.empty());
+  ImGui::BeginDisabled(!fits || app.file_dialogs.path.empty());
   accepted = text_button(app, "export/save", replaces ? "Replace" : "Save", true) || accepted;
   ImGui::EndDisabled();
-  if (accepted && fits && !dialog.path.empty()) save_picture(app);
+  if (accepted && fits && !app.file_dialogs.path.empty()) save_picture(app);
   ImGui::SameLine();
   if (text_button(app, "export/cancel", "Cancel") || escape_pressed()) close_dialog();
   end_dialog();

@@ -13,7 +13,8 @@ void show_model_dialog(App& app) {
   show_folder(app, usual_folder(app));
   app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
-  app.dialog.path = (file.empty() ? file_stem(app.mechanism().name) : file.stem().string()) + "-model.m";
+  app.file_dialogs.path =
+      (file.empty() ? file_stem(app.mechanism().name) : file.stem().string()) + "-model.m";
 }
 
 void model_dialog(App& app) {
@@ -30,7 +31,7 @@ void model_dialog(App& app) {
   const bool replaces = asks_to_replace(app, file);
   if (!replaces && !app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
-  const bool usable = has_transfer(app) && format && !app.dialog.path.empty();
+  const bool usable = has_transfer(app) && format && !app.file_dialogs.path.empty();
   ImGui::BeginDisabled(!usable);
   accepted = text_button(app, "model/save", replaces ? "Replace" : "Export", true) || accepted;
   ImGui::EndDisabled();

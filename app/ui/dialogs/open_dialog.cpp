@@ -50,7 +50,7 @@ void show_open_dialog(App& app) {
   const fs::path& file = app.document.file();
   show_folder(app, !file.empty() ? file.parent_path() : usual_folder(app));
   app.dialog.wanted = Dialog::open;
-  app.dialog.path.clear();
+  app.file_dialogs.path.clear();
 }
 
 void open_dialog(App& app) {

@@ -11,7 +11,8 @@ void show_report_dialog(App& app) {
   show_folder(app, usual_folder(app));
   app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
-  app.dialog.path = (file.empty() ? file_stem(app.mechanism().name) : file.stem().string()) + "-report.html";
+  app.file_dialogs.path =
+      (file.empty() ? file_stem(app.mechanism().name) : file.stem().string()) + "-report.html";
 }
 
 void report_dialog(App& app) {
@@ -25,7 +26,7 @@ void report_dialog(App& app) {
   const std::filesystem::path file = typed_file(app, ".html");
   const bool replaces = asks_to_replace(app, file);
   ImGui::Dummy({0, 2 * app.scale});
-  const bool usable = !app.dialog.path.empty() && !writing_report(app);
+  const bool usable = !app.file_dialogs.path.empty() && !writing_report(app);
   ImGui::BeginDisabled(!usable);
   accepted = text_button(app, "report/save", replaces ? "Replace" : "Export", true) || accepted;
   ImGui::EndDisabled();

@@ -40,7 +40,7 @@ void ask_where_to_save(App& app, std::string why) {
   app.file_dialogs.message = std::move(why);
   app.file_dialogs.replacing.clear();
   app.dialog.wanted = Dialog::save;
-  app.dialog.path = file.empty() ? file_stem(app.mechanism().name) + ".json" : file.filename().string();
+  app.file_dialogs.path = file.empty() ? file_stem(app.mechanism().name) + ".json" : file.filename().string();
 }
 
 void save_dialog(App& app) {
@@ -48,7 +48,7 @@ void save_dialog(App& app) {
   const bool entered = path_field(app, "save", "Name");
   folder_line(app, "save");
   if (const auto clicked = file_list(app, "save", ".json", false, 220 * app.scale))
-    app.dialog.path = clicked->filename().string();
+    app.file_dialogs.path = clicked->filename().string();
   const fs::path file = typed_file(app, ".json");
   const bool replaces = asks_to_replace(app, file);
   if (!replaces && !app.file_dialogs.message.empty())
@@ -56,7 +56,7 @@ void save_dialog(App& app) {
   else if (!replaces && is_example(app))
     paragraph("Examples stay as they are; this will be a file of your own.", colors_of(app).dim);
   ImGui::Dummy({0, 2 * app.scale});
-  const bool usable = !app.dialog.path.empty();
+  const bool usable = !app.file_dialogs.path.empty();
   ImGui::BeginDisabled(!usable);
   const bool pressed = text_button(app, "save/save", replaces ? "Replace" : "Save", true);
   ImGui::EndDisabled();

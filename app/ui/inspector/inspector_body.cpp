@@ -153,9 +153,9 @@ void density_row(App& app, const Body& body) {
                 .unit = "kg/m^3",
                 .help = "The mass by the volume of the shapes; typing it makes the body a uniform solid.",
                 .least = Least::zero,
-                .set = [name = body.name](App& changed, double value) {
-                  changed.inspector.given_masses[name] = {false, value};
-                  edit(changed, "Set density of " + name, [&](Mechanism& mechanism, Selection&) {
+                .set = [&app, name = body.name](double value) {
+                  app.inspector.given_masses[name] = {false, value};
+                  edit(app, "Set density of " + name, [&](Mechanism& mechanism, Selection&) {
                     for (Body& same : mechanism.bodies)
                       if (same.name == name) take_mass_properties(same, value);
                   });
@@ -210,10 +210,10 @@ void mass_section(App& app, const Body& body) {
                                      : "Mass; zero is allowed.",
                      .least = Least::zero,
                      .address = "bodies." + body.name + ".mass"};
-  mass.set = [name = body.name, follows](App& changed, double value) {
-    changed.inspector.given_masses[name] = {true, 0};
-    if (!follows) return set_number(changed, "bodies." + name + ".mass", value);
-    edit(changed, "Set mass of " + name, [&](Mechanism& mechanism, Selection&) {
+  mass.set = [&app, name = body.name, follows](double value) {
+    app.inspector.given_masses[name] = {true, 0};
+    if (!follows) return set_number(app, "bodies." + name + ".mass", value);
+    edit(app, "Set mass of " + name, [&](Mechanism& mechanism, Selection&) {
       for (Body& same : mechanism.bodies) {
         if (same.name != name || (value > 0 && take_uniform_mass(same, value))) continue;
         same.mass = value; // a drawing without mass: no density says so
@@ -230,10 +230,10 @@ void mass_section(App& app, const Body& body) {
           app, "inspector/uniform", "Uniform solid", follows,
           "Mass centre and inertia are those of the shapes at one density, and stay so when the mass or a "
           "size changes."))
-    later(app, [part, follows](App& changed) {
-      changed.inspector.independent = follows ? part : Part{};
+    later(app, [&app, part, follows] {
+      app.inspector.independent = follows ? part : Part{};
       if (follows) return;
-      edit(changed, "Make " + part.name + " uniform", [&](Mechanism& mechanism, Selection&) {
+      edit(app, "Make " + part.name + " uniform", [&](Mechanism& mechanism, Selection&) {
         for (Body& same : mechanism.bodies)
           if (same.name == part.name) take_uniform_mass(same, same.mass);
       });
@@ -254,30 +254,28 @@ void rotation_section(App& app, const Body& body) {
                    "those of its inertia and boxes; in it angles are in radians unless they have a unit: "
                    "=30 deg.",
                .expression = "bodies." + body.name + ".turn",
-               .set = [name = body.name](App& changed, int axis,
-                                         double angle) { turn_body(changed, name, axis, angle); },
-               .follow = [name = body.name](const App& changed, const Mechanism& before,
-                                            Mechanism& next) { turn_along(changed, name, before, next); }});
+               .set = [&app, name = body.name](int axis, double angle) { turn_body(app, name, axis, angle); },
+               .follow = [&app, name = body.name](const Mechanism& before,
+                                                  Mechanism& next) { turn_along(app, name, before, next); }});
   if (is_rotation_given(body) && !given_turns(app.mechanism(), body)) quaternion_rows(app, body);
 }
 
 void body_inspector(App& app, const Body& body) {
   name_row(app, {PartKind::body, body.name});
   text_row(app, "inspector/description", "Note", body.description, "A note for whoever reads the scene.",
-           [name = body.name](App& changed, const std::string& text) {
-             edit_body(changed, "Describe " + name, name, [text](Body& same) { same.description = text; });
+           [&app, name = body.name](const std::string& text) {
+             edit_body(app, "Describe " + name, name, [text](Body& same) { same.description = text; });
            });
-  vector_rows(app, "Position",
-              {.name = "inspector/position",
-               .value = body.position,
-               .unit = "m",
-               .help = app.inspector.mass_alone
-                           ? "The mass centre in the world, as drawn; it moves alone."
-                           : "The mass centre in the world, as drawn; what is on the body moves along.",
-               .address = "bodies." + body.name + ".position",
-               .set = [name = body.name](App& changed, int axis, double value) {
-                 move_body(changed, name, axis, value);
-               }});
+  vector_rows(
+      app, "Position",
+      {.name = "inspector/position",
+       .value = body.position,
+       .unit = "m",
+       .help = app.inspector.mass_alone
+                   ? "The mass centre in the world, as drawn; it moves alone."
+                   : "The mass centre in the world, as drawn; what is on the body moves along.",
+       .address = "bodies." + body.name + ".position",
+       .set = [&app, name = body.name](int axis, double value) { move_body(app, name, axis, value); }});
   if (check_row(
           app, "inspector/mass alone", "Move mass centre alone", app.inspector.mass_alone,
           "Typing a position or rotation moves the mass centre and the axes of inertia, and leaves shapes, "

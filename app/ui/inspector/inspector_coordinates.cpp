@@ -80,7 +80,7 @@ struct CoordinateRows {
   }
 
   void number(const std::string& label, const std::string& address, double value, const std::string& unit,
-              const char* help, Least least = Least::any, const std::function<void(App&)>& reset = {}) const {
+              const char* help, Least least = Least::any, const std::function<void()>& reset = {}) const {
     quantity_row(app, label,
                  {.name = widget(address),
                   .value = value,
@@ -138,8 +138,8 @@ struct CoordinateRows {
                   .help =
                       "Moves the mechanism along its joints until the coordinate has this value, as far as "
                       "loops and stops let it.",
-                  .set = [name = joint.name, i = i](App& moved, double value) {
-                    move_coordinate(moved, name, i, value);
+                  .set = [&app = app, name = joint.name, i = i](double value) {
+                    move_coordinate(app, name, i, value);
                   }});
   }
 
@@ -270,10 +270,10 @@ struct CoordinateRows {
     const std::string address = key("stop") + "." + word;
     if (value) {
       const bool last = !coordinate().stop->lower || !coordinate().stop->upper;
-      std::function<void(App&)> reset;
+      std::function<void()> reset;
       if (!last)
-        reset = [rows = joint.name, at = static_cast<std::size_t>(i), which, word](App& changed) {
-          edit_joint(changed, std::string("Remove ") + word + " stop of " + rows, rows, [=](Joint& same) {
+        reset = [&app = app, rows = joint.name, at = static_cast<std::size_t>(i), which, word] {
+          edit_joint(app, std::string("Remove ") + word + " stop of " + rows, rows, [=](Joint& same) {
             if (at < same.coordinates.size() && same.coordinates[at].stop)
               ((*same.coordinates[at].stop).*which).reset();
           });

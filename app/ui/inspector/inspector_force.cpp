@@ -34,8 +34,8 @@ void spring_rows(App& app, const Force& force) {
                       "=2000 N/m*deflection + 1e6 N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], "
                       "[5 mm, 40 N]).",
                   .address = address_of(force, "force")},
-                 [name = force.name](App& changed) {
-                   edit_force(changed, "Stiffness of " + name, name, [](Force& same) {
+                 [&app, name = force.name] {
+                   edit_force(app, "Stiffness of " + name, name, [](Force& same) {
                      same.force.reset();
                      same.stiffness = usual_stiffness;
                    });
@@ -48,11 +48,10 @@ void spring_rows(App& app, const Force& force) {
                   .help = "Force by how far it is stretched; zero for a damper alone. An expression of the "
                           "deflection is the whole force, as =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).",
                   .address = address_of(force, "stiffness")});
-  std::function<void(App&)> reset;
+  std::function<void()> reset;
   if (force.free_length)
-    reset = [name = force.name](App& changed) {
-      edit_force(changed, "Length of " + name + " as drawn", name,
-                 [](Force& same) { same.free_length.reset(); });
+    reset = [&app, name = force.name] {
+      edit_force(app, "Length of " + name + " as drawn", name, [](Force& same) { same.free_length.reset(); });
     };
   quantity_row(app, "Free length",
                {.name = "inspector/free_length",
@@ -72,8 +71,8 @@ void spring_rows(App& app, const Force& force) {
                                  "N*tanh(rate/(0.1 m/s)) or =table(rate, [-1 m/s, -30 N], [0 m/s, 0 N], [1 "
                                  "m/s, 90 N]).",
                          .address = address_of(force, "damping_force")},
-                        [name = force.name](App& changed) {
-                          edit_force(changed, "Damping of " + name, name, [](Force& same) {
+                        [&app, name = force.name] {
+                          edit_force(app, "Damping of " + name, name, [](Force& same) {
                             same.damping_force.reset();
                             same.damping = usual_damping;
                           });
@@ -132,10 +131,10 @@ void bearing_rows(App& app, const Force& force) {
                .value = force.axis,
                .help = "Of what turns in it; x and y are across.",
                .address = address_of(force, "axis")});
-  std::function<void(App&)> reset;
+  std::function<void()> reset;
   if (force.x_axis)
-    reset = [name = force.name](App& changed) {
-      edit_force(changed, "x axis of " + name + " as usual", name, [](Force& same) { same.x_axis.reset(); });
+    reset = [&app, name = force.name] {
+      edit_force(app, "x axis of " + name + " as usual", name, [](Force& same) { same.x_axis.reset(); });
     };
   vector_rows(app, "x axis",
               {.name = "inspector/x_axis",
@@ -171,11 +170,10 @@ void point_rows(App& app, const Force& force) {
   const int body = body_index(app.mechanism(), force.body);
   const Vec3 centre =
       body < 0 ? Vec3(Vec3::Zero()) : app.mechanism().bodies[static_cast<std::size_t>(body)].position;
-  std::function<void(App&)> reset;
+  std::function<void()> reset;
   if (force.at)
-    reset = [name = force.name](App& changed) {
-      edit_force(changed, "Point of " + name + " at the mass centre", name,
-                 [](Force& same) { same.at.reset(); });
+    reset = [&app, name = force.name] {
+      edit_force(app, "Point of " + name + " at the mass centre", name, [](Force& same) { same.at.reset(); });
     };
   vector_rows(app, "Point",
               {.name = "inspector/at",
@@ -320,8 +318,8 @@ void vane_rows(App& app, const Force& vane) {
 void force_inspector(App& app, const Force& force) {
   name_row(app, {PartKind::force, force.name});
   text_row(app, "inspector/description", "Note", force.description, "A note for whoever reads the scene.",
-           [name = force.name](App& changed, const std::string& text) {
-             edit_force(changed, "Describe " + name, name, [text](Force& same) { same.description = text; });
+           [&app, name = force.name](const std::string& text) {
+             edit_force(app, "Describe " + name, name, [text](Force& same) { same.description = text; });
            });
   if (force.type == ForceType::spring) return spring_rows(app, force);
   if (force.type == ForceType::bearing) return bearing_rows(app, force);

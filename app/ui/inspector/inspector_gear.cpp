@@ -1,6 +1,7 @@
 // Gears, belts, racks and screws.
 #include "app/document/gear_kinds.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/edit_commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/widgets/typed_field.hpp"
@@ -113,10 +114,10 @@ void gear_rows(App& app, const Joint& gear) {
   };
   const std::string a = unit_of(0), b = unit_of(1);
   ratio_rows(app, gear, a == b ? "" : b + "/" + a);
-  std::function<void(App&)> reset;
+  std::function<void()> reset;
   if (gear.offset)
-    reset = [name = gear.name](App& changed) {
-      edit_joint(changed, "Offset of " + name + " as drawn", name, [](Joint& same) { same.offset.reset(); });
+    reset = [&app, name = gear.name] {
+      edit_joint(app, "Offset of " + name + " as drawn", name, [](Joint& same) { same.offset.reset(); });
     };
   quantity_row(app, "Offset",
                {.name = "inspector/offset",
@@ -128,7 +129,7 @@ void gear_rows(App& app, const Joint& gear) {
                reset);
   const Command& backlash = command("edit.backlash");
   if (text_button(app, "inspector/edit.backlash", backlash.title))
-    later(app, [](App& changed) { run_command(changed, "edit.backlash"); });
+    later(app, [&app] { give_backlash_to_selected(app); });
   help_on_hover(backlash.help);
 }
 

@@ -122,8 +122,8 @@ namespace {
 
 void note_row(App& app, const Joint& joint) {
   text_row(app, "inspector/description", "Note", joint.description, "A note for whoever reads the scene.",
-           [name = joint.name](App& changed, const std::string& text) {
-             edit_joint(changed, "Describe " + name, name, [text](Joint& same) { same.description = text; });
+           [&app, name = joint.name](const std::string& text) {
+             edit_joint(app, "Describe " + name, name, [text](Joint& same) { same.description = text; });
            });
 }
 
@@ -163,10 +163,10 @@ void distance_rows(App& app, const Joint& joint) {
     body_end_row(app, part, joint.bodies, end, end == 0 ? "From" : "To");
     end_point_rows(app, part, joint.points, end);
   }
-  std::function<void(App&)> reset;
+  std::function<void()> reset;
   if (joint.length)
-    reset = [name = joint.name](App& changed) {
-      edit_joint(changed, "Length of " + name + " as drawn", name, [](Joint& same) { same.length.reset(); });
+    reset = [&app, name = joint.name] {
+      edit_joint(app, "Length of " + name + " as drawn", name, [](Joint& same) { same.length.reset(); });
     };
   quantity_row(app, "Length",
                {.name = "inspector/length",

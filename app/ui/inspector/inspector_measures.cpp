@@ -26,8 +26,8 @@ void measure_field(App& app, const NamedMeasure& measure, const std::string& wid
                     return measure_mistake(app.document.stored(), name, with(typed));
                   },
               .take =
-                  [name = measure.name, step, with](App& changed, const std::string& typed) {
-                    edit(changed, step, [&](Mechanism& mechanism, Selection&) {
+                  [&app, name = measure.name, step, with](const std::string& typed) {
+                    edit(app, step, [&](Mechanism& mechanism, Selection&) {
                       set_measure(mechanism, name, with(typed));
                     });
                   },

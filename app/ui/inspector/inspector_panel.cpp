@@ -39,7 +39,7 @@ void panel_title(App& app) {
   ImGui::SameLine();
   ImGui::SetCursorPosX(start + width - side);
   if (icon_button(app, "inspector/delete", icon::trash, "Delete it, with what hangs on it."))
-    later(app, [](App& changed) { run_command(changed, "edit.delete"); });
+    later(app, [&app] { run_command(app, "edit.delete"); });
 }
 
 void contents(App& app) {

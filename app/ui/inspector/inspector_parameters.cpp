@@ -38,8 +38,8 @@ void named_field(App& app, const std::string& widget, const std::string& name, f
                               }
                             },
                         .take =
-                            [name, rename](App& changed, const std::string& typed) {
-                              edit(changed, "Rename " + name + " to " + typed,
+                            [&app, name, rename](const std::string& typed) {
+                              edit(app, "Rename " + name + " to " + typed,
                                    [&](Mechanism& mechanism, Selection&) { rename(mechanism, name, typed); });
                             }};
   if (!text_field(app, field, width)) help_on_hover(used_by(app.mechanism(), name).c_str());
@@ -74,8 +74,8 @@ void parameter_popup(App& app, const NamedParameter& parameter, const std::strin
               .text = parameter.unit,
               .check = unit_mistake,
               .take =
-                  [name](App& changed, const std::string& typed) {
-                    edit_parameter_of_name(changed, "Unit of " + name, name,
+                  [&app, name](const std::string& typed) {
+                    edit_parameter_of_name(app, "Unit of " + name, name,
                                            [typed](NamedParameter& each) { each.unit = typed; });
                   },
               .hint = "a plain number"},
@@ -89,8 +89,8 @@ void parameter_popup(App& app, const NamedParameter& parameter, const std::strin
                     .unit = parameter.unit,
                     .help = "Where its slider ends.",
                     .set =
-                        [name, range, end](App& changed, double typed) {
-                          edit_parameter_of_name(changed, "Range of " + name, name,
+                        [&app, name, range, end](double typed) {
+                          edit_parameter_of_name(app, "Range of " + name, name,
                                                  [range, end, typed](NamedParameter& each) {
                                                    each.range = range;
                                                    (*each.range)[end] = typed;
@@ -105,8 +105,8 @@ void parameter_popup(App& app, const NamedParameter& parameter, const std::strin
               .text = parameter.description,
               .check = {},
               .take =
-                  [name](App& changed, const std::string& typed) {
-                    edit_parameter_of_name(changed, "Describe " + name, name,
+                  [&app, name](const std::string& typed) {
+                    edit_parameter_of_name(app, "Describe " + name, name,
                                            [typed](NamedParameter& each) { each.description = typed; });
                   }},
              width);

@@ -74,10 +74,10 @@ void swap_bodies(App& app, const Part& part) {
 } // namespace
 
 void edit_later(App& app, const std::string& step, std::function<void(Mechanism&, Selection&)> change) {
-  later(app, [step, change = std::move(change)](App& changed) {
-    edit(changed, step, [&](Mechanism& mechanism, Selection& selection) {
+  later(app, [&app, step, change = std::move(change)] {
+    edit(app, step, [&](Mechanism& mechanism, Selection& selection) {
       change(mechanism, selection);
-      drop_lost_sliders(changed.mechanism(), mechanism);
+      drop_lost_sliders(app.mechanism(), mechanism);
     });
   });
 }
@@ -118,23 +118,23 @@ void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism) {
 }
 
 bool inspector_section(App& app, const std::string& name, const char* title, bool open) {
-  const auto found = app.inspector.open.find(name);
+  const auto found = app.sections.open.find(name);
   bool now = open;
-  if (found != app.inspector.open.end()) {
+  if (found != app.sections.open.end()) {
     now = found->second;
   } else {
     // What is open stays open while one works in it, even if the last number that opened it goes.
-    if (app.inspector.seen_of.parts != app.selection().parts) {
-      app.inspector.seen.clear();
-      app.inspector.seen_of = app.selection();
+    if (app.sections.seen_of.parts != app.selection().parts) {
+      app.sections.seen.clear();
+      app.sections.seen_of = app.selection();
     }
-    bool& seen = app.inspector.seen[name];
+    bool& seen = app.sections.seen[name];
     now = seen = seen || open;
   }
   const bool before = now;
   ImGui::Dummy({0, 2 * app.scale});
   section(app, name, title, now);
-  if (now != before) app.inspector.open[name] = now;
+  if (now != before) app.sections.open[name] = now;
   // A number is looked for that may be in it.
   app.keyboard.section = name;
   return now || !app.keyboard.sought.empty();
@@ -167,9 +167,9 @@ bool name_field(App& app, const std::string& widget, const Part& part, float wid
                         }
                       },
                   .take =
-                      [part](App& changed, const std::string& typed) {
-                        rename_told_point(changed, part, typed);
-                        edit(changed, "Rename " + part.name + " to " + typed,
+                      [&app, part](const std::string& typed) {
+                        rename_told_point(app, part, typed);
+                        edit(app, "Rename " + part.name + " to " + typed,
                              [&](Mechanism& mechanism, Selection& selection) {
                                rename_part(mechanism, part, typed);
                                std::ranges::replace(selection.parts, part, Part{part.kind, typed});
@@ -185,7 +185,7 @@ void name_row(App& app, const Part& part) {
 }
 
 void text_row(App& app, const std::string& name, const std::string& label, const std::string& text,
-              const char* help, const std::function<void(App&, const std::string&)>& take) {
+              const char* help, const std::function<void(const std::string&)>& take) {
   const float width = row_label(app, label, help);
   if (!text_field(app, {.name = name, .text = text, .check = {}, .take = take}, width) && !text.empty())
     help_on_hover(text.c_str());
@@ -211,7 +211,7 @@ std::optional<std::string> name_choice_row(App& app, const std::string& name, co
                                            const char* help) {
   std::optional<std::string> other;
   if (!begin_choice(app, name, label, chosen, help)) return other;
-  std::string& search = app.inspector.choice_search;
+  std::string& search = app.fields.choice_search;
   if (ImGui::IsWindowAppearing()) search.clear();
   if (options.size() > searchable) {
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
@@ -264,7 +264,7 @@ bool check_row(App& app, const std::string& name, const std::string& label, bool
 }
 
 void vector_rows(App& app, const std::string& label, const VectorField& field,
-                 const std::function<void(App&)>& reset) {
+                 const std::function<void()>& reset) {
   for (int i = 0; i < 3; ++i) {
     const auto at = static_cast<std::size_t>(i);
     QuantityField number{.name = field.name + "/" + axis_letters[at],
@@ -276,8 +276,8 @@ void vector_rows(App& app, const std::string& label, const VectorField& field,
                          .follow = field.follow};
     if (!field.address.empty()) number.address = field.address + "." + std::to_string(i);
     if (!field.expression.empty()) number.expression = field.expression + "." + std::to_string(i);
-    if (field.set) number.set = [set = field.set, i](App& changed, double value) { set(changed, i, value); };
-    quantity_row(app, i == 0 ? label : "", number, i == 0 ? reset : std::function<void(App&)>());
+    if (field.set) number.set = [set = field.set, i](double value) { set(i, value); };
+    quantity_row(app, i == 0 ? label : "", number, i == 0 ? reset : std::function<void()>());
   }
 }
 

@@ -32,7 +32,7 @@ void name_row(App& app, const Part& part);
 // A field in which the part is given another name; whether it is being typed in.
 bool name_field(App& app, const std::string& widget, const Part& part, float width);
 void text_row(App& app, const std::string& name, const std::string& label, const std::string& text,
-              const char* help, const std::function<void(App&, const std::string&)>& take);
+              const char* help, const std::function<void(const std::string&)>& take);
 // One of several words; the new one where another was chosen.
 std::optional<std::size_t> choice_row(App& app, const std::string& name, const std::string& label,
                                       std::span<const std::string_view> options, std::size_t chosen,
@@ -51,12 +51,12 @@ struct VectorField {
   std::string unit{}, help{};
   std::string address{};    // of the vector
   std::string expression{}; // where those of its numbers are kept, if it has no address
-  std::function<void(App&, int, double)> set{};
+  std::function<void(int, double)> set{};
   bool standard = false;
-  std::function<void(const App&, const Mechanism&, Mechanism&)> follow{}; // see QuantityField
+  std::function<void(const Mechanism&, Mechanism&)> follow{}; // see QuantityField
 };
 void vector_rows(App& app, const std::string& label, const VectorField& field,
-                 const std::function<void(App&)>& reset = {});
+                 const std::function<void()>& reset = {});
 
 // The bodies' names, after the ground's where it may be chosen.
 std::vector<std::string> body_choices(const Mechanism& mechanism, bool ground);

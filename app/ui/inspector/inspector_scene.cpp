@@ -99,12 +99,12 @@ void simulation_rows(App& app) {
 void scene_inspector(App& app) {
   const Mechanism& mechanism = app.mechanism();
   text_row(app, "inspector/name", "Name", mechanism.name, "What the scene is called.",
-           [](App& changed, const std::string& text) {
-             edit(changed, "Rename the scene", [&](Mechanism& m, Selection&) { m.name = text; });
+           [&app](const std::string& text) {
+             edit(app, "Rename the scene", [&](Mechanism& m, Selection&) { m.name = text; });
            });
   text_row(app, "inspector/description", "Note", mechanism.description, "A note for whoever reads the scene.",
-           [](App& changed, const std::string& text) {
-             edit(changed, "Describe the scene", [&](Mechanism& m, Selection&) { m.description = text; });
+           [&app](const std::string& text) {
+             edit(app, "Describe the scene", [&](Mechanism& m, Selection&) { m.description = text; });
            });
   vector_rows(app, "Gravity",
               {.name = "inspector/gravity",

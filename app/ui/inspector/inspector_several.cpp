@@ -76,12 +76,12 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
                 .help = number.help,
                 .least = number.least,
                 .set =
-                    [addresses, names, label = std::string(number.label),
-                     mass = kind == PartKind::body](App& changed, double typed) {
+                    [&app, addresses, names, label = std::string(number.label),
+                     mass = kind == PartKind::body](double typed) {
                       if (mass)
                         for (const std::string& name : names)
-                          changed.inspector.given_masses[name] = {true, 0};
-                      edit(changed, label + " of " + std::to_string(addresses.size()) + " parts",
+                          app.inspector.given_masses[name] = {true, 0};
+                      edit(app, label + " of " + std::to_string(addresses.size()) + " parts",
                            [&](Mechanism& mechanism, Selection&) {
                              for (const std::string& address : addresses)
                                set_parameter(mechanism, address, typed);
@@ -103,7 +103,7 @@ void actions(App& app) {
       ImGui::SameLine();
     first = false;
     if (text_button(app, std::string("inspector/") + id, wanted.title))
-      later(app, [id](App& changed) { run_command(changed, id); });
+      later(app, [&app, id] { run_command(app, id); });
     help_on_hover(wanted.help);
   }
 }

@@ -45,14 +45,14 @@ void mass_follows(const App& app, const std::string& name, const Mechanism& befo
 // Edits one shape; the mass follows where it did before.
 void edit_shape(App& app, const std::string& body, std::size_t index, const char* what,
                 const Change& change) {
-  later(app, [=](App& changed) {
-    edit(changed, std::string(what) + " " + body, [&](Mechanism& mechanism, Selection&) {
+  later(app, [=, &app] {
+    edit(app, std::string(what) + " " + body, [&](Mechanism& mechanism, Selection&) {
       for (Body& same : mechanism.bodies) {
         if (same.name != body || index >= same.shapes.size()) continue;
-        const bool follows = follows_shapes(changed, same);
+        const bool follows = follows_shapes(app, same);
         const std::optional<double> density = density_of(same);
         change(same, same.shapes[index]);
-        if (follows && density) take_again(changed, same, *density);
+        if (follows && density) take_again(app, same, *density);
       }
     });
   });
@@ -70,8 +70,8 @@ struct ShapeRows {
     return "bodies." + body.name + ".shapes." + std::to_string(index) + "." + key;
   }
   auto follow() const {
-    return [body = body.name](const App& changed, const Mechanism& before, Mechanism& next) {
-      mass_follows(changed, body, before, next);
+    return [&app = app, body = body.name](const Mechanism& before, Mechanism& next) {
+      mass_follows(app, body, before, next);
     };
   }
 
@@ -85,8 +85,8 @@ struct ShapeRows {
                   .least = Least::above_zero,
                   .expression = expression(key),
                   .set =
-                      [body = body.name, index = index, set](App& changed, double typed) {
-                        edit_shape(changed, body, index, "Size",
+                      [&app = app, body = body.name, index = index, set](double typed) {
+                        edit_shape(app, body, index, "Size",
                                    [set, typed](Body&, Shape& s) { set(s, typed); });
                       },
                   .follow = follow()});
@@ -101,8 +101,8 @@ struct ShapeRows {
                  .help = help,
                  .expression = expression(key),
                  .set =
-                     [body = body.name, index = index, place](App& changed, int axis, double typed) {
-                       edit_shape(changed, body, index, "Shape",
+                     [&app = app, body = body.name, index = index, place](int axis, double typed) {
+                       edit_shape(app, body, index, "Shape",
                                   [=](Body& b, Shape& s) { place(b, s)[axis] = typed; });
                      },
                  .standard = standard,

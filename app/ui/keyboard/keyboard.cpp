@@ -77,7 +77,7 @@ void go_to_view(App& app, bool ring) {
   state.at.clear();
   state.region = view_region;
   state.ring = ring;
-  app.commands.focus = {};
+  app.keyboard.focus = {};
 }
 
 void go_to_region(App& app, int step) {
@@ -370,7 +370,7 @@ void note_number(App& app, const std::string& name, const std::string& address) 
   if (address.empty() || address != state.sought) return;
   state.sought.clear();
   focus_widget(app, name);
-  if (name.starts_with("inspector/") && !state.section.empty()) app.inspector.open[state.section] = true;
+  if (name.starts_with("inspector/") && !state.section.empty()) app.sections.open[state.section] = true;
 }
 
 void enter_dialog_at(Ui& ui, const std::string& name) {

@@ -22,7 +22,18 @@ struct KeyNudge {
   bool fit = false, enter = false;
 };
 
+// Where keys go; see key_focus.hpp.
+struct KeyFocus {
+  bool in_panel = false;     // the last click was in a panel, or one types there
+  bool among_fields = false; // in one of numbers and words, rather than a list of parts
+  // Letters are commands all the same, as long as no number is begun: among plots, and once one has been a
+  // command in the view.
+  bool letters = false;
+  bool number_begun = false; // a digit or sign was pressed there outside of any field
+};
+
 struct KeyboardState {
+  KeyFocus focus;
   std::string at;                                      // the widget that has the keys; empty: the 3-D view
   bool ring = false;                                   // it was a key that went there, and it is shown
   bool by_key = false;                                 // the last that the hand did was to press a key

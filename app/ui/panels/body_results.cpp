@@ -46,8 +46,8 @@ void point_results(App& app, const Body& body) {
   const bool on = told != app.points.end();
   if (check_row(app, "results/point/on", "Another point of it", on,
                 "Tells how one more point fixed in the body moves, here and in the plots of the motion."))
-    later(app, [name = body.name, on, centre = body.position](App& then) {
-      tell_point(then, name, on ? std::optional<Vec3>() : centre);
+    later(app, [&app, name = body.name, on, centre = body.position] {
+      tell_point(app, name, on ? std::optional<Vec3>() : centre);
     });
   if (!on) return;
   vector_rows(app, "As drawn",
@@ -55,12 +55,12 @@ void point_results(App& app, const Body& body) {
                .value = told->second,
                .unit = "m",
                .help = "Where the point is in the drawn pose, in the world; it is fixed in the body.",
-               .set = [name = body.name](App& then, int axis, double value) {
-                 const auto known = then.points.find(name);
-                 if (known == then.points.end()) return;
+               .set = [&app, name = body.name](int axis, double value) {
+                 const auto known = app.points.find(name);
+                 if (known == app.points.end()) return;
                  Vec3 at = known->second;
                  at[axis] = value;
-                 tell_point(then, name, at);
+                 tell_point(app, name, at);
                }});
   const std::vector<PointSolution>& points = app.answer.solution.points;
   const auto found = std::ranges::find(points, BodyPoint{body.name, told->second}, &PointSolution::point);

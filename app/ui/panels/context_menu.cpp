@@ -25,7 +25,7 @@ void command_item(App& app, const char* id) {
   const bool on = wanted.checked && wanted.checked(app);
   ImGui::PushID(id);
   if (ImGui::MenuItem(wanted.title, key_text(wanted.key).c_str(), on, is_enabled(app, wanted)))
-    later(app, [id](App& changed) { run_command(changed, id); });
+    later(app, [&app, id] { run_command(app, id); });
   ImGui::PopID();
   note_widget(app.widgets, std::string("view/menu/") + id);
   help_on_hover(wanted.help);
@@ -80,7 +80,7 @@ void number_items(App& app, const Part& part) {
     const std::string unit = parameter_unit(app.mechanism(), address);
     const std::string value = short_text(get_parameter(app.mechanism(), address)) + " " + unit;
     if (ImGui::MenuItem(words.c_str(), value.c_str(), pinned))
-      later(app, [address, pinned](App& changed) { pin(changed, address, !pinned); });
+      later(app, [&app, address, pinned] { pin(app, address, !pinned); });
     note_widget(app.widgets, "view/menu/pin/" + address);
   }
   ImGui::EndMenu();
@@ -93,9 +93,7 @@ void drive_items(App& app, const Joint& joint) {
     const char* refused = on ? nullptr : drive_refused(joint, coordinate);
     const std::string words = joint.coordinates.size() == 1 ? "Driven" : "Driven: " + std::to_string(i);
     if (ImGui::MenuItem(words.c_str(), nullptr, on, !refused))
-      later(app, [name = joint.name, coordinate, on](App& changed) {
-        set_driven(changed, name, coordinate, !on);
-      });
+      later(app, [&app, name = joint.name, coordinate, on] { set_driven(app, name, coordinate, !on); });
     note_widget(app.widgets, "view/menu/drive/" + std::to_string(i));
     help_on_hover(refused ? refused : "Moves the coordinate at a constant speed.");
   }
@@ -105,9 +103,9 @@ void drive_items(App& app, const Joint& joint) {
 void free_body_item(App& app) {
   const bool on = app.view.loads && app.mode == Mode::explore;
   if (ImGui::MenuItem("Free-body diagram", key_text(command("view.loads").key).c_str(), on))
-    later(app, [on](App& changed) {
-      changed.view.loads = !on;
-      if (!on) set_mode(changed, Mode::explore);
+    later(app, [&app, on] {
+      app.view.loads = !on;
+      if (!on) set_mode(app, Mode::explore);
     });
   note_widget(app.widgets, "view/menu/view.loads");
   help_on_hover("What acts on this body alone in the steady state; it adds up to zero.");

@@ -15,8 +15,7 @@ void step_row(App& app, std::size_t i, float height) {
   const std::string widget = "history/" + std::to_string(i);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
-  if (ImGui::InvisibleButton(widget.c_str(), {width, height}))
-    later(app, [i](App& changed) { go_to_step(changed, i); });
+  if (ImGui::InvisibleButton(widget.c_str(), {width, height})) later(app, [&app, i] { go_to_step(app, i); });
   note_widget(app.widgets, widget, KeyUse::row);
   if (i == present) mark_chosen(app.widgets);
   ImDrawList& list = *ImGui::GetWindowDrawList();

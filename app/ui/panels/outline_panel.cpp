@@ -144,18 +144,18 @@ void choose(Outline& outline, const Part& part) {
     state.anchor = part;
   }
   state.revealed = part; // it is under the hand
-  later(app, [selection](App& changed) { select(changed, selection); });
+  later(app, [&app, selection] { select(app, selection); });
 }
 
 void row_menu(App& app, const Part& part) {
   if (!ImGui::BeginPopupContextItem()) return;
   if (ImGui::IsWindowAppearing() && !app.selection().has(part))
-    later(app, [part](App& changed) { select(changed, {{part}}); });
+    later(app, [&app, part] { select(app, {{part}}); });
   for (const char* id : {"edit.rename", "edit.duplicate", "edit.mirror", "edit.circular", "edit.delete"}) {
     const Command& wanted = command(id);
     const std::string keys = key_text(wanted.key);
     if (ImGui::MenuItem(wanted.title, keys.c_str(), false, is_enabled(app, wanted)))
-      later(app, [id](App& changed) { run_command(changed, id); });
+      later(app, [&app, id] { run_command(app, id); });
     note_widget(app.widgets, std::string("outline/menu/") + id);
     help_on_hover(wanted.help);
   }
@@ -257,7 +257,7 @@ void part_row(Outline& outline, PartId id) {
   const bool hovered = ImGui::IsItemHovered();
   if (hovered) app.view.hovered = id;
   if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !ImGui::GetIO().KeyCtrl)
-    later(app, [field, name = part.name](App& changed) { start_typing(changed, field, name); });
+    later(app, [&app, field, name = part.name] { start_typing(app, field, name); });
   if (takes_menu_key(app, widget)) ImGui::OpenPopup(ImGui::GetItemID());
   row_menu(app, part);
   ImGui::PopID();
@@ -274,7 +274,7 @@ void part_section(Outline& outline, std::size_t section) {
   const std::string title = std::string(words.title) + "   " + std::to_string(count);
   const Part& last = app.selection().empty() ? Part{} : app.selection().parts.back();
   const bool reveal = last.kind == words.kind && last != app.inspector.revealed;
-  if (reveal) app.inspector.open[std::string("outline/") + words.list] = true;
+  if (reveal) app.sections.open[std::string("outline/") + words.list] = true;
   if (!inspector_section(app, std::string("outline/") + words.list, title.c_str(), true)) return;
   outline.open[section] = true;
   if (reveal) {
@@ -348,7 +348,7 @@ void outline_panel(App& app, const PanelRect& rect) {
     paragraph("No part is called so.", colors_of(app).dim);
   // A click beside the rows selects nothing.
   if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())
-    later(app, [](App& changed) { select(changed, {}); });
+    later(app, [&app] { select(app, {}); });
   ImGui::EndChild();
   if (!none && !app.mistakes.empty()) what_is_missing(app);
   ImGui::PopStyleVar();

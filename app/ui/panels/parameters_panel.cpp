@@ -16,8 +16,8 @@ namespace {
 
 // Edits the pinned slider of this address; where its range makes no sense, nothing happens but a notice.
 void change_slider(App& app, const std::string& address, const std::function<void(Slider&)>& change) {
-  later(app, [address, change](App& changed) {
-    edit(changed, "Range of " + parameter_phrase(address), [&](Mechanism& mechanism, Selection&) {
+  later(app, [&app, address, change] {
+    edit(app, "Range of " + parameter_phrase(address), [&](Mechanism& mechanism, Selection&) {
       for (Slider& slider : mechanism.sliders) {
         if (slider.parameter != address) continue;
         change(slider);
@@ -39,8 +39,8 @@ void range_menu(App& app, const ParameterControl& control) {
                                 .value = value,
                                 .unit = control.unit,
                                 .help = "Where the slider ends.",
-                                .set = [address = control.address, which](App& changed, double typed) {
-                                  change_slider(changed, address, [=](Slider& s) { s.*which = typed; });
+                                .set = [&app, address = control.address, which](double typed) {
+                                  change_slider(app, address, [=](Slider& s) { s.*which = typed; });
                                 }};
       ImGui::AlignTextToFramePadding();
       ImGui::TextUnformatted(label);
@@ -61,7 +61,7 @@ void range_menu(App& app, const ParameterControl& control) {
   }
   const bool pinned = control.group == ParameterGroup::pinned;
   if (text_button(app, name + "/pin", pinned ? "Unpin" : "Pin")) {
-    later(app, [address = control.address, pinned](App& changed) { pin(changed, address, !pinned); });
+    later(app, [&app, address = control.address, pinned] { pin(app, address, !pinned); });
     ImGui::CloseCurrentPopup();
   }
   help_on_hover(pinned ? "Take it off the pinned sliders."
@@ -142,9 +142,7 @@ void parameter(App& app, const ParameterControl& control) {
   const float value_at = room - value_width - icon_width;
   const bool changed = control.value != control.file_value;
   const ShownUnit unit = shown_unit(control.unit, app.units);
-  const auto set = [address = control.address](App& app_then, double value) {
-    change_parameter(app_then, address, value);
-  };
+  const auto set = [&app, address = control.address](double value) { change_parameter(app, address, value); };
 
   // Before the value: back to what is stored, and for a pinned number whether it is held.
   const bool pinned = control.group == ParameterGroup::pinned;
@@ -156,7 +154,7 @@ void parameter(App& app, const ParameterControl& control) {
     const std::string help =
         "Back to the stored " + short_text(unit.shown(control.file_value)) + " " + unit.text;
     if (small_icon(app, name + "/reset", icon::undo, help.c_str(), true, icon_width))
-      later(app, [set, value = control.file_value](App& app_then) { set(app_then, value); });
+      later(app, [set, value = control.file_value] { set(value); });
     ImGui::SameLine();
   }
   if (pinned) {
@@ -180,13 +178,14 @@ void parameter(App& app, const ParameterControl& control) {
 
   double value = control.value;
   bool type_value = false;
-  if (slider(app, name, control, value, type_value))
-    later(app, [set, value](App& app_then) { set(app_then, value); });
+  if (slider(app, name, control, value, type_value)) later(app, [set, value] { set(value); });
   if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) ImGui::OpenPopup("range");
   if (takes_menu_key(app, name) || takes_menu_key(app, name + "/value")) ImGui::OpenPopup("range");
   if (type_value)
-    later(app, [field = name + "/value", text = short_text(unit.shown(control.value), 12) + " " + unit.text](
-                   App& app_then) { start_typing(app_then, field, text); });
+    later(app, [&app, field = name + "/value",
+                text = short_text(unit.shown(control.value), 12) + " " + unit.text] {
+      start_typing(app, field, text);
+    });
   range_menu(app, control);
   if (control.group == ParameterGroup::pinned) sensitivity_line(app, control);
   ImGui::PopID();
@@ -238,7 +237,7 @@ void parameters_panel(App& app, const PanelRect& rect) {
                   "elsewhere.");
     if (sliders_moved(app)) {
       ImGui::SameLine();
-      if (text_button(app, "parameters/reset", "Reset all")) later(app, drop_explored);
+      if (text_button(app, "parameters/reset", "Reset all")) later(app, [&app] { drop_explored(app); });
     }
     app.panels.parameters_height = (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / app.scale;
   } else {

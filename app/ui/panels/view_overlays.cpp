@@ -191,10 +191,10 @@ void explored_chip(App& app, const PanelRect& view) {
     help += "\n" + each;
   help_on_hover(help.c_str());
   ImGui::SameLine(0, 8 * s);
-  if (text_button(app, "explored/keep", "Keep")) later(app, keep_explored);
+  if (text_button(app, "explored/keep", "Keep")) later(app, [&app] { keep_explored(app); });
   help_on_hover("Makes the explored values the document's; an edit that can be undone.");
   ImGui::SameLine(0, 4 * s);
-  if (text_button(app, "explored/back", "Back")) later(app, drop_explored);
+  if (text_button(app, "explored/back", "Back")) later(app, [&app] { drop_explored(app); });
   help_on_hover("Back to the values that are stored.");
   ImGui::End();
 }

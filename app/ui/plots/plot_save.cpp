@@ -93,7 +93,7 @@ void show_plot_dialog(App& app, const std::string& name, PlotSave save) {
   app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
   const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
-  app.dialog.path = stem + "-" + file_stem(name) + extension_of(save.kind);
+  app.file_dialogs.path = stem + "-" + file_stem(name) + extension_of(save.kind);
   app.dialog.plot = std::make_shared<PlotSave>(std::move(save));
 }
 
@@ -108,13 +108,13 @@ void plot_dialog(App& app) {
   bool accepted = path_field(app, "save_plot", "Name");
   folder_line(app, "save_plot");
   if (const auto clicked = file_list(app, "save_plot", extension, false, 160 * app.scale))
-    app.dialog.path = clicked->filename().string();
+    app.file_dialogs.path = clicked->filename().string();
   if (save.kind != PlotFile::csv) size_fields(app, save);
   const std::filesystem::path file = typed_file(app, extension);
   const bool replaces = asks_to_replace(app, file);
   if (!replaces && !app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
-  const bool usable = fits(save) && !app.dialog.path.empty();
+  const bool usable = fits(save) && !app.file_dialogs.path.empty();
   ImGui::BeginDisabled(!usable);
   accepted = text_button(app, "save_plot/save", replaces ? "Replace" : "Save", true) || accepted;
   ImGui::EndDisabled();

@@ -6,6 +6,7 @@
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/snapping.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace flyball {
@@ -111,6 +112,12 @@ void use_points(App& app, const ViewInput& input) {
     draw_mark(app, *point, mark, point->name == tool.hovered_name || point->name == taken);
     app.widgets["point/" + point->name] = mark.name;
   }
+}
+
+void begin_picking(App& app) {
+  if (app.fields.picking.empty()) return;
+  set_tool(app, Tool::point);
+  app.tool.standing = std::exchange(app.fields.picking, {});
 }
 
 void pick_point(App& app, const ViewInput& input) {

@@ -46,7 +46,7 @@ bool takes_size(const App& app) {
   case Tool::damper: return tool.first.has_value();
   case Tool::ball:
   case Tool::block:
-  case Tool::plate: return tool.first || !app.commands.focus.in_panel;
+  case Tool::plate: return tool.first || !app.keyboard.focus.in_panel;
   default: return false;
   }
 }
@@ -71,7 +71,7 @@ bool take_key(App& app, const KeyPress& key) {
   if (key.ctrl || key.shift) return false;
   if (key.key == keys::escape) {
     if (!step_back(app)) return false;
-    app.commands.focus = {};
+    app.keyboard.focus = {};
     return true;
   }
   if (key.key == keys::enter && app.tool.joint) return make_joint(app);

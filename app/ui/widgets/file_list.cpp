@@ -60,11 +60,11 @@ struct Place {
 };
 Place place_of(const App& app) {
   const fs::path path = typed_path(app);
-  const bool ends_in_folder = app.dialog.path.ends_with('/') || app.dialog.path.ends_with("..");
+  const bool ends_in_folder = app.file_dialogs.path.ends_with('/') || app.file_dialogs.path.ends_with("..");
   if (ends_in_folder && is_folder(path)) return {path, {}};
-  const bool elsewhere = app.dialog.path.find('/') != std::string::npos;
+  const bool elsewhere = app.file_dialogs.path.find('/') != std::string::npos;
   if (elsewhere && is_folder(path.parent_path())) return {path.parent_path(), path.filename().string()};
-  return {app.file_dialogs.list.shown, app.dialog.path};
+  return {app.file_dialogs.list.shown, app.file_dialogs.path};
 }
 
 std::vector<FolderEntry> shown_entries(const App& app, bool filtered) {
@@ -79,7 +79,7 @@ std::vector<FolderEntry> shown_entries(const App& app, bool filtered) {
 } // namespace
 
 fs::path typed_path(const App& app) {
-  std::string typed = app.dialog.path;
+  std::string typed = app.file_dialogs.path;
   if (typed == "~" || typed.starts_with("~/")) typed = home_folder().string() + typed.substr(1);
   return resolved(app.file_dialogs.list.shown / typed);
 }
@@ -99,13 +99,13 @@ void show_folder(App& app, const fs::path& folder) {
 bool path_field(App& app, const std::string& name, const char* hint) {
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
-  const std::string before = app.dialog.path;
+  const std::string before = app.file_dialogs.path;
   const bool entered =
-      ImGui::InputTextWithHint("##path", hint, &app.dialog.path,
+      ImGui::InputTextWithHint("##path", hint, &app.file_dialogs.path,
                                ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   if (entered) ImGui::SetKeyboardFocusHere(-1);
   note_widget(app.widgets, name + "/path", KeyUse::type);
-  if (app.dialog.path != before) {
+  if (app.file_dialogs.path != before) {
     app.file_dialogs.message.clear();
     app.file_dialogs.list.chosen = -1;
   }
@@ -118,7 +118,7 @@ void folder_line(App& app, const std::string& name) {
   ImGui::BeginDisabled(!here.has_relative_path());
   if (icon_button(app, name + "/up", icon::folder_up, "The folder above")) {
     show_folder(app, here.parent_path());
-    app.dialog.path = fs::path(app.dialog.path).filename().string();
+    app.file_dialogs.path = fs::path(app.file_dialogs.path).filename().string();
   }
   ImGui::EndDisabled();
   ImGui::SameLine();
@@ -165,9 +165,9 @@ std::optional<fs::path> file_list(App& app, const std::string& name, const std::
   ImGui::EndChild();
   ImGui::PopStyleColor();
   if (!clicked || !is_folder(*clicked)) return clicked;
-  const std::string kept = filtered ? std::string() : fs::path(app.dialog.path).filename().string();
+  const std::string kept = filtered ? std::string() : fs::path(app.file_dialogs.path).filename().string();
   show_folder(app, *clicked);
-  app.dialog.path = kept;
+  app.file_dialogs.path = kept;
   return std::nullopt;
 }
 
@@ -178,13 +178,13 @@ std::optional<fs::path> entered_file(App& app, bool filtered) {
   fs::path path = typed_path(app);
   if (filtered && app.file_dialogs.list.chosen >= 0 && chosen < shown.size())
     path = shown[chosen].path;
-  else if (app.dialog.path.empty())
+  else if (app.file_dialogs.path.empty())
     return std::nullopt;
   else if (filtered && !fs::exists(path, ignored) && !shown.empty())
     path = shown.front().path;
   if (!is_folder(path)) return path;
   show_folder(app, path);
-  app.dialog.path.clear();
+  app.file_dialogs.path.clear();
   return std::nullopt;
 }
 

@@ -27,8 +27,8 @@ void typed_goal(App& app, const GoalHandle& handle, const std::string& field, Im
                   .unit = handle.unit,
                   .help = "Where it should be.",
                   .set =
-                      [wanted = handle.wanted](App& changed, double value) {
-                        seek(changed, "Bring " + wanted + " to a goal", {{wanted, value}});
+                      [&app, wanted = handle.wanted](double value) {
+                        seek(app, "Bring " + wanted + " to a goal", {{wanted, value}});
                       }},
                  width);
 }
@@ -61,8 +61,8 @@ void goal_handle(App& app, const GoalHandle& handle) {
   const bool typed =
       (pressed && by_key) || (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left));
   if (typed)
-    return later(app, [field, text = short_text(shown, 12) + " " + unit.text](App& changed) {
-      start_typing(changed, field, text);
+    return later(app, [&app, field, text = short_text(shown, 12) + " " + unit.text] {
+      start_typing(app, field, text);
     });
   if (ImGui::IsItemHovered() || ImGui::IsItemActive() || by_key) {
     if (!by_key) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
@@ -80,9 +80,7 @@ void goal_handle(App& app, const GoalHandle& handle) {
     help_on_hover(help.c_str());
   }
   if (const auto dragged = dragged_number(app, handle.name, shown, unit.text))
-    later(app, [wanted = handle.wanted, value = unit.si(*dragged)](App& changed) {
-      seek_value(changed, wanted, value);
-    });
+    later(app, [&app, wanted = handle.wanted, value = unit.si(*dragged)] { seek_value(app, wanted, value); });
 }
 
 } // namespace flyball

@@ -60,7 +60,7 @@ void part_row(App& app, const std::string& widget, const SceneError& about, cons
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float height = ImGui::CalcTextSize(words.c_str(), nullptr, false, width).y + 4 * app.scale;
   if (ImGui::InvisibleButton(widget.c_str(), {width, height}) && part.kind != PartKind::none)
-    later(app, [part](App& changed) { select(changed, {{part}}); });
+    later(app, [&app, part] { select(app, {{part}}); });
   note_widget(app.widgets, widget, KeyUse::row);
   const bool lit = ImGui::IsItemHovered() && part.kind != PartKind::none;
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);

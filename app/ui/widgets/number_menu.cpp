@@ -71,22 +71,19 @@ void point_entries(App& app, const QuantityField& field) {
   if (vector.empty() || vector.starts_with("points.")) return;
   const std::string at = named_point_of(app.mechanism(), vector);
   if (!at.empty() && entry(app, field, ("Leave " + at).c_str(), "leave point"))
-    later(app, [vector, at](App& changed) { leave_point(changed, vector, at); });
+    later(app, [&app, vector, at] { leave_point(app, vector, at); });
   if (at.empty() && entry(app, field, "Name this point", "name point"))
-    later(app, [vector](App& changed) { name_the_point(changed, vector); });
+    later(app, [&app, vector] { name_the_point(app, vector); });
   const std::vector<NamedPoint>& points = app.mechanism().points;
   for (const NamedPoint& point : points)
     if (point.name != at && entry(app, field, ("Stand at " + point.name).c_str(), "at " + point.name))
-      later(app, [vector, name = point.name](App& changed) {
-        edit(changed, "Stand at " + name,
+      later(app, [&app, vector, name = point.name] {
+        edit(app, "Stand at " + name,
              [&](Mechanism& mechanism, Selection&) { stand_at_point(mechanism, vector, name); });
       });
   if (points.empty() || app.mode != Mode::build) return;
   if (entry(app, field, "Pick a named point in the view", "pick"))
-    later(app, [vector](App& changed) {
-      set_tool(changed, Tool::point);
-      changed.tool.standing = vector;
-    });
+    later(app, [&app, vector] { app.fields.picking = vector; });
 }
 
 } // namespace
@@ -112,10 +109,10 @@ void number_menu(App& app, const QuantityField& field, bool asked) {
   if (asked || takes_menu_key(app, field.name)) ImGui::OpenPopup("number");
   if (ImGui::BeginPopup("number")) {
     if (!place.starts_with("parameters.") && entry(app, field, "Name this number", "name it"))
-      later(app, [place](App& changed) { name_it(changed, place); });
+      later(app, [&app, place] { name_it(app, place); });
     if (formula_of(app, field) && entry(app, field, "Leave the value without its expression", "take off"))
-      later(app, [place](App& changed) {
-        edit(changed, "Take the expression off " + parameter_phrase(place),
+      later(app, [&app, place] {
+        edit(app, "Take the expression off " + parameter_phrase(place),
              [&](Mechanism& mechanism, Selection&) { set_expression(mechanism, place, ""); });
       });
     point_entries(app, field);

@@ -94,7 +94,7 @@ double rounded(double value) {
 void take_typed(App& app, const QuantityField& field, const std::string& typed) {
   const std::string step = "Set " + parameter_phrase(place_of(field));
   const auto follow = [&](Mechanism& mechanism) {
-    if (field.follow) field.follow(app, app.document.stored(), mechanism);
+    if (field.follow) field.follow(app.document.stored(), mechanism);
   };
   if (is_expression(field, typed))
     return edit(app, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
@@ -110,17 +110,17 @@ void take_typed(App& app, const QuantityField& field, const std::string& typed) 
       set_by_itself(mechanism, place_of(field), unit ? times_unit(value, unit->factor) : value);
       follow(mechanism);
     });
-  if (field.set) return field.set(app, value);
+  if (field.set) return field.set(value);
   set_number(app, field.address, value);
 }
 
 void set(App& app, const QuantityField& field, double value) {
-  if (field.at_once) return field.set(app, value);
-  later(app, [set = field.set, address = field.address, value](App& changed) {
+  if (field.at_once) return field.set(value);
+  later(app, [&app, set = field.set, address = field.address, value] {
     if (set)
-      set(changed, value);
+      set(value);
     else
-      set_number(changed, address, value);
+      set_number(app, address, value);
   });
 }
 
@@ -242,8 +242,7 @@ void pin_button(App& app, const QuantityField& field, bool row_hovered) {
   const bool hovered = ImGui::IsItemHovered() || has_keyboard(app, name);
   help_on_hover(pinned ? "Pinned as a slider; click to take it off the sliders."
                        : "Pin this number as a slider.");
-  if (pressed)
-    later(app, [address = field.address, pinned](App& changed) { pin(changed, address, !pinned); });
+  if (pressed) later(app, [&app, address = field.address, pinned] { pin(app, address, !pinned); });
   if (!pinned && !hovered && !row_hovered) return;
   const ImVec2 size = ImGui::CalcTextSize(icon::pin);
   const ImVec4& color = pinned ? colors.accent : hovered ? colors.text : colors.dim;
@@ -289,7 +288,7 @@ void draw_letter(const App& app, int axis, const ImVec2& at) {
 std::optional<double> dragged_number(App& app, const std::string& name, double shown,
                                      const std::string& unit) {
   constexpr float pixels_a_step = 4; // points the hand travels
-  Scrub& scrub = app.inspector.scrub;
+  Scrub& scrub = app.fields.scrub;
   if (ImGui::IsItemActivated()) scrub = {name, shown, hand_step(shown, unit), 0};
   const ImGuiIO& io = ImGui::GetIO();
   if (!ImGui::IsItemActive() || scrub.name != name || io.MouseDelta.x == 0) return {};
@@ -333,19 +332,18 @@ void quantity_field(App& app, const QuantityField& field, float width) {
   const float height = ImGui::GetFrameHeight(), padding = 6 * app.scale;
   const ShownNumber shown(app, field);
   const std::optional<std::string> formula = formula_of(app, field);
-  Stepping stepping{field, shown, app.inspector.typing};
-  TextField text{
-      .name = field.name,
-      .text = formula                 ? "=" + *formula
-              : field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text)
-                                      : "",
-      .check = [&app, field](const std::string& typed) { return mistake_in(app, typed, field); },
-      .take = [field](App& changed, const std::string& typed) { take_typed(changed, field, typed); },
-      .at_once = field.at_once,
-      .drawn_here = false,
-      .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
-      .callback = step_typed,
-      .callback_data = &stepping};
+  Stepping stepping{field, shown, app.fields.typing};
+  TextField text{.name = field.name,
+                 .text = formula                 ? "=" + *formula
+                         : field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text)
+                                                 : "",
+                 .check = [&app, field](const std::string& typed) { return mistake_in(app, typed, field); },
+                 .take = [&app, field](const std::string& typed) { take_typed(app, field, typed); },
+                 .at_once = field.at_once,
+                 .drawn_here = false,
+                 .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
+                 .callback = step_typed,
+                 .callback_data = &stepping};
   const bool bare = !field.framed && !typing_in(app, field.name);
   if (bare) ImGui::PushStyleColor(ImGuiCol_FrameBg, ImVec4(0, 0, 0, 0));
   if (bare) ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, colors.raised);
@@ -361,14 +359,14 @@ void quantity_field(App& app, const QuantityField& field, float width) {
     draw_resting(app, field, shown, padding, formula.has_value());
     help_on_hover(tooltip(field, shown, formula).c_str());
   } else if (stepping.stepped) {
-    if (const Quantity typed = typed_quantity(app, app.inspector.typing.text, field))
+    if (const Quantity typed = typed_quantity(app, app.fields.typing.text, field))
       set(app, field, typed.value);
   }
   number_menu(app, field, asked);
 }
 
 void quantity_row(App& app, const std::string& label, const QuantityField& field,
-                  const std::function<void(App&)>& reset) {
+                  const std::function<void()>& reset) {
   const float labels = label_width(app), margin = margin_width(app);
   const float width = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
   const ImVec2 from = ImGui::GetCursorScreenPos();
@@ -393,17 +391,17 @@ void quantity_row(App& app, const std::string& label, const QuantityField& field
 
 bool plain_quantity_field(App& app, const std::string& name, const char* label, const char* unit,
                           const char* help, double& value, Least least) {
-  app.inspector.plain.reset();
+  app.fields.plain.reset();
   quantity_row(app, label,
                {.name = name,
                 .value = value,
                 .unit = unit,
                 .help = help,
                 .least = least,
-                .set = [](App& changed, double typed) { changed.inspector.plain = typed; },
+                .set = [&app](double typed) { app.fields.plain = typed; },
                 .at_once = true});
-  if (!app.inspector.plain || *app.inspector.plain == value) return false;
-  value = *app.inspector.plain;
+  if (!app.fields.plain || *app.fields.plain == value) return false;
+  value = *app.fields.plain;
   return true;
 }
 

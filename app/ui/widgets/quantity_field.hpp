@@ -18,15 +18,15 @@ struct QuantityField {
   std::string unit; // "" where it has none
   std::string help; // one sentence
   Least least = Least::any;
-  std::string address{};                   // "" where it has none
-  std::string expression{};                // where its expression is kept, if it has no address
-  std::function<void(App&, double)> set{}; // an edit; if empty, of the number at the address
-  std::string various{};                   // shown instead of the value: several parts differ
-  bool standard = false;                   // the value stands for an absent one: shown faintly
-  int axis = -1;                           // 0 to 2: its label ends in x, y or z
-  bool framed = true;                      // or plain digits to the right until it is pointed at
+  std::string address{};             // "" where it has none
+  std::string expression{};          // where its expression is kept, if it has no address
+  std::function<void(double)> set{}; // an edit; if empty, of the number at the address
+  std::string various{};             // shown instead of the value: several parts differ
+  bool standard = false;             // the value stands for an absent one: shown faintly
+  int axis = -1;                     // 0 to 2: its label ends in x, y or z
+  bool framed = true;                // or plain digits to the right until it is pointed at
   // What else follows where an expression is typed, or a number over one.
-  std::function<void(const App&, const Mechanism& before, Mechanism& next)> follow{};
+  std::function<void(const Mechanism& before, Mechanism& next)> follow{};
   bool at_once = false; // `set` is called while drawing: for a number outside the document
 };
 
@@ -34,7 +34,7 @@ struct QuantityField {
 void quantity_field(App& app, const QuantityField& field, float width);
 // With its label, the pin, and for an optional number that is given a way back: `reset` then makes it absent.
 void quantity_row(App& app, const std::string& label, const QuantityField& field,
-                  const std::function<void(App&)>& reset = {});
+                  const std::function<void()>& reset = {});
 // A number outside the document, in a dialog; returns whether it was changed.
 bool plain_quantity_field(App& app, const std::string& name, const char* label, const char* unit,
                           const char* help, double& value, Least least = Least::any);

@@ -21,19 +21,19 @@ void check(Typing& typing) {
 
 // Takes what was typed, or says why not.
 void leave(App& app, bool at_once) {
-  const Typing typing = std::exchange(app.inspector.typing, {});
+  const Typing typing = std::exchange(app.fields.typing, {});
   if (typing.text == typing.original || !typing.take) return;
   if (!typing.mistake.empty()) {
     show_error(app, "“" + typing.text + "” was not taken. " + typing.mistake);
     return;
   }
-  if (at_once) return typing.take(app, typing.text);
-  later(app, [take = typing.take, text = typing.text](App& changed) { take(changed, text); });
+  if (at_once) return typing.take(typing.text);
+  later(app, [take = typing.take, text = typing.text] { take(text); });
 }
 
 void begin(App& app, const TextField& field, std::string typed) {
   leave(app, false);
-  app.inspector.typing = {
+  app.fields.typing = {
       .name = field.name, .text = std::move(typed), .original = field.text, .checked = field.text};
 }
 
@@ -58,7 +58,7 @@ bool escape_pressed_now() {
 
 // Of the field that is typed in, after it was drawn.
 void go_on(App& app, const TextField& field, bool entered) {
-  Typing& typing = app.inspector.typing;
+  Typing& typing = app.fields.typing;
   if (ImGui::IsItemActive()) typing.idle = 0;
   typing.check = field.check;
   typing.take = field.take;
@@ -67,7 +67,7 @@ void go_on(App& app, const TextField& field, bool entered) {
     if (!typing.mistake.empty()) show_mistake(app, typing.mistake);
   } else if (escape_pressed_now()) {
     typing = {};
-    app.commands.focus = {};
+    app.keyboard.focus = {};
   } else if (entered && !typing.mistake.empty()) {
     typing.wants_focus = true;
   } else {
@@ -78,18 +78,18 @@ void go_on(App& app, const TextField& field, bool entered) {
 } // namespace
 
 bool typing_in(const App& app, const std::string& name) {
-  return app.inspector.typing.name == name;
+  return app.fields.typing.name == name;
 }
 
 void start_typing(App& app, const std::string& name, const std::string& text) {
   leave(app, false);
-  app.inspector.typing = {.name = name, .text = text, .original = text, .checked = text};
-  app.inspector.typing.wants_focus = true;
+  app.fields.typing = {.name = name, .text = text, .original = text, .checked = text};
+  app.fields.typing.wants_focus = true;
 }
 
 bool text_field(App& app, const TextField& field, float width) {
   const UiColors& colors = colors_of(app);
-  Typing& typing = app.inspector.typing;
+  Typing& typing = app.fields.typing;
   const bool was_typing = typing_in(app, field.name);
   std::string resting = field.text;
   ImVec4 color = was_typing && !typing.mistake.empty() ? colors.bad : colors.text;
@@ -113,16 +113,16 @@ bool text_field(App& app, const TextField& field, float width) {
   return was_typing;
 }
 
-void later(App& app, std::function<void(App&)> edit) {
-  app.inspector.later.push_back(std::move(edit));
+void later(Ui& ui, std::function<void()> edit) {
+  ui.fields.later.push_back(std::move(edit));
 }
 
 void settle_fields(App& app) {
-  if (Typing& typing = app.inspector.typing; !typing.name.empty() && ++typing.idle > idle_frames)
+  if (Typing& typing = app.fields.typing; !typing.name.empty() && ++typing.idle > idle_frames)
     leave(app, false);
-  while (!app.inspector.later.empty()) // an edit may put off another
-    for (const auto& edit : std::exchange(app.inspector.later, {}))
-      edit(app);
+  while (!app.fields.later.empty()) // an edit may put off another
+    for (const auto& edit : std::exchange(app.fields.later, {}))
+      edit();
 }
 
 } // namespace flyball

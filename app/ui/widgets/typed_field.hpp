@@ -29,7 +29,7 @@ bool typing_in(const App& app, const std::string& name);
 void start_typing(App& app, const std::string& name, const std::string& text);
 
 // To be done after the panels are drawn.
-void later(App& app, std::function<void(App&)> edit);
+void later(Ui& ui, std::function<void()> edit);
 // After the panels: leaves a field that is not shown any more and does what was put off.
 void settle_fields(App& app);
 

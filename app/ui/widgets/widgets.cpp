@@ -173,7 +173,7 @@ constexpr float slack = 3; // points that the hand may move in a click
 std::optional<double> slider_place_wanted(App& app, const std::string& name, double now, float left,
                                           float span, float radius, bool& type_value) {
   const ImGuiIO& io = ImGui::GetIO();
-  SliderPress& press = app.panels.slider_press;
+  SliderPress& press = app.slider_press;
   const float at = io.MousePos.x, knob = left + span * static_cast<float>(now);
   if (ImGui::IsItemActivated()) {
     type_value = io.KeyCtrl || (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && press.name == name);

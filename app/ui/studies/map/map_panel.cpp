@@ -46,9 +46,9 @@ void axis_choice(App& app, std::size_t which) {
   if (const auto chosen = name_choice_row(app, name, which == 0 ? "Across" : "Up", phrases,
                                           parameter_phrase(axis.address), "The number along this axis.")) {
     const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *chosen) - phrases.begin());
-    later(app, [which, address = addresses[i]](App& then) {
-      then.study.map.choice.axes[which] = map_axis(then, address);
-      fit_plot(then.plots.map.view);
+    later(app, [&app, which, address = addresses[i]] {
+      app.study.map.choice.axes[which] = map_axis(app, address);
+      fit_plot(app.plots.map.view);
     });
   }
   if (!has_number(app.mechanism(), axis.address)) return; // gone in this frame, by an undo
@@ -57,12 +57,12 @@ void axis_choice(App& app, std::size_t which) {
                          .value = value,
                          .unit = parameter_unit(app.mechanism(), axis.address),
                          .help = upper ? "Where the axis ends." : "Where the axis begins.",
-                         .set = [which, upper](App& then, double typed) {
-                           MapAxis& changed = then.study.map.choice.axes[which];
+                         .set = [&app, which, upper](double typed) {
+                           MapAxis& changed = app.study.map.choice.axes[which];
                            (upper ? changed.to : changed.from) = typed;
                            if (changed.from > changed.to) std::swap(changed.from, changed.to);
                            if (changed.from == changed.to) changed.to = changed.from + 1;
-                           fit_plot(then.plots.map.view);
+                           fit_plot(app.plots.map.view);
                          }};
   };
   two_fields(app, "from, to", "The range of this axis.", end("from", axis.from, false),
@@ -76,8 +76,8 @@ void point_counts(App& app) {
                          .unit = "",
                          .help = "Values along the axis, 2 to 401. Each place is a solve of its own.",
                          .least = Least::above_zero,
-                         .set = [which](App& then, double typed) {
-                           then.study.map.choice.axes[which].count = static_cast<int>(
+                         .set = [&app, which](double typed) {
+                           app.study.map.choice.axes[which].count = static_cast<int>(
                                std::clamp(std::round(typed), double{fewest_cells}, double{most_cells}));
                          }};
   };
@@ -192,8 +192,8 @@ void map_panel(App& app) {
     const bool same =
         axes[0].address == map.choice.axes[0].address && axes[1].address == map.choice.axes[1].address;
     if (const auto place = events.dragged_at ? events.dragged_at : events.clicked_at; place && same)
-      later(app, [place = std::array{(*place)[0] / drawn.plot.x.factor, (*place)[1] / drawn.plot.y.factor}](
-                     App& then) { go_to_place(then, place); });
+      later(app, [&app, place = std::array{(*place)[0] / drawn.plot.x.factor,
+                                           (*place)[1] / drawn.plot.y.factor}] { go_to_place(app, place); });
   }
   ImGui::EndChild();
 }

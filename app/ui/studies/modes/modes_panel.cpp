@@ -90,8 +90,7 @@ void mode_row(App& app, std::size_t index, const FoundModes& found, double large
   const ImVec2 at = ImGui::GetCursorPos();
   ImGui::PushID(static_cast<int>(index));
   if (ImGui::Selectable("##mode", false, ImGuiSelectableFlags_SpanAllColumns))
-    later(app,
-          [index, chosen](App& then) { choose_mode(then, chosen ? std::nullopt : std::optional(index)); });
+    later(app, [&app, index, chosen] { choose_mode(app, chosen ? std::nullopt : std::optional(index)); });
   note_widget(app.widgets, "modes/row/" + std::to_string(index + 1), KeyUse::row);
   if (chosen) mark_chosen(app.widgets);
   help_on_hover(mode_help(mode, found.whirls[index]).c_str());
@@ -265,14 +264,14 @@ void campbell_choices(App& app, const std::string& drive) {
                     .unit = unit,
                     .help = "The end of the axis.",
                     .set =
-                        [range, which](App& then, double typed) {
+                        [&app, range, which](double typed) {
                           PlotRange ends = range;
                           ends[which] = typed;
                           if (ends[0] == ends[1]) return;
-                          CampbellState& changed = then.study.modes.campbell;
+                          CampbellState& changed = app.study.modes.campbell;
                           changed.from = std::min(ends[0], ends[1]);
                           changed.to = std::max(ends[0], ends[1]);
-                          fit_plot(then.plots.campbell.view);
+                          fit_plot(app.plots.campbell.view);
                         }},
                    84 * s);
   };
@@ -321,7 +320,7 @@ void show_campbell(App& app) {
       app, "campbell", app.plots.campbell.view, app.plots.campbell.plot,
       {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
   const auto set = [&](double speed) {
-    later(app, [drive, speed](App& then) { change_parameter(then, drive, speed); });
+    later(app, [&app, drive, speed] { change_parameter(app, drive, speed); });
   };
   if (diagram.found->of.drive != drive) return;
   if (events.clicked_at) set((*events.clicked_at)[0]);

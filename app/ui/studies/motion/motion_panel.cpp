@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 2> change_names{"Begins anew", "Goes on"}
 
 // Changes of choices begin a new run, after this frame.
 void anew(App& app) {
-  later(app, [](App& then) { restart_motion(then); });
+  later(app, [&app] { restart_motion(app); });
 }
 
 void start_choice(App& app) {

@@ -61,9 +61,9 @@ void ending_buttons(App& app) {
     const bool possible = able || movie_kind("film" + std::string(each.ending)) == MovieKind::frames;
     ImGui::BeginDisabled(!possible);
     if (text_button(app, each.name, each.text, now)) {
-      std::filesystem::path typed = app.dialog.path;
+      std::filesystem::path typed = app.file_dialogs.path;
       if (movie_kind(typed)) typed.replace_extension();
-      app.dialog.path = typed.string() + each.ending;
+      app.file_dialogs.path = typed.string() + each.ending;
     }
     ImGui::EndDisabled();
     ImGui::SameLine();
@@ -194,7 +194,7 @@ void show_dialog_of(App& app, Filmed of) {
   const char* const ending = ffmpeg_available() ? ".mp4" : ".png";
   const std::string which =
       of == Filmed::mode ? "-mode-" + std::to_string(*app.study.modes.chosen + 1) : std::string();
-  app.dialog.path = (app.file_dialogs.list.shown / ("flyball-" + stem + which + ending)).string();
+  app.file_dialogs.path = (app.file_dialogs.list.shown / ("flyball-" + stem + which + ending)).string();
 }
 
 } // namespace

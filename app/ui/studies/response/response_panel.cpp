@@ -41,13 +41,12 @@ void parameter_choice(App& app) {
 void range_field(App& app, const char* name, const char* help, double ResponseChoice::*end, float width) {
   const ParameterControl* control = response_control(app);
   ResponseState& state = app.study.response;
-  const QuantityField field{
-      .name = name,
-      .value = state.choice.*end,
-      .unit = control ? control->unit : "",
-      .help = help,
-      .set = [end](App& changed, double typed) { choose_response_end(changed, end, typed); },
-      .at_once = true};
+  const QuantityField field{.name = name,
+                            .value = state.choice.*end,
+                            .unit = control ? control->unit : "",
+                            .help = help,
+                            .set = [&app, end](double typed) { choose_response_end(app, end, typed); },
+                            .at_once = true};
   quantity_field(app, field, width);
 }
 
@@ -262,7 +261,7 @@ void solution_row(App& app, const DesignAnswer& answer, const DesignSolution& s,
         "\n" + coordinate_label(c) + "  " + short_text(coordinate.shown(c.value), 6) + " " + coordinate.text;
   }
   help_on_hover(help.c_str());
-  if (clicked) later(app, [solution = s](App& then) { go_to_design(then, solution); });
+  if (clicked) later(app, [&app, solution = s] { go_to_design(app, solution); });
 }
 
 void design_answer(App& app) {
@@ -313,9 +312,9 @@ void design_rows(App& app) {
                   .unit = design_unit(app),
                   .help = "Where it is wanted.",
                   .set =
-                      [](App& changed, double typed) {
-                        changed.study.response.design.value = typed;
-                        find_design(changed);
+                      [&app](double typed) {
+                        app.study.response.design.value = typed;
+                        find_design(app);
                       },
                   .at_once = true},
                  width + margin_width(app) - button - gap);
@@ -366,10 +365,10 @@ void response_panel(App& app) {
         plot_view(app, "response", drawn.view, drawn.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
     const bool dragged = events.dragged_to.has_value();
     if (const auto hit = dragged ? events.dragged_to : events.clicked)
-      later(app, [hit = *hit, dragged](App& then) { go_to_hit(then, hit, dragged); });
+      later(app, [&app, hit = *hit, dragged] { go_to_hit(app, hit, dragged); });
     if (const auto& to = events.pulled_to)
-      later(app, [x = to->x ? std::optional(*to->x / drawn.plot.x.factor) : std::nullopt,
-                  y = to->y / drawn.plot.y.factor](App& then) { pull_response(then, x, y); });
+      later(app, [&app, x = to->x ? std::optional(*to->x / drawn.plot.x.factor) : std::nullopt,
+                  y = to->y / drawn.plot.y.factor] { pull_response(app, x, y); });
   } else if (!app.mistakes.empty()) {
     paragraph("The mechanism is not finished; see the line below the view.", colors_of(app).dim);
   }

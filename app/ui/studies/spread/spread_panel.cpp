@@ -66,8 +66,8 @@ void tolerance_row(App& app, std::size_t i) {
                   .help = width_help(chosen.distribution),
                   .least = Least::above_zero,
                   .set =
-                      [address = chosen.address](App& changed, double typed) {
-                        for (ChosenTolerance& each : changed.study.spread.choice.tolerances)
+                      [&app, address = chosen.address](double typed) {
+                        for (ChosenTolerance& each : app.study.spread.choice.tolerances)
                           if (each.address == address) each.width = typed;
                       },
                   .at_once = true},
@@ -79,8 +79,8 @@ void tolerance_row(App& app, std::size_t i) {
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(start + (spread_choices_width - 34) * s);
   if (margin_button(app, name + "/remove", icon::close, "No tolerance."))
-    later(app, [address = chosen.address](App& then) {
-      std::erase_if(then.study.spread.choice.tolerances,
+    later(app, [&app, address = chosen.address] {
+      std::erase_if(app.study.spread.choice.tolerances,
                     [&](const ChosenTolerance& each) { return each.address == address; });
     });
   if (chosen.percent && get_parameter(app.mechanism(), chosen.address) == 0)
@@ -98,7 +98,7 @@ void another_tolerance(App& app) {
   if (const auto other = name_choice_row(app, "spread/add", "Add", phrases, "another number…",
                                          "A number that is to have a tolerance, too.")) {
     const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *other) - phrases.begin());
-    later(app, [address = addresses[i]](App& then) { add_tolerance(then, address); });
+    later(app, [&app, address = addresses[i]] { add_tolerance(app, address); });
   }
 }
 
@@ -123,8 +123,8 @@ void samples_field(App& app) {
                           "the root of their number.",
                   .least = Least::above_zero,
                   .set =
-                      [](App& changed, double typed) {
-                        changed.study.spread.choice.samples =
+                      [&app](double typed) {
+                        app.study.spread.choice.samples =
                             static_cast<std::size_t>(std::clamp(std::round(typed), 2., most_samples));
                       },
                   .at_once = true},
@@ -172,9 +172,9 @@ void spread_choices(App& app) {
   }
   ImGui::SameLine();
   if (text_button(app, "spread/band", "Band on the response"))
-    later(app, [](App& then) {
-      then.study.band.wanted = true;
-      open_study(then, StudyKind::response);
+    later(app, [&app] {
+      app.study.band.wanted = true;
+      open_study(app, StudyKind::response);
     });
   help_on_hover("Shows the response curve with the band in which the middle 90 % of samples lie.");
 }

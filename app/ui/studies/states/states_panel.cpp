@@ -174,7 +174,7 @@ void state_row(App& app, std::size_t index, const Solution& solution, const Stat
   ImGui::PushID(static_cast<int>(index));
   const ImVec2 at = ImGui::GetCursorPos();
   if (ImGui::Selectable("##row", false, ImGuiSelectableFlags_SpanAllColumns))
-    later(app, [index](App& then) { show_state(then, index); });
+    later(app, [&app, index] { show_state(app, index); });
   note_widget(app.widgets, name, KeyUse::row);
   if (shown) mark_chosen(app.widgets);
   ImGui::PopID();

@@ -1,0 +1,39 @@
+// How the mechanism is looked at, and the pictures that were drawn of it.
+#pragma once
+
+#include "app/document/part.hpp"
+#include "app/ui/camera_glide.hpp"
+#include "app/ui/panels/view_cube.hpp"
+#include "app/ui/shown_scene.hpp"
+#include "app/viewport/camera.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace flyball {
+
+struct ViewState {
+  ViewCamera camera;
+  ViewSize size;                    // pixels, of the last update
+  std::optional<CameraGlide> glide; // while the camera is on its way
+  bool animated = false;            // commands make it glide
+  ViewCubeState cube;
+  std::vector<Part> hidden;    // not drawn, nor to be pointed at
+  int menu_in = 0;             // frames until the context menu opens, as panels settle first; 0: it does not
+  std::optional<Vec2> menu_at; // where, in pixels of the window; none: where its part is
+  bool menu_of_part = false;   // it is that of the selected parts
+  bool ghost = true, grid = true, shadow = true;
+  bool loads = false;          // arrows of what acts; see load_view.hpp
+  bool alone = false;          // no panels round it, for pictures
+  int samples = 4;             // 1: no anti-aliasing
+  bool fit = true;             // wanted at the next update
+  bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
+  PartId hovered;
+  Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found
+  ShownScene scene, scene_beside;       // see shown_scene()
+  unsigned texture = 0;                 // OpenGL's, with the picture of the view
+  unsigned texture_beside = 0;          // the same of the motion, where it has a view of its own
+  float lines_top = 0;                  // pixels of the window: above what is written at the view's foot
+};
+
+} // namespace flyball

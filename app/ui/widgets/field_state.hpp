@@ -1,0 +1,44 @@
+// What is being typed or dragged in a field, and the edits that wait.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+// Why a text cannot be taken, as a sentence; empty where it can.
+using TextCheck = std::function<std::string(const std::string&)>;
+using TextTaker = std::function<void(const std::string&)>;
+
+// The one field that is being typed in.
+struct Typing {
+  std::string name{}; // of the widget; empty: there is none
+  std::string text{}, original{};
+  std::string mistake{}, checked{}; // why `checked` cannot be taken
+  TextCheck check{};
+  TextTaker take{};
+  bool wants_focus = false; // to be given the keyboard when it is drawn next
+  int idle = 0;             // frames in which it had not the keyboard
+  bool by_number = false;   // a double click selects the number, until the button is up again
+};
+
+// A number that is dragged by its label.
+struct Scrub {
+  std::string name;
+  double start = 0, step = 0; // in the field's unit
+  float travelled = 0;        // pixels
+};
+
+struct FieldState {
+  Typing typing;
+  Scrub scrub;
+  // Edits wait until the panels are drawn, which refer to the mechanism as it was before.
+  std::vector<std::function<void()>> later;
+  std::optional<double> plain; // what was typed in a field outside the document
+  std::string choice_search;   // in the open list of names
+  std::string picking;         // address of the vector for which the view is asked to pick a named point
+};
+
+} // namespace flyball
