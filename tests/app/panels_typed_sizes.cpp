@@ -53,7 +53,7 @@ TEST_CASE("the length of a rod is typed while it is placed") {
   CHECK(d.rod_length() == Approx(length).epsilon(1e-12));
   const Shape& shape = d.m().bodies[0].shapes[0];
   CHECK(shape.from == Vec3(-0.1, 0, 0));
-  CHECK(shape.to.y() == 0); // along the nearest round angle
+  CHECK(shape.to.y() == 0);
   CHECK(d.app.tool.typed.empty());
   CHECK(d.app.tool.tool == Tool::select);
   CHECK(d.app.document.position() == 1);
@@ -72,6 +72,18 @@ TEST_CASE("a typed length goes towards the point that the cursor is at") {
   REQUIRE(d.m().bodies.size() == 2);
   const Shape& shape = d.m().bodies[1].shapes[0];
   CHECK((shape.to - 0.2 * Vec3(0.3, 0.1, 0).normalized()).norm() < 1e-12);
+}
+
+TEST_CASE("a typed length does not turn a rod") {
+  Drawing d;
+  d.click("tools/rod");
+  d.click_at({0, 0.2, 0});
+  d.point_at({0.2, 0.05, 0}); // 36.9 degrees down, which is no round angle
+  d.strike("200 mm");
+  d.key(key_enter);
+  REQUIRE(d.m().bodies.size() == 1);
+  const Shape& shape = d.m().bodies[0].shapes[0];
+  CHECK((shape.to - Vec3(0.16, 0.08, 0)).norm() < 1e-12);
 }
 
 TEST_CASE("what is typed can be mended, and what is no length is told") {
