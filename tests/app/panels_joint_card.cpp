@@ -1,0 +1,106 @@
+// The card of a joint stays under the hand, keeps what was chosen, and hides nothing that is written.
+#include "robot.hpp"
+
+#include "app/document/create.hpp"
+#include "tests/catch.hpp"
+
+#include <imgui_internal.h>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+using Pair = std::array<std::string, 2>;
+
+// A slider-crank without its slide, one metre in view.
+struct SliderCrank : Robot {
+  static constexpr Vec3 pin() { return {0.3, 0, 0}; }
+
+  SliderCrank() : Robot({1440, 900}) {
+    begin_empty(1);
+    edit(app, "Build", [](Mechanism& next, Selection&) {
+      const auto rod = [&](const Vec3& from, const Vec3& to) {
+        add_body(next, {.form = BodyForm::rod, .radius = 0.01, .from = from, .to = to});
+      };
+      rod({0, 0, 0}, {0.1, 0.1, 0});
+      rod({0.1, 0.1, 0}, {0.3, 0, 0});
+      add_body(next, {.form = BodyForm::block, .at = {0.3, 0, 0}, .size = {0.06, 0.06, 0.06}});
+      const auto hinge = [&](const char* parent, const char* child, const Vec3& at) {
+        add_joint(next, JointType::revolute, {parent, child}, at, Vec3::UnitZ());
+      };
+      hinge("ground", "rod1", {0, 0, 0});
+      hinge("rod1", "rod2", {0.1, 0.1, 0});
+      hinge("rod2", "block1", {0.3, 0, 0});
+    });
+    frames(2);
+    key('J');
+  }
+  void begin(const Vec3& at) {
+    click_at(at);
+    frames(2); // the card takes a moment to know its size
+    REQUIRE(app.tool.joint);
+  }
+  void choose(const std::string& combo, const std::string& item) {
+    click(combo);
+    click(combo + "/" + item);
+    frames(2);
+  }
+};
+
+} // namespace
+
+TEST_CASE("two bodies that are joined already are not offered again") {
+  SliderCrank d;
+  d.begin(SliderCrank::pin());
+  CHECK(d.app.tool.joint->bodies == Pair{"ground", "block1"});
+}
+
+TEST_CASE("a bearing may lie where a joint is") {
+  SliderCrank d;
+  set_tool(d.app, Tool::bearing);
+  d.frames(1);
+  d.begin(SliderCrank::pin());
+  CHECK(d.app.tool.joint->bodies == Pair{"rod2", "block1"});
+}
+
+TEST_CASE("the button of the card stays where it is when fewer axes are offered") {
+  SliderCrank d;
+  d.begin(SliderCrank::pin());
+  d.choose("tools/parent", "rod2");
+  const WidgetRect join = d.widget("tools/join");
+  d.choose("tools/parent", "ground");
+  CHECK(d.app.tool.joint->bodies == Pair{"ground", "block1"});
+  CHECK(d.widget("tools/join").from.x == join.from.x);
+  CHECK(d.widget("tools/join").from.y == join.from.y);
+  d.click(join.center());
+  CHECK(d.app.mechanism().joints.size() == 4);
+}
+
+TEST_CASE("what was chosen in the card stays when its point is moved") {
+  SliderCrank d;
+  d.begin(SliderCrank::pin());
+  d.choose("tools/parent", "rod1");
+  d.click("tools/axis/x");
+  for (const Vec3& at : {Vec3(-0.2, -0.2, 0), SliderCrank::pin()}) {
+    d.begin(at);
+    CHECK(d.app.tool.joint->bodies == Pair{"rod1", "block1"});
+    CHECK(d.app.tool.joint->axis == Vec3::UnitX());
+    CHECK((d.app.tool.joint->at - at).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("no button of the card is cut, and it covers nothing that is written below it") {
+  SliderCrank d;
+  d.app.view.camera.azimuth = 0.6;
+  d.app.view.camera.elevation = 0.4;
+  d.frames(1);
+  d.begin({0.3, -0.4, 0});
+  REQUIRE(d.app.widgets.contains("tools/axis/view"));
+  const WidgetRect points = d.widget("tools/axis/points");
+  CHECK(points.to.x - points.from.x >= ImGui::CalcTextSize("Two points…").x + 2);
+  const ImGuiWindow* card = ImGui::FindWindowByName("joint");
+  REQUIRE(card);
+  CHECK(card->Pos.y + card->Size.y <= d.app.view.lines_top);
+  CHECK(card->Pos.y + card->Size.y <= d.widget("status").from.y);
+}
