@@ -90,6 +90,16 @@ TEST_CASE("what was chosen in the card stays when its point is moved") {
   }
 }
 
+TEST_CASE("the keys stay in the view for whoever joins with the mouse and Enter") {
+  SliderCrank d;
+  d.begin(SliderCrank::pin());
+  d.key(key_enter);
+  REQUIRE(d.app.mechanism().joints.size() == 4);
+  d.frames(2);
+  CHECK(d.app.keyboard.at.empty());
+  CHECK_FALSE(d.app.keyboard.ring);
+}
+
 TEST_CASE("no button of the card is cut, and it covers nothing that is written below it") {
   SliderCrank d;
   d.app.view.camera.azimuth = 0.6;

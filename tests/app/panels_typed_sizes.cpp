@@ -84,6 +84,7 @@ TEST_CASE("a typed length does not turn a rod") {
   REQUIRE(d.m().bodies.size() == 1);
   const Shape& shape = d.m().bodies[0].shapes[0];
   CHECK((shape.to - Vec3(0.16, 0.08, 0)).norm() < 1e-12);
+  CHECK_FALSE(d.app.keyboard.ring); // the hand is in the view
 }
 
 TEST_CASE("what is typed can be mended, and what is no length is told") {

@@ -137,7 +137,7 @@ bool make_joint(App& app) {
        });
   app.tool.joint.reset();
   if (!ImGui::GetIO().KeyShift) app.tool.tool = Tool::select;
-  if (app.keyboard.by_key) focus_widget(app, "inspector/name");
+  if (app.keyboard.ring) focus_widget(app, "inspector/name"); // for whoever works by keys alone
   return true;
 }
 
