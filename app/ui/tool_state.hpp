@@ -4,6 +4,7 @@
 #include "app/document/snap_points.hpp"
 #include "app/document/transform.hpp"
 #include "app/ui/tools/hand_state.hpp"
+#include "app/viewport/camera.hpp"
 #include "app/viewport/gizmo.hpp"
 #include "app/viewport/scene_list.hpp"
 #include "app/viewport/work_plane.hpp"
@@ -13,6 +14,8 @@
 #include <optional>
 
 namespace flyball {
+
+struct ViewScene;
 
 enum class Tool {
   select, // and move with the gizmo
@@ -95,7 +98,8 @@ struct ToolCaches {
   ViewCamera aim_camera;
   bool aim_snaps = false;
   Aim aim;
-  std::uint64_t hover_revision = 0; // for which App::view.hovered was found
+  std::shared_ptr<const ViewScene> hover_scene; // for which App::view.hovered was found
+  ViewCamera hover_camera;                      // likewise
 };
 
 struct ToolState {

@@ -1,7 +1,6 @@
 // The card of a joint stays under the hand, keeps what was chosen, and hides nothing that is written.
 #include "robot.hpp"
-
-#include "app/document/create.hpp"
+#include "slider_crank.hpp"
 #include "tests/catch.hpp"
 
 #include <imgui_internal.h>
@@ -13,26 +12,11 @@ namespace {
 
 using Pair = std::array<std::string, 2>;
 
-// A slider-crank without its slide, one metre in view.
+// One metre in view, and the joint's tool in hand.
 struct SliderCrank : Robot {
-  static constexpr Vec3 pin() { return {0.3, 0, 0}; }
-
   SliderCrank() : Robot({1440, 900}) {
     begin_empty(1);
-    edit(app, "Build", [](Mechanism& next, Selection&) {
-      const auto rod = [&](const Vec3& from, const Vec3& to) {
-        add_body(next, {.form = BodyForm::rod, .radius = 0.01, .from = from, .to = to});
-      };
-      rod({0, 0, 0}, {0.1, 0.1, 0});
-      rod({0.1, 0.1, 0}, {0.3, 0, 0});
-      add_body(next, {.form = BodyForm::block, .at = {0.3, 0, 0}, .size = {0.06, 0.06, 0.06}});
-      const auto hinge = [&](const char* parent, const char* child, const Vec3& at) {
-        add_joint(next, JointType::revolute, {parent, child}, at, Vec3::UnitZ());
-      };
-      hinge("ground", "rod1", {0, 0, 0});
-      hinge("rod1", "rod2", {0.1, 0.1, 0});
-      hinge("rod2", "block1", {0.3, 0, 0});
-    });
+    edit(app, "Build", [](Mechanism& next, Selection&) { add_slider_crank(next); });
     frames(2);
     key('J');
   }
@@ -52,7 +36,7 @@ struct SliderCrank : Robot {
 
 TEST_CASE("two bodies that are joined already are not offered again") {
   SliderCrank d;
-  d.begin(SliderCrank::pin());
+  d.begin(slider_crank_pin);
   CHECK(d.app.tool.joint->bodies == Pair{"ground", "block1"});
 }
 
@@ -60,13 +44,13 @@ TEST_CASE("a bearing may lie where a joint is") {
   SliderCrank d;
   set_tool(d.app, Tool::bearing);
   d.frames(1);
-  d.begin(SliderCrank::pin());
+  d.begin(slider_crank_pin);
   CHECK(d.app.tool.joint->bodies == Pair{"rod2", "block1"});
 }
 
 TEST_CASE("the button of the card stays where it is when fewer axes are offered") {
   SliderCrank d;
-  d.begin(SliderCrank::pin());
+  d.begin(slider_crank_pin);
   d.choose("tools/parent", "rod2");
   const WidgetRect join = d.widget("tools/join");
   d.choose("tools/parent", "ground");
@@ -79,10 +63,10 @@ TEST_CASE("the button of the card stays where it is when fewer axes are offered"
 
 TEST_CASE("what was chosen in the card stays when its point is moved") {
   SliderCrank d;
-  d.begin(SliderCrank::pin());
+  d.begin(slider_crank_pin);
   d.choose("tools/parent", "rod1");
   d.click("tools/axis/x");
-  for (const Vec3& at : {Vec3(-0.2, -0.2, 0), SliderCrank::pin()}) {
+  for (const Vec3& at : {Vec3(-0.2, -0.2, 0), slider_crank_pin}) {
     d.begin(at);
     CHECK(d.app.tool.joint->bodies == Pair{"rod1", "block1"});
     CHECK(d.app.tool.joint->axis == Vec3::UnitX());
@@ -92,7 +76,7 @@ TEST_CASE("what was chosen in the card stays when its point is moved") {
 
 TEST_CASE("the keys stay in the view for whoever joins with the mouse and Enter") {
   SliderCrank d;
-  d.begin(SliderCrank::pin());
+  d.begin(slider_crank_pin);
   d.key(key_enter);
   REQUIRE(d.app.mechanism().joints.size() == 4);
   d.frames(2);

@@ -51,21 +51,27 @@ std::vector<LegendRow> pose_rows(App& app) {
   if (app.mechanism().bodies.empty() || !app.view.scene.scene) return {};
   const ViewScene& scene = *app.view.scene.scene;
   const bool apart = !scene.drawn.empty(); // the two poses differ
+  const bool periodic = !converged(app) && periodic_motion(app);
+  const std::string found = periodic ? "Periodic motion" : "Steady state";
   std::vector<LegendRow> rows;
+  if (app.tool.assembly) {
+    rows.push_back({LegendMark::solid, "Drawn pose"});
+    if (apart) rows.push_back({LegendMark::dashed, "Before the pull"});
+    return rows;
+  }
   if (app.mode == Mode::build) {
     rows.push_back({apart ? LegendMark::outlined : LegendMark::solid, "Drawn pose"});
     if (apart)
-      rows.push_back({LegendMark::glass, "Steady state"});
+      rows.push_back({LegendMark::glass, found});
     else if (converged(app) && app.view.ghost && !solving(app))
       rows.front().words = "Drawn pose = steady state";
     return rows;
   }
-  if (!converged(app)) {
-    const bool moves = !app.view.scene.source.poses.empty();
+  const bool moves = !app.view.scene.source.poses.empty();
+  if (converged(app) || periodic)
+    rows.push_back({LegendMark::solid, found});
+  else
     rows.push_back({LegendMark::solid, moves ? motion_words(app) : std::string("Drawn pose")});
-    return rows;
-  }
-  rows.push_back({LegendMark::solid, "Steady state"});
   if (apart) rows.push_back({LegendMark::dashed, "Drawn pose"});
   if (!scene.motion.empty()) rows.push_back({LegendMark::motion, motion_words(app)});
   return rows;

@@ -39,7 +39,7 @@ bool tab(App& app, const Tab& wanted) {
   const ImVec2 size(text.x + 16 * s, text.y + 10 * s);
   const bool pressed = ImGui::InvisibleButton(wanted.name, size);
   note_widget(app.widgets, wanted.name);
-  help_on_hover(wanted.help);
+  help_above(wanted.help);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddText({from.x + 8 * s, from.y + 4 * s},
                packed(on                       ? colors.text
