@@ -71,16 +71,16 @@ struct Grab {
 
 // A joint or bearing before it is made.
 struct JointDraft {
-  Vec3 at = Vec3::Zero();            // m
-  std::string named{};               // the named point there
-  std::array<std::string, 2> bodies; // parent, child
+  Vec3 at = Vec3::Zero();             // m
+  std::string named{};                // the named point there
+  std::array<std::string, 2> bodies;  // parent, child
   std::array<std::string, 2> guessed; // the same, before the person chose: the card keeps clear of these
   Vec3 axis = Vec3::UnitZ(), axis2 = Vec3::UnitX();
   bool bodies_chosen = false, axis_chosen = false, axis2_chosen = false; // by the person
-  bool picking_axis = false;                      // by two points
-  std::optional<Vec3> axis_from;                  // the first of them
-  Selection before;                               // selected when it was begun
-  float card_height = 0;                          // pixels, the most that its card has taken
+  bool picking_axis = false;                                             // by two points
+  std::optional<Vec3> axis_from;                                         // the first of them
+  Selection before;                                                      // selected when it was begun
+  float card_height = 0; // pixels, the most that its card has taken
 };
 
 // Kept so that nothing is looked for twice while neither hand nor mechanism moves.

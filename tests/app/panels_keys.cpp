@@ -449,7 +449,7 @@ TEST_CASE("no line of the sheet of keys is cut") {
   for (const auto& [name, rect] : robot.app.widgets)
     if (name.starts_with("shortcuts/") && name != "shortcuts/close") {
       INFO(name);
-      CHECK(rect.to.x <= right - 21); // what is cut ends at the rim
+      CHECK(rect.to.x <= right - 21);      // what is cut ends at the rim
       CHECK(rect.to.y - rect.from.y < 62); // three lines: no word is broken
       ++lines;
     }

@@ -1,5 +1,5 @@
-// A slider-crank drawn in the plane across z: rod1 is the crank, about z through the origin, rod2 goes from it to
-// block1, where the pin is.
+// A slider-crank drawn in the plane across z: rod1 is the crank, about z through the origin, rod2 goes from
+// it to block1, where the pin is.
 #pragma once
 
 #include "app/document/create.hpp"

@@ -27,7 +27,8 @@ void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
   std::string second; // the same in SI, where that is another unit, and its error
   if (unit.text != si) second = value_text(value, error, numbers) + in_si;
   if (error > 0)
-    second += (second.empty() ? "± " : "  ± ") + magnitude_text(std::max(error, numbers.noise), numbers) + in_si;
+    second +=
+        (second.empty() ? "± " : "  ± ") + magnitude_text(std::max(error, numbers.noise), numbers) + in_si;
   if (c.dependent) {
     note_widget(app.widgets, widget);
     if (compact) help_on_hover(second.c_str());

@@ -186,8 +186,8 @@ void second_axis_row(App& app) {
   }
 }
 
-// What the solids of the two bodies first offered cover of the window, a rectangle each: others that are chosen
-// do not move the card.
+// What the solids of the two bodies first offered cover of the window, a rectangle each: others that are
+// chosen do not move the card.
 std::vector<PanelRect> covered_by_bodies(App& app, const ViewInput& input) {
   std::vector<PanelRect> covered;
   const std::array<std::string, 2>& names = app.tool.joint->guessed;
@@ -271,7 +271,8 @@ void joint_card(App& app, const ViewInput& input) {
   if (!bearing && has_axis2(app.tool.joint_type)) second_axis_row(app);
   ImGui::Dummy({0, 2 * s});
   // The card stays as tall as it was: fewer rows do not move what is clicked next.
-  const float foot = app.tool.joint->card_height - ImGui::GetStyle().WindowPadding.y - ImGui::GetFrameHeight();
+  const float foot =
+      app.tool.joint->card_height - ImGui::GetStyle().WindowPadding.y - ImGui::GetFrameHeight();
   ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), foot));
   if (text_button(app, "tools/join", bearing ? "Insert" : "Join", true)) {
     make_joint(app);

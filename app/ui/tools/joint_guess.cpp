@@ -145,10 +145,10 @@ std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std
   for (const std::string& name : bodies) {
     const Body* body = find_body(mechanism, name);
     if (!body) continue;
-    if (const auto rod = rod_axis(*body)) add(name, *rod);
+    if (const auto rod = rod_axis(*body)) add("along " + name, *rod);
     const Mat3 frame = body->rotation.normalized().toRotationMatrix();
     for (int i = 0; i < 3; ++i)
-      add(name + " " + "xyz"[i], frame.col(i));
+      add(std::string(1, "xyz"[i]) + " of " + name, frame.col(i));
   }
   return axes;
 }

@@ -20,7 +20,7 @@ std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<co
 
 // A direction that the two bodies have to offer beside the world's.
 struct BodyAxis {
-  std::string label; // "rod1", "block1 x"
+  std::string label; // "along rod1", "x of block1"
   Vec3 axis = Vec3::UnitZ();
 };
 std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std::string, 2>& bodies);

@@ -24,12 +24,14 @@ void text_in(ImFont* font, const ImVec4& color, const std::string& text) {
 
 void show_help(const char* help, bool above) {
   const bool keyed = keyed_item();
-  if (!help || !*help || !(keyed || ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) || !pointed_long())
+  if (!help || !*help || !(keyed || ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ||
+      !pointed_long())
     return;
   if (keyed) // below it, wherever the mouse is
     ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + 6});
   if (above)
-    ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMin().y - 6}, ImGuiCond_Always, {0, 1});
+    ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMin().y - 6}, ImGuiCond_Always,
+                            {0, 1});
   else
     place_beside_window();
   ImGui::BeginTooltip();

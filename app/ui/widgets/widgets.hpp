@@ -45,8 +45,8 @@ void visible_rows(std::size_t count, const Draw& draw) {
 }
 // "a, b, c": the first of the names, and how many more there are.
 std::string name_list(const std::vector<std::string>& names);
-// Words broken between lines of this width (pixels) at blanks only: Dear ImGui breaks a number after its point,
-// too.
+// Words broken between lines of this width (pixels) at blanks only: Dear ImGui breaks a number after its
+// point, too.
 std::string in_lines(std::string_view text, float width);
 // Words that may take several lines.
 void paragraph(const std::string& text, const ImVec4& color);
