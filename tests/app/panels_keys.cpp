@@ -5,6 +5,7 @@
 #include "app/document/create.hpp"
 #include "app/session/number_text.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -280,7 +281,7 @@ TEST_CASE("Enter goes ahead in Mirror and Circular copy, and in their fields end
 TEST_CASE("a new document gives the keys to the view") {
   Hand hand;
   App& app = hand.app;
-  const bool within = GENERATE(false, true); // a field, when it comes
+  const int where = GENERATE(0, 1, 2); // the keys are when it comes: in a panel, in a field, at one by keys
   hand.click("inspector/drive/speed");
   hand.key('A', true);
   hand.type("12");
@@ -288,7 +289,9 @@ TEST_CASE("a new document gives the keys to the view") {
   hand.frames(3);
   undo(app); // nothing is unsaved
   hand.frames(2);
-  if (within) hand.click("inspector/name");
+  if (where == 1) hand.click("inspector/name");
+  if (where == 2) focus_widget(app, "inspector/name");
+  hand.frames(2);
   hand.key('N', true);
   hand.frames(3);
   REQUIRE(app.mechanism().bodies.empty());
