@@ -172,7 +172,7 @@ void open_first(App& app, const std::filesystem::path& scene) {
                data_folder() / "scenes" / "governor.json"); // not of the person's choice: not noted as recent
   else
     open_file(app, scene);
-  begin_files(app);
+  begin_files(app, !scene.empty());
 }
 
 // What the window shows, for tests outside the program.

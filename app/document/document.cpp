@@ -158,16 +158,18 @@ void Document::go_to(std::size_t step) {
   step = std::min(step, steps_.size() - 1);
   if (step == position_) return;
   const Mechanism* before = now().mechanism.get();
+  const bool again = step > position_ && given_ == selection_;
   steps_[position_].selection = selection_;
   position_ = step;
-  Selection kept = existing(selection_, stored());
-  if (kept.empty()) {
+  Selection kept = existing(again ? steps_[step].selection : selection_, stored());
+  if (kept.empty() && !again) {
     kept = existing(steps_[step].selection, stored());
     if (selection_.empty())
       std::erase_if(kept.parts,
                     [&](const Part& part) { return find_part(*before, part).kind != PartKind::none; });
   }
   selection_ = std::move(kept);
+  given_ = selection_;
   changed(before);
 }
 

@@ -67,7 +67,8 @@ class Document {
   bool put_explored_aside(bool aside);
   // Selecting is no step. Going to another step keeps what is selected as far as it exists there, so that
   // nothing changes under the hand. Where nothing is left of it, what was selected there is; where nothing
-  // was selected at all, those of them that come back.
+  // was selected at all, those of them that come back. Redoing gives what was selected there, unless another
+  // selection was made since.
   void select(Selection selection);
 
   bool can_undo() const { return position_ > 0; }
@@ -99,6 +100,7 @@ class Document {
   std::vector<Step> steps_;
   std::size_t position_ = 0;
   Selection selection_;
+  std::optional<Selection> given_{}; // by going to a step, last
   std::filesystem::path file_;
   std::shared_ptr<const Mechanism> saved_;
   std::uint64_t revision_ = 1, stored_revision_ = 1;

@@ -101,7 +101,7 @@ void reload_document(Session& session) {
   }
 }
 
-void read_kept_files(Session& session) {
+void read_kept_files(Session& session, bool others) {
   const fs::path& state = session.options.state;
   if (state.empty()) return;
   FileState& files = session.files;
@@ -111,7 +111,7 @@ void read_kept_files(Session& session) {
   std::vector<fs::path> wanted{session.document.file()};
   if (!session.document.file().empty()) wanted.emplace_back();
   for (const fs::path& file : files.recent)
-    if (file != session.document.file()) wanted.push_back(file);
+    if (others && file != session.document.file()) wanted.push_back(file);
   files.leftovers.clear();
   for (const fs::path& file : wanted)
     for (Leftover& leftover : find_leftovers(file, state))

@@ -52,8 +52,9 @@ void note_recent(Session& session, const std::filesystem::path& file);
 std::string save_to(Session& session, const std::filesystem::path& file);
 void reload_document(Session& session); // from its file, as it is there now: a step that can be undone
 
-// When the program has started: what is kept in options.state. What a crash has left is in files.leftovers.
-void read_kept_files(Session& session);
+// When the program has started: what is kept in options.state. What a crash has left is in files.leftovers:
+// of the open file, of what had none, and of `others` that may well be opened next.
+void read_kept_files(Session& session, bool others = true);
 // What a crash has left of the open file, into files.leftovers.
 void find_own_leftovers(Session& session);
 // What there is to lose, for whoever has to write it at once; after every frame.

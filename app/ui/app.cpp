@@ -54,6 +54,13 @@ void App::document_opened(bool same_file) {
     view.keep_direction = false;
     view.hidden.clear();
   }
+  if (!same_file) { // the view has the keys
+    keyboard.at.clear();
+    keyboard.ring = false;
+    for (auto& behind : keyboard.behind)
+      behind = {};
+    commands.focus = {};
+  }
   plots = {};
   view.hovered = {};
   view.scene = view.scene_beside = {}; // revisions begin anew

@@ -14,8 +14,8 @@ void offer_leftovers(App& app) {
   if (!app.files.leftovers.empty()) app.dialog.wanted = Dialog::recover;
 }
 
-void begin_files(App& app) {
-  read_kept_files(app);
+void begin_files(App& app, bool chosen) {
+  read_kept_files(app, !chosen);
   offer_leftovers(app);
 }
 

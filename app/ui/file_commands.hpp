@@ -23,8 +23,9 @@ void show_model_dialog(App& app);      // of the linear model that is shown
 void show_movie_dialog(App& app);      // of the motion that is shown
 void show_mode_movie_dialog(App& app); // of the mode that is shown
 
-// When the program has started: reads what is kept in options.state, and offers what a crash has left.
-void begin_files(App& app);
+// When the program has started: reads what is kept in options.state, and offers what a crash has left; to
+// whoever has `chosen` a file to begin with, nothing of others.
+void begin_files(App& app, bool chosen = false);
 // Of files.leftovers, where there are any.
 void offer_leftovers(App& app);
 // See recover_now().

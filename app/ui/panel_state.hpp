@@ -19,8 +19,9 @@ struct PanelState {
   bool pinned = true, named = true, springs = true, drives = true;
   float study_share = 0.42f; // of the height, for the studies below the view
   bool dampers = true;
-  bool legend = true;      // of the view
-  bool legend_low = false; // in the lower corner, where it hides fewer arrows
+  bool legend = true;         // of the view
+  bool legend_low = false;    // in the lower corner, where it hides fewer arrows
+  bool legend_anyway = false; // also where it covers much of the view
   bool torques = true, reactions = false, eigenvalues = false, system = false;
   std::map<std::string, KeptRates> rates; // by the slider's address
 };

@@ -4,6 +4,7 @@
 #include "app/document/snap_points.hpp"
 #include "app/document/transform.hpp"
 #include "app/ui/tools/hand_state.hpp"
+#include "app/viewport/camera.hpp"
 #include "app/viewport/gizmo.hpp"
 #include "app/viewport/scene_list.hpp"
 #include "app/viewport/work_plane.hpp"
@@ -13,6 +14,8 @@
 #include <optional>
 
 namespace flyball {
+
+struct ViewScene;
 
 enum class Tool {
   select, // and move with the gizmo
@@ -68,14 +71,16 @@ struct Grab {
 
 // A joint or bearing before it is made.
 struct JointDraft {
-  Vec3 at = Vec3::Zero();            // m
-  std::string named{};               // the named point there
-  std::array<std::string, 2> bodies; // parent, child
+  Vec3 at = Vec3::Zero();             // m
+  std::string named{};                // the named point there
+  std::array<std::string, 2> bodies;  // parent, child
+  std::array<std::string, 2> guessed; // the same, before the person chose: the card keeps clear of these
   Vec3 axis = Vec3::UnitZ(), axis2 = Vec3::UnitX();
-  bool axis_chosen = false, axis2_chosen = false; // by the person
-  bool picking_axis = false;                      // by two points
-  std::optional<Vec3> axis_from;                  // the first of them
-  Selection before;                               // selected when it was begun
+  bool bodies_chosen = false, axis_chosen = false, axis2_chosen = false; // by the person
+  bool picking_axis = false;                                             // by two points
+  std::optional<Vec3> axis_from;                                         // the first of them
+  Selection before;                                                      // selected when it was begun
+  float card_height = 0; // pixels, the most that its card has taken
 };
 
 // Kept so that nothing is looked for twice while neither hand nor mechanism moves.
@@ -93,7 +98,8 @@ struct ToolCaches {
   ViewCamera aim_camera;
   bool aim_snaps = false;
   Aim aim;
-  std::uint64_t hover_revision = 0; // for which App::view.hovered was found
+  std::shared_ptr<const ViewScene> hover_scene; // for which App::view.hovered was found
+  ViewCamera hover_camera;                      // likewise
 };
 
 struct ToolState {

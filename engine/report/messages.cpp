@@ -198,10 +198,10 @@ std::string message(const OtherStates& others, Status first) {
   if (others.equilibria == 0) return "A search from " + runs + " found none either." + more;
   if (others.steady > 0)
     return "A search from " + runs + " found others, but too few of their digits are known." + more;
-  return (others.equilibria == 1
-              ? "It is the only equilibrium of the drawn phase"
-              : "None of the " + std::to_string(others.equilibria) + " equilibria of the drawn phase") +
-         " found from " + runs + (others.equilibria == 1 ? "." : " holds at every phase.") + more;
+  if (others.equilibria == 1)
+    return "A search from " + runs + " found no other pose that balances at the drawn phase." + more;
+  return "None of the " + std::to_string(others.equilibria) +
+         " poses that balance at the drawn phase, found from " + runs + ", holds at every phase." + more;
 }
 
 std::string message(const AllSolutions& all) {

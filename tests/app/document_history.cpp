@@ -131,12 +131,34 @@ TEST_CASE(
     document.undo();
     CHECK(document.selection() == body("a"));
     document.redo();
-    CHECK(document.selection() == body("a"));
+    CHECK(document.selection() == body("c"));
   }
   SECTION("of several those that are left") {
     document.edit("Add c", with_bodies({"a", "c"}), {});
     document.select({{{PartKind::body, "c"}, {PartKind::body, "a"}}});
     document.undo();
+    CHECK(document.selection() == body("a"));
+  }
+}
+
+TEST_CASE("undoing and redoing everything selects what was selected") {
+  Document document(with_bodies({}));
+  document.edit("Add a", with_bodies({"a"}), body("a"));
+  document.edit("Add b", with_bodies({"a", "b"}), body("b"));
+  document.edit("Add c", with_bodies({"a", "b", "c"}), body("c"));
+  document.select(body("b"));
+  while (document.undo()) {
+  }
+  CHECK(document.selection().empty());
+  SECTION("at once") {
+    while (document.redo()) {
+    }
+    CHECK(document.selection() == body("b"));
+  }
+  SECTION("but for what was selected meanwhile") {
+    document.redo();
+    document.select(body("a"));
+    document.redo();
     CHECK(document.selection() == body("a"));
   }
 }

@@ -55,6 +55,13 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
   }
 }
 
+TEST_CASE_METHOD(OpenGovernor, "a picture is offered a place beside the file, as a report is") {
+  robot.key('E', true);
+  robot.frames(2);
+  REQUIRE(app.dialog.showing);
+  CHECK(fs::path(app.dialog.path).parent_path() == file.parent_path());
+}
+
 TEST_CASE("saving over another file is asked about, and a failure loses nothing") {
   const TemporaryFolder folder;
   const fs::path file = governor_in(folder), other = folder / "other.json";

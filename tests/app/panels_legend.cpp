@@ -1,8 +1,10 @@
 // The view tells which pose is drawn how.
 #include "app/session/motion.hpp"
+#include "app/session/periodic.hpp"
 #include "app/ui/panels/legend.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "robot.hpp"
+#include "slider_crank.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>
@@ -51,6 +53,51 @@ TEST_CASE("the legend names what is in the view, and no more") {
   robot.frames(2);
   CHECK(words(app).empty());
   CHECK(app.widgets.count("legend") == 0);
+}
+
+TEST_CASE("the legend names the periodic motion and the drawn pose beside it") {
+  Robot robot;
+  App& app = robot.app;
+  Mechanism crank = Document::empty_mechanism();
+  add_driven_slider_crank(crank, 10);
+  open_document(app, Document(crank));
+  robot.frames(3);
+  REQUIRE(periodic_motion(app));
+  CHECK(words(app).front() == "Periodic motion");
+  play(app, true);
+  robot.frames(3, 0.05);
+  play(app, false);
+  robot.frames(2);
+  CHECK(words(app) == Words{"Periodic motion", "Drawn pose"});
+  CHECK(legend_rows(app)[1].mark == LegendMark::dashed);
+  set_mode(app, Mode::build);
+  robot.frames(2);
+  CHECK(words(app) == Words{"Drawn pose", "Periodic motion"});
+}
+
+TEST_CASE("while a body is pulled along its joints the dashes are the pose before") {
+  Robot robot({1280, 800});
+  App& app = robot.app;
+  set_mode(app, Mode::build);
+  look_from(app, 0, 0);
+  robot.frames(3);
+  set_tool(app, Tool::pull);
+  robot.frames(1);
+  const auto ball = static_cast<std::size_t>(body_index(app.mechanism(), "ball1"));
+  const Vec3 at = app.mechanism().bodies[ball].position;
+  const ImVec2 from = robot.pixel(at);
+  robot.point(from);
+  robot.press();
+  for (float by = 8; by < 60; by += 8)
+    robot.point({from.x, from.y + by});
+  robot.frames(2);
+  REQUIRE(app.tool.assembly);
+  CHECK(words(app) == Words{"Drawn pose", "Before the pull"});
+  CHECK(legend_rows(app)[1].mark == LegendMark::dashed);
+  robot.release();
+  robot.frames(3);
+  CHECK(words(app).front() == "Drawn pose");
+  CHECK(words(app).back() != "Before the pull");
 }
 
 TEST_CASE("only dampers that act make a motion damped") {

@@ -116,6 +116,20 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
   }
 }
 
+TEST_CASE("whoever starts with a file is not asked about another one") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder), other = governor_in(folder, "other.json");
+  crash_at_speed(folder, other, 5);
+  FileRobot robot(folder);
+  robot.click("recover/later");
+  robot.open(file);
+  begin_files(robot.app, true);
+  robot.frames(3);
+  CHECK_FALSE(robot.app.dialog.showing);
+  robot.open(other);
+  CHECK(robot.shows("recover/recover"));
+}
+
 TEST_CASE("recovering over a file that has changed since, or is gone") {
   const TemporaryFolder folder;
   const fs::path file = governor_in(folder);

@@ -707,3 +707,29 @@ TEST_CASE("nothing is looked for under a cursor that rests") {
   CHECK(d.app.view.pointed_at == found_for);
   CHECK(d.stage.views_changed() <= drawn + 1);
 }
+
+TEST_CASE("what is under a cursor that rests is looked for when the picture moves") {
+  SECTION("because the camera does") {
+    Drawing d;
+    d.have_ball({0, 0, 0});
+    d.choose_nothing();
+    d.point_at({0, 0.03, 0});
+    d.frames(1);
+    CHECK(d.app.view.hovered.kind == PartKind::body);
+    d.app.view.camera.target.x() += 0.3;
+    d.frames(2);
+    CHECK(d.app.view.hovered == PartId{});
+  }
+  SECTION("because the mechanism does") {
+    Robot robot;
+    look_from(robot.app, 0, 0);
+    robot.frames(3);
+    const int ball = body_index(robot.app.mechanism(), "ball1");
+    robot.point_at(robot.app.poses.at(static_cast<std::size_t>(ball)).position);
+    robot.frames(1);
+    CHECK(robot.app.view.hovered == PartId{PartKind::body, ball});
+    play(robot.app, true);
+    robot.frames(3, 0.05); // about a quarter of a turn
+    CHECK(robot.app.view.hovered != PartId{PartKind::body, ball});
+  }
+}

@@ -3,6 +3,7 @@
 
 #include "app/document/create.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/tools/tools.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
@@ -53,7 +54,7 @@ TEST_CASE("the length of a rod is typed while it is placed") {
   CHECK(d.rod_length() == Approx(length).epsilon(1e-12));
   const Shape& shape = d.m().bodies[0].shapes[0];
   CHECK(shape.from == Vec3(-0.1, 0, 0));
-  CHECK(shape.to.y() == 0); // along the nearest round angle
+  CHECK(shape.to.y() == 0);
   CHECK(d.app.tool.typed.empty());
   CHECK(d.app.tool.tool == Tool::select);
   CHECK(d.app.document.position() == 1);
@@ -74,6 +75,19 @@ TEST_CASE("a typed length goes towards the point that the cursor is at") {
   CHECK((shape.to - 0.2 * Vec3(0.3, 0.1, 0).normalized()).norm() < 1e-12);
 }
 
+TEST_CASE("a typed length does not turn a rod") {
+  Drawing d;
+  d.click("tools/rod");
+  d.click_at({0, 0.2, 0});
+  d.point_at({0.2, 0.05, 0}); // 36.9 degrees down, which is no round angle
+  d.strike("200 mm");
+  d.key(key_enter);
+  REQUIRE(d.m().bodies.size() == 1);
+  const Shape& shape = d.m().bodies[0].shapes[0];
+  CHECK((shape.to - Vec3(0.16, 0.08, 0)).norm() < 1e-12);
+  CHECK_FALSE(d.app.keyboard.ring); // the hand is in the view
+}
+
 TEST_CASE("what is typed can be mended, and what is no length is told") {
   Drawing d;
   d.click("tools/rod");
@@ -88,9 +102,11 @@ TEST_CASE("what is typed can be mended, and what is no length is told") {
   }
   SECTION("Escape takes the number back, then the end, then the tool") {
     d.strike("0.25");
+    CHECK_THAT(tool_hint(d.app), ContainsSubstring("Esc drops the number"));
     d.key(key_escape);
     CHECK(d.app.tool.typed.empty());
     CHECK(d.app.tool.first);
+    CHECK_THAT(tool_hint(d.app), ContainsSubstring("Esc drops the first"));
     d.key(key_escape);
     CHECK_FALSE(d.app.tool.first);
     CHECK(d.app.tool.tool == Tool::rod);

@@ -2,6 +2,7 @@
 #include "app/document/copies.hpp"
 #include "app/document/transform.hpp"
 #include "app/ui/edit_commands.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -54,10 +55,12 @@ void point_fields(App& app, const std::string& name, Vec3& point) {
   }
 }
 
-// The buttons below; returns whether to go ahead.
+// The buttons below; returns whether to go ahead. Enter does, but in a field, which it ends.
 bool accepted(Ui& ui, const std::string& name, const char* text) {
+  if (ImGui::IsWindowAppearing()) enter_dialog_at(ui, name + "/ok");
   ImGui::Dummy({0, 4 * ui.scale});
-  const bool go = text_button(ui, name + "/ok", text, true);
+  const bool entered = !ImGui::GetIO().WantTextInput && enter_pressed(ui);
+  const bool go = text_button(ui, name + "/ok", text, true) || entered;
   ImGui::SameLine();
   if (text_button(ui, name + "/cancel", "Cancel") || escape_pressed() || go) close_dialog();
   return go;

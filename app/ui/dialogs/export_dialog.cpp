@@ -33,8 +33,7 @@ void save_picture(App& app) {
 void show_export_dialog(App& app) {
   app.dialog.wanted = Dialog::export_picture;
   app.dialog.loads = app.view.loads;
-  std::error_code ignored;
-  show_folder(app, std::filesystem::current_path(ignored));
+  show_folder(app, usual_folder(app));
   app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
   const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();

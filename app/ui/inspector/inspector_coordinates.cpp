@@ -187,12 +187,12 @@ struct CoordinateRows {
   // Whether the drive keeps its momentum rather than its speed.
   void left_to_itself(bool on) const {
     if (!check_row(
-            app, widget(key("drive") + ".keeps"), "Left to itself", on,
+            app, widget(key("drive") + ".keeps"), "Keeps momentum", on,
             "Nothing drives it any more: it keeps the momentum that the speed makes in the drawn pose, "
             "and the steady speed is found.",
             !on && is_damped(coordinate()) ? "Not beside a damper, which would take the momentum." : nullptr))
       return;
-    change((on ? "Prescribe the speed of " : "Leave to itself ") + joint.name, [on](Coordinate& c) {
+    change((on ? "Prescribe the speed of " : "Keep the momentum of ") + joint.name, [on](Coordinate& c) {
       if (c.drive) c.drive->keeps = on ? DriveKeeps::speed : DriveKeeps::momentum;
     });
   }
@@ -232,9 +232,10 @@ struct CoordinateRows {
                    "the whole torque."
                  : "Force by the distance from where the spring is slack. An expression of the deflection is "
                    "the whole force, as =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).");
-    number(spring.force ? "Counted from" : "Slack at", key("spring") + ".free", spring.free, value_unit(),
+    number(spring.force ? "Counted from" : "Unstressed at", key("spring") + ".free", spring.free,
+           value_unit(),
            spring.force ? "The coordinate's value at which the deflection is zero."
-                        : "The coordinate's value at which the spring is slack.");
+                        : "The coordinate's value at which the spring exerts nothing.");
   }
 
   void damper() const {
@@ -242,7 +243,7 @@ struct CoordinateRows {
         "damper", "Damper", "damper", is_damped(coordinate()),
         "Resists the coordinate's motion; the steady state is the same.",
         coordinate().drive && coordinate().drive->keeps == DriveKeeps::momentum
-            ? "Not on what is left to itself: it would take the momentum."
+            ? "Not on what keeps its momentum: it would take it."
             : nullptr,
         [](Coordinate& c) {
           c.damping = 0;

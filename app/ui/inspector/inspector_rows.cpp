@@ -37,7 +37,7 @@ bool begin_choice(App& app, const std::string& name, const std::string& label, c
                   const char* help) {
   ImGui::SetNextItemWidth(row_label(app, label, help));
   ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
-  const bool open = ImGui::BeginCombo(("##" + name).c_str(), chosen.c_str());
+  const bool open = ImGui::BeginCombo(("##" + name).c_str(), chosen.c_str(), ImGuiComboFlags_HeightLarge);
   ImGui::PopStyleColor();
   if (!open) {
     note_widget(app.widgets, name);

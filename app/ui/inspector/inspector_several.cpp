@@ -29,7 +29,7 @@ constexpr std::array body_numbers{
 constexpr std::array joint_numbers{
     CommonNumber{"drive.speed", "Speed", "The drive speed of each."},
     CommonNumber{"spring.stiffness", "Stiffness", "The stiffness of each one's spring."},
-    CommonNumber{"spring.free", "Slack at", "Where each one's spring is slack."},
+    CommonNumber{"spring.free", "Unstressed at", "Where each one's spring exerts nothing."},
     CommonNumber{"damping", "Damping", "The damping of each.", Least::zero},
     CommonNumber{"stop.stiffness", "Stop", "The stiffness of each one's stop.", Least::above_zero},
     CommonNumber{"length", "Length", "The length of each.", Least::above_zero},

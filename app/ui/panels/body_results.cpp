@@ -36,7 +36,7 @@ void motion_rows(App& app, const PointMotion& motion, const std::string& name, c
   row(app, "Speed", size_text(motion.velocity, speed.factor), speed.text.c_str());
   note_widget(app.widgets, name + "speed/" + of);
   row(app, "Acceleration", components_text(motion.acceleration, 1), "m/s²", at_phase);
-  row(app, "Its size", size_text(motion.acceleration, 1), "m/s²");
+  row(app, "Magnitude", size_text(motion.acceleration, 1), "m/s²");
   note_widget(app.widgets, name + "acceleration/" + of);
 }
 

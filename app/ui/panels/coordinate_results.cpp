@@ -1,4 +1,5 @@
-// Where everything settles: each coordinate in the units of the screen and in SI.
+// Where everything settles: each coordinate in the units of the screen, in SI where these are others, and its
+// error.
 #include "app/session/units.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/goal_handle.hpp"
@@ -23,8 +24,11 @@ void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
       unit.text.c_str(),
       c.dependent ? "The joint closes a loop: this follows from the other coordinates." : nullptr);
   const std::string in_si = " " + std::string(si), widget = "results/" + coordinate_label(c);
-  std::string second = value_text(value, error, numbers) + in_si;
-  if (error > 0) second += "  ± " + magnitude_text(std::max(error, numbers.noise), numbers) + in_si;
+  std::string second; // the same in SI, where that is another unit, and its error
+  if (unit.text != si) second = value_text(value, error, numbers) + in_si;
+  if (error > 0)
+    second +=
+        (second.empty() ? "± " : "  ± ") + magnitude_text(std::max(error, numbers.noise), numbers) + in_si;
   if (c.dependent) {
     note_widget(app.widgets, widget);
     if (compact) help_on_hover(second.c_str());
@@ -38,8 +42,9 @@ void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
                               : compact ? second
                                         : ""});
   }
-  if (compact) return;
+  if (compact || second.empty()) return;
   right_digits(app, second, colors.dim);
+  note_widget(app.widgets, widget + "/error");
   ImGui::Dummy({0, 0});
 }
 

@@ -51,21 +51,27 @@ std::vector<LegendRow> pose_rows(App& app) {
   if (app.mechanism().bodies.empty() || !app.view.scene.scene) return {};
   const ViewScene& scene = *app.view.scene.scene;
   const bool apart = !scene.drawn.empty(); // the two poses differ
+  const bool periodic = !converged(app) && periodic_motion(app);
+  const std::string found = periodic ? "Periodic motion" : "Steady state";
   std::vector<LegendRow> rows;
+  if (app.tool.assembly) {
+    rows.push_back({LegendMark::solid, "Drawn pose"});
+    if (apart) rows.push_back({LegendMark::dashed, "Before the pull"});
+    return rows;
+  }
   if (app.mode == Mode::build) {
     rows.push_back({apart ? LegendMark::outlined : LegendMark::solid, "Drawn pose"});
     if (apart)
-      rows.push_back({LegendMark::glass, "Steady state"});
+      rows.push_back({LegendMark::glass, found});
     else if (converged(app) && app.view.ghost && !solving(app))
       rows.front().words = "Drawn pose = steady state";
     return rows;
   }
-  if (!converged(app)) {
-    const bool moves = !app.view.scene.source.poses.empty();
+  const bool moves = !app.view.scene.source.poses.empty();
+  if (converged(app) || periodic)
+    rows.push_back({LegendMark::solid, found});
+  else
     rows.push_back({LegendMark::solid, moves ? motion_words(app) : std::string("Drawn pose")});
-    return rows;
-  }
-  rows.push_back({LegendMark::solid, "Steady state"});
   if (apart) rows.push_back({LegendMark::dashed, "Drawn pose"});
   if (!scene.motion.empty()) rows.push_back({LegendMark::motion, motion_words(app)});
   return rows;
@@ -85,6 +91,8 @@ std::vector<LegendRow> legend_rows(App& app) {
 }
 
 namespace {
+
+constexpr float largest_share = 0.2f; // of the view, that an open legend takes unasked
 
 // How much of the loads' arrows lies in a part of the view, in fifths of an arrow.
 int arrows_within(const App& app, const PanelRect& view, ImVec2 from, ImVec2 to) {
@@ -127,14 +135,22 @@ void legend(App& app, const PanelRect& view) {
   float width = mark; // of the widest mark
   for (const LegendRow& row : rows)
     width = std::max(width, row.length + 2 * s);
-  const std::vector<LegendRow> shown = app.panels.legend ? rows : std::vector<LegendRow>();
-  float room = ImGui::CalcTextSize("Shown").x + 16 * s;
-  for (const LegendRow& row : shown)
-    room = std::max(room, (row.mark == LegendMark::note ? s : width + 7 * s) +
-                              ImGui::CalcTextSize(row.words.c_str()).x);
   const ImVec2 padding(8 * s, 4 * s);
-  const float gap = 2 * s, lines = static_cast<float>(shown.size());
-  const ImVec2 size(room + 2 * padding.x, (lines + 1) * line + lines * gap + 2 * padding.y);
+  const float gap = 2 * s;
+  float room = 0;
+  const auto size_of = [&](const std::vector<LegendRow>& these) {
+    room = ImGui::CalcTextSize("Shown").x + 16 * s;
+    for (const LegendRow& row : these)
+      room = std::max(room, (row.mark == LegendMark::note ? s : width + 7 * s) +
+                                ImGui::CalcTextSize(row.words.c_str()).x);
+    const auto lines = static_cast<float>(these.size());
+    return ImVec2(room + 2 * padding.x, (lines + 1) * line + lines * gap + 2 * padding.y);
+  };
+  const ImVec2 whole = size_of(rows);
+  const bool crowded = whole.x * whole.y > largest_share * view.width * view.height;
+  const bool open = crowded ? app.panels.legend_anyway : app.panels.legend;
+  const std::vector<LegendRow> shown = open ? rows : std::vector<LegendRow>();
+  const ImVec2 size = size_of(shown);
   ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(legend_top(app, view, size))},
                           ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.88f);
@@ -149,14 +165,19 @@ void legend(App& app, const PanelRect& view) {
                    ImGuiWindowFlags_NoNav);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 from = ImGui::GetCursorScreenPos();
-  if (ImGui::InvisibleButton("title", {room, line})) open_legend(app, !app.panels.legend);
+  if (ImGui::InvisibleButton("title", {room, line})) {
+    if (crowded)
+      app.panels.legend_anyway = !open;
+    else
+      open_legend(app, !open);
+  }
   note_widget(app.widgets, "legend");
   const bool lit = ImGui::IsItemHovered();
-  help_on_hover(app.panels.legend ? "Fold the legend" : "What is drawn how");
+  help_on_hover(open ? "Fold the legend" : "What is drawn how");
   const ImU32 ink = packed(lit ? colors.text : colors.dim);
   list.AddText({from.x, from.y}, ink, "Shown");
   const float r = 3.5f * s, cx = from.x + room - r, cy = from.y + line / 2;
-  if (app.panels.legend)
+  if (open)
     list.AddTriangleFilled({cx - r, cy - r / 2}, {cx + r, cy - r / 2}, {cx, cy + r / 1.5f}, ink);
   else
     list.AddTriangleFilled({cx + r / 2, cy - r}, {cx + r / 2, cy + r}, {cx - r / 1.5f, cy}, ink);

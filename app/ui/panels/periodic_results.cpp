@@ -5,6 +5,7 @@
 #include "engine/mechanism/text.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace flyball {
 
@@ -12,8 +13,9 @@ namespace {
 
 constexpr int digits = 6; // of ends, which are looked at rather than copied
 
+// `less`: what the numbers leave out, "less -1 turns a period".
 void range_row(App& app, const std::string& name, const PeriodicRange& range, const ShownUnit& unit,
-               const std::string& help = {}) {
+               const std::string& help = {}, const std::string& less = {}) {
   const NumberStyle& numbers = app.options.numbers;
   if (!std::isfinite(range.mean)) return row(app, name, "-", "", "It is not defined throughout the period.");
   const double error = std::isfinite(range.error) ? range.error : 1e-6 * std::abs(range.most - range.least);
@@ -25,11 +27,23 @@ void range_row(App& app, const std::string& name, const PeriodicRange& range, co
   row(app, name, value_text(unit.shown(range.mean), std::max(error, numbers.noise) * unit.factor, numbers),
       unit.text.c_str(), about.c_str());
   note_widget(app.widgets, "results/periodic/" + name);
+  if (!less.empty()) {
+    paragraph(less, colors_of(app).dim);
+    note_widget(app.widgets, "results/periodic/" + name + "/less");
+  }
   right_digits(app,
                short_text(unit.shown(range.least), digits) + " … " +
                    short_text(unit.shown(range.most), digits) + " " + unit.text,
                colors_of(app).dim);
   ImGui::Dummy({0, 0});
+}
+
+std::string advance_words(const PeriodicCoordinate& c, const ShownUnit& unit) {
+  if (!c.goes_on()) return "";
+  return "less " +
+         (c.angle ? short_text(c.advance / (2 * std::numbers::pi), digits) + " turns"
+                  : short_text(unit.shown(c.advance), digits) + " " + unit.text) +
+         " a period";
 }
 
 std::string advance_help(const PeriodicCoordinate& c, const ShownUnit& unit) {
@@ -50,7 +64,7 @@ void periodic_results(App& app) {
           : (std::to_string(state->drive_periods) + " times that of the drives.").c_str());
   for (const PeriodicCoordinate& c : state->coordinates) {
     const ShownUnit unit = shown_unit(c.angle ? "rad" : "m", app.units);
-    range_row(app, coordinate_label(c), c.range, unit, advance_help(c, unit));
+    range_row(app, coordinate_label(c), c.range, unit, advance_help(c, unit), advance_words(c, unit));
   }
   for (const PeriodicMeasure& m : state->measures)
     range_row(app, m.name, m.range, shown_unit(m.unit, app.units));

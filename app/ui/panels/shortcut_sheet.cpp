@@ -100,7 +100,9 @@ void shortcut_sheet(App& app) {
   // What does not fit is scrolled to; the button stays.
   const float foot = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y;
   ImGui::BeginChild("all", {0, -foot});
-  if (ImGui::BeginTable("columns", 4, ImGuiTableFlags_SizingStretchSame)) {
+  // As many columns as there is room for; the others go below.
+  const int columns = std::clamp(static_cast<int>(ImGui::GetContentRegionAvail().x / (200 * s)), 1, 4);
+  if (ImGui::BeginTable("columns", columns, ImGuiTableFlags_SizingStretchSame)) {
     ImGui::TableNextColumn();
     lines(app, "File", "file.");
     lines(app, "Insert", "insert.");

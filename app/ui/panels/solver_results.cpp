@@ -36,7 +36,7 @@ void solver_results(App& app) {
     row(app, "Condition", short_text(*solution.condition, 2), "scaled",
         "Condition number (2-norm) of the scaled equations.");
   if (solution.fallback)
-    row(app, "Caught by", fallback_text(*solution.fallback), "",
+    row(app, "Fallback", fallback_text(*solution.fallback), "",
         "The method that led to the answer where plain Newton-Raphson steps did not.");
   if (solution.history.size() > 1) history_plot(app, ImGui::GetContentRegionAvail().x, 84 * app.scale);
 }

@@ -50,6 +50,8 @@ StatusLine status_line(const App& app) {
   }
   if (solution.stable == true) return {"Steady state, stable", colors.good, icon::check};
   if (solution.stable == false) return {"Steady state, unstable", colors.warn, icon::warning};
+  if (solution.stability_reason == StabilityReason::neutral)
+    return {"Steady state, neutral", colors.good, icon::check};
   return {"Steady state, " +
               std::string(solution.stability_reason ? word(*solution.stability_reason) : "stability unknown"),
           colors.warn, icon::info};

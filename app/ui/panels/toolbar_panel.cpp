@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 namespace flyball {
@@ -127,6 +128,15 @@ void direction_buttons(App& app) {
   if (icon_button(app, "toolbar/fit", icon::expand, "All in view (F)")) fit_all(app);
 }
 
+// Whether these words have room as buttons beside what ends the bar; without it they are in the menu alone.
+bool have_room(const App& app, const PanelRect& rect, std::initializer_list<const char*> words, float more) {
+  float width = more;
+  for (const char* word : words)
+    width += ImGui::CalcTextSize(word).x + (12 + 2) * app.scale;
+  const float end = ImGui::GetFrameHeight() + 2 * app.scale + 8 * app.scale;
+  return ImGui::GetCursorPosX() + width <= rect.width - end;
+}
+
 void toggle(App& app, const char* name, const char* text, const char* help, bool& on) {
   const UiColors& colors = colors_of(app);
   ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.accent : colors.dim);
@@ -175,17 +185,22 @@ void toolbar_panel(App& app, const PanelRect& rect) {
   space_between_groups(app);
   mode_switch(app);
   space_between_groups(app);
-  if (app.mode == Mode::explore) {
-    play_buttons(app);
-    space_between_groups(app);
-  }
-  direction_buttons(app);
+  ImGui::BeginDisabled(app.mode != Mode::explore); // what follows stays where it is
+  play_buttons(app);
+  ImGui::EndDisabled();
   space_between_groups(app);
-  toggle(app, "toolbar/ghost", "Ghost",
-         app.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)",
-         app.view.ghost);
-  toggle(app, "toolbar/grid", "Grid", "The floor", app.view.grid);
-  toggle(app, "toolbar/shadow", "Shadow", "Shadow on the floor", app.view.shadow);
+  const float fit = ImGui::GetFrameHeight() + 2 * s + 17 * s; // the button, and the space behind it
+  if (have_room(app, rect, {"Front", "Side", "Top", "Iso"}, fit)) {
+    direction_buttons(app);
+    space_between_groups(app);
+    if (have_room(app, rect, {"Ghost", "Grid", "Shadow"}, 0)) {
+      toggle(app, "toolbar/ghost", "Ghost",
+             app.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)",
+             app.view.ghost);
+      toggle(app, "toolbar/grid", "Grid", "The floor", app.view.grid);
+      toggle(app, "toolbar/shadow", "Shadow", "Shadow on the floor", app.view.shadow);
+    }
+  }
   const float side = ImGui::GetFrameHeight() + 2 * s;
   ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), rect.width - side - 8 * s));
   const bool light = app.theme == Theme::light;

@@ -24,7 +24,8 @@ WidgetRect draw_line(const App& app, const PanelRect& rect, const std::string& t
   // Clear of the axes in the corner.
   const float margin = std::min(96 * s, rect.width / 8);
   const float room = std::max(rect.width - 2 * margin - 2 * pad, 40 * s);
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, room);
+  const std::string lines = in_lines(text, room);
+  const ImVec2 size = ImGui::CalcTextSize(lines.c_str(), nullptr, false, room);
   const float x = std::round(rect.x + (rect.width - size.x) / 2);
   const auto chip = app.widgets.find("explored"); // what is explored, at the right
   if (chip != app.widgets.end() && x + size.x + 2 * pad > chip->second.from.x)
@@ -35,7 +36,7 @@ WidgetRect draw_line(const App& app, const PanelRect& rect, const std::string& t
   plate.w = 0.9f * strength;
   color.w *= strength;
   list.AddRectFilled({x - pad, y - 3 * s}, {x + size.x + pad, y + size.y + 3 * s}, packed(plate), 5 * s);
-  list.AddText(app.fonts.text, ImGui::GetFontSize(), {x, y}, packed(color), text.c_str(), nullptr, room);
+  list.AddText(app.fonts.text, ImGui::GetFontSize(), {x, y}, packed(color), lines.c_str(), nullptr, room);
   const WidgetRect drawn{{x - pad, y - 3 * s}, {x + size.x + pad, y + size.y + 3 * s}};
   y -= 4 * s;
   return drawn;
@@ -139,10 +140,11 @@ void error_line(App& app, const PanelRect& rect) {
   ImGui::PopStyleVar(3);
   const float button = ImGui::GetFrameHeight();
   ImGui::AlignTextToFramePadding();
-  ImGui::PushTextWrapPos(ImGui::GetContentRegionAvail().x - button);
+  const float end = ImGui::GetContentRegionAvail().x - button;
+  ImGui::PushTextWrapPos(end);
   ImGui::TextColored(colors.bad, "%s", icon::warning);
   ImGui::SameLine(0, 7 * s);
-  ImGui::TextUnformatted(app.notice.c_str());
+  ImGui::TextUnformatted(in_lines(app.notice, end - ImGui::GetCursorPosX()).c_str());
   ImGui::PopTextWrapPos();
   note_widget(app.widgets, "error");
   ImGui::SameLine(width - button - 5 * s);

@@ -39,7 +39,7 @@ bool tab(App& app, const Tab& wanted) {
   const ImVec2 size(text.x + 16 * s, text.y + 10 * s);
   const bool pressed = ImGui::InvisibleButton(wanted.name, size);
   note_widget(app.widgets, wanted.name);
-  help_on_hover(wanted.help);
+  help_above(wanted.help);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddText({from.x + 8 * s, from.y + 4 * s},
                packed(on                       ? colors.text
@@ -63,6 +63,7 @@ void study_panel(App& app, const PanelRect& rect) {
   ImGui::GetWindowDrawList()->AddLine({rect.x, rect.y}, {rect.x + rect.width, rect.y},
                                       packed(colors_of(app).border), std::max(1.f, std::round(s)));
   StudyKind wanted = StudyKind::none;
+  const float top = ImGui::GetCursorPosY();
   for (const Tab& each : tabs)
     if (tab(app, each) && each.study != app.study.open) wanted = each.study;
   const float side = ImGui::GetFrameHeight() + 2 * s;
@@ -72,7 +73,7 @@ void study_panel(App& app, const PanelRect& rect) {
     motion_transport(app, rect.width - side - 24 * s - from);
     ImGui::SameLine();
   }
-  ImGui::SetCursorPosX(rect.width - side - 8 * s);
+  ImGui::SetCursorPos({rect.width - side - 8 * s, top});
   const bool closed = icon_button(app, "study/close", icon::close, "Close");
   switch (app.study.open) {
   case StudyKind::none: break;

@@ -50,7 +50,7 @@ bool choice(App& app, const std::string& name, const char* text, bool on, const 
 // The next button beside the last one, or below it where there is no room.
 void wrap(float width) {
   const float room = ImGui::GetWindowContentRegionMax().x + ImGui::GetWindowPos().x;
-  const float gap = 4;
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
   if (ImGui::GetItemRectMax().x + gap + width <= room) ImGui::SameLine(0, gap);
 }
 
@@ -76,6 +76,7 @@ void set_axis(App& app, const Vec3& axis) {
 void set_bodies(App& app, const std::array<std::string, 2>& bodies) {
   JointDraft& draft = *app.tool.joint;
   draft.bodies = bodies;
+  draft.bodies_chosen = true;
   Selection selection;
   for (const std::string& body : bodies)
     if (body != ground_name) selection.add({PartKind::body, body});
@@ -140,19 +141,20 @@ void axis_rows(App& app, const ViewInput& input) {
   ImGui::AlignTextToFramePadding();
   const bool normal = app.tool.tool == Tool::joint && app.tool.joint_type == JointType::planar;
   ImGui::TextDisabled("%s", normal ? "Normal" : "Axis");
-  ImGui::SameLine();
   const std::array<const char*, 3> letters{"X", "Y", "Z"}, ids{"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
+    ImGui::SameLine();
     offer(ids[k], letters[k], Vec3::Unit(i), "Along a world axis.");
-    ImGui::SameLine(0, 4 * app.scale);
   }
   const Vec3 sight = input.camera.backward();
   if (sight.cwiseAbs().maxCoeff() < 1 - 1e-9) {
+    ImGui::SameLine();
     offer("view", "View", sight, "Along the line of sight, towards the eye.");
-    ImGui::SameLine(0, 4 * app.scale);
   }
-  if (choice(app, "tools/axis/points", "Two points…", draft.picking_axis,
+  constexpr const char* two_points = "Two points…";
+  wrap(button_width(two_points));
+  if (choice(app, "tools/axis/points", two_points, draft.picking_axis,
              "Click two points that it goes through.")) {
     draft.picking_axis = !draft.picking_axis;
     draft.axis_from.reset();
@@ -184,10 +186,11 @@ void second_axis_row(App& app) {
   }
 }
 
-// What the solids of the two bodies cover of the window, a rectangle each.
+// What the solids of the two bodies first offered cover of the window, a rectangle each: others that are
+// chosen do not move the card.
 std::vector<PanelRect> covered_by_bodies(App& app, const ViewInput& input) {
   std::vector<PanelRect> covered;
-  const std::array<std::string, 2>& names = app.tool.joint->bodies;
+  const std::array<std::string, 2>& names = app.tool.joint->guessed;
   for (const Instance& solid : cached_scene(app).instances) {
     if (solid.part.kind != PartKind::body) continue;
     const std::string& name = app.mechanism().bodies[static_cast<std::size_t>(solid.part.index)].name;
@@ -213,8 +216,8 @@ float common_area(const PanelRect& a, ImVec2 from, ImVec2 size) {
   return std::max(width, 0.f) * std::max(height, 0.f);
 }
 
-// Beside the point, rather on the side where less of the mechanism is, and within the view; in a corner of it
-// where the card would lie on the bodies that are joined.
+// Beside the point, rather on the side where less of the mechanism is, and within the view, above what is
+// written at its foot; in a corner of it where the card would lie on the bodies that are joined.
 void place_card(App& app, const ViewInput& input, ImVec2 size) {
   const float s = app.scale, gap = 28 * s, edge = 8 * s;
   const PanelRect& rect = input.rect;
@@ -225,7 +228,7 @@ void place_card(App& app, const ViewInput& input, ImVec2 size) {
   const float most = rect.x + rect.width - size.x - edge, least = rect.x + edge;
   const bool to_left = left >= least && (at.x < middle.x || right > most);
   ImVec2 from(to_left || (right > most && at.x > rect.x + rect.width / 2) ? left : right, at.y - 100 * s);
-  const float top = rect.y + edge, foot = std::max(top, rect.y + rect.height - size.y - edge);
+  const float top = rect.y + edge, foot = std::max(top, app.view.lines_top - size.y - edge);
   from.x = std::clamp(from.x, least, std::max(least, most));
   from.y = std::clamp(from.y, top, foot);
   const std::vector<PanelRect> covered = covered_by_bodies(app, input);
@@ -267,6 +270,10 @@ void joint_card(App& app, const ViewInput& input) {
   if (bearing || has_axis(app.tool.joint_type)) axis_rows(app, input);
   if (!bearing && has_axis2(app.tool.joint_type)) second_axis_row(app);
   ImGui::Dummy({0, 2 * s});
+  // The card stays as tall as it was: fewer rows do not move what is clicked next.
+  const float foot =
+      app.tool.joint->card_height - ImGui::GetStyle().WindowPadding.y - ImGui::GetFrameHeight();
+  ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), foot));
   if (text_button(app, "tools/join", bearing ? "Insert" : "Join", true)) {
     make_joint(app);
   } else {
@@ -276,8 +283,9 @@ void joint_card(App& app, const ViewInput& input) {
       app.tool.joint.reset();
     }
   }
-  // Its place is chosen for the tallest it was: a type with fewer rows does not move what is clicked next.
   app.tool.card_height = std::max(app.tool.card_height, ImGui::GetWindowHeight());
+  if (app.tool.joint)
+    app.tool.joint->card_height = std::max(app.tool.joint->card_height, ImGui::GetWindowHeight());
   ImGui::End();
 }
 

@@ -43,6 +43,10 @@ struct Structure {
     }
   }
   bool hangs(int body) const { return grounded[static_cast<std::size_t>(body)]; }
+  std::size_t joints_of(int body) const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        neighbors, [&](const auto& pair) { return pair[0] == body || pair[1] == body; }));
+  }
   bool joined(int a, int b) const {
     return std::ranges::any_of(neighbors, [&](const auto& pair) {
       return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
@@ -55,18 +59,30 @@ std::array<int, 2> in_order(const Structure& structure, int a, int b) {
   return structure.hangs(b) && !structure.hangs(a) ? std::array{b, a} : std::array{a, b};
 }
 
-std::array<int, 2> pair_at(const Structure& structure, const std::vector<int>& there) {
-  if (there.size() == 1) return {-1, there[0]};
-  const auto loose = std::ranges::find_if(there, [&](int body) { return !structure.hangs(body); });
-  if (loose != there.end()) {
-    for (const int other : there)
-      if (structure.hangs(other)) return {other, *loose};
-    return {std::min(there[0], there[1]), std::max(there[0], there[1])};
+// Where all at the point are joined already: the end of a chain, with the ground that it is not joined to.
+std::optional<std::array<int, 2>> end_to_ground(const Structure& structure, const std::vector<int>& there) {
+  std::optional<std::array<int, 2>> found;
+  std::size_t fewest = 0; // joints
+  for (const int body : there) {
+    if (structure.joined(-1, body)) continue;
+    const std::size_t joints = structure.joints_of(body);
+    if (found && joints >= fewest) continue;
+    fewest = joints;
+    found = {-1, body};
   }
+  return found;
+}
+
+std::array<int, 2> pair_at(const Structure& structure, const std::vector<int>& there, bool again) {
+  if (there.size() == 1) return {-1, there[0]};
+  for (const int loose : there)
+    for (const int other : there)
+      if (!structure.hangs(loose) && structure.hangs(other)) return {other, loose};
   for (std::size_t i = 0; i < there.size(); ++i)
     for (std::size_t k = i + 1; k < there.size(); ++k)
       if (!structure.joined(there[i], there[k]))
         return {std::min(there[i], there[k]), std::max(there[i], there[k])};
+  if (const auto found = end_to_ground(structure, there); found && !again) return *found;
   return {std::min(there[0], there[1]), std::max(there[0], there[1])};
 }
 
@@ -95,7 +111,7 @@ const Body* find_body(const Mechanism& mechanism, const std::string& name) {
 } // namespace
 
 std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<const Instance> instances,
-                                        const Selection& selected, const Vec3& at, double reach) {
+                                        const Selection& selected, const Vec3& at, double reach, bool again) {
   if (mechanism.bodies.empty()) return {};
   const Structure structure(mechanism);
   const auto names = [&](const std::array<int, 2>& pair) {
@@ -115,7 +131,7 @@ std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<co
   for (const NearBody& body : near)
     if (body.distance <= reach) there.push_back(body.body);
   if (there.empty()) there.push_back(near.front().body);
-  return names(pair_at(structure, there));
+  return names(pair_at(structure, there, again));
 }
 
 std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std::string, 2>& bodies) {
@@ -129,10 +145,10 @@ std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std
   for (const std::string& name : bodies) {
     const Body* body = find_body(mechanism, name);
     if (!body) continue;
-    if (const auto rod = rod_axis(*body)) add(name, *rod);
+    if (const auto rod = rod_axis(*body)) add("along " + name, *rod);
     const Mat3 frame = body->rotation.normalized().toRotationMatrix();
     for (int i = 0; i < 3; ++i)
-      add(name + " " + "xyz"[i], frame.col(i));
+      add(std::string(1, "xyz"[i]) + " of " + name, frame.col(i));
   }
   return axes;
 }

@@ -13,13 +13,14 @@ namespace flyball {
 
 // Parent and child: the two selected bodies, else two that are at the point (within `reach`, m), else the
 // ground and the nearest. What hangs on the ground already is the parent of what does not. Empty names
-// without any body. `instances` is the mechanism's scene in its drawn pose.
+// without any body. Two that a joint joins already are offered last, and only where `again` says that this
+// may be meant, as it is for a bearing. `instances` is the mechanism's scene in its drawn pose.
 std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<const Instance> instances,
-                                        const Selection& selected, const Vec3& at, double reach);
+                                        const Selection& selected, const Vec3& at, double reach, bool again);
 
 // A direction that the two bodies have to offer beside the world's.
 struct BodyAxis {
-  std::string label; // "rod1", "block1 x"
+  std::string label; // "along rod1", "x of block1"
   Vec3 axis = Vec3::UnitZ();
 };
 std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std::string, 2>& bodies);

@@ -164,7 +164,7 @@ void use_tool_cursor(App& app, ViewInput& input) {
 void follow_tool_cursor(App& app, std::uint64_t revision_before, bool joining_before) {
   if (!app.keyboard.by_key) return;
   if (app.tool.joint && !joining_before) focus_widget(app, "tools/join");
-  if (app.document.revision() != revision_before && app.tool.tool == Tool::select)
+  if (app.document.revision() != revision_before && app.tool.tool == Tool::select && app.tool.cursor)
     focus_widget(app, "inspector/name");
 }
 

@@ -182,6 +182,7 @@ std::string hint_of_tool(const App& app) {
                                                                            : " Shift leaves joints behind.") +
            " A number can be typed. Esc takes it back.";
   if (const std::string hint = hand_hint(app); !hint.empty()) return hint;
+  if (!tool.typed.empty()) return "Enter or a click places it so. Esc drops the number.";
   if (tool.cursor && !tool.joint)
     return std::string(tool.first ? "The other end, or its length, in figures: arrows" : "Arrows") +
            " move the cursor, Page Down goes to the next point, Enter places. Esc ends.";

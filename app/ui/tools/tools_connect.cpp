@@ -77,25 +77,15 @@ std::string obstacle(Tool tool, const Aim& from, const Aim& to) {
   return "";
 }
 
-// The direction from one end to where the cursor is. On nothing in particular it snaps to round angles, as a
-// grid point far away would not.
-Vec3 direction(const App& app, const ViewInput& input, const Aim& from, const Aim& to) {
-  const int n = to.plane.normal, a = (n + 1) % 3, b = (n + 2) % 3;
+// The direction from one end to where the cursor is, as the preview has it; on the end itself to the right, as
+// it is seen.
+Vec3 direction(const ViewInput& input, const Aim& from, const Aim& to) {
   const Vec3 by = to.point - from.point;
-  const bool in_plane = std::abs(by[n]) <= 1e-9 * by.norm();
-  if (!(by.norm() > 0)) { // to the right, as it is seen
-    int along = a;
-    if (std::abs(input.camera.right()[b]) > std::abs(input.camera.right()[a])) along = b;
-    return std::copysign(1.0, input.camera.right()[along]) * Vec3::Unit(along);
-  }
-  if (!in_plane || !to.what.empty() || !snaps(app, input)) return by.normalized();
-  const double angle = round_angle(std::atan2(by[b], by[a]));
-  Vec3 unit = Vec3::Zero();
-  unit[a] = std::cos(angle);
-  unit[b] = std::sin(angle);
-  for (double& x : unit)
-    if (std::abs(x) < 1e-15) x = 0;
-  return unit;
+  if (by.norm() > 0) return by.normalized();
+  const int n = to.plane.normal, a = (n + 1) % 3, b = (n + 2) % 3;
+  int along = a;
+  if (std::abs(input.camera.right()[b]) > std::abs(input.camera.right()[a])) along = b;
+  return std::copysign(1.0, input.camera.right()[along]) * Vec3::Unit(along);
 }
 
 // Where the cursor is, or as far away from the first end as is typed.
@@ -106,7 +96,7 @@ Aim second_end(const App& app, const ViewInput& input, const Aim& from, const Ai
   if (!length) return seen;
   Aim end = seen;
   end.named.clear();
-  end.point = from.point + *length * direction(app, input, from, seen);
+  end.point = from.point + *length * direction(input, from, seen);
   return end;
 }
 

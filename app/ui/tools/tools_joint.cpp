@@ -23,20 +23,30 @@ void show_bodies(App& app) {
 }
 
 void begin_joint(App& app, const ViewInput& input, const Aim& aim) {
+  const JointDraft former = app.tool.joint.value_or(JointDraft()); // whose point is moved
+  const bool bearing = app.tool.tool == Tool::bearing;
   JointDraft draft;
-  draft.before = app.tool.joint ? app.tool.joint->before : app.selection();
+  draft.before = app.tool.joint ? former.before : app.selection();
+  draft.card_height = former.card_height;
   const double reach = snap_reach * input.point * input.metres_per_pixel();
   draft.at = aim.point;
   draft.named = aim.named;
-  draft.bodies = guess_bodies(app.mechanism(), cached_scene(app).instances, draft.before, draft.at, reach);
-  if (draft.bodies[1].empty()) {
+  draft.guessed =
+      guess_bodies(app.mechanism(), cached_scene(app).instances, draft.before, draft.at, reach, bearing);
+  if (draft.guessed[1].empty()) {
     app.notice = "There is nothing to join yet: place a body first.";
     return;
   }
-  draft.axis = app.tool.tool == Tool::bearing
-                   ? guess_shaft(app.mechanism(), draft.bodies, aim.plane.normal)
-                   : guess_axis(app.mechanism(), app.tool.joint_type, draft.bodies, aim.plane.normal);
-  draft.axis2 = axis_across(draft.axis);
+  draft.bodies_chosen = former.bodies_chosen;
+  draft.bodies = former.bodies_chosen ? former.bodies : draft.guessed;
+  draft.axis_chosen = former.axis_chosen;
+  if (former.axis_chosen)
+    draft.axis = former.axis;
+  else
+    draft.axis = bearing ? guess_shaft(app.mechanism(), draft.bodies, aim.plane.normal)
+                         : guess_axis(app.mechanism(), app.tool.joint_type, draft.bodies, aim.plane.normal);
+  draft.axis2_chosen = former.axis2_chosen && draft.axis.cross(former.axis2).norm() > 1e-6;
+  draft.axis2 = draft.axis2_chosen ? former.axis2 : axis_across(draft.axis);
   app.tool.joint = std::move(draft);
   app.tool.last_point = aim.point;
   show_bodies(app);
@@ -127,7 +137,7 @@ bool make_joint(App& app) {
        });
   app.tool.joint.reset();
   if (!ImGui::GetIO().KeyShift) app.tool.tool = Tool::select;
-  if (app.keyboard.by_key) focus_widget(app, "inspector/name");
+  if (app.keyboard.ring) focus_widget(app, "inspector/name"); // for whoever works by keys alone
   return true;
 }
 

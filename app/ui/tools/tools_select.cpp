@@ -20,7 +20,7 @@ std::optional<Hit> part_under_cursor(App& app, const ViewInput& input) {
 namespace {
 
 // Looking along a ray takes longest in a mechanism of thousands of bodies: only where the hand moves, or the
-// mechanism under it.
+// picture under it.
 void point_at_parts(App& app, const ViewInput& input) {
   const bool steering = input.active && (input.moved || !input.held);
   const bool handle = app.tool.hovered != Handle::none || app.tool.hovered_point || app.tool.grab ||
@@ -30,10 +30,13 @@ void point_at_parts(App& app, const ViewInput& input) {
     app.view.pointed_at = Vec2::Constant(-1);
     return;
   }
-  std::uint64_t& revision = app.tool.caches.hover_revision;
-  if (input.cursor == app.view.pointed_at && revision == app.document.revision()) return;
+  ToolCaches& cache = app.tool.caches;
+  const std::shared_ptr<const ViewScene>& scene = app.view.scene.scene;
+  if (input.cursor == app.view.pointed_at && cache.hover_scene == scene && cache.hover_camera == input.camera)
+    return;
   app.view.pointed_at = input.cursor;
-  revision = app.document.revision();
+  cache.hover_scene = scene;
+  cache.hover_camera = input.camera;
   const auto hit = part_under_cursor(app, input);
   app.view.hovered = hit ? hit->part : PartId{};
 }

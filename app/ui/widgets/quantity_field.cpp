@@ -222,7 +222,7 @@ std::string tooltip(const QuantityField& field, const ShownNumber& shown,
       exact += " = " + short_text(field.value * degrees / 6, 9) + " rpm";
     line(exact + (field.standard ? ", as the scene does not say otherwise" : ""));
   }
-  if (formula) line("=" + *formula);
+  if (formula) line("=" + *formula + "\nNumbers without a unit are in SI units and radians.");
   if (!field.address.empty()) line(field.address);
   return text;
 }

@@ -22,21 +22,34 @@ void text_in(ImFont* font, const ImVec4& color, const std::string& text) {
   ImGui::PopFont();
 }
 
+void show_help(const char* help, bool above) {
+  const bool keyed = keyed_item();
+  if (!help || !*help || !(keyed || ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ||
+      !pointed_long())
+    return;
+  if (keyed) // below it, wherever the mouse is
+    ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + 6});
+  if (above)
+    ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMin().y - 6}, ImGuiCond_Always,
+                            {0, 1});
+  else
+    place_beside_window();
+  ImGui::BeginTooltip();
+  const float width = ImGui::GetFontSize() * 22;
+  ImGui::PushTextWrapPos(width);
+  ImGui::TextUnformatted(in_lines(help, width - ImGui::GetCursorPosX()).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
 } // namespace
 
 void help_on_hover(const char* help) {
-  const bool keyed = keyed_item();
-  if (help && *help && (keyed || ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) &&
-      pointed_long()) {
-    if (keyed) // below it, wherever the mouse is
-      ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + 6});
-    place_beside_window();
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
-    ImGui::TextUnformatted(help);
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
-  }
+  show_help(help, false);
+}
+
+void help_above(const char* help) {
+  show_help(help, true);
 }
 
 bool icon_button(Ui& ui, const std::string& name, const char* icon, const char* help, bool on) {
@@ -140,10 +153,31 @@ std::string name_list(const std::vector<std::string>& names) {
   return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
 }
 
+std::string in_lines(std::string_view text, float width) {
+  const ImFont* font = ImGui::GetFont();
+  const auto width_of = [&](std::string_view part) {
+    return font->CalcTextSizeA(ImGui::GetFontSize(), 1e9f, 0, part.data(), part.data() + part.size()).x;
+  };
+  std::string lines;
+  float used = 0; // of the last line
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
+    const std::string_view word = text.substr(at, end - at), gap = at > 0 ? text.substr(at - 1, 1) : "";
+    const float wide = width_of(word), room = gap == " " ? width_of(gap) : 0;
+    const bool below = gap == "\n" || (used > 0 && used + room + wide > width);
+    if (at > 0) lines += below ? '\n' : ' ';
+    lines += word;
+    used = below ? wide : used + room + wide;
+    at = end + 1;
+  }
+  return lines;
+}
+
 void paragraph(const std::string& text, const ImVec4& color) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextUnformatted(in_lines(text, ImGui::GetContentRegionAvail().x).c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
 }

@@ -5,6 +5,7 @@
 #include "app/ui/widgets/ui_style.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flyball {
@@ -44,6 +45,9 @@ void visible_rows(std::size_t count, const Draw& draw) {
 }
 // "a, b, c": the first of the names, and how many more there are.
 std::string name_list(const std::vector<std::string>& names);
+// Words broken between lines of this width (pixels) at blanks only: Dear ImGui breaks a number after its
+// point, too.
+std::string in_lines(std::string_view text, float width);
 // Words that may take several lines.
 void paragraph(const std::string& text, const ImVec4& color);
 // Text cut to the width with "..." where it is longer; the whole of it appears over it.
@@ -55,5 +59,7 @@ bool slider(App& app, const std::string& name, const ParameterControl& control, 
             bool& type_value);
 
 void help_on_hover(const char* help);
+// The same above the item, where what lies below it is reached for next.
+void help_above(const char* help);
 
 } // namespace flyball

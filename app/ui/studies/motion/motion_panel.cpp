@@ -150,8 +150,8 @@ void accuracy(App& app) {
   const EnergyTracks& e = run.energy;
   row(app, "Energy balance", "± " + magnitude_text(greatest(e.balance), numbers), "J",
       "Stored and dissipated energy less what the drives delivered: what the integrator has lost or made.");
-  row(app, "Energy at play", magnitude_text(std::max(greatest(e.kinetic), greatest(e.delivered)), numbers),
-      "J", "The largest kinetic or delivered energy, beside which the balance is to be seen.");
+  row(app, "Largest energy", short_text(std::max(greatest(e.kinetic), greatest(e.delivered)), 2), "J",
+      "The largest kinetic or delivered energy, beside which the balance is to be seen.");
   for (const MotionRun& motion : app.motion.runs)
     if (motion.wanted && motion.run && !motion.run->damped && !motion.run->energy.jacobi.empty()) {
       const auto [least, most] = std::ranges::minmax(motion.run->energy.jacobi);
@@ -299,7 +299,7 @@ void plots(App& app) {
 } // namespace
 
 void motion_transport(App& app, float width) {
-  const float right = ImGui::GetCursorPosX() + width;
+  const float right = ImGui::GetCursorPosX() + width, top = ImGui::GetCursorPosY();
   const MotionRun* shown = shown_motion(app);
   ImGui::BeginDisabled(!shown);
   const bool playing = app.playback.playing;
@@ -325,7 +325,7 @@ void motion_transport(App& app, float width) {
   const std::string text = short_text(std::round(time * 1000) / 1000, 6) + " s";
   const float room = ImGui::CalcTextSize("0000.000 s").x + 8 * app.scale;
   ImGui::SetNextItemWidth(std::max(right - ImGui::GetCursorPosX() - room, 40.f));
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
+  ImGui::SetCursorPosY(top + app.scale);
   const bool dragged = ImGui::SliderScalar("##scrub", ImGuiDataType_Double, &time, &from, &end, "");
   note_widget(app.widgets, "motion/scrub", KeyUse::slide);
   if (nudge_value(app, "motion/scrub", time, from, end) || dragged) {
@@ -333,8 +333,7 @@ void motion_transport(App& app, float width) {
     seek_motion(app, time);
   }
   ImGui::SameLine();
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + ImGui::GetStyle().FramePadding.y + digits_drop(app) -
-                       app.scale);
+  ImGui::SetCursorPosY(top + app.scale + digits_drop(app)); // words begin lower beside frames as it is
   ImGui::PushFont(app.fonts.digits);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopFont();

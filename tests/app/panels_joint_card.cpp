@@ -1,0 +1,100 @@
+// The card of a joint stays under the hand, keeps what was chosen, and hides nothing that is written.
+#include "robot.hpp"
+#include "slider_crank.hpp"
+#include "tests/catch.hpp"
+
+#include <imgui_internal.h>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+using Pair = std::array<std::string, 2>;
+
+// One metre in view, and the joint's tool in hand.
+struct SliderCrank : Robot {
+  SliderCrank() : Robot({1440, 900}) {
+    begin_empty(1);
+    edit(app, "Build", [](Mechanism& next, Selection&) { add_slider_crank(next); });
+    frames(2);
+    key('J');
+  }
+  void begin(const Vec3& at) {
+    click_at(at);
+    frames(2); // the card takes a moment to know its size
+    REQUIRE(app.tool.joint);
+  }
+  void choose(const std::string& combo, const std::string& item) {
+    click(combo);
+    click(combo + "/" + item);
+    frames(2);
+  }
+};
+
+} // namespace
+
+TEST_CASE("two bodies that are joined already are not offered again") {
+  SliderCrank d;
+  d.begin(slider_crank_pin);
+  CHECK(d.app.tool.joint->bodies == Pair{"ground", "block1"});
+}
+
+TEST_CASE("a bearing may lie where a joint is") {
+  SliderCrank d;
+  set_tool(d.app, Tool::bearing);
+  d.frames(1);
+  d.begin(slider_crank_pin);
+  CHECK(d.app.tool.joint->bodies == Pair{"rod2", "block1"});
+}
+
+TEST_CASE("the button of the card stays where it is when fewer axes are offered") {
+  SliderCrank d;
+  d.begin(slider_crank_pin);
+  d.choose("tools/parent", "rod2");
+  const WidgetRect join = d.widget("tools/join");
+  d.choose("tools/parent", "ground");
+  CHECK(d.app.tool.joint->bodies == Pair{"ground", "block1"});
+  CHECK(d.widget("tools/join").from.x == join.from.x);
+  CHECK(d.widget("tools/join").from.y == join.from.y);
+  d.click(join.center());
+  CHECK(d.app.mechanism().joints.size() == 4);
+}
+
+TEST_CASE("what was chosen in the card stays when its point is moved") {
+  SliderCrank d;
+  d.begin(slider_crank_pin);
+  d.choose("tools/parent", "rod1");
+  d.click("tools/axis/x");
+  for (const Vec3& at : {Vec3(-0.2, -0.2, 0), slider_crank_pin}) {
+    d.begin(at);
+    CHECK(d.app.tool.joint->bodies == Pair{"rod1", "block1"});
+    CHECK(d.app.tool.joint->axis == Vec3::UnitX());
+    CHECK((d.app.tool.joint->at - at).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("the keys stay in the view for whoever joins with the mouse and Enter") {
+  SliderCrank d;
+  d.begin(slider_crank_pin);
+  d.key(key_enter);
+  REQUIRE(d.app.mechanism().joints.size() == 4);
+  d.frames(2);
+  CHECK(d.app.keyboard.at.empty());
+  CHECK_FALSE(d.app.keyboard.ring);
+}
+
+TEST_CASE("no button of the card is cut, and it covers nothing that is written below it") {
+  SliderCrank d;
+  d.app.view.camera.azimuth = 0.6;
+  d.app.view.camera.elevation = 0.4;
+  d.frames(1);
+  d.begin({0.3, -0.4, 0});
+  REQUIRE(d.app.widgets.contains("tools/axis/view"));
+  const WidgetRect points = d.widget("tools/axis/points");
+  CHECK(points.to.x - points.from.x >= ImGui::CalcTextSize("Two points…").x + 2);
+  const ImGuiWindow* card = ImGui::FindWindowByName("joint");
+  REQUIRE(card);
+  CHECK(card->Pos.y + card->Size.y <= d.app.view.lines_top);
+  CHECK(card->Pos.y + card->Size.y <= d.widget("status").from.y);
+}

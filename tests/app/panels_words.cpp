@@ -1,0 +1,150 @@
+// Words and numbers where they are read: whole, beside what they are about, and in the way of nothing.
+#include "robot.hpp"
+
+#include "app/document/create.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/widgets.hpp"
+#include "tests/catch.hpp"
+
+#include <imgui_internal.h>
+
+#include <algorithm>
+
+using namespace flyball;
+using namespace flyball::test;
+
+namespace {
+
+// The tooltip that is shown.
+const ImGuiWindow* tooltip() {
+  for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+    if (window->Active && (window->Flags & ImGuiWindowFlags_Tooltip)) return window;
+  return nullptr;
+}
+
+int pixels_like(const Image& image, const WidgetRect& within, const ImVec4& color) {
+  int count = 0;
+  for (int y = static_cast<int>(within.from.y); y < static_cast<int>(within.to.y); ++y)
+    for (int x = static_cast<int>(within.from.x); x < static_cast<int>(within.to.x); ++x) {
+      const std::uint8_t* p = image.at(x, y);
+      const auto near = [](std::uint8_t byte, float part) {
+        return std::abs(static_cast<float>(byte) - 255 * part) < 12;
+      };
+      count += near(p[0], color.x) && near(p[1], color.y) && near(p[2], color.z);
+    }
+  return count;
+}
+
+} // namespace
+
+TEST_CASE("lines are broken at blanks, never within a number") {
+  const Robot robot;
+  const std::string text = "Dies out within 0.0046 s, below 0.0011 s;\nor it does not (1.5e-3).";
+  for (float width = 10; width < 400; width += 3) {
+    const std::string lines = in_lines(text, width);
+    std::string back = lines;
+    std::ranges::replace(back, '\n', ' ');
+    std::string plain = text;
+    std::ranges::replace(plain, '\n', ' ');
+    CHECK(back == plain);
+    // None is wider than asked for but words by themselves.
+    for (std::size_t at = 0; at < lines.size();) {
+      const std::size_t end = std::min(lines.find('\n', at), lines.size());
+      const std::string line = lines.substr(at, end - at);
+      if (line.find(' ') != std::string::npos) CHECK(ImGui::CalcTextSize(line.c_str()).x <= width + 1);
+      at = end + 1;
+    }
+  }
+  CHECK(in_lines(text, 1e6f) == text);
+}
+
+TEST_CASE("the help of a study's tab covers nothing of the study") {
+  Robot robot({1280, 900});
+  open_study(robot.app, StudyKind::response);
+  robot.frames(3);
+  const WidgetRect tab = robot.widget("study/states");
+  robot.point(tab.center());
+  robot.frames(200);
+  REQUIRE(tooltip());
+  CHECK(tooltip()->Pos.y + tooltip()->Size.y <= tab.from.y);
+}
+
+TEST_CASE("where nothing resists the chip says it as the results do") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  Mechanism m = Document::empty_mechanism();
+  add_body(m, {.at = {0.2, 0, 0}});
+  add_joint(m, JointType::revolute, {"ground", "ball1"}, Vec3::Zero(), Vec3::UnitY());
+  open_document(app, Document(m));
+  robot.frames(3);
+  REQUIRE(converged(app));
+  REQUIRE(app.answer.solution.stability_reason == StabilityReason::neutral);
+  const Image picture = robot.picture();
+  const WidgetRect& chip = robot.widget("status");
+  CHECK(pixels_like(picture, chip, colors_of(app).good) > 3);
+  CHECK(pixels_like(picture, chip, colors_of(app).warn) == 0);
+}
+
+TEST_CASE("all types of a joint are in sight in their list") {
+  Robot robot({1280, 900});
+  set_mode(robot.app, Mode::build);
+  select(robot.app, {{{PartKind::joint, "arm1"}}});
+  robot.frames(3);
+  robot.click("inspector/type");
+  robot.frames(2);
+  const WidgetRect &first = robot.widget("inspector/type/revolute"),
+                   &last = robot.widget("inspector/type/distance");
+  CHECK(last.to.y - last.from.y == Approx(first.to.y - first.from.y));
+}
+
+TEST_CASE("the buttons of the motion's line stand in one line") {
+  Robot robot({1280, 900});
+  robot.app.motion.duration = 0.2;
+  open_study(robot.app, StudyKind::response);
+  robot.frames(3);
+  const float top = robot.widget("study/close").from.y;
+  robot.key('M');
+  robot.frames(3);
+  CHECK(robot.widget("study/close").from.y == top);
+  CHECK(robot.widget("motion/first").from.y == top);
+}
+
+TEST_CASE("the toolbar's views stay where they are between Build and Explore") {
+  Robot robot({1280, 900});
+  const float explore = robot.widget("toolbar/front").from.x;
+  set_mode(robot.app, Mode::build);
+  robot.frames(2);
+  CHECK(robot.widget("toolbar/front").from.x == explore);
+}
+
+TEST_CASE("in a small window the theme's button stays, and what is left out is in the menu") {
+  const int width = GENERATE(640, 800, 900, 1280);
+  Robot robot({width, 600});
+  const auto within = [&](const WidgetRect& rect, float size) {
+    return rect.to.x <= static_cast<float>(width) && rect.to.x - rect.from.x >= size;
+  };
+  CHECK(within(robot.widget("toolbar/theme"), 20));
+  for (const char* name : {"toolbar/ghost", "toolbar/grid", "toolbar/shadow", "toolbar/front", "toolbar/iso"})
+    if (robot.app.widgets.contains(name)) {
+      INFO(name);
+      CHECK(robot.widget(name).to.x <= robot.widget("toolbar/theme").from.x);
+    }
+  CHECK(robot.app.widgets.contains("toolbar/shadow") == (width >= 900));
+}
+
+TEST_CASE("where the legend would cover a fifth of the view, it folds until it is asked for") {
+  Robot robot({800, 600});
+  App& app = robot.app;
+  app.view.loads = true;
+  open_study(app, StudyKind::response);
+  robot.frames(3);
+  CHECK_FALSE(app.widgets.contains("legend/0"));
+  robot.click("legend");
+  robot.frames(2);
+  CHECK(app.widgets.contains("legend/0"));
+  robot.frames(30); // else it would be a double click
+  robot.click("legend");
+  robot.frames(2);
+  CHECK_FALSE(app.widgets.contains("legend/0"));
+  CHECK(app.panels.legend); // of larger views
+}
