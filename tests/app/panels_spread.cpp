@@ -68,7 +68,7 @@ TEST_CASE("the histogram holds every sample, beside the numbers that say what it
 
 TEST_CASE("numbers that change nothing spread nothing: all samples stand at one value") {
   SpreadRobot robot("governor_engine"); // gain and damping move its speed, but not the collar
-  robot.app.study.spread.choice.output = "slide";
+  robot.state().output = "slide";
   robot.frames(4);
   REQUIRE(robot.state().samples.found);
   const Plot& plot = robot.plot();

@@ -106,7 +106,7 @@ void free_body_item(App& app) {
   const bool on = app.view.loads && app.mode == Mode::explore;
   if (ImGui::MenuItem("Free-body diagram", key_text(command("view.loads").key).c_str(), on))
     later(app, [on](App& changed) {
-      changed.view.loads = !on;
+      changed.view.fit_loads = changed.view.loads = !on;
       if (!on) set_mode(changed, Mode::explore);
     });
   note_widget(app.widgets, "view/menu/view.loads");
