@@ -72,6 +72,7 @@ Json diagram_json(const CampbellDiagram& d, const std::string& unit) {
          {"touches", c.touches},
          {"stable", c.stable},
          {"whirl", whirl_json(c.whirl, c.frequency)}});
+  out["without_modes"] = left_out(d, unit);
   out["run_time_s"] = d.run_time_s;
   return out;
 }
@@ -137,6 +138,8 @@ std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, c
           whirl_text(branch.points[last].whirls[static_cast<std::size_t>(branch.points[last].lines[l])]));
     }
   }
+  if (const std::string without = left_out(d, unit); !without.empty())
+    out += "  " + printable(without) + "\n";
   for (const CriticalSpeed& c : d.critical)
     out += critical_text(c, d.branches[static_cast<std::size_t>(c.branch)]);
   if (!turns)

@@ -101,6 +101,7 @@ std::string modes_text(const Mechanism& mechanism, const Solution& solution,
 
 // Why there are none, of a steady state that is there.
 std::string no_modes(const Solution& solution) {
+  if (solution.singular_loops) return std::string(singular_loops_message);
   if (solution.floquet || solution.stability_reason == StabilityReason::varying)
     return "The linearised motion turns with the drives and has no modes of one shape; solve tells its "
            "Floquet "

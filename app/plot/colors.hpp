@@ -19,7 +19,10 @@ const PlotColors& plot_colors(PlotGround ground);
 // plot.hpp.
 std::uint32_t curve_color(int index, PlotGround ground);
 // How much of its colour the ground of a band has, 0 to 1; its edges have more.
-inline constexpr double band_fill = 0.22, band_edge = 0.7;
+constexpr double band_fill(PlotGround ground) {
+  return ground == PlotGround::high_contrast ? 0.5 : 0.22;
+}
+inline constexpr double band_edge = 0.7;
 // Viridis: perceptually uniform, from dark blue at 0 to yellow at 1.
 std::uint32_t heat_color(double part);
 

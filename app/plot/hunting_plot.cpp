@@ -61,7 +61,7 @@ void add_hunting_curves(Plot& plot, const PlaneCurves& curves) {
         mine = parts.end() - 1;
         if (before) before = parts.data() + index;
       }
-      const std::string note = frequency_text(*p.hopf);
+      const std::string note = "hunts at " + frequency_text(*p.hopf);
       if (before != &*mine) {
         if (!mine->points.empty()) {
           mine->points.push_back({broken, broken});

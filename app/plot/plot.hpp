@@ -20,6 +20,7 @@ struct PlotAxis {
   std::optional<PlotRange> range{}; // fixed; otherwise all that is there
   double room = 0.04;               // of the range, left free at either end; time axes want 0
   double noise = 1e-15;             // a narrower linear range is rounding and drawn flat
+  bool whole = false;               // counts something: its values are told as whole numbers
   // CSV files are in SI units: what `unit` is then, where it is another, and how many of `unit` make one.
   std::string si_unit{};
   double factor = 1;

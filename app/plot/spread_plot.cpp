@@ -13,10 +13,26 @@ namespace {
 
 constexpr double fewest_bins = 8, most_bins = 60;
 
+// Of values that differ by no more than rounding.
+bool are_alike(const SpreadStatistics& s) {
+  constexpr double rounding = 1e-12;
+  return !(s.most - s.least > rounding * std::max(std::abs(s.least), std::abs(s.most)));
+}
+
+// All of them at one value: a bar without width.
+PlotCurve single_bar(const SpreadStatistics& s, std::string name, int color) {
+  PlotCurve curve;
+  curve.name = std::move(name);
+  curve.points = {{s.median, 0}, {s.median, static_cast<double>(s.count)}};
+  curve.color = color;
+  curve.width = 4;
+  return curve;
+}
+
 // Of a bin: after Freedman and Diaconis (1981), by the range in which the middle 90 % lie.
 double bin_width(const SpreadStatistics& s) {
+  if (are_alike(s)) return 0;
   const double range = s.most - s.least, quartiles = (s.high - s.low) / 2.44; // of a normal distribution
-  if (!(range > 0)) return 0;
   const double wanted = 2 * quartiles / std::cbrt(static_cast<double>(s.count));
   return wanted > 0 ? range / std::clamp(std::ceil(range / wanted), fewest_bins, most_bins)
                     : range / most_bins;
@@ -26,11 +42,6 @@ double bin_width(const SpreadStatistics& s) {
 PlotBand bars(const std::vector<double>& values, double least, double most, double width, std::string name,
               int color) {
   PlotBand band{std::move(name), {}, color};
-  if (!(width > 0)) { // all alike
-    width = std::max(std::abs(least) * 1e-6, 1e-12);
-    least -= width / 2;
-    most = least + width;
-  }
   const auto bins =
       static_cast<std::size_t>(std::clamp(std::round((most - least) / width), 1., 4 * most_bins));
   std::vector<double> counts(bins);
@@ -69,6 +80,7 @@ Plot histogram_plot(const SpreadAnswer& answer, std::size_t output) {
   plot.x.label = shown.name;
   plot.x.unit = shown.unit;
   plot.y.label = "samples";
+  plot.y.whole = true;
   std::vector<double> followed, elsewhere;
   for (std::size_t i = 0; i < answer.samples; ++i) {
     const double value = answer.values[output][i];
@@ -80,11 +92,15 @@ Plot histogram_plot(const SpreadAnswer& answer, std::size_t output) {
   // Bars of one width, so that heights compare, unless the others would be very many.
   if (others <= 0 || (width > 0 && (e.most - e.least) / width <= 2 * most_bins)) others = width;
   if (f.most - f.least < others) width = others; // which all fit in one
-  if (f.count > 0) {
+  if (f.count > 0 && !(width > 0)) {
+    plot.curves.push_back(single_bar(f, "samples", plot_color::blue));
+  } else if (f.count > 0) {
     const double spare = std::max(0., width - (f.most - f.least)) / 2;
     plot.bands.push_back(bars(followed, f.least - spare, f.most + spare, width, "samples", plot_color::blue));
   }
-  if (e.count > 0) {
+  if (e.count > 0 && !(others > 0)) {
+    plot.curves.push_back(single_bar(e, "in another steady state", plot_color::orange));
+  } else if (e.count > 0) {
     const double reach = others > 0 ? std::max(1., std::ceil((e.most - e.least) / others)) * others : 0;
     plot.bands.push_back(
         bars(elsewhere, e.least, e.least + reach, others, "in another steady state", plot_color::orange));
@@ -99,7 +115,7 @@ Plot histogram_plot(const SpreadAnswer& answer, std::size_t output) {
       highest = std::max(highest, point[1]);
   plot.y.range = PlotRange{0, highest > 0 ? 1.06 * highest : 1};
   plot.references.push_back({.axis = 0, .at = shown.nominal, .label = "nominal", .line = PlotLine::solid});
-  if (f.count > 1) {
+  if (f.count > 1 && !are_alike(f)) {
     plot.references.push_back({.axis = 0, .at = f.lowest, .label = "2.5 %", .line = PlotLine::dotted});
     plot.references.push_back({.axis = 0, .at = f.highest, .label = "97.5 %", .line = PlotLine::dotted});
   }

@@ -170,7 +170,8 @@ struct Drawing {
         path += fmt::format("L{} {}", px(lower[i][0]), px(lower[i][1]));
       for (std::size_t i = 0; i < lower.size(); ++i)
         edges += fmt::format("{}{} {}", i == 0 ? 'M' : 'L', px(lower[i][0]), px(lower[i][1]));
-      out += fmt::format("<path d=\"{}Z\" fill=\"{}\" fill-opacity=\"{}\"/>\n", path, color, px(band_fill));
+      out += fmt::format("<path d=\"{}Z\" fill=\"{}\" fill-opacity=\"{}\"/>\n", path, color,
+                         px(band_fill(ground)));
       out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-opacity=\"{}\"/>\n", edges, color,
                          px(band_edge));
     }
@@ -195,7 +196,7 @@ struct Drawing {
         out += fmt::format(
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"10\" fill=\"{}\" fill-opacity=\"{}\"/>\n",
             px(box.left), px((box.top + box.bottom) / 2 - 5), px(box.width()),
-            hex(curve_color(plot.bands[entry.curve].color, ground)), px(2 * band_fill));
+            hex(curve_color(plot.bands[entry.curve].color, ground)), px(2 * band_fill(ground)));
         text(entry.text, colors.text);
         continue;
       }

@@ -17,7 +17,7 @@ std::string glfw_error() {
   return words ? words : "unknown error";
 }
 
-// GLFW is global by nature; windows and probes share it, the last one out closes it.
+// GLFW is global by nature; windows share it, the last one out closes it.
 class GlfwSession {
  public:
   GlfwSession() {
@@ -56,16 +56,6 @@ struct Window::State {
   GlfwSession session;
   std::unique_ptr<GLFWwindow, DestroyWindow> window;
 };
-
-bool display_available(std::string* reason) {
-  try {
-    const GlfwSession session;
-    return true;
-  } catch (const GlError& error) {
-    if (reason) *reason = error.what();
-    return false;
-  }
-}
 
 void on_lost_display(std::function<void()> call) {
   lost_display() = std::move(call);

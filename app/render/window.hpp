@@ -9,9 +9,6 @@ struct GLFWwindow;
 
 namespace flyball {
 
-// Whether a display can be opened at all; `reason` is then set to GLFW's words.
-bool display_available(std::string* reason = nullptr);
-
 // When the display goes, Xlib ends the program; it calls this first, from whichever thread notices. Nothing
 // to do with windows or OpenGL works any more. Empty for none.
 void on_lost_display(std::function<void()> call);

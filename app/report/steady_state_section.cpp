@@ -58,7 +58,7 @@ Html solver_terms(const Solution& s) {
   Html history;
   for (const double h : s.history)
     if (std::isfinite(h)) history += (history.empty() ? Html() : Html(", ")) + magnitude(h, "");
-  if (!history.empty()) terms.term("Residual by iteration", history + " (scaled)");
+  if (!history.empty()) terms.term("Residual by evaluation", history + " (scaled)");
   if (s.condition) terms.term("Condition number", magnitude(*s.condition, "") + " of the scaled equations");
   if (s.potential) terms.term("Amended potential", quantity(*s.potential, "J", 9));
   return terms.html();

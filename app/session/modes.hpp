@@ -19,6 +19,7 @@ struct FoundModes {
   std::vector<VibrationMode> modes;
   std::vector<std::optional<Whirl>> whirls; // by mode, about the axis of the first drive that turns
   std::optional<StabilityEvidence> evidence;
+  bool singular_loops = false;        // why there are no modes
   std::unique_ptr<Analysis> analysis; // which stands in the state, for poses along a mode
 };
 

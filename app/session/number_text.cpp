@@ -56,6 +56,12 @@ std::string short_text(double value, int digits) {
   return without_negative_zero(without_trailing_zeros(fmt::format("{:.{}g}", value, digits)));
 }
 
+std::string rough_text(double value) {
+  if (!std::isfinite(value) || value == 0 || std::abs(value) >= 1e6) return short_text(value, 3);
+  const double unit = std::pow(10., std::floor(std::log10(std::abs(value))) - 2);
+  return short_text(std::round(value / unit) * unit, 6);
+}
+
 std::string duration_text(double seconds, const NumberStyle& style) {
   if (!style.run_times) return "-- µs";
   const auto digits = [](double x) { return fmt::format("{:.{}f}", x, x < 9.95 ? 1 : 0); };

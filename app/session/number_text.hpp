@@ -23,6 +23,8 @@ std::string value_text(double value, double error, const NumberStyle& style);
 std::string magnitude_text(double value, const NumberStyle& style);
 // At most `digits` significant digits, without trailing zeros.
 std::string short_text(double value, int digits = 6);
+// Three significant digits, written out up to a million: "1290", "0.0123".
+std::string rough_text(double value);
 // "2.4 µs", "13 ms", "1.2 s".
 std::string duration_text(double seconds, const NumberStyle& style);
 

@@ -1,14 +1,39 @@
 #include "app/ui/app.hpp"
 
 #include "app/session/settings.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/load_view.hpp"
+
+#include <algorithm>
 
 namespace flyball {
 
 namespace {
 
+bool is_within(const ViewCamera& camera, ViewSize size, const Vec3& point) {
+  const auto at = camera.project(point, size);
+  return at && at->x() >= 0 && at->y() >= 0 && at->x() <= size.width && at->y() <= size.height;
+}
+
+// Arrows that have come are taken into view, unless a person looks at a part.
+void fit_loads(App& app, ViewSize size) {
+  if (!app.view.fit_loads) return;
+  const ViewScene& scene = *shown_scene(app);
+  if (app.view.loads && scene.arrows.arrows.empty()) return; // not yet
+  app.view.fit_loads = false;
+  const ViewCamera& camera = app.view.glide ? app.view.glide->to : app.view.camera;
+  const bool all_seen = std::ranges::all_of(scene.solid.instances, [&](const Instance& instance) {
+    return is_within(camera, size, instance.position);
+  });
+  const bool arrows_seen = std::ranges::all_of(scene.arrows.arrows, [&](const LoadArrow& arrow) {
+    return is_within(camera, size, arrow.from) && is_within(camera, size, arrow.to);
+  });
+  if (app.view.loads && all_seen && !arrows_seen) fit_all(app);
+}
+
 void fit_view(App& app, ViewSize size) {
+  fit_loads(app, size);
   if (!app.view.fit) return;
   const ViewScene& scene = *shown_scene(app);
   Bounds bounds = scene.solid.bounds;

@@ -27,6 +27,7 @@ struct ViewState {
   bool alone = false;          // no panels round it, for pictures
   int samples = 4;             // 1: no anti-aliasing
   bool fit = true;             // wanted at the next update
+  bool fit_loads = false;      // wanted where arrows that come leave a view that held everything
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
   PartId hovered;
   Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found

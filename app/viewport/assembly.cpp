@@ -17,6 +17,8 @@ Vec3 direction(const Vec3& v, const Vec3& otherwise) {
   return length > 0 && std::isfinite(length) ? Vec3(v / length) : otherwise;
 }
 
+} // namespace
+
 Bounds shape_bounds(const Body& body) {
   Bounds bounds;
   for (const Shape& shape : body.shapes) {
@@ -36,6 +38,8 @@ Bounds shape_bounds(const Body& body) {
   }
   return bounds;
 }
+
+namespace {
 
 SceneScale scale_of(const Assembly& assembly) {
   SceneScale scale;
@@ -138,25 +142,57 @@ double coordinate_value(const Assembly& assembly, std::size_t index, std::size_t
   return drawn + std::atan2(axis.dot(from.cross(to)), from.dot(to));
 }
 
-SlideRange slide_range(const Coordinate& c, double unit) {
-  SlideRange range{c.drawn, c.drawn, c.drawn - 6 * unit};
+bool has_anchor(const Coordinate& c) {
+  return c.spring || is_damped(c);
+}
+
+namespace {
+
+// How far the shapes of what slides extend from its point along the slide, to the farther side.
+double slider_reach(const Assembly& assembly, std::size_t index, const Vec3& axis) {
+  const auto [parent, child] = assembly.joint_bodies[index];
+  const int slider = child >= 0 ? child : parent;
+  if (slider < 0) return 0;
+  const Body& body = assembly.mechanism.bodies[static_cast<std::size_t>(slider)];
+  if (body.shapes.empty()) return 0;
+  const Bounds bounds = shape_bounds(body);
+  const double middle = axis.dot(bounds.center() - assembly.mechanism.joints[index].at);
+  return std::abs(middle) + axis.cwiseAbs().dot(0.5 * (bounds.upper - bounds.lower));
+}
+
+} // namespace
+
+SlideRange slide_range(const Assembly& assembly, std::size_t index, std::size_t coordinate) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  const Coordinate& c = joint.coordinates[coordinate];
+  const double unit = assembly.scale.unit, travel = assembly.crank_travel[index];
+  SlideRange range{c.drawn, c.drawn, c.drawn,
+                   slider_reach(assembly, index, coordinate_axis(joint, coordinate).axis)};
   const auto include = [&](double value) {
     range.from = std::min(range.from, value);
     range.to = std::max(range.to, value);
   };
-  if (c.spring) {
-    include(c.spring->free);
-    // A spring as long as its coordinate starts at zero; otherwise the label says nothing about its length.
-    const bool from_zero =
-        c.drawn * c.spring->free > 0 && std::min(std::abs(c.drawn), std::abs(c.spring->free)) > 2 * unit;
-    const double length = std::max(6 * unit, 1.6 * std::abs(c.drawn - c.spring->free));
-    range.anchor = from_zero ? 0 : std::min(c.drawn, c.spring->free) - length;
-    include(range.anchor);
-  } else if (is_damped(c)) {
-    include(range.anchor);
-  }
+  const double free = c.spring ? c.spring->free : c.drawn;
+  include(free);
+  include(c.drawn - travel);
+  include(c.drawn + travel);
+  // A spring as long as its coordinate starts at zero; otherwise the label says nothing about its length.
+  const double side = c.drawn < 0 ? -1 : 1; // of zero, where the coordinate is
+  const bool never_crosses = side * (side > 0 ? range.from : range.to) > 2 * unit &&
+                             (!c.stop || !(side > 0 ? c.stop->lower : c.stop->upper) ||
+                              side * *(side > 0 ? c.stop->lower : c.stop->upper) >= 0);
+  const bool from_zero = c.spring && never_crosses;
   if (c.stop && c.stop->lower) include(*c.stop->lower);
   if (c.stop && c.stop->upper) include(*c.stop->upper);
+  const double lowest = range.from, now = coordinate_value(assembly, index, coordinate);
+  if (std::isfinite(now)) include(now);
+  if (has_anchor(c)) {
+    const double towards = from_zero ? side : 1, least = range.reach + 3 * unit;
+    const double length = std::max({6 * unit, least, 1.6 * std::abs(c.drawn - free)});
+    range.anchor = from_zero ? 0 : lowest - length;
+    if (towards * (now - range.anchor) < least) range.anchor = now - towards * least;
+    include(range.anchor);
+  }
   if (range.to - range.from < unit) {
     include(c.drawn - 5 * unit);
     include(c.drawn + 5 * unit);
@@ -248,10 +284,10 @@ std::optional<Shaft> find_shaft(const Assembly& assembly, std::size_t b) {
       const std::size_t slide = other.type == JointType::cylindrical ? 1 : 0;
       const Vec3 axis = direction(other.axis, Vec3::UnitZ());
       if (slide >= other.coordinates.size() || axis.cross(shaft.direction).norm() > 1e-3) continue;
-      const Coordinate& c = other.coordinates[slide];
-      const SlideRange range = slide_range(c, unit);
+      const double drawn = other.coordinates[slide].drawn;
+      const SlideRange range = slide_range(assembly, static_cast<std::size_t>(a.joint), slide);
       for (const double value : {range.from, range.to})
-        include(other.at + (value - c.drawn) * axis);
+        include(other.at + (a.end == 0 ? 1 : -1) * (value - drawn) * axis);
     }
     if (!turning.shapes.empty()) {
       fit_to_shapes(shaft, turning, attachments, unit);
@@ -268,6 +304,79 @@ bool on_shaft(const Assembly& assembly, const Joint& joint, int body) {
   const std::optional<Shaft> shaft = shaft_of(assembly, body);
   return shaft && on_axis(*shaft, joint.at, assembly.scale.unit) &&
          direction(joint.axis, Vec3::UnitZ()).cross(shaft->direction).norm() < 1e-3;
+}
+
+// A joint that turns on and on, driven or by a gear.
+std::vector<std::size_t> turning_joints(const Mechanism& mechanism) {
+  std::vector<std::size_t> turning;
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
+    const Joint& joint = mechanism.joints[j];
+    if (joint.type == JointType::gear) {
+      for (const std::string& name : joint.joints)
+        if (const auto [geared, i] = find_coordinate(mechanism, name);
+            geared >= 0 &&
+            coordinate_axis(mechanism.joints[static_cast<std::size_t>(geared)], static_cast<std::size_t>(i))
+                .angle)
+          turning.push_back(static_cast<std::size_t>(geared));
+      continue;
+    }
+    const bool turns = joint.type == JointType::revolute || joint.type == JointType::cylindrical;
+    if (turns && !joint.coordinates.empty() && joint.coordinates[0].drive &&
+        joint.coordinates[0].drive->speed != 0)
+      turning.push_back(j);
+  }
+  return turning;
+}
+
+// Whether joints lead from one body to another (-1: ground) without passing `base`.
+bool connected(const Assembly& assembly, int from, int to, int base) {
+  const auto place = [](int body) { return static_cast<std::size_t>(body + 1); };
+  std::vector<std::vector<int>> beside(assembly.mechanism.bodies.size() + 1);
+  for (std::size_t j = 0; j < assembly.mechanism.joints.size(); ++j) {
+    const auto [a, b] = assembly.joint_bodies[j];
+    if (assembly.mechanism.joints[j].type == JointType::gear || a == base || b == base) continue;
+    beside[place(a)].push_back(b);
+    beside[place(b)].push_back(a);
+  }
+  std::vector<char> reached(beside.size(), 0);
+  std::vector<int> next{from};
+  reached[place(from)] = 1;
+  while (!next.empty()) {
+    const int body = next.back();
+    next.pop_back();
+    if (body == to) return true;
+    for (const int b : beside[place(body)])
+      if (!reached[place(b)]) {
+        reached[place(b)] = 1;
+        next.push_back(b);
+      }
+  }
+  return false;
+}
+
+// A crank that turns in one of the slide's bodies and drives the other through rods moves it by twice its
+// radius, and a little more where their lines miss each other.
+double travel_by_cranks(const Assembly& assembly, std::size_t slide, std::span<const std::size_t> turning) {
+  const Joint& sliding = assembly.mechanism.joints[slide];
+  double travel = 0;
+  for (const std::size_t t : turning) {
+    const Joint& joint = assembly.mechanism.joints[t];
+    const Vec3 axis = direction(joint.axis, Vec3::UnitZ());
+    const double across = axis.cross(direction(sliding.axis, Vec3::UnitZ())).norm();
+    for (const int base : assembly.joint_bodies[slide])
+      for (const std::size_t end : {0u, 1u}) {
+        const int crank = assembly.joint_bodies[t][1 - end];
+        const auto [parent, child] = assembly.joint_bodies[slide];
+        const int pushed = base == parent ? child : parent;
+        if (assembly.joint_bodies[t][end] != base || crank < 0 || !(across > 1e-3)) continue;
+        double radius = 0;
+        for (const Attachment& a : assembly.attachments[static_cast<std::size_t>(crank)])
+          radius = std::max(radius, (a.at - joint.at).cross(axis).norm());
+        if (2.2 * radius * across > travel && connected(assembly, crank, pushed, base))
+          travel = 2.2 * radius * across;
+      }
+  }
+  return travel;
 }
 
 } // namespace
@@ -308,8 +417,14 @@ Assembly::Assembly(const Mechanism& built, std::span<const Pose> in_poses)
     double& largest = largest_vectors[static_cast<std::size_t>(force.type)];
     largest = std::max(largest, force.vector.stableNorm());
   }
+  crank_travel.assign(built.joints.size(), 0);
+  if (const std::vector<std::size_t> turning = turning_joints(built); !turning.empty())
+    for (std::size_t j = 0; j < built.joints.size(); ++j)
+      if (built.joints[j].type == JointType::prismatic || built.joints[j].type == JointType::cylindrical)
+        crank_travel[j] = travel_by_cranks(*this, j, turning);
   for (std::size_t i = 0; i < built.bodies.size(); ++i)
     shafts.push_back(find_shaft(*this, i));
+  wheels = toothed_wheels(*this);
 }
 
 bool within_ball(const Assembly& assembly, int body, const Vec3& at, double radius) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/viewport/scene_list.hpp"
+#include "app/viewport/toothed_wheels.hpp"
 
 #include <array>
 #include <optional>
@@ -35,7 +36,9 @@ struct Assembly {
   std::vector<std::array<int, 2>> force_bodies;     // spring, bearing: both; others: the body, then -1
   std::vector<std::vector<Attachment>> attachments; // by body
   SceneScale scale;
+  std::vector<double> crank_travel;         // m, by joint: how far cranks may push a slide to either side
   std::vector<std::optional<Shaft>> shafts; // by body: as what it is drawn, if it is one
+  std::vector<std::array<ToothedWheel, 2>> wheels; // by joint
   std::vector<double>
       balls; // m, by body: radius of the ball drawn about its mass centre, 0 for none; empty until then
   double middle_mass = 0;                  // kg, the median of the bodies that have mass
@@ -47,6 +50,9 @@ struct Assembly {
   Vec3 vector(int body, const Vec3& drawn) const { return carried_vector(mechanism, poses, body, drawn); }
   const Joint& joint(int index) const { return mechanism.joints[static_cast<std::size_t>(index)]; }
 };
+
+// Box around a body's shapes (m, drawn pose): near enough for glyphs where they are turned.
+Bounds shape_bounds(const Body& body);
 
 // Whether a ball of this radius at a point (m, world) is all inside that of a body, as in a net of thousands
 // of them.
@@ -65,12 +71,18 @@ CoordinateAxis coordinate_axis(const Joint& joint, std::size_t coordinate);
 // along or turned about the axis (within half a turn).
 double coordinate_value(const Assembly& assembly, std::size_t joint, std::size_t coordinate);
 
-// Values a slide is likely to take (m, its coordinate): drawn, slack, its stops.
+// Values a slide is likely to take (m, its coordinate): drawn, slack, its stops, as far as a crank pushes it,
+// and where it stands in the poses.
 struct SlideRange {
   double from = 0, to = 0;
-  double anchor = 0; // where the other end of its spring and damper sits
+  // Where the other end of its spring and damper sits: outside what the coordinate takes, so that it always
+  // lies on the same side. It gives way only to poses beyond all that.
+  double anchor = 0;
+  double reach = 0; // m, how far the shapes of what slides extend along the slide from its point
 };
-SlideRange slide_range(const Coordinate& coordinate, double unit);
+SlideRange slide_range(const Assembly& assembly, std::size_t joint, std::size_t coordinate);
+// Whether a spring or damper acts along the slide, and so has its anchor there.
+bool has_anchor(const Coordinate& coordinate);
 
 // As what a body is drawn, if it is one; ground (-1) is none.
 std::optional<Shaft> shaft_of(const Assembly& assembly, int body);

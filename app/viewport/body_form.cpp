@@ -109,10 +109,11 @@ void draw_rails(Sketch& sketch, const Assembly& assembly, std::size_t body) {
     const auto index = static_cast<std::size_t>(a.joint);
     if (joint.type != JointType::prismatic && joint.type != JointType::cylindrical) continue;
     if (slider_end(assembly, index) == a.end || joint.coordinates.empty()) continue;
-    const Coordinate& c = joint.coordinates.back(); // the slide is a cylindrical joint's second coordinate
-    const SlideRange range = slide_range(c, unit);
-    const Vec3 axis = joint.axis.stableNormalized();
-    sketch.rod(a.at + (range.from - c.drawn) * axis, a.at + (range.to - c.drawn + 2.4 * unit) * axis,
+    // The slide is a cylindrical joint's second coordinate.
+    const double drawn = joint.coordinates.back().drawn;
+    const SlideRange range = slide_range(assembly, index, joint.coordinates.size() - 1);
+    const Vec3 axis = (a.end == 0 ? 1 : -1) * joint.axis.stableNormalized();
+    sketch.rod(a.at + (range.from - drawn) * axis, a.at + (range.to - drawn + 2.4 * unit) * axis,
                0.45 * unit);
   }
 }

@@ -46,34 +46,50 @@ void draw_dashpot(Sketch& sketch, const Vec3& from, const Vec3& to, const Vec3& 
   }
 }
 
+// Whether something of the body (-1: ground) is drawn about a point already, so that a coil may end there.
+bool ends_at_part(const Assembly& assembly, int body, const Vec3& at, std::size_t slide) {
+  if (body < 0) return false;
+  const auto& attachments = assembly.attachments[static_cast<std::size_t>(body)];
+  return std::any_of(attachments.begin(), attachments.end(), [&](const Attachment& a) {
+    return a.joint != static_cast<int>(slide) &&
+           (assembly.point(body, a.at) - at).norm() < 2 * assembly.scale.unit;
+  });
+}
+
 void draw_slide_forces(Sketch& sketch, const Assembly& assembly, std::size_t index, std::size_t i,
                        const Palette& colors) {
   const Joint& joint = assembly.mechanism.joints[index];
   const Coordinate& c = joint.coordinates[i];
   const auto [parent, child] = assembly.joint_bodies[index];
   const double u = assembly.scale.unit;
-  const Vec3 axis = assembly.vector(parent, coordinate_axis(joint, i).axis);
-  const SlideRange range = slide_range(c, u);
+  const bool rails = joint.type == JointType::prismatic || joint.type == JointType::cylindrical;
+  const bool child_slides = !rails || slider_end(assembly, index) == 1;
+  const int slider = child_slides ? child : parent, rail = child_slides ? parent : child;
+  const Vec3 axis = (child_slides ? 1 : -1) * assembly.vector(parent, coordinate_axis(joint, i).axis);
+  const SlideRange range = slide_range(assembly, index, i);
   const double value = coordinate_value(assembly, index, i);
-  // Parent and child may stand apart in the other directions of a planar or free joint; the spring's end
-  // stays with the child.
-  const Vec3 end = assembly.point(child, joint.at);
+  // The bodies may stand apart in the other directions of a planar or free joint; the spring's end stays with
+  // what slides.
+  const Vec3 end = assembly.point(slider, joint.at);
   const Vec3 start = end + (range.anchor - value) * axis;
-  const double reach = value > range.anchor ? 1.5 * u : -1.5 * u;
-  const Vec3 side = free_side(assembly, coordinate_axis(joint, i).axis);
-  const Vec3 across = assembly.vector(parent, side);
+  const double side = value > range.anchor ? 1 : -1;
+  const Vec3 across = assembly.vector(parent, free_side(assembly, coordinate_axis(joint, i).axis));
   if (c.spring) {
     sketch.pen.role = Role::spring;
-    sketch.pen.color = spring_color(colors, value - c.spring->free,
+    sketch.pen.color = spring_color(colors, side * (value - c.spring->free),
                                     std::max(0.15 * std::abs(c.spring->free - range.anchor), 1e-9 * u));
-    sketch.coil(start, end - reach * axis, across, 1.25 * u, 0.2 * u, true);
+    sketch.coil(start, end - 1.5 * side * u * axis, across, 1.25 * u, 0.2 * u, true);
   }
   if (is_damped(c)) {
     sketch.pen.role = Role::damper;
     const double inset = std::min(2.2 * u, 0.2 * std::abs(value - range.anchor));
-    draw_dashpot(sketch, start + std::copysign(inset, reach) * axis, end, 2.5 * u * across,
+    draw_dashpot(sketch, start + side * inset * axis, end, 2.5 * u * across,
                  0.6 * std::abs(c.drawn - range.anchor), u, colors);
   }
+  // Ground's own plate ends the rail of a slide.
+  if ((rails && rail < 0) || ends_at_part(assembly, rail, start, index)) return;
+  sketch.pen.color = colors.metal_dark;
+  sketch.disc(start, axis, 0.25 * u, 1.7 * u, 0.1 * u);
 }
 
 void draw_turn_forces(Sketch& sketch, const Assembly& assembly, std::size_t index, std::size_t i,
@@ -174,6 +190,21 @@ void draw_bearing(Sketch& sketch, const Assembly& assembly, std::size_t index, c
   }
 }
 
+// The place on an axis through a point (m, world) where a torque's arc is seen: before the body's shapes, on
+// the side that is to the front.
+Vec3 before_shapes(const Assembly& assembly, int index, const Vec3& at, const Vec3& axis) {
+  const auto b = static_cast<std::size_t>(index);
+  const Body& body = assembly.mechanism.bodies[b];
+  const Bounds bounds = shape_bounds(body);
+  if (bounds.empty) return at;
+  const Vec3 out = axis.dot(Vec3(0.5, 0.3, 0.8)) < 0 ? Vec3(-axis) : axis;
+  const Quat turn = assembly.poses[b].rotation * body.rotation.normalized().conjugate();
+  const Vec3 drawn = turn.conjugate() * out;
+  const Vec3 middle = assembly.point(index, bounds.center()) - at;
+  const double reach = out.dot(middle) + drawn.cwiseAbs().dot(0.5 * (bounds.upper - bounds.lower));
+  return at + (std::max(reach, 0.0) + 0.8 * assembly.scale.unit) * out;
+}
+
 } // namespace
 
 void draw_force(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
@@ -206,8 +237,9 @@ void draw_force(Sketch& sketch, const Assembly& assembly, std::size_t index, con
   const Vec3 dir = vector.stableNormalized();
   const double length = arrow_length(assembly, force);
   if (force.type == ForceType::force) return sketch.arrow(at, at + length * dir, 0.28 * u);
-  sketch.turn(at, dir, dir.unitOrthogonal(), 0.35 * length, 0.24 * u);
-  sketch.arrow(at - 0.3 * length * dir, at + 0.5 * length * dir, 0.2 * u);
+  const Vec3 arc = before_shapes(assembly, body, at, dir);
+  sketch.turn(arc, dir, dir.unitOrthogonal(), 0.35 * length, 0.24 * u);
+  sketch.arrow(arc - 0.3 * length * dir, arc + 0.5 * length * dir, 0.2 * u);
 }
 
 } // namespace flyball

@@ -1,9 +1,10 @@
-// Gears as toothed wheels that dots tie, belts as loops around their wheels, racks with their pinion, screws
-// as a thread along the slide.
+// Gears as toothed wheels that mesh, or as signs that dots tie; belts as loops around their wheels, racks
+// with their pinion, screws as a thread along the slide.
 #include "app/viewport/glyphs.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace flyball {
 
@@ -73,6 +74,24 @@ void draw_rack(Sketch& sketch, double radius, const GearEnd& a, const GearEnd& b
   sketch.box(contact, frame_along(b.axis, out), {0.45 * u, 0.28 * u, 1.8 * size}, 0.08 * u);
 }
 
+// A rim that leaves what turns with it to be seen, and its teeth.
+void draw_wheel(Sketch& sketch, const Assembly& assembly, const ToothedWheel& wheel) {
+  const double u = assembly.scale.unit;
+  const Vec3 center = assembly.point(wheel.body, wheel.center),
+             axis = assembly.vector(wheel.body, wheel.axis), x = assembly.vector(wheel.body, wheel.to_tooth),
+             y = axis.cross(x);
+  const double pitch = 2 * std::numbers::pi * wheel.radius / wheel.teeth;
+  const double tip = 0.3 * pitch, wire = std::min(0.28 * u, 0.2 * wheel.radius);
+  const double out = wheel.inside ? -1 : 1, rim = wheel.radius - out * (tip + wire);
+  sketch.ring(center, axis, rim, wire, false);
+  for (int i = 0; i < wheel.teeth; ++i) {
+    const double angle = 2 * std::numbers::pi * i / wheel.teeth;
+    const Vec3 to = std::cos(angle) * x + std::sin(angle) * y;
+    sketch.box(center + (wheel.radius - 0.5 * out * wire) * to, frame_along(axis, to),
+               {tip + 0.5 * wire, 0.23 * pitch, wire}, 0.03 * pitch);
+  }
+}
+
 void draw_screw(Sketch& sketch, const GearEnd& a, const GearEnd& b, double u, const Palette& colors) {
   sketch.pen.color = colors.metal_dark;
   sketch.coil(b.there - 3 * u * b.axis, b.there + 3 * u * b.axis, b.axis.unitOrthogonal(), 0.8 * u, 0.22 * u,
@@ -91,6 +110,12 @@ void draw_gear(Sketch& sketch, const Assembly& assembly, std::size_t index, cons
   if (gear.kind == GearKind::rack) return draw_rack(sketch, gear.radii[0], *a, *b, u, colors);
   if (gear.kind == GearKind::screw) return draw_screw(sketch, *a, *b, u, colors);
   sketch.pen.color = colors.metal_dark;
+  if (const auto& wheels = assembly.wheels[index]; wheels[0].radius > 0) {
+    for (const ToothedWheel& wheel : wheels)
+      if (wheel.is_first) draw_wheel(sketch, assembly, wheel);
+    return;
+  }
+  // Bevel gears and the like: a sign on each axis.
   const Vec3 at_a = a->at + 1.7 * u * a->axis, at_b = b->at + 1.7 * u * b->axis;
   sketch.gear(at_a, a->axis, 0.28 * u, 2.1 * u);
   sketch.gear(at_b, b->axis, 0.28 * u, 2.1 * u);

@@ -130,13 +130,19 @@ void draw_prismatic(Sketch& sketch, const Assembly& assembly, std::size_t index,
   draw_bushings(sketch, assembly, index, slider, p);
   if (assembly.joint_bodies[index][end == 1 ? 0 : 1] >= 0 || joint.coordinates.empty()) return;
   const Coordinate& c = joint.coordinates.back();
-  const SlideRange range = slide_range(c, u);
-  const Vec3 from = rail + (range.from - c.drawn - 2.2 * u) * p.axis,
-             to = rail + (range.to - c.drawn + 2.2 * u) * p.axis;
+  const SlideRange range = slide_range(assembly, index, joint.coordinates.size() - 1);
+  const Vec3 axis = (end == 1 ? 1 : -1) * p.axis;
+  // A spring's own plate is the end of the rail; elsewhere there is room for what slides.
+  const double room = std::max(2.2 * u, range.reach + 0.6 * u);
+  const auto end_at = [&](double value, double sense) {
+    const bool plate = has_anchor(c) && value == range.anchor;
+    return Vec3(rail + (value - c.drawn + (plate ? 0 : sense * room)) * axis);
+  };
+  const Vec3 from = end_at(range.from, -1), to = end_at(range.to, 1);
   sketch.pen.color = colors.metal;
   sketch.cylinder(from, to, 0.45 * u, 0.1 * u);
-  draw_anchor(sketch, from, p.axis, 1.7 * u, u, colors);
-  draw_anchor(sketch, to, -p.axis, 1.7 * u, u, colors);
+  draw_anchor(sketch, from, axis, 1.7 * u, u, colors);
+  draw_anchor(sketch, to, -axis, 1.7 * u, u, colors);
 }
 
 void draw_universal(Sketch& sketch, const Place& p, const Palette& colors) {

@@ -12,7 +12,7 @@ namespace {
 
 // Radius in pixels up to which each detail but the finest will do: a polygon of n sides round a circle is at
 // most r (1 - cos(pi / n)) from it, and that of the circle's area half of it.
-constexpr std::array enough_up_to{0.5, 1.3, 2.6, 5.0, 9.0};
+constexpr std::array enough_up_to{0.5, 1.3, 2.6, 5.0, 9.0, 36.0};
 constexpr double least = 0.5;   // pixels, radius of the smallest thing drawn
 constexpr double most_thin = 8; // at least one of 2 to this power of bodies is drawn
 

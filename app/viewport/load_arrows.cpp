@@ -12,6 +12,38 @@ constexpr double load_rounding = 1e-9; // beside the largest
 constexpr std::array all_kinds{LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::weight,
                                LoadKind::applied,  LoadKind::air,   LoadKind::inertia};
 
+// Across a line, to the side that is to the front.
+Vec3 across(const Vec3& line) {
+  const Vec3 side = line.cross(Vec3(0.5, 0.3, 0.8));
+  return side.norm() > 1e-3 ? Vec3(side.normalized()) : line.unitOrthogonal();
+}
+
+// What runs along a link or a slide would be hidden in it: it is drawn beside, and what pushes a body along a
+// link ends where it acts.
+Vec3 beside_part(const Assembly& assembly, const Load& load, const Vec3& along, double length) {
+  if (load.part.kind != PartKind::joint) return Vec3::Zero();
+  const auto j = static_cast<std::size_t>(load.part.index);
+  const Joint& joint = assembly.mechanism.joints[j];
+  const auto [first, second] = assembly.joint_bodies[j];
+  const double u = assembly.scale.unit;
+  if (joint.type == JointType::distance) {
+    const Vec3 a = assembly.point(first, joint.points[0]), b = assembly.point(second, joint.points[1]);
+    const Vec3 middle = 0.5 * a + 0.5 * b;
+    const Vec3 aside = 0.9 * u * across(along);
+    return along.dot(middle - load.at) < 0 ? Vec3(aside - length * along) : aside;
+  }
+  if (load.kind != LoadKind::spring && load.kind != LoadKind::drive) return Vec3::Zero();
+  double reach = 2 * u; // of what slides, across
+  if (second >= 0) {
+    const Bounds bounds = shape_bounds(assembly.mechanism.bodies[static_cast<std::size_t>(second)]);
+    if (!bounds.empty) {
+      const Vec3 half = 0.5 * (bounds.upper - bounds.lower), axis = joint.axis.stableNormalized();
+      reach = std::max(reach, (half - axis.cwiseAbs() * axis.cwiseAbs().dot(half)).cwiseAbs().maxCoeff());
+    }
+  }
+  return (reach + 0.7 * u) * across(along);
+}
+
 } // namespace
 
 LoadScales::LoadScales(const std::vector<Load>& loads, bool in_proportion, double longest)
@@ -67,6 +99,8 @@ LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads,
     if (load.moment) { // a free vector: anywhere will do
       const Vec3 side = along.cross(assembly.scale.up);
       from += 1.6 * u * (side.norm() > 1e-3 ? Vec3(side.normalized()) : along.unitOrthogonal());
+    } else if (!in_proportion) { // others fade beside a body's diagram
+      from += beside_part(assembly, load, along, length);
     }
     const Vec3 to = from + length * along;
     sketch.pen = {load_color(load.kind, colors), Surface::plain, Role::force, load.part};
@@ -84,7 +118,7 @@ LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads,
 
 Color load_color(LoadKind kind, const Palette& colors) {
   switch (kind) {
-  case LoadKind::reaction: return rgb(0xD11F45); // no body's colour
+  case LoadKind::reaction: return colors.reaction;
   case LoadKind::drive: return colors.accent;
   case LoadKind::spring: return okabe_ito::green;
   case LoadKind::weight: return colors.slack;

@@ -49,7 +49,8 @@ struct LoadArrows {
   std::vector<Instance> solids;
   std::vector<std::size_t> arrow_of; // by solid
 };
-// An arrow shorter than its head is drawn as the head. Moments stand beside their point, clear of forces.
+// An arrow shorter than its head is drawn as the head. Moments stand beside their point, clear of forces; of
+// a mechanism (not in proportion) so do forces along links and slides, clear of these.
 LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, bool in_proportion,
                        const Palette& colors);
 

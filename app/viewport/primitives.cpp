@@ -386,9 +386,9 @@ PrimitiveMesh toothed_disc() {
 PrimitiveMesh swept(Primitive primitive, int detail) {
   Builder b;
   const auto level = static_cast<std::size_t>(detail);
-  const int around = std::array{3, 4, 5, 6, 8, 10}[level];
-  const int circle_steps = std::array{8, 12, 20, 28, 44, 64}[level];
-  const int coil_steps = static_cast<int>(coil_turns) * std::array{0, 0, 0, 12, 20, 28}[level];
+  const int around = std::array{3, 4, 5, 6, 8, 10, 16}[level];
+  const int circle_steps = std::array{8, 12, 20, 28, 44, 64, 128}[level];
+  const int coil_steps = static_cast<int>(coil_turns) * std::array{0, 0, 0, 12, 20, 28, 48}[level];
   switch (primitive) {
   case Primitive::ring: sweep(b, circle, 0, 1, circle_steps, around, false); break;
   case Primitive::arc: sweep(b, circle, 0, 0.75, circle_steps, around, true); break;
@@ -408,7 +408,7 @@ PrimitiveMesh swept(Primitive primitive, int detail) {
 PrimitiveMesh primitive_mesh(Primitive primitive, int wanted) {
   const int detail = std::clamp(wanted, 0, finest_detail);
   const auto level = static_cast<std::size_t>(detail);
-  const int rounding = std::array{0, 1, 1, 2, 2, 4}[level];
+  const int rounding = std::array{0, 1, 1, 2, 2, 4, 6}[level];
   switch (primitive) {
   case Primitive::box: return rounded_box(rounding);
   case Primitive::ring:
@@ -422,7 +422,7 @@ PrimitiveMesh primitive_mesh(Primitive primitive, int wanted) {
   default: break;
   }
   if (detail < 2 || is_flat(primitive, detail)) return coarse_solid(primitive, detail);
-  return turned_solid(primitive, detail_sides[level], std::array{1, 1, 2, 4, 6, 10}[level]);
+  return turned_solid(primitive, detail_sides[level], std::array{1, 1, 2, 4, 6, 10, 24}[level]);
 }
 
 } // namespace flyball

@@ -24,7 +24,7 @@ struct PrimitiveMesh {
 // than lie within it, and leave out holes and turns that nobody could see. Of them spheres are plane, to be
 // turned with z to the eye, and capsules and coils, to be turned about z with y to the eye. A plane coil is a
 // zigzag of wire; the coarsest is a strip, `round` half its width.
-inline constexpr int detail_levels = 6, finest_detail = 5, last_flat_detail = 2;
+inline constexpr int detail_levels = 7, finest_detail = 6, last_flat_detail = 2;
 PrimitiveMesh primitive_mesh(Primitive primitive, int detail);
 constexpr bool is_flat(Primitive primitive, int detail) {
   return detail <= last_flat_detail && (primitive == Primitive::sphere || primitive == Primitive::capsule ||
@@ -32,7 +32,7 @@ constexpr bool is_flat(Primitive primitive, int detail) {
 }
 
 // By detail: the sides of what is round.
-inline constexpr std::array detail_sides{4, 6, 10, 16, 24, 40};
+inline constexpr std::array detail_sides{4, 6, 10, 16, 24, 40, 96};
 
 // Of the tube, its hole's radius; of the coils, their turns.
 inline constexpr double tube_hole = 0.62;

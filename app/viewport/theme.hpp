@@ -42,6 +42,7 @@ struct Palette {
   Color tension, compression, slack; // springs
   Color cut;                         // mark of a cut joint
   Color force;                       // forces and torques
+  Color reaction;                    // no body's colour
   std::array<Color, 12> bodies;      // by number, see body_hues.hpp
   Color axis_x, axis_y, axis_z;
 };

@@ -11,6 +11,7 @@
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/existence.hpp"
+#include "engine/solve/singular_loops.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
@@ -63,7 +64,9 @@ Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<Coord
 ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
                              const Eigen::VectorXd& error, PointDetails details, Workspace& w) {
   ResponsePoint point;
-  Stability stability = find_stability(factor_at(problem, z, w), details.eigenvalues);
+  const FactoredState at = factor_at(problem, z, w);
+  point.singular_loops = at_singular_loops(problem, z, w);
+  Stability stability = find_stability(at, details.eigenvalues);
   point.stable = stability.stable;
   point.floquet = std::move(stability.floquet);
   point.stability_reason = stability.reason;

@@ -21,6 +21,7 @@ struct ResponsePoint {
   std::vector<Reaction> reactions;               // where BranchOptions::reactions asks for them
   std::vector<DriveTorque> drive_torques;        // likewise
   std::vector<MeasureSolution> measures;         // the scene's, in its order
+  bool singular_loops = false;                   // its eigenvalues belong to no modes
   std::string kinks;                             // a sentence on each law on a kink of which it stands
 };
 

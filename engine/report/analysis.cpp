@@ -167,6 +167,17 @@ std::string add_lowest_eigenvalues(const Problem& problem, const Unknowns& z, in
   return {};
 }
 
+// Along tangents of singular loops more moves than can: what grows there need not grow, and nothing swings
+// so.
+void leave_out_modes(const ErrorEstimate& error, Stability& stability, Solution& out) {
+  out.singular_loops = error.singular_loops;
+  if (!error.singular_loops) return;
+  stability.eigenvalues.reset();
+  if (stability.stable != false) return;
+  stability.stable.reset();
+  stability.reason = StabilityReason::marginal;
+}
+
 // Of the balance on the null space, scaled and equilibrated, where that is not too large.
 void add_condition(const Problem& problem, SteadyState& steady, Solution& out) {
   if (problem.system.nv == 0 || problem.system.nv > largest_for_eigenvalues) return;
@@ -378,6 +389,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     add_condition(problem, steady, out);
     s.add_rates(problem, out);
   }
+  leave_out_modes(steady.error, stability, out);
   report_progress(options.progress, "reactions");
   const ReportInput input{*s.mechanism, problem,        steady.found, steady.existence,
                           stability,    options.points, &s.measures};
@@ -486,6 +498,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     entry.solution.status = Status::converged;
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
+    leave_out_modes(steady.error, stability, entry.solution);
     if (options.details) add_condition(problem, steady, entry.solution);
     report({*s.mechanism, problem, found, steady.existence, stability, options.points, &s.measures},
            steady.error.solution + steady.error.data, options.details, steady.reuse(), entry.solution);
@@ -531,7 +544,7 @@ std::vector<AngularMotion> Analysis::turning_at(double t) {
 
 std::vector<VibrationMode> Analysis::modes(int count) {
   State& s = *state_;
-  if (!s.settled) return {};
+  if (!s.settled || s.steady.error.singular_loops) return {};
   const Problem problem{s.system, s.parameters, s.scaling, nullptr, s.system.kkt_form};
   const Unknowns& z = s.steady.found.z;
   if (!pivots_decide(problem)) return find_modes(s.steady.factored(by_matrices(problem)));

@@ -17,6 +17,8 @@ std::size_t slot(int i) {
   return static_cast<std::size_t>(i);
 }
 
+constexpr double huge = 1e9;           // in SI units: of a quantity whose error is not known
+constexpr double unknown_error = 1e-8; // scaled, of a coordinate: then
 constexpr double measure_rounding = 16 * std::numeric_limits<double>::epsilon(); // of a quantity of size 1
 
 bool asks_for_forces(Result result) {
@@ -308,8 +310,27 @@ std::vector<MeasureSolution> MeasureSet::solutions(const Problem& problem, const
       out[i].reason = "Its value is not finite here.";
   }
   explain_unknown_depths(out);
-  if (error.size() != problem.system.nv) return out;
+  const bool known = error.size() == problem.system.nv;
+  const auto is_huge = [](const MeasureSolution& m) { return m.value && std::abs(*m.value) > huge; };
+  if (!known && std::ranges::none_of(out, is_huge)) return out;
   gradient(problem, z.q, w, w.elsewhere());
+  if (known) estimate_errors(problem, z, error, w, out);
+  const Eigen::MatrixXd rates = rates_;
+  for (std::size_t i = 0; i < size(); ++i) {
+    MeasureSolution& m = out[i];
+    if (known ? !m.value || !(m.error > std::abs(*m.value)) : !is_huge(m)) continue;
+    const Eigen::VectorXd aside = known ? error : unknown_error * problem.scaling.column;
+    const Eigen::VectorXd along = rates.row(static_cast<Eigen::Index>(i)).transpose().cwiseSign();
+    if (!has_pole(problem, z.q, aside.cwiseProduct(along), i, *m.value, w.elsewhere())) continue;
+    m.value.reset();
+    m.error.reset();
+    m.reason = "It is unbounded within the accuracy of the coordinates.";
+  }
+  return out;
+}
+
+void MeasureSet::estimate_errors(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& error,
+                                 const Workspace& w, std::vector<MeasureSolution>& out) const {
   // Beside the coordinates' errors what rounds: positions by the mechanism's reach, all else by its own size.
   const double epsilon = std::numeric_limits<double>::epsilon();
   const MeasuredState state{problem.system, problem.parameters, z.q, w.kinematics};
@@ -322,7 +343,17 @@ std::vector<MeasureSolution> MeasureSet::solutions(const Problem& problem, const
     }
     if (out[i].value && std::isfinite(estimate)) out[i].error = estimate + epsilon * std::abs(*out[i].value);
   }
-  return out;
+}
+
+bool MeasureSet::has_pole(const Problem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& error,
+                          std::size_t measure, double value, Workspace& elsewhere) {
+  for (const double side : {1., -1.}) {
+    Eigen::VectorXd beside = q;
+    retract<double>(problem.system, side * error, beside);
+    const double there = evaluate_at(problem, beside, elsewhere)[static_cast<Eigen::Index>(measure)];
+    if (!(std::abs(there) < 0.5 * std::abs(value))) return false;
+  }
+  return true;
 }
 
 void MeasureSet::explain_unknown_depths(std::vector<MeasureSolution>& out) const {

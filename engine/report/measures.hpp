@@ -68,8 +68,9 @@ class MeasureSet {
                               std::span<const Eigen::VectorXd> rates, Workspace& w);
 
   // By name, with the errors that errors of the coordinates (by coordinate of q_R: rad, m) make; where these
-  // are empty or there are no rates errors are left out. Of a steady state that is evaluated in `w` with
-  // these multipliers.
+  // are empty or there are no rates errors are left out. One that has a pole within those errors (or about
+  // half of the digits, where it is huge and they are empty) has no value. Of a steady state that is
+  // evaluated in `w` with these multipliers.
   std::vector<MeasureSolution> solutions(const Problem& problem, const Unknowns& z,
                                          const Eigen::VectorXd& error, Workspace& w);
 
@@ -92,6 +93,13 @@ class MeasureSet {
   Clearance clearance_of(const Kinematics<double>& kinematics, std::size_t quantity) const;
   // Adds the rates of a quantity to a row of quantity_rates_.
   void rates(const MeasuredState& state, std::size_t quantity, Eigen::VectorXd& out) const;
+  // After gradient().
+  void estimate_errors(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& error,
+                       const Workspace& w, std::vector<MeasureSolution>& out) const;
+  // Whether a measure peaks at the state that was evaluated and falls to less than half of it either way by
+  // the errors of the coordinates: it has a pole within them, and its value is rounding. Evaluates elsewhere.
+  bool has_pole(const Problem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& error,
+                std::size_t measure, double value, Workspace& elsewhere);
   // Says why a clearance has no value.
   void explain_unknown_depths(std::vector<MeasureSolution>& out) const;
   // By how much of it a quantity may be wrong by rounding alone, in parts of 1e-16.

@@ -250,6 +250,7 @@ std::string solution_message(const ReportInput& in, int rank, const Solution& ou
   if (rank < system.rows)
     text += " The loops are redundant: " + std::to_string(rank) + " of " + std::to_string(system.rows) +
             " constraint equations are independent.";
+  if (out.singular_loops) text += " " + std::string(singular_loops_message);
   if (!out.neutral.empty()) {
     constexpr std::size_t named = 20;
     text += " Nothing resists";

@@ -83,6 +83,7 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
   }
   phases = sample_phases(problem.system, problem.parameters);
   if (found.status == Status::converged) {
+    keep_where_started(problem);
     refine_found(problem);
     if (found.unbounded && !is_known(problem, found.z.q, drawn, error.solution)) {
       found.status = Status::not_converged;
@@ -93,6 +94,28 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
   if (holds || options.nearest || problem.cancelled() || problem.system.nv == 0) return;
   report_progress(options.progress, "searching for another steady state");
   search_another(problem, drawn, options.seconds);
+}
+
+// What rounding did to a coordinate that neither forces nor loops depend on is taken back.
+void SteadyState::keep_where_started(const Problem& problem) {
+  constexpr double nothing = 1e-12; // scaled
+  const DenseKkt* dense = balance_.matrices(problem);
+  if (!dense || !dense->singular()) return;
+  const auto free = [&](int v) {
+    return largest_size(dense->stiffness().col(v)) <= nothing &&
+           (problem.system.rows == 0 || largest_size(dense->jacobian().col(v)) <= nothing);
+  };
+  Unknowns kept = found.z;
+  for (const Link& link : problem.system.links)
+    if (link.v >= 0 && link.type != LinkType::spherical && !finds_speed(link) && free(link.v))
+      kept.q[link.q] = start[link.q];
+  if (kept.q == found.z.q) return;
+  factor_at(problem, kept, balance_);
+  const double residual = scaled_residual(problem, balance_);
+  if (residual <= nothing)
+    found.z = kept;
+  else
+    factor_at(problem, found.z, balance_);
 }
 
 void SteadyState::complete(const Problem& problem) {

@@ -48,7 +48,7 @@ class SteadyState {
   // find_equilibrium() from `start`, or where a neighbour's answer leads elsewhere from `drawn`; its last
   // digits and their error; whether it holds at every phase; and where it does not, or nothing was found,
   // whether another does that a bounded search finds: the stable one nearest to the start. `drawn` is where
-  // distances are measured from.
+  // distances are measured from. A coordinate that nothing depends on stays where the run began.
   void find(const Problem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& drawn,
             const SteadyStateOptions& options);
 
@@ -69,6 +69,7 @@ class SteadyState {
   }
 
  private:
+  void keep_where_started(const Problem& problem);
   void refine_found(const Problem& problem);
   void check_phases(const Problem& problem);
   void search_another(const Problem& problem, const Eigen::VectorXd& drawn, double seconds);

@@ -1,5 +1,7 @@
 #include "engine/solve/refine.hpp"
 
+#include "engine/solve/singular_loops.hpp"
+
 #include <bit>
 
 namespace flyball {
@@ -175,19 +177,6 @@ double undetermined_distance(const Problem& problem, const Unknowns& z, const Ei
   return decided ? farthest : std::numeric_limits<double>::infinity();
 }
 
-// Whether loops whose equations are dependent here are independent beside it: arms straight, a linkage flat.
-// There lengths change with the square of the angles.
-bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) {
-  const ConstraintSpace& constraints = w.dense.constraints();
-  Workspace& beside = w.elsewhere();
-  beside.trial = z;
-  beside.step = 1e-4 * constraints.basis().rowwise().sum().cwiseProduct(problem.scaling.column);
-  retract<double>(problem.system, beside.step, beside.trial.q);
-  evaluate(problem, beside.trial, 0, beside);
-  factor_constraints(problem, beside);
-  return beside.dense.constraints().rank() > constraints.rank();
-}
-
 // The displacement (scaled) that the residual force along a null direction, which the Newton steps left
 // alone, causes by the stiffness there; none where that is no more than rounding.
 double displacement_along(const Problem& problem, const Eigen::VectorXd& direction, const Workspace& w) {
@@ -245,6 +234,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   error.setZero(system.nv);
   estimate.undetermined.setZero(system.nv);
   estimate.data.setZero(system.nv);
+  estimate.singular_loops = false;
   if (system.nv == 0) return;
   drop_shift(problem, w);
   const DenseKkt* dense = w.matrices(problem);
@@ -280,8 +270,8 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   add_noise(problem, left, opening, w, error);
   add_rounding_of_data(problem, w, estimate.data);
   error += extended_rounding * problem.scaling.column;
-  if (dense && dense->constraints().rank() < std::min(system.rows, system.nv) &&
-      at_singular_loops(problem, z, w))
+  estimate.singular_loops = at_singular_loops(problem, z, w);
+  if (estimate.singular_loops && dense->constraints().rank() < std::min(system.rows, system.nv))
     error += 4 * std::sqrt(opening + extended_rounding) * problem.scaling.column;
   if (dense && dense->singular()) add_singular_directions(problem, z, w, estimate);
   for (const Link& link : system.links) {

@@ -16,6 +16,7 @@ struct ErrorEstimate {
   // How far the state moves along directions in which double precision sees no force: neutral ones, or
   // softer than rounding. Zero where there are none.
   Eigen::VectorXd undetermined;
+  bool singular_loops = false; // see at_singular_loops()
 };
 
 // Corrects a converged state, evaluated and factored in the workspace, by Newton steps on the residual

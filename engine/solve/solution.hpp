@@ -155,6 +155,11 @@ struct MeasureSolution {
   bool nonunique = false; // rests on reactions of redundant loops: the minimum-norm ones
 };
 
+// Of a steady state whose loops lose an equation that they have beside it.
+inline constexpr std::string_view singular_loops_message =
+    "The loops stand in a singular pose, as arms that hang straight do; the linearised motion has no modes "
+    "there.";
+
 // Rates of the coordinates with one parameter: rad or m per its unit. Rotation vectors are left out.
 struct Sensitivity {
   std::string address;
@@ -221,6 +226,7 @@ struct Solution {
   std::vector<Sensitivity> sensitivities; // to the scene's sliders; none at a singular state
   std::optional<double> potential;        // J, amended, where there is one
   std::optional<double> condition;        // 2-norm, of the scaled equations
+  bool singular_loops = false;            // no modes and eigenvalues: see singular_loops_message
 };
 
 } // namespace flyball

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace flyball {
 namespace {
@@ -64,6 +65,7 @@ class Describer {
 
   CampbellPoint describe(const ResponsePoint& point) {
     CampbellPoint out;
+    if (point.singular_loops) return out;
     if (solve(point.parameter, start_values(point.coordinates)) && same_as(point))
       out.modes = analysis_.modes();
     if (out.modes.empty()) out.modes = without_shapes(point.eigenvalues);
@@ -434,6 +436,25 @@ std::string driven_joint(const Mechanism& mechanism, const std::string& address)
       if (speed == address || "parameters." + formula == address) return joint.name;
     }
   return {};
+}
+
+std::string left_out(const CampbellDiagram& diagram, const std::string& unit) {
+  constexpr std::size_t most_told = 4;
+  std::set<double> at;
+  for (const ResponseBranch& branch : diagram.response.branches)
+    for (const ResponsePoint& point : branch.points)
+      if (point.singular_loops) at.insert(point.parameter);
+  if (at.empty()) return {};
+  std::string out = "Without modes at ";
+  std::size_t told = 0;
+  for (const double value : at) {
+    if (told == most_told) {
+      out += " and " + std::to_string(at.size() - told) + " more";
+      break;
+    }
+    out += (told++ ? ", " : "") + number_text(value) + " " + unit;
+  }
+  return out + ". " + std::string(singular_loops_message);
 }
 
 CampbellDiagram campbell_diagram(const Mechanism& mechanism, const std::string& address,

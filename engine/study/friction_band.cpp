@@ -277,6 +277,9 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     }
     const auto count = static_cast<Index>(names.size());
     const auto measured = [&](Index i) {
+      const auto& name = names[static_cast<std::size_t>(i)];
+      const auto measure = std::ranges::find(state.measures, name, &MeasureSolution::name);
+      if (measure != state.measures.end() && !measure->value) return false;
       return std::isfinite(box.first().state.values[i]) && box.first().rates.row(i).allFinite();
     };
     for (Index i = 0; i < count; ++i)

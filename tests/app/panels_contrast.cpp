@@ -1,6 +1,7 @@
 // Words and signs stand out from what is behind them: WCAG's contrast, (L1 + 0.05) / (L2 + 0.05).
 #include "app/plot/colors.hpp"
 #include "app/ui/widgets/ui_style.hpp"
+#include "app/viewport/load_arrows.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
@@ -83,4 +84,18 @@ TEST_CASE("with high contrast signs and lines have a contrast of 3") {
     CHECK(contrast(of(line), of(plot.area)) >= 3);
   for (int curve = 0; curve < 7; ++curve)
     CHECK(contrast(of(curve_color(curve, PlotGround::high_contrast)), of(plot.area)) >= 3);
+  for (int band = 0; band < 7; ++band) {
+    Color fill = rgb(curve_color(band, PlotGround::high_contrast));
+    fill.a = static_cast<float>(band_fill(PlotGround::high_contrast));
+    CHECK(contrast(over(fill, rgb(plot.area)), of(plot.area)) >= 2);
+  }
+}
+
+TEST_CASE("with high contrast arrows of loads have a contrast of 3 on their side without light, too") {
+  constexpr double unlit = 0.4; // of the light on the other side
+  for (std::size_t kind = 0; kind < load_kinds; ++kind) {
+    INFO(kind);
+    const Color color = load_color(static_cast<LoadKind>(kind), palette(Theme::high_contrast));
+    CHECK((unlit * luminance(to_imgui(color)) + 0.05) / 0.05 >= 3);
+  }
 }

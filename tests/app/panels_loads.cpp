@@ -107,6 +107,28 @@ TEST_CASE("the legend stands where it hides the fewest arrows, and does not jump
   CHECK(middle("legend") < middle("view"));
 }
 
+TEST_CASE("arrows that come are taken into the view, unless a part is looked at") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  const auto all_seen = [&] {
+    return std::ranges::all_of(shown_scene(app)->arrows.arrows, [&](const LoadArrow& arrow) {
+      const auto at = app.view.camera.project(arrow.to, app.view.size);
+      return at && at->x() > 0 && at->y() > 0 && at->x() < app.view.size.width &&
+             at->y() < app.view.size.height;
+    });
+  };
+  robot.key('A');
+  robot.frames(30, 0.04);
+  REQUIRE(shown_scene(app)->arrows.arrows.size() > 4);
+  CHECK(all_seen());
+  robot.key('A');
+  app.view.camera.distance /= 4; // near to it
+  const ViewCamera before = app.view.camera;
+  robot.key('A');
+  robot.frames(30, 0.04);
+  CHECK(app.view.camera.distance == before.distance);
+}
+
 TEST_CASE("an arrow that is pointed at tells what it is") {
   Robot robot({1280, 900});
   App& app = robot.app;

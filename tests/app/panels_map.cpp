@@ -309,7 +309,7 @@ TEST_CASE("the boundary of hunting shows in the map, hard parts told from soft o
   REQUIRE(drawn != plot.curves.end());
   REQUIRE(drawn->points.size() == found.curves[0].points.size());
   REQUIRE(drawn->notes.size() == drawn->points.size());
-  CHECK(drawn->notes[3] == "6.55583 rad/s (1.04339 Hz)");
+  CHECK(drawn->notes[3] == "hunts at 6.55583 rad/s (1.04339 Hz)");
   for (const auto& [damping, gain] : drawn->points)
     CHECK(gain / damping == Approx(7500 / 21.5343400233).epsilon(1e-9));
   // On the unstable side of it the cells are hatched.

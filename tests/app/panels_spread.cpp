@@ -66,6 +66,22 @@ TEST_CASE("the histogram holds every sample, beside the numbers that say what it
   CHECK(std::ranges::count(csv, '\n') == 2001);
 }
 
+TEST_CASE("numbers that change nothing spread nothing: all samples stand at one value") {
+  SpreadRobot robot("governor_engine"); // gain and damping move its speed, but not the collar
+  robot.state().output = "slide";
+  robot.frames(4);
+  REQUIRE(robot.state().samples.found);
+  const Plot& plot = robot.plot();
+  REQUIRE(plot.x.label == "slide");
+  CHECK(plot.bands.empty());
+  REQUIRE(plot.curves.size() == 1);
+  CHECK(plot.curves[0].points[0][0] == plot.curves[0].points[1][0]);
+  CHECK(plot.curves[0].points[1][1] == 2000);
+  REQUIRE(plot.references.size() == 1); // no labels over each other
+  CHECK(plot.references[0].label == "nominal");
+  CHECK(plot.y.whole);
+}
+
 TEST_CASE("a width is typed in per cent or in the number's unit, and what it is scatters so") {
   SpreadRobot robot;
   const auto deviation = [&] { return shown_output(robot.app)->linear_deviation; };

@@ -192,6 +192,33 @@ TEST_CASE("of the governor's loads the bearing bears the whole weight, and the s
   CHECK(spring.vector.y() == Approx(1000 * (0.1500174581252971 - 0.15)).epsilon(1e-6));
 }
 
+TEST_CASE("arrows of springs and links of a mechanism stand beside what would hide them") {
+  const Steady steady = solved(shipped("governor"));
+  const Mechanism& mechanism = steady.mechanism;
+  const Assembly assembly(mechanism, steady.solution.poses);
+  const std::vector<Load> loads = loads_of(assembly, steady.solution, steady.turning, -1);
+  const double u = assembly.scale.unit;
+  int springs = 0, links = 0;
+  for (const LoadArrow& arrow : load_arrows(assembly, loads, false, palette(Theme::light)).arrows) {
+    const Load& load = loads[arrow.load];
+    if (load.moment || load.part.kind != PartKind::joint) continue;
+    const Joint& joint = assembly.joint(load.part.index);
+    const auto [first, second] = assembly.joint_bodies[static_cast<std::size_t>(load.part.index)];
+    if (load.kind == LoadKind::spring) {
+      ++springs; // outside the collar, whose radius is 38 mm
+      CHECK(std::hypot(arrow.from.x(), arrow.from.z()) > 0.038 + 0.2 * u);
+    } else if (joint.type == JointType::distance) {
+      ++links; // on the link's side of the collar, beside the link
+      const Vec3 a = assembly.point(first, joint.points[0]), b = assembly.point(second, joint.points[1]);
+      const Vec3 along = (a - b).normalized(), middle = 0.5 * arrow.from + 0.5 * arrow.to - b;
+      CHECK(along.dot(middle) > 0);
+      CHECK(along.cross(middle).norm() > 0.5 * u);
+    }
+  }
+  CHECK(springs == 1);
+  CHECK(links == 2);
+}
+
 TEST_CASE("arrows: a scale for each kind in a mechanism, one for all of a body") {
   const Steady steady = solved(shipped("governor"));
   const Mechanism& mechanism = steady.mechanism;

@@ -75,6 +75,80 @@ TEST_CASE("the spring's colour tells pressed from stretched, and its length foll
   CHECK(std::abs(slack.b - colors.slack.b) < 0.01f);
 }
 
+namespace {
+
+// A crank of radius 0.1 m pushes a block to and fro against a spring that ground holds.
+Mechanism pushed_block() {
+  Mechanism m;
+  m.bodies = {body("crank", 0.2, {0.025, 0.0433, 0}), body("rod", 0.2, {0.205, 0.0433, 0}),
+              body("block", 1, {0.36, 0, 0})};
+  m.bodies[2].shapes.resize(1);
+  m.bodies[2].shapes[0].type = ShapeType::box;
+  m.bodies[2].shapes[0].size = {0.05, 0.05, 0.05};
+  Joint spin = revolute("spin", "ground", "crank", {0, 0, 0}, {0, 0, 1});
+  spin.coordinates[0].drive = Drive{15};
+  Joint slide = prismatic("slide", "ground", "block", {0.36, 0, 0}, {1, 0, 0});
+  slide.coordinates[0].spring = CoordinateSpring{2000, 0.005};
+  m.joints = {spin, revolute("pin", "crank", "rod", {0.05, 0.0866, 0}, {0, 0, 1}),
+              revolute("end", "rod", "block", {0.36, 0, 0}, {0, 0, 1}), slide};
+  return m;
+}
+
+bool has_plate_at(const SceneList& scene, const Vec3& at) {
+  return std::ranges::any_of(scene.instances, [&](const Instance& i) {
+    return (i.role == Role::anchor || i.role == Role::spring) && i.primitive == Primitive::cylinder &&
+           (i.position - at).norm() < 1e-9;
+  });
+}
+
+} // namespace
+
+TEST_CASE("the spring of a slide stands on its plate, which what slides never reaches") {
+  const Mechanism m = pushed_block();
+  const Palette& colors = palette(Theme::light);
+  const Vec3 foot = spring_coil(build_scene(m, {})).position;
+  for (const double moved : {-0.17, -0.1, -0.05, -0.01, 0.03, 0.04}) {
+    INFO(moved);
+    std::vector<Pose> poses = drawn_poses(m);
+    poses[2].position.x() += moved;
+    const SceneList scene = build_scene(m, poses);
+    const Instance& coil = spring_coil(scene);
+    CHECK((coil.position - foot).norm() < 1e-12);
+    CHECK(has_plate_at(scene, foot));
+    CHECK(foot.x() < poses[2].position.x() - 0.025 - scene.scale.unit);
+    CHECK((coil.rotation * Vec3::UnitZ()).x() > 0.99);
+    const bool pressed = moved < 0.005;
+    const Color full = pressed ? colors.compression : colors.tension;
+    CHECK(std::abs(coil.color.r - full.r) <
+          std::abs(coil.color.r - (pressed ? colors.tension : colors.compression).r));
+  }
+}
+
+TEST_CASE("a spring whose ground is the joint's second body stands on the rail as well") {
+  Mechanism m = pushed_block();
+  m.joints[3].bodies = {"block", "ground"};
+  m.joints[3].axis = {-1, 0, 0};
+  const SceneList there = build_scene(m, {}), same = build_scene(pushed_block(), {});
+  CHECK((spring_coil(there).position - spring_coil(same).position).norm() < 1e-9);
+  CHECK(has_plate_at(there, spring_coil(there).position));
+}
+
+TEST_CASE("beyond all that was foreseen the plate of a spring gives way and never lies on the other side") {
+  Mechanism m;
+  m.bodies = {body("post", 1, {0, 0, 0}), body("weight", 1, {0, 0.1, 0})};
+  Joint slide = prismatic("slide", "post", "weight", {0, 0.1, 0}, {0, 1, 0});
+  slide.coordinates[0].spring = CoordinateSpring{10, 0};
+  m.joints = {joint(JointType::fixed, "hold", "ground", "post", {0, -0.1, 0}, {0, 1, 0}), slide};
+  std::vector<Pose> poses = drawn_poses(m);
+  poses[1].position.y() = -3;
+  const SceneList scene = build_scene(m, poses);
+  const Instance& coil = spring_coil(scene);
+  CHECK(coil.position.y() < -3);
+  CHECK((coil.rotation * Vec3::UnitZ()).y() > 0.99);
+  CHECK(coil.color == palette(Theme::light).compression);
+  CHECK(has_plate_at(scene, coil.position));
+}
+
 TEST_CASE("parts move with the poses and keep their size") {
   const Mechanism m = governor();
   std::vector<Pose> poses = drawn_poses(m);
@@ -159,6 +233,82 @@ TEST_CASE("every type of joint and force has a sign of its own") {
     m.forces = {force};
     INFO(type_name(type));
     CHECK(count(build_scene(m, {}), {PartKind::force, 0}) > 0);
+  }
+}
+
+namespace {
+
+Mechanism meshing(double ratio, const Vec3& second) {
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0, 0}), body("b", 1, second)};
+  m.joints = {revolute("turn_a", "ground", "a", {0, 0, 0}, {0, 0, 1}),
+              revolute("turn_b", "ground", "b", second, {0, 0, 1}), gear("mesh", "turn_a", "turn_b", ratio)};
+  return m;
+}
+
+// m, how far a point is from the middles of the teeth about a centre, at the least.
+double tooth_distance(const SceneList& scene, const Vec3& center, double radius, const Vec3& at) {
+  double least = 1e9;
+  for (const Instance& i : scene.instances)
+    if (i.primitive == Primitive::box && i.part == PartId{PartKind::joint, 2} &&
+        std::abs((i.position - center).head<2>().norm() - radius) < 0.1 * radius)
+      least = std::min(least, (i.position - at).head<2>().norm());
+  return least;
+}
+
+} // namespace
+
+TEST_CASE("gears are drawn as large as their pitch circles, tooth against gap, and go on so when they turn") {
+  for (const double ratio : {-0.5, -3.0, 0.25, 4.0}) {
+    INFO(ratio);
+    const Vec3 second(0.3, 0.4, 0);
+    const Mechanism m = meshing(ratio, second);
+    const double q = std::abs(ratio), sum = ratio < 0 ? 1 + q : std::abs(1 - q);
+    const double r_a = 0.5 * q / sum, r_b = 0.5 / sum;
+    const Vec3 contact = (ratio < 0 || r_a > r_b ? 1 : -1) * r_a * second.normalized();
+    for (const double turn : {0.0, 0.11, 1.0}) {
+      std::vector<Pose> poses = drawn_poses(m);
+      poses[0].rotation = Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ()));
+      poses[1].rotation = Quat(Eigen::AngleAxisd(ratio * turn, Vec3::UnitZ()));
+      const SceneList scene = build_scene(m, poses);
+      const double off_a = tooth_distance(scene, Vec3::Zero(), r_a, contact),
+                   off_b = tooth_distance(scene, second, r_b, contact);
+      // A pitch apart are teeth of one wheel, half of it a tooth from the next gap.
+      const double pitch = 1.5 * scene.scale.unit;
+      CHECK(off_a + off_b > 0.35 * pitch);
+      CHECK(off_a + off_b < 0.9 * pitch);
+    }
+  }
+}
+
+TEST_CASE("a wheel in two meshes is drawn once") {
+  Mechanism m = meshing(-0.5, {0.3, 0, 0});
+  const SceneList once = build_scene(m, {});
+  Joint again = m.joints[2];
+  again.name = "again";
+  m.joints.push_back(again);
+  CHECK(count(build_scene(m, {}), {PartKind::joint, 3}) == 0);
+  m.joints[3].joints = {"turn_b", "turn_a"};
+  m.joints[3].ratio = -2;
+  CHECK(build_scene(m, {}).instances.size() == once.instances.size());
+}
+
+TEST_CASE("a torque's arc is seen before the plate it turns") {
+  Mechanism m;
+  m.bodies = {body("plate", 1, {0, 0, 0})};
+  m.bodies[0].shapes.resize(1);
+  m.bodies[0].shapes[0].type = ShapeType::box;
+  m.bodies[0].shapes[0].size = {0.5, 0.5, 0.1};
+  Force torque;
+  torque.type = ForceType::torque;
+  torque.body = "plate";
+  for (const double sense : {1.0, -1.0}) {
+    torque.vector = {0, 0, sense};
+    m.forces = {torque};
+    const SceneList scene = build_scene(m, {});
+    const auto arc = std::ranges::find(scene.instances, Primitive::arc, &Instance::primitive);
+    REQUIRE(arc != scene.instances.end());
+    CHECK(arc->position.z() - arc->round > 0.05);
   }
 }
 

@@ -17,11 +17,13 @@ LIMIT = 60  # seconds, for anything to happen
 SPEED = "joints.spin.drive.speed"
 
 
-def start_display():
-    """Xvfb on a number of its own choice; returns the process and the number."""
+def start_display(resets=False):
+    """Xvfb on a number of its own choice, which starts anew or not when its last client has gone; returns the process
+    and the number."""
     read, write = os.pipe()
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-noreset"],
+        ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp",
+         *([] if resets else ["-noreset"])],
         pass_fds=[write], stderr=subprocess.DEVNULL)
     os.close(write)
     with os.fdopen(read) as pipe:
@@ -177,6 +179,20 @@ def recover(window, scene, value):
     window.ends_well()
 
 
+def open_bare(program, scene, folder):
+    """A server that starts anew whenever its last client has gone is asked for a window once."""
+    server, display = start_display(resets=True)
+    window = Window(display, folder, program, scene)
+    try:
+        window.wait("a frame of the window", lambda s: s.get("frame", 0) > 0)
+        window.do("key", "ctrl+q")
+        window.ends_well()
+    finally:
+        window.end()
+        server.terminate()
+        server.wait()
+
+
 def main():
     program, scene = map(os.path.abspath, sys.argv[1:])
     for tool in ("Xvfb", "xdotool"):
@@ -196,6 +212,7 @@ def main():
                 windows.append(Window(display, folder, program, file))
                 return windows[-1]
 
+            open_bare(program, scene, folder)
             explore(start(scene), folder)
             value = crash(start(copy))
             recover(start(copy), copy, value)

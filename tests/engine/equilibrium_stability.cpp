@@ -355,6 +355,26 @@ TEST_CASE("at a critical speed the verdict stays open") {
   CHECK(s.neutral.empty());
 }
 
+TEST_CASE("a coordinate that nothing depends on stays as it is drawn") {
+  // A spindle that nobody drives, with one arm, a collar and the link between them.
+  Mechanism m = shipped("governor");
+  m.joints[0].coordinates[0].drive.reset();
+  m.joints[0].coordinates[0].drawn = 0.3;
+  std::erase_if(m.bodies, [](const Body& body) { return body.name == "ball2"; });
+  std::erase_if(m.joints,
+                [](const Joint& joint) { return joint.bodies[0] == "ball2" || joint.bodies[1] == "ball2"; });
+  m.sliders.clear();
+  for (const bool nearest : {false, true}) {
+    SolveOptions options;
+    options.nearest = nearest;
+    const Solution s = Analysis(m).solve(options);
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.neutral == std::vector<std::string>{"spin"});
+    CHECK(value(s, "spin") == 0.3);
+  }
+}
+
 TEST_CASE("only asked for its sign, stability says the same") {
   for (const char* scene : {"pendulum", "governor", "conical_pendulum", "rate_gyro", "watt_governor",
                             "ball_on_string", "fourbar_turntable", "governor_bearing", "chain20"}) {

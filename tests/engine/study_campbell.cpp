@@ -235,3 +235,49 @@ TEST_CASE("modal assurance of shapes", "[campbell]") {
   CHECK(moved[3].displacement.norm() < 1e-9);
   CHECK(moved[0].displacement.norm() == 0);
 }
+
+TEST_CASE("a point whose loops are singular belongs to no mode", "[campbell]") {
+  // At rest arms and links hang straight. A moment later both arms swing alike.
+  const Mechanism m = shipped("governor_friction");
+  const std::string w = "parameters.w";
+  const CampbellDiagram d = campbell_diagram(m, w, follow_branches(m, w, 0, 30), {});
+  bool left = false;
+  for (std::size_t b = 0; b < d.branches.size(); ++b) {
+    const CampbellBranch& branch = d.branches[b];
+    for (std::size_t i = 0; i < branch.points.size(); ++i) {
+      const ResponsePoint& at = d.response.branches[b].points[i];
+      CAPTURE(b, i, at.parameter);
+      if (at.singular_loops) {
+        left = true;
+        CHECK(branch.points[i].modes.empty());
+        continue;
+      }
+      for (std::size_t l = 0; i > 0 && l < branch.names.size(); ++l) {
+        const VibrationMode *mode = branch.points[i].on(l), *before = branch.points[i - 1].on(l);
+        if (!mode || !before || !mode->oscillates() || !before->oscillates()) continue;
+        if (at.parameter < 1) CHECK(mode->frequency == Approx(before->frequency).epsilon(0.02));
+      }
+    }
+  }
+  CHECK(left);
+  CHECK(left_out(d, "rad/s").starts_with("Without modes at 0 rad/s. The loops"));
+  const Mechanism turning = turning_springs();
+  CHECK(left_out(diagram_of(turning, 0, 9, {}), "rad/s").empty());
+}
+
+TEST_CASE("a steady state whose loops are singular has no modes, one beside it has", "[modes]") {
+  for (const bool straight : {true, false}) {
+    const Mechanism m = shipped("governor_friction", {{"parameters.w", straight ? 0. : 1.}});
+    Analysis analysis(m);
+    const Solution s = analysis.solve();
+    REQUIRE(s.status == Status::converged);
+    CAPTURE(s.message);
+    CHECK(s.singular_loops == straight);
+    CHECK(analysis.modes().empty() == straight);
+    CHECK(s.eigenvalues.has_value() != straight);
+    CHECK((s.message.find(singular_loops_message) != std::string::npos) == straight);
+  }
+  // Redundant everywhere: a linkage in a plane that is no singular pose.
+  Analysis planar(shipped("fourbar_turntable"));
+  CHECK_FALSE(planar.solve().singular_loops);
+}

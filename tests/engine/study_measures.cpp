@@ -493,3 +493,37 @@ TEST_CASE("measures of a motion are recorded, and settle where the steady state 
   without.measures = false;
   CHECK(simulate(m, without).measures.empty());
 }
+
+TEST_CASE("a measure with a pole within the errors of the coordinates has no value", "[measures]") {
+  const Mechanism m = shipped("governor_friction", {{"parameters.w", 0.}});
+  const Solution s = Analysis(m).solve();
+  REQUIRE(s.status == Status::converged);
+  CHECK_FALSE(measure(s.measures, "h").value.has_value()); // radius / tan(0)
+  CHECK(measure(s.measures, "h").reason.find("unbounded") != std::string::npos);
+  CHECK(measure(s.measures, "radius").value.has_value());
+  SolveOptions brief;
+  brief.details = false;
+  CHECK_FALSE(measure(Analysis(m).solve(brief).measures, "h").value.has_value());
+  const ResponseDiagram response = follow_branches(m, "parameters.w", 0, 10);
+  for (const ResponseBranch& branch : response.branches)
+    for (const ResponsePoint& point : branch.points)
+      CHECK(std::abs(measure(point.measures, "h").value.value_or(0)) < 1e9);
+}
+
+TEST_CASE("measures that are large, or zero within their errors, keep their values", "[measures]") {
+  Mechanism m = measured_pendulum(0.7, 6);
+  m.measures = {{"nothing", "", "lean - swing_angle", "rad"},
+                {"large", "", "1e15*swing_angle", "rad"},
+                {"lean", "", "coordinate(swing)", "rad"},
+                {"swing_angle", "", "coordinate(swing)", "rad"}};
+  for (const bool details : {true, false}) {
+    SolveOptions options;
+    options.details = details;
+    const Solution s = Analysis(m).solve(options);
+    REQUIRE(s.status == Status::converged);
+    for (const MeasureSolution& each : s.measures) {
+      CAPTURE(each.name, each.reason);
+      CHECK(each.value.has_value());
+    }
+  }
+}

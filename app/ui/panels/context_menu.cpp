@@ -104,7 +104,7 @@ void free_body_item(App& app) {
   const bool on = app.view.loads && app.mode == Mode::explore;
   if (ImGui::MenuItem("Free-body diagram", key_text(command("view.loads").key).c_str(), on))
     later(app, [&app, on] {
-      app.view.loads = !on;
+      app.view.fit_loads = app.view.loads = !on;
       if (!on) set_mode(app, Mode::explore);
     });
   note_widget(app.widgets, "view/menu/view.loads");

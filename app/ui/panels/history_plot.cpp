@@ -63,11 +63,11 @@ void history_plot(App& app, float width, float height) {
     const float wide = font->CalcTextSizeA(text, 1e9f, 0, label.c_str()).x;
     list.AddText(font, text, {left - wide - 6 * s, at - text / 2}, packed(colors.dim), label.c_str());
   }
-  const std::string last = std::to_string(history.size() - 1);
+  const std::string last = std::to_string(history.size());
   const float wide = font->CalcTextSizeA(text, 1e9f, 0, last.c_str()).x;
-  list.AddText(font, text, {left - wide / 2, bottom + 5 * s}, packed(colors.dim), "0");
+  list.AddText(font, text, {left - wide / 2, bottom + 5 * s}, packed(colors.dim), "1");
   list.AddText(font, text, {right - wide, bottom + 5 * s}, packed(colors.dim), last.c_str());
-  const char* axis = "residual by iteration";
+  const char* axis = "residual by evaluation";
   const float axis_size = std::round(0.87f * ImGui::GetFontSize());
   const float axis_width = app.fonts.text->CalcTextSizeA(axis_size, 1e9f, 0, axis).x;
   list.AddText(app.fonts.text, axis_size, {(left + right - axis_width) / 2, bottom + 4 * s},

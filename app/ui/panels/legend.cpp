@@ -125,7 +125,8 @@ float legend_top(App& app, const PanelRect& view, ImVec2 size) {
 
 } // namespace
 
-void legend(App& app, const PanelRect& view) {
+void legend(App& app, const PanelRect& view, bool folds) {
+  if (!folds && !app.panels.legend) return;
   const std::vector<LegendRow> rows = legend_rows(app);
   if (rows.empty() || view.width < 260 * app.scale || view.height < 160 * app.scale) return;
   const UiColors& colors = colors_of(app);
@@ -177,7 +178,9 @@ void legend(App& app, const PanelRect& view) {
   const ImU32 ink = packed(lit ? colors.text : colors.dim);
   list.AddText({from.x, from.y}, ink, "Shown");
   const float r = 3.5f * s, cx = from.x + room - r, cy = from.y + line / 2;
-  if (open)
+  if (!folds) {
+    // nothing to press
+  } else if (open)
     list.AddTriangleFilled({cx - r, cy - r / 2}, {cx + r, cy - r / 2}, {cx, cy + r / 1.5f}, ink);
   else
     list.AddTriangleFilled({cx + r / 2, cy - r}, {cx + r / 2, cy + r}, {cx - r / 1.5f, cy}, ink);

@@ -24,6 +24,6 @@ std::vector<LegendRow> legend_rows(App& app);
 
 // A small window in a right corner of the view, the upper one unless it hides loads' arrows there, which a
 // click on its title folds.
-void legend(App& app, const PanelRect& view);
+void legend(App& app, const PanelRect& view, bool folds = true);
 
 } // namespace flyball

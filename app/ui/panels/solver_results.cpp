@@ -30,10 +30,10 @@ void solver_results(App& app) {
       "From the start to the accepted answer, its stability included.");
   note_widget(app.widgets, "results/time");
   row(app, "Iterations", std::to_string(solution.iterations), "");
-  row(app, "Residual", magnitude_text(solution.residual, numbers), "scaled",
+  row(app, "Scaled residual", magnitude_text(solution.residual, numbers), "",
       "The largest equation of the balance, in units in which its terms are of the order of one.");
   if (solution.condition)
-    row(app, "Condition", short_text(*solution.condition, 2), "scaled",
+    row(app, "Condition", short_text(*solution.condition, 2), "",
         "Condition number (2-norm) of the scaled equations.");
   if (solution.fallback)
     row(app, "Fallback", fallback_text(*solution.fallback), "",

@@ -14,7 +14,7 @@ void view_alone(App& app, const PanelRect& rect) {
                                        {rect.x + rect.width, rect.y + rect.height}, {0, 1}, {1, 0});
   load_labels(app, rect);
   ImGui::End();
-  legend(app, rect);
+  legend(app, rect, false);
 }
 
 } // namespace flyball

@@ -15,6 +15,9 @@ namespace {
 constexpr double quarter_turn = std::numbers::pi / 2;
 constexpr double inner_share = 0.62;                  // half the width of a face's own part, in half edges
 constexpr float cube_side = 104, cube_half_edge = 25; // points: of the square it takes, of the cube
+constexpr float gravity_ends = 1.45f, gravity_named = 1.76f; // half edges from the middle
+constexpr float letter_half = 7;                             // points
+static_assert(gravity_named * cube_half_edge + letter_half < cube_side / 2, "the letter is within the view");
 
 struct CubeFace {
   const char* name;
@@ -250,12 +253,12 @@ namespace {
 // Downwards, where there is gravity.
 void draw_cube_gravity(const CubeDrawing& d) {
   const float s = d.app.scale;
-  const ImVec2 from = d.at({0, -1, 0}), to = d.at({0, -1.6, 0});
+  const ImVec2 from = d.at({0, -1, 0}), to = d.at({0, -gravity_ends, 0});
   if (std::hypot(to.x - from.x, to.y - from.y) < 3 * s) return;
   const ImU32 color = packed(colors_of(d.app).dim);
   d.list.AddLine(from, to, color, 1.5f * s);
   d.list.AddCircleFilled(to, 2.2f * s, color);
-  const ImVec2 end = d.at({0, -1.95, 0});
+  const ImVec2 end = d.at({0, -gravity_named, 0});
   const ImFont& font = *d.app.fonts.text;
   const float size = 0.85f * font.FontSize;
   const ImVec2 text = font.CalcTextSizeA(size, 1e9f, 0, "g");

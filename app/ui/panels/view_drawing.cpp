@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace flyball {
 
@@ -20,6 +21,18 @@ Color background(const Ui& ui) {
 }
 
 } // namespace
+
+void draw_words(const Ui& ui, ImFont* font, ImVec2 at, const ImVec4& color, const std::string& words) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  constexpr int sides = 12;
+  const float reach = 2 * ui.scale;
+  for (int i = 0; i < sides; ++i) {
+    const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / sides;
+    list.AddText(font, font->FontSize, {at.x + reach * std::cos(angle), at.y + reach * std::sin(angle)},
+                 packed(background(ui), 0.5f), words.c_str());
+  }
+  list.AddText(font, font->FontSize, at, packed(color), words.c_str());
+}
 
 ImU32 packed(const Color& color, float alpha) {
   ImVec4 c = to_imgui(color);

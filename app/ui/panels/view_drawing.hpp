@@ -10,6 +10,9 @@
 
 namespace flyball {
 
+// Words over the view, on a halo of its background: to be read over dark parts, too.
+void draw_words(const Ui& ui, ImFont* font, ImVec2 at, const ImVec4& color, const std::string& words);
+
 ImU32 packed(const Color& color, float alpha = 1);
 Color axis_color(Theme theme, int axis);
 

@@ -4,6 +4,7 @@
 #include "app/document/gear_kinds.hpp"
 #include "app/render/icons.hpp"
 #include "app/ui/file_commands.hpp"
+#include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -79,7 +80,7 @@ void caption(App& app, const PanelRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect({rect.x, rect.y}, {rect.x + rect.width - 8 * s, rect.y + rect.height}, true);
   const float big = app.fonts.strong->FontSize;
-  list.AddText(app.fonts.strong, big, {x, y}, packed(colors.text), app.mechanism().name.c_str());
+  draw_words(app, app.fonts.strong, {x, y}, colors.text, app.mechanism().name);
   y += big + 4 * s;
   const bool solved = converged(app);
   std::string state; // which pose it is, the legend says
@@ -102,12 +103,11 @@ void motion_caption(App& app, const PanelRect& rect) {
   const UiColors& colors = colors_of(app);
   const float s = app.scale, big = app.fonts.strong->FontSize;
   const ImVec2 at(rect.x + 14 * s, rect.y + 11 * s);
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddText(app.fonts.strong, big, at, packed(colors.text), "Motion");
+  draw_words(app, app.fonts.strong, at, colors.text, "Motion");
   const MotionRun* shown = shown_motion(app);
   const std::string words = motion_words(app, shown); // "Motion, damped"
   const std::string what = !shown ? "Computing…" : words.size() > 8 ? words.substr(8) : "";
-  list.AddText({at.x, at.y + big + 4 * s}, packed(colors.dim), what.c_str());
+  draw_words(app, app.fonts.text, {at.x, at.y + big + 4 * s}, colors.dim, what);
 }
 
 void view_lines(App& app, const PanelRect& rect) {

@@ -106,7 +106,7 @@ void draw_curve(const PlotPen& pen, const PlotCurve& curve, const PlotCurveLines
 // Flat, so that no seams show where its parts meet.
 void draw_band(const PlotPen& pen, const PlotBand& band, const PlotBandLines& lines) {
   const std::uint32_t color = curve_color(band.color, pen.ground);
-  const ImU32 fill = packed_color(color, static_cast<float>(band_fill)),
+  const ImU32 fill = packed_color(color, static_cast<float>(band_fill(pen.ground))),
               edge = packed_color(color, static_cast<float>(band_edge));
   for (const auto& [lower, upper] : lines.lower_upper) {
     const ImDrawListFlags before = pen.list.Flags;
@@ -160,7 +160,8 @@ void draw_legend(const PlotPen& pen, const Plot& plot, const PlotLook& look, con
       const double middle = std::floor((entry.sample.top + entry.sample.bottom) / 2), half = 5 * layout.scale;
       pen.list.AddRectFilled(pen.at(entry.sample.left, middle - half),
                              pen.at(entry.sample.right, middle + half),
-                             packed_color(hidden ? colors.faint : own, 2 * static_cast<float>(band_fill)));
+                             packed_color(hidden ? colors.faint : own,
+                                          std::min(2 * static_cast<float>(band_fill(pen.ground)), 1.f)));
       draw_text(pen, entry.text, packed_color(hidden ? colors.faint : colors.text));
       continue;
     }

@@ -22,15 +22,16 @@ double resolution(const PlotRuler& ruler, double pixel) {
   return std::abs(ruler.value(pixel + 0.5) - ruler.value(pixel - 0.5));
 }
 
-std::string value_at(const PlotRuler& ruler, double value) {
+std::string value_at(const PlotRuler& ruler, double value, bool whole = false) {
+  if (whole && std::isfinite(value)) return std::to_string(std::llround(value));
   const double pixel = ruler.pixel(value);
   return reading_text(value, std::isfinite(pixel) ? resolution(ruler, pixel) : 0);
 }
 
 ReadingLine axis_line(const PlotFrame& frame, int axis, double value) {
   const PlotAxis& a = axis_of(frame.plot, axis);
-  return {a.label.empty() ? (axis == 0 ? "x" : "y") : a.label, value_at(frame.layout.ruler(axis), value),
-          a.unit};
+  return {a.label.empty() ? (axis == 0 ? "x" : "y") : a.label,
+          value_at(frame.layout.ruler(axis), value, a.whole), a.unit};
 }
 
 // The mark under the pointer says what it is, also where its label found no room.
@@ -72,17 +73,18 @@ std::vector<ReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& at) 
   const std::vector<PlotReading> readings = readings_at(frame.plot, frame.view.look, layout, x, at[1]);
   for (const PlotReading& r : readings) {
     const double pixel = layout.y.pixel(r.y);
-    lines.push_back(
-        {frame.plot.curves[r.curve].name, value_at(layout.y, r.y), frame.plot.y.unit, color_of(r.curve)});
+    lines.push_back({frame.plot.curves[r.curve].name, value_at(layout.y, r.y, frame.plot.y.whole),
+                     frame.plot.y.unit, color_of(r.curve)});
     if (!r.note.empty()) lines.push_back({r.note, "", ""});
     if (pixel >= layout.area.top && pixel <= layout.area.bottom) dot(frame, at[0], pixel, color_of(r.curve));
   }
   const std::vector<BandReading> bands = bands_at(frame.plot, frame.view.look, layout, x, at[1]);
   for (const BandReading& r : bands) {
     const PlotBand& band = frame.plot.bands[r.band];
-    const std::string upper = value_at(layout.y, r.upper);
+    const std::string upper = value_at(layout.y, r.upper, frame.plot.y.whole);
     // Bars stand on nothing.
-    lines.push_back({band.name, r.lower == 0 ? upper : value_at(layout.y, r.lower) + " … " + upper,
+    lines.push_back({band.name,
+                     r.lower == 0 ? upper : value_at(layout.y, r.lower, frame.plot.y.whole) + " … " + upper,
                      frame.plot.y.unit, packed_color(curve_color(band.color, frame.pen.ground))});
   }
   const double y = layout.y.value(at[1]);

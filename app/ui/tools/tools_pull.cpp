@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace flyball {
 
@@ -96,23 +97,23 @@ void tell_where(Session& session, const PullGrab& grab) {
   }
 }
 
-// A zigzag between two pixels with straight ends.
+// A wave between two pixels with straight ends; corners would throw their halo far out.
 void draw_coil(const App& app, ImVec2 from, ImVec2 to) {
-  constexpr int turns = 8;
+  constexpr int turns = 8, steps = 12; // a turn
   const float dx = to.x - from.x, dy = to.y - from.y, length = std::hypot(dx, dy), s = app.scale;
   if (length < 12 * s) return draw_line(app, from, to, palette(app.theme).accent, 2);
   const float half = std::min(6 * s, length / 6), end = std::min(10 * s, length / 6);
-  const float ux = dx / length, uy = dy / length, step = (length - 2 * end) / (2 * turns);
-  std::array<ImVec2, 2 * turns + 4> points;
+  const float ux = dx / length, uy = dy / length, wave = length - 2 * end;
+  std::array<ImVec2, turns * steps + 3> points;
   std::size_t n = 0;
   const auto add = [&](float along, float across) {
     points[n++] = {from.x + along * ux - across * uy, from.y + along * uy + across * ux};
   };
   add(0, 0);
-  add(end, 0);
-  for (int i = 0; i < 2 * turns; ++i)
-    add(end + step * (static_cast<float>(i) + 0.5f), i % 2 == 0 ? half : -half);
-  add(length - end, 0);
+  for (int i = 0; i <= turns * steps; ++i) {
+    const float part = static_cast<float>(i) / (turns * steps);
+    add(end + part * wave, half * std::sin(2 * std::numbers::pi_v<float> * turns * part));
+  }
   add(length, 0);
   draw_lines(app, points, palette(app.theme).accent, 2);
 }
@@ -130,7 +131,7 @@ void draw_pull(const App& app, const ViewInput& input) {
   if (!force) return;
   const ShownUnit unit = shown_unit("N/m", app.units);
   draw_tag(app, input, input.cursor, short_text(*force, 3) + " N",
-           short_text(unit.shown(grab.pull->stiffness), 3) + " " + unit.text);
+           rough_text(unit.shown(grab.pull->stiffness)) + " " + unit.text);
 }
 
 } // namespace

@@ -222,7 +222,10 @@ void modes_list(App& app) {
     if (text_button(app, "modes/again", "Find again", true)) find_modes_again(app);
   }
   verdict(app, found);
-  if (found.modes.empty()) return paragraph("No coordinate is free to swing.", colors.dim);
+  if (found.modes.empty())
+    return paragraph(found.singular_loops ? std::string(singular_loops_message)
+                                          : "No coordinate is free to swing.",
+                     colors.dim);
   const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * app.scale;
   list(app, found, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * app.scale));
   transport(app);
@@ -314,6 +317,9 @@ void show_campbell(App& app) {
     clipped_text(words, ImGui::GetContentRegionAvail().x);
     note_widget(app.widgets, "campbell/critical");
   }
+  if (const std::string without = left_out(diagram.found->result, parameter_unit(app.mechanism(), drive));
+      !without.empty())
+    paragraph(without, colors.dim);
   if (!campbell.on_branch && converged(app) && !solving(app) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
   const PlotEvents events = plot_view(

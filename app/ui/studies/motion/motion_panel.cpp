@@ -160,8 +160,8 @@ void accuracy(App& app) {
     }
   const RunStatistics& s = run.statistics;
   if (s.position_drift > 0)
-    row(app, "Loops open by", magnitude_text(s.position_drift, numbers), "m or rad",
-        "At most, over all samples.");
+    row(app, "Loops open by", magnitude_text(s.position_drift, numbers), "",
+        "The worst equation of the loops over all samples: lengths in m, angles in rad, directions as numbers.");
   paragraph(run.method_reason, colors.dim);
   for (const std::string& note : run.notes)
     paragraph(note, colors.dim);

@@ -1,0 +1,14 @@
+// Poses in which the loops lose an equation.
+#pragma once
+
+#include "engine/solve/newton.hpp"
+
+namespace flyball {
+
+// Whether more of the loops' equations are independent beside the state than in it, as nearly as the state is
+// known: arms straight, a linkage flat. There lengths change with the square of the angles, tangents lead off
+// the loops, and the linearised motion along them is none of the mechanism's. Of a state that is evaluated
+// and factored in the workspace; of large loops, which are factored as sparse ones, it is not known: false.
+bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w);
+
+} // namespace flyball
