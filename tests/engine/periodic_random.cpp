@@ -3,6 +3,7 @@
 
 #include "engine/periodic/periodic_state.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/campaign.hpp"
 #include "tests/support/dice.hpp"
 
 #include <numbers>
@@ -53,7 +54,8 @@ Mechanism random_four_bar(Dice& dice) {
 
 TEST_CASE("Shooting finds where random driven mechanisms with loops settle") {
   int compared = 0;
-  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+  const std::uint32_t seeds = few_or_all(3u, 8u);
+  for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
     CAPTURE(seed);
     Dice dice(seed);
     const Mechanism m = random_four_bar(dice);
@@ -96,5 +98,5 @@ TEST_CASE("Shooting finds where random driven mechanisms with loops settle") {
     }
     ++compared;
   }
-  CHECK(compared >= 5);
+  CHECK(compared >= static_cast<int>(seeds / 2));
 }

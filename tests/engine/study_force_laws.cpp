@@ -10,6 +10,7 @@
 #include "engine/system/bound_law.hpp"
 #include "tests/engine/dynamics_runs.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
+#include "tests/support/campaign.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/solutions.hpp"
 
@@ -422,7 +423,8 @@ TEST_CASE("what pushes on without end is found with laws, too", "[laws]") {
 
 TEST_CASE("random mechanisms with laws: damped motions settle where the direct solution stands", "[laws]") {
   int compared = 0, with_loops = 0;
-  for (std::uint32_t seed = 0; seed < 24; ++seed) {
+  const std::uint32_t seeds = few_or_all(12u, 24u); // all numbers of bodies with and without loops
+  for (std::uint32_t seed = 0; seed < seeds; ++seed) {
     reference::RandomOptions options;
     options.bodies = 1 + static_cast<int>(seed % 3);
     options.loops = static_cast<int>(seed % 4) / 2;
@@ -461,6 +463,6 @@ TEST_CASE("random mechanisms with laws: damped motions settle where the direct s
     ++compared;
     with_loops += options.loops > 0;
   }
-  CHECK(compared >= 8);
-  CHECK(with_loops >= 3);
+  CHECK(compared >= static_cast<int>(seeds / 3));
+  CHECK(with_loops >= static_cast<int>(seeds / 8));
 }

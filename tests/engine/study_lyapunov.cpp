@@ -1,6 +1,7 @@
 // The first Lyapunov coefficient against closed forms and against long motions.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
+#include "tests/support/campaign.hpp"
 
 #include "engine/continuation/branch_follower.hpp"
 #include "engine/dynamics/simulator.hpp"
@@ -305,7 +306,8 @@ TEST_CASE("Haug's governor begins to hunt hard, as its motion says", "[hopf]") {
 
 TEST_CASE("random mechanisms with engines: points of the curves have a pair on the axis", "[hopf][random]") {
   int curves = 0, told = 0;
-  for (std::uint32_t seed = 0; seed < 8; ++seed) {
+  const std::uint32_t seeds = few_or_all(4u, 8u);
+  for (std::uint32_t seed = 0; seed < seeds; ++seed) {
     CAPTURE(seed);
     Mechanism m = reference::random_sprung_mechanism(seed);
     const Solution there = Analysis(m).solve();
