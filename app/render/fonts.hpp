@@ -21,4 +21,12 @@ struct UiFonts {
 // size * scale, so text is crisp at any scale when DisplaySize is given in pixels. Clears the atlas first.
 UiFonts load_fonts(ImFontAtlas& atlas, float size, float scale);
 
+// Fonts that outlive a context, for others after it: to draw their glyphs takes as long as hundreds of
+// frames.
+struct KeptFonts {
+  ImFontAtlas atlas;
+  UiFonts fonts;
+  float scale = 0; // for which they were drawn last; 0: not yet
+};
+
 } // namespace flyball

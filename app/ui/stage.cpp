@@ -35,8 +35,8 @@ PixelSize pixels_of(const PanelRect& rect) {
   return {static_cast<int>(rect.width), static_cast<int>(rect.height)};
 }
 
-ImGuiContext* new_context() {
-  ImGuiContext* context = ImGui::CreateContext();
+ImGuiContext* new_context(ImFontAtlas* fonts) {
+  ImGuiContext* context = ImGui::CreateContext(fonts);
   ImGui::SetCurrentContext(context);
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
@@ -47,8 +47,9 @@ ImGuiContext* new_context() {
 
 } // namespace
 
-Stage::Stage(App& app, float scale)
-    : former_(ImGui::GetCurrentContext()), context_(new_context(), ImGui::DestroyContext) {
+Stage::Stage(App& app, float scale, KeptFonts* kept)
+    : former_(ImGui::GetCurrentContext()), kept_(kept),
+      context_(new_context(kept ? &kept->atlas : nullptr), ImGui::DestroyContext) {
   set_scale(app, scale);
 }
 
@@ -59,7 +60,15 @@ Stage::~Stage() {
 void Stage::set_scale(App& app, float scale) {
   ImGui::SetCurrentContext(context_.get());
   app.scale = scale;
-  app.fonts = load_fonts(*ImGui::GetIO().Fonts, interface_text_size, scale);
+  if (kept_ && kept_->scale == scale) {
+    app.fonts = kept_->fonts;
+  } else {
+    app.fonts = load_fonts(*ImGui::GetIO().Fonts, interface_text_size, scale);
+    if (kept_) {
+      kept_->fonts = app.fonts;
+      kept_->scale = scale;
+    }
+  }
   ImGui::GetIO().FontDefault = app.fonts.text;
   renderer_.upload_fonts();
   apply_style(app.theme, scale);

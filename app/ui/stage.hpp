@@ -2,6 +2,7 @@
 // panels. The same in a window and off-screen. Needs a current OpenGL context for its whole life.
 #pragma once
 
+#include "app/render/fonts.hpp"
 #include "app/render/imgui_renderer.hpp"
 #include "app/ui/app.hpp"
 #include "app/ui/scene_pictures.hpp"
@@ -33,8 +34,9 @@ struct ViewKey {
 
 class Stage {
  public:
-  // Makes its own ImGui context current, with fonts and colours for app.theme at `scale`.
-  Stage(App& app, float scale);
+  // Makes its own ImGui context current, with fonts and colours for app.theme at `scale`. The fonts are drawn
+  // anew, or taken from `kept`, which no other stage may use at the same time.
+  Stage(App& app, float scale, KeptFonts* kept = nullptr);
   ~Stage();
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
@@ -82,6 +84,7 @@ class Stage {
   void draw_interface(const App& app, PixelSize size);
 
   ImGuiContext* former_; // that was current before
+  KeptFonts* kept_;      // or none
   std::unique_ptr<ImGuiContext, void (*)(ImGuiContext*)> context_;
   ImGuiRenderer renderer_;
   ViewRenderer view_renderer_;

@@ -9,6 +9,15 @@
 #include <cmath>
 
 namespace flyball::test {
+namespace {
+
+// Robots come one after the other.
+KeptFonts& fonts() {
+  static KeptFonts kept;
+  return kept;
+}
+
+} // namespace
 
 Robot::Robot(PixelSize wanted, const NumberStyle& numbers)
     : app({.mode = LiveSolver::Mode::immediate,
@@ -16,7 +25,7 @@ Robot::Robot(PixelSize wanted, const NumberStyle& numbers)
            .scenes = FLYBALL_ASSETS "/scenes",
            .theme = Theme::light,
            .numbers = numbers}),
-      stage(app, 1), size(wanted) {
+      stage(app, 1, &fonts()), size(wanted) {
   app.view.samples = 1;
   imgui_compat::map_key(ImGuiKey_Enter, key_enter);
   imgui_compat::map_key(ImGuiKey_Escape, key_escape);

@@ -16,6 +16,7 @@
 #include <random>
 
 using namespace flyball;
+using flyball::test::few_or_all;
 using flyball::test::time_to_stop;
 
 namespace {

@@ -34,6 +34,9 @@ struct Verdict {
 struct Case {
   std::string family, name;
   std::function<Verdict(const std::atomic<bool>& cancel)> run;
+  // What makes a refusal the poorer, though not wrong: other starts that find an answer. Takes several
+  // solves.
+  std::function<std::string(const std::atomic<bool>& cancel)> other_starts{};
 };
 using Cases = std::vector<Case>;
 

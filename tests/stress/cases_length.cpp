@@ -44,6 +44,7 @@ void add_length_cases(const CaseChoice& choice, Cases& cases) {
   const std::vector<double> few = decades(-6, 6, 2, choice.thinned);
   for (const NamedScene& scene : shipped_scenes())
     for (const double size : few) {
+      if (choice.thinned && size == 1) continue; // a case of the scenes
       cases.push_back(solve_case("length", scene.name + " " + digits(size) + " times",
                                  resized(scene.mechanism, size), {.must = must_rest(scene.mechanism)}));
       // Other units of length, mass and time: what settles must settle whatever they are. A drive's law keeps

@@ -27,6 +27,7 @@ void add_mass_cases(const CaseChoice& choice, Cases& cases) {
     for (const double even : few)
       for (const double odd : few) {
         if (even != 1 && odd != 1 && even * odd != 1) continue;
+        if (choice.thinned && even == 1 && odd == 1) continue; // a case of the scenes
         cases.push_back(solve_case("mass", scene.name + " " + digits(even) + " beside " + digits(odd),
                                    uneven(scene.mechanism, even, odd), {.must = must_rest(scene.mechanism)}));
       }

@@ -35,7 +35,7 @@ int main(int count, char** arguments) {
   Cases cases = all_cases(choice);
   std::erase_if(cases,
                 [&](const Case& c) { return (c.family + ": " + c.name).find(filter) == std::string::npos; });
-  const std::vector<Result> results = run_cases(cases, 2);
+  const std::vector<Result> results = run_cases(cases, 2, true);
   std::cout << failures(results) << '\n' << markdown(results);
   if (!table.empty() && !(std::ofstream(table) << csv(results))) {
     std::cerr << "cannot write " << table << '\n';

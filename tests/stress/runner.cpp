@@ -42,17 +42,19 @@ extern "C" void crashed(int) {
   _exit(3);
 }
 
-Result run_one(const Case& c, Slot& slot) {
+Result run_one(const Case& c, Slot& slot, bool other_starts) {
   Result out{c.family, c.name, {}, 0};
   slot.cancel = false;
   slot.since = now();
   slot.name = c.name.c_str();
   try {
     out.verdict = c.run(slot.cancel);
+    if (other_starts && out.verdict.outcome == Outcome::refused && c.other_starts)
+      out.verdict.remark += c.other_starts(slot.cancel);
   } catch (const std::exception& e) {
-    out.verdict.remark = std::string("an exception: ") + e.what();
+    out.verdict = {.remark = std::string("an exception: ") + e.what()};
   } catch (...) {
-    out.verdict.remark = "an unknown exception";
+    out.verdict = {.remark = "an unknown exception"};
   }
   slot.name = nullptr;
   out.wall_s = now() - slot.since;
@@ -65,7 +67,7 @@ Result run_one(const Case& c, Slot& slot) {
 
 } // namespace
 
-std::vector<Result> run_cases(const Cases& cases, int threads) {
+std::vector<Result> run_cases(const Cases& cases, int threads, bool other_starts) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL})
     std::signal(signal, crashed);
   std::vector<Result> results(cases.size());
@@ -74,7 +76,7 @@ std::vector<Result> run_cases(const Cases& cases, int threads) {
   for (int t = 0; t < std::min(threads, static_cast<int>(slots.size())); ++t)
     workers.emplace_back([&, t] {
       for (std::size_t i = next++; i < cases.size(); i = next++) {
-        results[i] = run_one(cases[i], slots[static_cast<std::size_t>(t)]);
+        results[i] = run_one(cases[i], slots[static_cast<std::size_t>(t)], other_starts);
         ++done;
       }
     });

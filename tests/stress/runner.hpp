@@ -19,7 +19,7 @@ struct Result {
   double wall_s = 0; // with the reference
 };
 
-// In the order of the cases.
-std::vector<Result> run_cases(const Cases& cases, int threads);
+// In the order of the cases; with `other_starts` remarks on refusals tell of those, too.
+std::vector<Result> run_cases(const Cases& cases, int threads, bool other_starts);
 
 } // namespace flyball::stress
