@@ -67,11 +67,6 @@ class Builder:
         self.window.do("type", "--delay", 40, text)
         self.key("Return")
 
-    def mass_and_inertia(self, mass, *inertia):
-        self.fill("mass", mass)
-        for axis, value in zip(("xx", "yy", "zz"), inertia):
-            self.fill("inertia/" + axis, value)
-
     def joint(self, x, y, kind, axis, name):
         self.click("tools/joint")
         self.click_at(x, y)
@@ -95,8 +90,7 @@ def build(window):
     b.command("shift+r")
     b.click_at(0, 0)
     b.click_at(1, 0)
-    b.fill("name", "crank")
-    b.mass_and_inertia("1", "0", "0.1", "0.1")
+    b.fill("name", "crank")  # what it weighs changes nothing
     b.command("shift+r")
     b.click_at(1, 0)
     b.click_at(2.4, 0)
@@ -106,7 +100,7 @@ def build(window):
     b.click_at(2.1, 0)
     b.fill("name", "weight")
     b.fill("position/x", "2100 mm")
-    b.mass_and_inertia("1", "0", "0", "0")
+    b.fill("mass", "1")  # a ball turns as a point does
 
     b.joint(0, 0, "revolute", "z", "spin")
     b.click("inspector/drive")

@@ -162,15 +162,15 @@ def main():
                 windows.append(Window(own_display, folder, program, folder / "own" / file))
                 return windows[-1], copy
 
-            for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+            for number in (signal.SIGTERM, signal.SIGHUP):
                 window, copy = begin(number.name)
                 speed = keep_another_speed(window)
                 window.program.send_signal(number)
                 ends_and_keeps_speed(window, copy.parent, -number, speed, number.name)
             window, copy = begin("dragging")
             drag_without_pause(window)
-            window.program.send_signal(signal.SIGTERM)
-            ends_and_keeps_move(window, copy, -signal.SIGTERM, "while dragging")
+            window.program.send_signal(signal.SIGINT)
+            ends_and_keeps_move(window, copy, -signal.SIGINT, "while dragging")
             subprocess.run(["xdotool", "mouseup", "1"], env=window.environment, check=True)
             for part in ("display lost", "display lost while dragging"):
                 dragging = part.endswith("dragging")

@@ -62,6 +62,7 @@ TEST_CASE("a place says the same as a diagram by itself, whatever was followed b
   const std::vector<Variation> over{{"parameters.k", 500, 1500, 3}};
   BranchOptions options;
   options.all = true;
+  options.all_at = {12};
   const GridFollower follower(m, over, "parameters.w", 5, 15, options);
   (void)follower.follow(0);
   const GridBranches place = follower.follow(2);

@@ -5,6 +5,7 @@
 #include "tests/catch.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/engine/system_model.hpp"
+#include "tests/support/campaign.hpp"
 #include "tests/support/parts.hpp"
 
 #include <algorithm>
@@ -435,7 +436,8 @@ TEST_CASE("the Jacobian is exact for random mechanisms with several drives") {
 
 TEST_CASE("mass and velocity matrices are the reference's") {
   int compared = 0;
-  for (std::uint32_t seed = 0; seed < 150; ++seed) {
+  const std::uint32_t seeds = test::few_or_all(75u, 150u);
+  for (std::uint32_t seed = 0; seed < seeds; ++seed) {
     INFO("seed " << seed);
     RandomOptions options = several(seed);
     options.bodies = 1 + static_cast<int>(seed % 5);
@@ -465,12 +467,13 @@ TEST_CASE("mass and velocity matrices are the reference's") {
           1e-11 * (1 + largest(theirs.velocity)));
     ++compared;
   }
-  CHECK(compared > 100);
+  CHECK(compared > static_cast<int>(seeds * 100 / 150));
 }
 
 TEST_CASE("dampers in loop joints resist the motions that the loops allow") {
   int compared = 0, resisted = 0;
-  for (std::uint32_t seed = 0; seed < 120; ++seed) {
+  const std::uint32_t seeds = test::few_or_all(60u, 120u);
+  for (std::uint32_t seed = 0; seed < seeds; ++seed) {
     INFO("seed " << seed);
     RandomOptions options;
     options.bodies = 3 + static_cast<int>(seed % 3);
@@ -496,8 +499,8 @@ TEST_CASE("dampers in loop joints resist the motions that the loops allow") {
     compared += n.cols() > 0;
     resisted += largest(MatrixR(ours)) > 1e-6;
   }
-  CHECK(compared > 40);
-  CHECK(resisted > 20);
+  CHECK(compared > static_cast<int>(seeds / 3));
+  CHECK(resisted > static_cast<int>(seeds / 6));
 }
 
 TEST_CASE("without dampers and drag the velocity matrix is gyroscopic") {

@@ -51,7 +51,7 @@ TEST_CASE("an empty document says what to do first") {
   hand.check("editor-empty");
 }
 
-TEST_CASE("a joint is being placed") {
+TEST_CASE("a joint is being placed", "[egl]") {
   Hand hand("governor.json");
   hand.key('1');
   hand.key('J');
@@ -185,7 +185,7 @@ TEST_CASE("parts are turned with rings") {
   hand.check("editor-rotating");
 }
 
-TEST_CASE("the motion stands beside the steady state, with its plots") {
+TEST_CASE("the motion stands beside the steady state, with its plots", "[egl]") {
   Hand hand("governor.json");
   set_mode(hand.app, Mode::explore);
   open_study(hand.app, StudyKind::motion);

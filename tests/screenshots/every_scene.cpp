@@ -36,7 +36,7 @@ TEST_CASE("every shipped scene looks as it did") {
   }
 }
 
-TEST_CASE("dark colours and twice the scale look as they did") {
+TEST_CASE("dark colours and twice the scale look as they did", "[egl]") {
   const OffscreenContext context;
   App app(steady_options(Theme::dark));
   open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
@@ -44,7 +44,7 @@ TEST_CASE("dark colours and twice the scale look as they did") {
   check_stored("governor-dark-2x", interface_picture(app, {2400, 1700}, 2));
 }
 
-TEST_CASE("a scene without a steady state says so beside its drawn pose") {
+TEST_CASE("a scene without a steady state says so beside its drawn pose", "[egl]") {
   const OffscreenContext context;
   App app(steady_options());
   app.view.samples = 1;

@@ -35,7 +35,7 @@ Image changed_governor(const Change& change) {
 
 } // namespace
 
-TEST_CASE("a missing part is seen, and nothing else is") {
+TEST_CASE("a missing part is seen, and nothing else is", "[egl]") {
   const OffscreenContext context;
   const Image stored = stored_picture("governor-view");
   const auto unchanged = [](auto&...) {};
