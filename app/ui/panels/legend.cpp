@@ -149,7 +149,7 @@ void legend(App& app, const PanelRect& view, bool folds) {
   };
   const ImVec2 whole = size_of(rows);
   const bool crowded = whole.x * whole.y > largest_share * view.width * view.height;
-  const bool open = crowded ? app.panels.legend_anyway : app.panels.legend;
+  const bool open = !folds || (crowded ? app.panels.legend_anyway : app.panels.legend);
   const std::vector<LegendRow> shown = open ? rows : std::vector<LegendRow>();
   const ImVec2 size = size_of(shown);
   ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(legend_top(app, view, size))},
