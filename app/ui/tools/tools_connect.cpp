@@ -77,8 +77,8 @@ std::string obstacle(Tool tool, const Aim& from, const Aim& to) {
   return "";
 }
 
-// The direction from one end to where the cursor is, as the preview has it; on the end itself to the right, as
-// it is seen.
+// The direction from one end to where the cursor is, as the preview has it; on the end itself to the right,
+// as it is seen.
 Vec3 direction(const ViewInput& input, const Aim& from, const Aim& to) {
   const Vec3 by = to.point - from.point;
   if (by.norm() > 0) return by.normalized();
